@@ -1,0 +1,27 @@
+// Why a stretch of telemetry gives no model: a code for programs and a sentence for an operator.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace reident::identification {
+
+enum class VerdictCode {
+  too_few_samples,
+  non_finite,
+  constant_inputs,
+  constant_outputs,
+  insufficient_excitation,
+  unstable,
+  no_better_than_mean,
+};
+
+/// The code as it is stored and printed, such as "too_few_samples".
+std::string_view name(VerdictCode code);
+
+struct Verdict {
+  VerdictCode code;
+  std::string reason;  // one sentence: what, where, and what would mend it
+};
+
+}  // namespace reident::identification

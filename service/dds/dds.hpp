@@ -1,0 +1,121 @@
+// Typed, owning access to the topics of idl/README.md. No DDS type shows here.
+//
+// M is one of storage::TelemetryFrame, storage::ParameterDescriptor, ModelVersion,
+// IdentificationReport, ModelAcknowledgement and ServiceStatus; the topic, its key and its QoS
+// follow from it (service/dds/qos.hpp has every profile).
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "service/model/messages.hpp"
+#include "service/model/model_version.hpp"
+#include "storage/telemetry.hpp"
+
+namespace reident::dds {
+
+/// A call to the middleware failed; says which, on what topic, and what would mend it.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Endpoint {
+  std::uint32_t domain = 0;
+  std::string partition = "operations";  // separates operations, training and test
+};
+
+/// Joins a domain. Without CYCLONEDDS_URI in the environment all traffic stays on 127.0.0.1.
+class Participant {
+ public:
+  explicit Participant(const Endpoint& endpoint);
+  ~Participant();
+  Participant(Participant&&) noexcept;
+  Participant& operator=(Participant&&) noexcept;
+
+  struct Impl;
+  Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// How much telemetry a writer keeps for services that join late or restart, in frames of one
+/// source.
+struct WriterOptions {
+  std::int32_t history = 1;  // used for TelemetryFrame alone; 0 keeps nothing for late joiners
+};
+
+template <class M>
+class Writer {
+ public:
+  explicit Writer(Participant& participant, const WriterOptions& options = {});
+  ~Writer();
+  Writer(Writer&&) noexcept;
+  Writer& operator=(Writer&&) noexcept;
+
+  /// Blocks while the readers' bounds are reached. Throws Error.
+  void write(const M& message);
+  std::uint32_t matched_readers() const;
+  /// False when `timeout` passed before every matched reader had everything.
+  bool wait_for_acknowledgments(std::chrono::nanoseconds timeout);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Bounds of what a reader keeps before it is taken, and of what it accepts.
+struct ReaderOptions {
+  std::int32_t max_samples = 4096;          // KEEP_ALL topics; writers wait when it is reached
+  std::size_t max_frame_samples = 65536;    // a TelemetryFrame with more is refused and counted
+};
+
+template <class M>
+class Reader {
+ public:
+  explicit Reader(Participant& participant, const ReaderOptions& options = {});
+  ~Reader();
+  Reader(Reader&&) noexcept;
+  Reader& operator=(Reader&&) noexcept;
+
+  /// Calls `sink` for each message taken, at most `max`; returns how many were taken, malformed
+  /// ones included.
+  std::size_t take(std::size_t max, const std::function<void(M&&)>& sink);
+  std::uint32_t matched_writers() const;
+  /// Messages that broke the contract (sizes, ranges, strings) and were not handed out, and why
+  /// the last of them was.
+  std::uint64_t malformed() const;
+  std::string last_malformed() const;
+
+ private:
+  friend class WaitSet;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Wakes one thread when any attached reader has something to take, or when woken.
+class WaitSet {
+ public:
+  explicit WaitSet(Participant& participant);
+  ~WaitSet();
+  WaitSet(const WaitSet&) = delete;
+  WaitSet& operator=(const WaitSet&) = delete;
+
+  template <class M>
+  void attach(Reader<M>& reader);
+  /// True when something was ready; false when `timeout` passed.
+  bool wait(std::chrono::nanoseconds timeout);
+  /// From any thread: ends the running or the next wait.
+  void wake();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace reident::dds

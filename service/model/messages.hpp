@@ -1,0 +1,65 @@
+// What the service says on its topics besides telemetry and models; idl/README.md has the table.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "storage/telemetry.hpp"
+
+namespace reident {
+
+/// One attempt at a window: the outcome and why, rejected ones included.
+struct IdentificationReport {
+  std::string spacecraft;
+  std::string equipment;
+  std::int64_t attempt = 0;
+  storage::TimeRange window;
+  std::string trigger;
+  std::string outcome;       // "approved", "waiting" or a reason code
+  std::string reason;        // one sentence
+  std::int64_t version = 0;  // 0 where there is none
+  int order = 0;             // 0 where there is no model
+  double mrse_percent = 0;   // NaN where there is no model
+  double fit_percent = 0;
+  double champion_mrse_percent = 0;  // on the same samples; NaN where there was none
+  storage::Time time = 0;
+};
+
+/// Which version a simulator runs.
+struct ModelAcknowledgement {
+  std::string simulator;
+  std::string spacecraft;
+  std::string equipment;
+  std::int64_t version = 0;
+  std::string digest;
+  storage::Time since = 0;
+  bool accepted = true;   // false: refused, `reason` says why, and the older version goes on
+  std::string reason;
+  double running_mrse_percent = 0;  // since the swap; NaN before the first sample
+};
+
+/// Heartbeat of a service.
+struct ServiceStatus {
+  std::string service;  // instance name
+  std::string program_version;
+  storage::Time started = 0;
+  storage::Time time = 0;
+  std::uint64_t frames_received = 0;
+  std::uint64_t frames_rejected = 0;  // malformed or too large
+  std::uint64_t samples_stored = 0;
+  std::uint64_t duplicates = 0;
+  std::uint64_t conflicts = 0;
+  std::uint64_t late = 0;
+  std::uint64_t sequence_missing = 0;
+  std::uint64_t clock_jumps = 0;
+  std::uint64_t queue_length = 0;     // frames taken and not yet committed
+  std::uint64_t queue_waits = 0;      // times that the reader waited for room
+  std::uint64_t windows_pending = 0;  // due or running
+  std::uint64_t attempts = 0;
+  std::uint64_t approvals = 0;
+  storage::Time newest_telemetry = 0;
+  std::string last_error;  // empty when all is well
+};
+
+}  // namespace reident

@@ -1,0 +1,48 @@
+// A published model: the state-space model with all that a simulator or an operator asks of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "identification/simulate.hpp"
+#include "identification/state_space.hpp"
+#include "storage/telemetry.hpp"
+
+namespace reident {
+
+/// One input or output of a model, in the model's order.
+struct Signal {
+  std::string name;  // SATCS parameter
+  std::string unit;
+  double low = 0;    // range visited in the identification window
+  double high = 0;
+  bool operator==(const Signal&) const = default;
+};
+
+/// What is identified, stored as JSON and digested; it says nothing about when it was approved.
+struct EquipmentModel {
+  std::string spacecraft;
+  std::string equipment;
+  std::vector<Signal> inputs;
+  std::vector<Signal> outputs;
+  identification::StateSpaceModel dynamics;
+  std::int64_t hold_ns = 0;  // a sample of an input or output serves this long
+  storage::TimeRange identified_from;
+  storage::TimeRange validated_on;
+  identification::Score validation;  // free run on samples that the identification did not use
+  std::string method;                // such as "N4SID, horizon 12, order 3"
+};
+
+/// A version as simulators receive it.
+struct ModelVersion {
+  EquipmentModel model;
+  std::int64_t number = 0;      // counts the versions of one equipment from 1
+  std::string digest;           // model_digest(model)
+  storage::Time decided = 0;    // UTC
+  std::string decided_by;       // "gate" or an operator's name
+  bool rollback = false;        // an older version on purpose
+  std::string program_version;
+};
+
+}  // namespace reident
