@@ -1,0 +1,48 @@
+// Structured log on standard error, one line an event:
+//   2026-03-01T12:00:00.123Z warning archive: disk full path=/var/lib/reident.db retry_s=1
+// Values with blanks, quotes or '=' are quoted. Any thread may log.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace reident::log {
+
+enum class Level { debug, info, warning, error };
+
+/// One `key=value` of a line.
+struct Field {
+  template <class T>
+  Field(std::string_view name, const T& field_value)
+      : key(name), value(fmt::format("{}", field_value)) {}
+  std::string_view key;
+  std::string value;
+};
+
+/// "debug", "info", "warning" or "error"; false for any other name.
+bool set_level(std::string_view name);
+
+void write(Level level, std::string_view component, std::string_view message,
+           std::initializer_list<Field> fields);
+
+inline void debug(std::string_view component, std::string_view message,
+                  std::initializer_list<Field> fields = {}) {
+  write(Level::debug, component, message, fields);
+}
+inline void info(std::string_view component, std::string_view message,
+                 std::initializer_list<Field> fields = {}) {
+  write(Level::info, component, message, fields);
+}
+inline void warning(std::string_view component, std::string_view message,
+                    std::initializer_list<Field> fields = {}) {
+  write(Level::warning, component, message, fields);
+}
+inline void error(std::string_view component, std::string_view message,
+                  std::initializer_list<Field> fields = {}) {
+  write(Level::error, component, message, fields);
+}
+
+}  // namespace reident::log
