@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -17,20 +18,20 @@ enum class ApprovalPolicy { automatic, by_hand };
 
 struct EquipmentConfig {
   std::string name;
-  std::vector<std::string> inputs;   // SATCS parameters
+  std::vector<std::string> inputs;  // SATCS parameters
   std::vector<std::string> outputs;
   Duration sample_period = 0;
-  Duration hold = 0;          // default: three sample periods
+  Duration hold = 0;  // default: three sample periods
   Duration window = 0;
   Duration slide = 0;
   double validation_share = 0.3;  // last part of the window, for scores alone
   double min_coverage = 0.5;      // least share of the window's ticks with every channel valid
   int min_order = 1;
   int max_order = 10;
-  std::optional<int> horizon;     // absent: chosen
-  double max_mrse_percent = 20;   // limit of the gate
-  double min_fit_percent = 0;     // limit of the gate, at least 0
-  double margin_percent = 2;      // relative reduction of the champion's error that a swap needs
+  std::optional<int> horizon;    // absent: chosen
+  double max_mrse_percent = 20;  // limit of the gate
+  double min_fit_percent = 0;    // limit of the gate, at least 0
+  double margin_percent = 2;     // relative reduction of the champion's error that a swap needs
   std::optional<double> baseline_mrse_percent;  // error of the simulator's own model
   ApprovalPolicy approval = ApprovalPolicy::automatic;
 };
@@ -45,9 +46,9 @@ struct Config {
   std::filesystem::path database;
   std::uint32_t domain = 0;
   std::string partition = "operations";
-  std::size_t queue_frames = 8192;      // bound of the queue between DDS and the archive
-  std::size_t batch_frames = 512;       // frames of one transaction, at most
-  Duration batch_delay = 0;             // a started batch is committed after this; default 100ms
+  std::size_t queue_frames = 8192;  // bound of the queue between DDS and the archive
+  std::size_t batch_frames = 512;   // frames of one transaction, at most
+  Duration batch_delay = 0;         // a started batch is committed after this; default 100ms
   std::size_t max_frame_samples = 65536;
   Duration max_clock_lead = 0;  // generation times further ahead of this clock are jumps; 1h
   Duration settle = 0;          // a window waits this long for stragglers; default 1s
@@ -64,5 +65,9 @@ struct ConfigMistake {
 
 /// The configuration, or every mistake in it, ordered by line.
 std::variant<Config, std::vector<ConfigMistake>> load_config(const std::filesystem::path& path);
+
+/// The same of a text in hand; `folder` is where a relative database path begins.
+std::variant<Config, std::vector<ConfigMistake>> parse_config(std::string_view text,
+                                                              const std::filesystem::path& folder);
 
 }  // namespace reident

@@ -1,0 +1,366 @@
+#include "service/daemon/config.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "service/daemon/config_document.hpp"
+#include "service/support/sha256.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident {
+namespace {
+
+constexpr Duration millisecond = 1'000'000;
+constexpr Duration second = 1'000 * millisecond;
+constexpr Duration minute = 60 * second;
+constexpr Duration hour = 60 * minute;
+constexpr Duration day = 24 * hour;
+
+constexpr std::size_t max_file_bytes = 4u << 20;
+constexpr std::size_t max_name_bytes = 128;
+constexpr std::int64_t max_window_ticks = 50'000'000;  // 8 bytes for each channel of each
+constexpr int max_order = 100;
+constexpr int max_horizon = 500;
+// The library keeps this share of the identification rows for its own choices.
+constexpr double tune_share = 0.3;
+
+template <class Target, class Value>
+void assign(Target& target, const std::optional<Value>& value) {
+  if (value) target = static_cast<Target>(*value);
+}
+
+/// What is wrong with a name that becomes a DDS key, a part of SPACECRAFT/EQUIPMENT@VERSION and a
+/// column of a terminal; empty when nothing is.
+std::string name_mistake(std::string_view name) {
+  if (name.empty()) return "must not be empty";
+  if (name.size() > max_name_bytes)
+    return fmt::format("must have at most {} bytes, not {}", max_name_bytes, name.size());
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  if (std::any_of(name.begin(), name.end(), is_control)) return "must not hold control characters";
+  if (name.front() == ' ' || name.back() == ' ') return "must not begin or end with a blank";
+  return {};
+}
+
+void check_name(TableReader& reader, std::string_view key, const std::string& name) {
+  std::string mistake = name_mistake(name);
+  if (mistake.empty() && name.find_first_of("/@") != std::string::npos)
+    mistake = "must not hold / or @, which separate spacecraft, equipment and version";
+  if (!mistake.empty()) reader.mistake(key, fmt::format("{} {}", key, mistake));
+}
+
+template <class Enum>
+void read_choice(TableReader& reader, std::string_view key, Enum& target,
+                 std::initializer_list<std::pair<std::string_view, Enum>> choices) {
+  const std::optional<std::string> text = reader.text(key);
+  if (!text) return;
+  std::string allowed;
+  for (const auto& [name, value] : choices) {
+    if (*text == name) {
+      target = value;
+      return;
+    }
+    allowed += fmt::format("{}\"{}\"", allowed.empty() ? "" : ", ", name);
+  }
+  reader.mistake(key, fmt::format("{} must be one of {}, not \"{}\"", key, allowed, *text));
+}
+
+void read_service(const toml::table& table, ConfigDocument& document, Config& config) {
+  TableReader reader(table, "[service]", document);
+  if (const auto name = reader.text("name")) {
+    check_name(reader, "name", *name);
+    config.service_name = *name;
+  }
+  read_choice<std::string>(
+      reader, "log_level", config.log_level,
+      {{"debug", "debug"}, {"info", "info"}, {"warning", "warning"}, {"error", "error"}});
+  assign(config.workers, reader.integer("workers", 1, 256));
+  reader.refuse_unknown_keys();
+}
+
+void read_archive(const toml::table& table, ConfigDocument& document, Config& config) {
+  TableReader reader(table, "[archive]", document);
+  if (const auto path = reader.text("database")) {
+    if (path->empty() || path->find('\0') != std::string::npos)
+      reader.mistake("database", "database must be the path of a file, such as \"reident.db\"");
+    config.database = *path;
+  }
+  assign(config.batch_frames, reader.integer("batch_frames", 1, 1'000'000));
+  assign(config.batch_delay, reader.duration("batch_delay", millisecond, minute));
+  reader.refuse_unknown_keys();
+}
+
+void read_dds(const toml::table& table, ConfigDocument& document, Config& config) {
+  TableReader reader(table, "[dds]", document);
+  assign(config.domain, reader.integer("domain", 0, 230));
+  if (const auto partition = reader.text("partition")) {
+    const std::string mistake = name_mistake(*partition);
+    if (!mistake.empty()) {
+      reader.mistake("partition", "partition " + mistake);
+    } else if (partition->find_first_of("*?[]") != std::string::npos) {
+      reader.mistake("partition",
+                     "partition must be one name: with * ? [ or ] it would match others too");
+    }
+    config.partition = *partition;
+  }
+  reader.refuse_unknown_keys();
+}
+
+void read_limits(const toml::table& table, ConfigDocument& document, Config& config) {
+  TableReader reader(table, "[limits]", document);
+  assign(config.queue_frames, reader.integer("queue_frames", 1, 10'000'000));
+  assign(config.max_frame_samples, reader.integer("max_frame_samples", 1, 10'000'000));
+  assign(config.max_clock_lead, reader.duration("max_clock_lead", 0, 365 * day));
+  assign(config.settle, reader.duration("settle", 0, day));
+  reader.refuse_unknown_keys();
+}
+
+void read_signals(TableReader& reader, EquipmentConfig& equipment) {
+  reader.require("inputs", "[\"I_BDRIN1\", \"I_BDRIN2\"]");
+  reader.require("outputs", "[\"I_BDROUT\"]");
+  std::set<std::string> seen;
+  const auto read = [&](std::string_view key, std::vector<std::string>& target) {
+    const auto names = reader.texts(key);
+    if (!names) return;
+    target = *names;
+    for (const std::string& name : target) {
+      if (const std::string mistake = name_mistake(name); !mistake.empty())
+        reader.mistake(key, fmt::format("each name in {} {}", key, mistake));
+      if (seen.insert(name).second) continue;
+      const bool is_input = key == "outputs" &&
+                            std::count(equipment.inputs.begin(), equipment.inputs.end(), name) != 0;
+      reader.mistake(key, is_input ? fmt::format("output {} is also an input; a model cannot be "
+                                                 "driven by what it computes",
+                                                 name)
+                                   : fmt::format("{} names {} twice", key, name));
+    }
+  };
+  read("inputs", equipment.inputs);
+  read("outputs", equipment.outputs);
+}
+
+void read_order(TableReader& reader, EquipmentConfig& equipment) {
+  const toml::array* range = reader.array("order");
+  if (range != nullptr) {
+    const auto bound = [&](std::size_t i) { return range->get(i)->value_exact<std::int64_t>(); };
+    const bool pair = range->size() == 2 && bound(0) && bound(1);
+    if (!pair || *bound(0) < 1 || *bound(1) > max_order || *bound(0) > *bound(1)) {
+      reader.mistake("order", fmt::format("order must be [least, most] with 1 <= least <= most <= "
+                                          "{}, a number, or \"auto\"",
+                                          max_order));
+      return;
+    }
+    equipment.min_order = static_cast<int>(*bound(0));
+    equipment.max_order = static_cast<int>(*bound(1));
+  } else if (const auto order = reader.integer_or_auto("order", 1, max_order)) {
+    equipment.min_order = equipment.max_order = static_cast<int>(*order);
+  }
+}
+
+/// Least horizon s with which the largest order can be seen: s blocks of p outputs hold more rows
+/// than there are states.
+int least_horizon(const EquipmentConfig& equipment) {
+  const int outputs = static_cast<int>(std::max<std::size_t>(1, equipment.outputs.size()));
+  return std::max(2, equipment.max_order / outputs + 1);
+}
+
+/// Ticks that a window needs: the rows left to the subspace step, after the shares for validation
+/// and tuning, must be at least the columns that its 2 s block rows of inputs and outputs ask for.
+std::int64_t least_window_ticks(const EquipmentConfig& equipment) {
+  const double horizon = equipment.horizon.value_or(least_horizon(equipment));
+  const auto channels = static_cast<double>(equipment.inputs.size() + equipment.outputs.size());
+  const double rows = 2 * horizon * (channels + 1);
+  return static_cast<std::int64_t>(
+      std::ceil(rows / ((1 - tune_share) * (1 - equipment.validation_share))));
+}
+
+struct Timing {
+  std::optional<Duration> period, hold, window, slide;
+};
+
+void check_window(TableReader& reader, const EquipmentConfig& equipment) {
+  const Duration period = equipment.sample_period;
+  const std::int64_t ticks = equipment.window / period;
+  if (equipment.window % period != 0)
+    reader.mistake("window", fmt::format("window must be a multiple of sample_period {}; {} is",
+                                         duration_text(period),
+                                         duration_text(std::max<Duration>(1, ticks) * period)));
+  const std::int64_t least = least_window_ticks(equipment);
+  if (ticks < least)
+    reader.mistake(
+        "window",
+        fmt::format("window {} holds {} samples of {}; orders up to {} with {} inputs and {} "
+                    "outputs need {}: make it at least {} or lower the order",
+                    duration_text(equipment.window), ticks, duration_text(period),
+                    equipment.max_order, equipment.inputs.size(), equipment.outputs.size(), least,
+                    duration_text(least * period)));
+  if (ticks > max_window_ticks)
+    reader.mistake("window", fmt::format("window {} holds {} samples of {}; at most {} are allowed",
+                                         duration_text(equipment.window), ticks,
+                                         duration_text(period), max_window_ticks));
+}
+
+void check_slide(TableReader& reader, const EquipmentConfig& equipment) {
+  const Duration period = equipment.sample_period;
+  if (equipment.slide > equipment.window)
+    reader.mistake("slide",
+                   fmt::format("slide {} is longer than the window {}: telemetry between "
+                               "windows would never be used",
+                               duration_text(equipment.slide), duration_text(equipment.window)));
+  if (equipment.slide % period != 0)
+    reader.mistake("slide", fmt::format("slide must be a multiple of sample_period {}; {} is",
+                                        duration_text(period),
+                                        duration_text((equipment.slide / period + 1) * period)));
+}
+
+/// Reads the times of an equipment; what depends on a value that is missing or wrong is not judged.
+void read_timing(TableReader& reader, bool signals_and_orders_are_right,
+                 EquipmentConfig& equipment) {
+  reader.require("sample_period", "\"1s\"");
+  reader.require("window", "\"200min\"");
+  const auto period = reader.duration("sample_period", millisecond, day);
+  const auto hold = reader.duration("hold", millisecond, 30 * day);
+  const auto window = reader.duration("window", second, 3650 * day);
+  const auto slide = reader.duration("slide", millisecond, 3650 * day);
+  if (!period) return;
+  equipment.sample_period = *period;
+  equipment.hold = hold.value_or(3 * *period);
+  if (hold && *hold < *period)
+    reader.mistake("hold", fmt::format("hold {} is shorter than sample_period {}: there would be "
+                                       "holes between samples",
+                                       duration_text(*hold), duration_text(*period)));
+  if (!window || *window < *period) {
+    if (window) reader.mistake("window", "window is shorter than sample_period");
+    return;
+  }
+  equipment.window = *window;
+  if (signals_and_orders_are_right) check_window(reader, equipment);
+  // As long as the validation part, so that each candidate is judged on telemetry that is new.
+  const auto share_ticks = static_cast<std::int64_t>(equipment.validation_share *
+                                                     static_cast<double>(*window / *period));
+  equipment.slide = slide.value_or(std::max<std::int64_t>(1, share_ticks) * *period);
+  if (slide || !reader.has("slide")) check_slide(reader, equipment);
+}
+
+void read_equipment(const toml::table& table, ConfigDocument& document,
+                    std::vector<EquipmentConfig>& siblings) {
+  TableReader reader(table, "[[spacecraft.equipment]]", document);
+  EquipmentConfig equipment;
+  reader.require("name", "\"BDR\"");
+  if (const auto name = reader.text("name")) {
+    equipment.name = *name;
+    check_name(reader, "name", *name);
+    const auto same = [&](const EquipmentConfig& other) { return other.name == *name; };
+    if (std::any_of(siblings.begin(), siblings.end(), same))
+      reader.mistake("name", fmt::format("name {} is taken by an equipment above", *name));
+    reader.set_title(fmt::format("equipment {}:", *name));
+  }
+  const std::size_t before = document.mistakes.size();
+  read_signals(reader, equipment);
+  read_order(reader, equipment);
+  assign(equipment.horizon, reader.integer_or_auto("horizon", 2, max_horizon));
+  if (equipment.horizon && *equipment.horizon < least_horizon(equipment))
+    reader.mistake("horizon",
+                   fmt::format("horizon {} is too short for orders up to {}; make it at "
+                               "least {}, or \"auto\"",
+                               *equipment.horizon, equipment.max_order, least_horizon(equipment)));
+  assign(equipment.validation_share, reader.number("validation_share", 0.05, 0.8));
+  assign(equipment.min_coverage, reader.number("min_coverage", 0, 1));
+  const bool right = document.mistakes.size() == before && !equipment.outputs.empty();
+  read_timing(reader, right, equipment);
+  assign(equipment.max_mrse_percent, reader.number("max_mrse", 0, 1e6));
+  assign(equipment.min_fit_percent, reader.number("min_fit", 0, 100));
+  assign(equipment.margin_percent, reader.number("margin", 0, 100));
+  assign(equipment.baseline_mrse_percent, reader.number("baseline_mrse", 0, 1e6));
+  read_choice(reader, "approval", equipment.approval,
+              {{"automatic", ApprovalPolicy::automatic}, {"by_hand", ApprovalPolicy::by_hand}});
+  reader.refuse_unknown_keys();
+  siblings.push_back(std::move(equipment));
+}
+
+void read_spacecraft(const toml::table& table, ConfigDocument& document, Config& config) {
+  TableReader reader(table, "[[spacecraft]]", document);
+  SpacecraftConfig spacecraft;
+  reader.require("name", "\"CBERS-4\"");
+  if (const auto name = reader.text("name")) {
+    spacecraft.name = *name;
+    check_name(reader, "name", *name);
+    const auto same = [&](const SpacecraftConfig& other) { return other.name == *name; };
+    if (std::any_of(config.spacecraft.begin(), config.spacecraft.end(), same))
+      reader.mistake("name", fmt::format("name {} is taken by a spacecraft above", *name));
+    reader.set_title(fmt::format("spacecraft {}:", *name));
+  }
+  const std::vector<const toml::table*> tables = reader.sections("equipment");
+  if (!reader.has("equipment") && document.complete)
+    reader.mistake("equipment", "has no equipment; add [[spacecraft.equipment]]");
+  for (const toml::table* equipment : tables)
+    read_equipment(*equipment, document, spacecraft.equipment);
+  reader.refuse_unknown_keys();
+  config.spacecraft.push_back(std::move(spacecraft));
+}
+
+void read_all(ConfigDocument& document, Config& config) {
+  const toml::table& root = document.table;
+  TableReader reader(root, "the file:", document);
+  if (const toml::table* table = reader.section("service")) read_service(*table, document, config);
+  if (const toml::table* table = reader.section("archive")) read_archive(*table, document, config);
+  if (const toml::table* table = reader.section("dds")) read_dds(*table, document, config);
+  if (const toml::table* table = reader.section("limits")) read_limits(*table, document, config);
+  for (const toml::table* table : reader.sections("spacecraft"))
+    read_spacecraft(*table, document, config);
+  if (!reader.has("spacecraft") && document.complete)
+    document.mistakes.push_back(
+        {0, "there is no spacecraft; add [[spacecraft]] with a name and equipment"});
+  reader.refuse_unknown_keys();
+}
+
+std::variant<std::string, ConfigMistake> read_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    return ConfigMistake{0, "this is a folder; name the configuration file in it"};
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    return ConfigMistake{0,
+                         fmt::format("cannot be read: {}", std::generic_category().message(errno))};
+  std::string text(max_file_bytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) return ConfigMistake{0, "cannot be read to its end"};
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > max_file_bytes)
+    return ConfigMistake{
+        0, fmt::format("is larger than {} MiB; this is no configuration", max_file_bytes >> 20)};
+  return text;
+}
+
+}  // namespace
+
+std::variant<Config, std::vector<ConfigMistake>> parse_config(std::string_view text,
+                                                              const std::filesystem::path& folder) {
+  Config config;
+  config.database = "reident.db";
+  config.batch_delay = 100 * millisecond;
+  config.max_clock_lead = hour;
+  config.settle = second;
+  ConfigDocument document = parse_document(text);
+  if (document.readable) read_all(document, config);
+  if (!document.mistakes.empty()) {
+    std::stable_sort(
+        document.mistakes.begin(), document.mistakes.end(),
+        [](const ConfigMistake& a, const ConfigMistake& b) { return a.line < b.line; });
+    return std::move(document.mistakes);
+  }
+  if (config.database.is_relative()) config.database = folder / config.database;
+  config.digest = sha256_hex(text);
+  return config;
+}
+
+std::variant<Config, std::vector<ConfigMistake>> load_config(const std::filesystem::path& path) {
+  const std::variant<std::string, ConfigMistake> read = read_file(path);
+  if (const auto* mistake = std::get_if<ConfigMistake>(&read)) return std::vector{*mistake};
+  return parse_config(std::get<std::string>(read), path.parent_path());
+}
+
+}  // namespace reident
