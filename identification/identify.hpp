@@ -23,10 +23,10 @@ enum class Weighting { n4sid, moesp, cva };
 std::string_view name(Weighting weighting);
 
 struct IdentifyOptions {
-  std::optional<int> order;    // absent: chosen in [min_order, max_order]
+  std::optional<int> order;  // absent: chosen in [min_order, max_order]
   int min_order = 1;
   int max_order = 10;
-  std::optional<int> horizon;  // block rows s; absent: chosen
+  std::optional<int> horizon;          // block rows s; absent: chosen
   std::optional<Weighting> weighting;  // absent: chosen
   /// The last part of the identification rows that choices are scored on; in (0, 0.9].
   double tune_share = 0.3;
@@ -43,9 +43,9 @@ struct Identified {
   int horizon = 0;
   Weighting weighting = Weighting::n4sid;
   double spectral_radius = 0;
-  Vector singular_values;    // of the weighted oblique projection, descending
+  Vector singular_values;       // of the weighted oblique projection, descending
   Vector input_min, input_max;  // range visited by each input in the identification rows
-  Score tune;                // on the held-out part that made the choice
+  Score tune;                   // on the held-out part that made the choice
   std::vector<std::string> warnings;
 };
 

@@ -1,0 +1,24 @@
+#include "identification/state_space.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace reident::identification {
+
+double spectral_radius(const StateSpaceModel& model) {
+  if (model.order() == 0) return 0;
+  return model.A.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+bool is_well_formed(const StateSpaceModel& model) {
+  const Index n = model.order(), m = model.inputs(), p = model.outputs();
+  const bool sizes = model.A.cols() == n && model.B.rows() == n && model.B.cols() == m &&
+                     model.C.rows() == p && model.C.cols() == n && model.u0.size() == m &&
+                     model.y0.size() == p;
+  const bool gain = model.K.size() == 0 || (model.K.rows() == n && model.K.cols() == p);
+  const bool finite = model.A.allFinite() && model.B.allFinite() && model.C.allFinite() &&
+                      model.D.allFinite() && model.K.allFinite() && model.u0.allFinite() &&
+                      model.y0.allFinite();
+  return sizes && gain && finite && std::isfinite(model.period_s) && model.period_s > 0;
+}
+
+}  // namespace reident::identification

@@ -1,0 +1,83 @@
+#include "identification/subspace.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace reident::identification {
+namespace {
+
+/// Columns of the factor that hold channels [channel, channel + count) of the block rows
+/// [begin, end).
+void append_columns(std::vector<Index>& columns, Index width, Index begin, Index end, Index channel,
+                    Index count) {
+  for (Index k = begin; k < end; ++k)
+    for (Index c = 0; c < count; ++c) columns.push_back(1 + k * width + channel + c);
+}
+
+}  // namespace
+
+Projection::Projection(const HankelFactor& factor, Index horizon)
+    : inputs_(factor.inputs), outputs_(factor.outputs), horizon_(horizon) {
+  const Index m = inputs_, p = outputs_, s = horizon, width = m + p;
+  eigen_assert(2 * s <= factor.block_rows);
+  std::vector<Index> columns{0};
+  append_columns(columns, width, s, 2 * s, 0, m);  // U_f
+  append_columns(columns, width, 0, s, 0, m);      // U_p
+  append_columns(columns, width, 0, s, m, p);      // Y_p
+  append_columns(columns, width, s, 2 * s, m, p);  // Y_f
+
+  const Index size = 1 + 2 * s * width;
+  const Matrix ordered = factor.R.topRows(size)(Eigen::all, columns);
+  const Matrix T = ordered.householderQr().matrixQR().triangularView<Eigen::Upper>();
+  const Index u = 1, w = 1 + m * s, y = w + width * s;
+  T_uw_ = T.block(u, w, m * s, width * s);
+  T_ww_ = T.block(w, w, width * s, width * s);
+  T_wy_ = T.block(w, y, width * s, p * s);
+  T_yy_ = T.block(y, y, p * s, p * s);
+}
+
+Projection::Observability Projection::observability(Weighting weighting) const {
+  // Transposed throughout, as the factor is: a row of T' is a row of the Hankel matrix.
+  Matrix weighted;  // (W1 O W2)'
+  Matrix W1_inverse_transposed;
+  switch (weighting) {
+    case Weighting::moesp:  // O projected off U_f
+      weighted = T_wy_;
+      break;
+    case Weighting::n4sid: {  // O = L_w W_p itself
+      const Matrix L_w = T_ww_.completeOrthogonalDecomposition().solve(T_wy_);
+      weighted.resize(T_uw_.rows() + T_ww_.rows(), T_wy_.cols());
+      weighted << T_uw_ * L_w, T_ww_ * L_w;
+      break;
+    }
+    case Weighting::cva: {  // W1 = (Y_f projected off U_f)^-1/2
+      Matrix stacked(T_wy_.rows() + T_yy_.rows(), T_wy_.cols());
+      stacked << T_wy_, T_yy_;
+      W1_inverse_transposed =
+          stacked.householderQr().matrixQR().topRows(stacked.cols()).triangularView<Eigen::Upper>();
+      weighted = W1_inverse_transposed.transpose()
+                     .completeOrthogonalDecomposition()
+                     .solve(T_wy_.transpose())
+                     .transpose();
+      break;
+    }
+  }
+  if (weighted.rows() > weighted.cols()) {
+    const Matrix reduced =
+        weighted.householderQr().matrixQR().topRows(weighted.cols()).triangularView<Eigen::Upper>();
+    weighted = reduced;
+  }
+  const Eigen::JacobiSVD<Matrix> svd(weighted.transpose(), Eigen::ComputeThinU);
+  Matrix gamma = svd.matrixU() * svd.singularValues().cwiseSqrt().asDiagonal();
+  if (weighting == Weighting::cva) gamma = W1_inverse_transposed.transpose() * gamma;
+  return {gamma, svd.singularValues()};
+}
+
+AC shift_invariant(const Matrix& gamma, Index outputs, Index order) {
+  const Index rows = gamma.rows() - outputs;
+  const auto upper = gamma.topLeftCorner(rows, order);
+  const auto lower = gamma.bottomLeftCorner(rows, order);
+  return {upper.colPivHouseholderQr().solve(lower), gamma.topLeftCorner(outputs, order)};
+}
+
+}  // namespace reident::identification

@@ -1,0 +1,25 @@
+#include "identification/verdict.hpp"
+
+namespace reident::identification {
+
+std::string_view name(VerdictCode code) {
+  switch (code) {
+    case VerdictCode::too_few_samples:
+      return "too_few_samples";
+    case VerdictCode::non_finite:
+      return "non_finite";
+    case VerdictCode::constant_inputs:
+      return "constant_inputs";
+    case VerdictCode::constant_outputs:
+      return "constant_outputs";
+    case VerdictCode::insufficient_excitation:
+      return "insufficient_excitation";
+    case VerdictCode::unstable:
+      return "unstable";
+    case VerdictCode::no_better_than_mean:
+      return "no_better_than_mean";
+  }
+  return "unknown";
+}
+
+}  // namespace reident::identification
