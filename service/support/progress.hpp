@@ -1,0 +1,35 @@
+// A progress bar on a terminal; silence anywhere else.
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace reident {
+
+class Progress {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Draws on `out` when it is a terminal.
+  explicit Progress(std::FILE* out = stderr);
+  /// Draws on `out` when `enabled`.
+  Progress(std::FILE* out, bool enabled);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Draws at most ten times a second. `fraction` is held to [0, 1]; `detail` follows the bar.
+  void update(double fraction, std::string_view detail, Clock::time_point now = Clock::now());
+  /// Takes the bar off the terminal, so that other text can be written.
+  void clear();
+
+ private:
+  std::FILE* out_;
+  bool enabled_;
+  bool drawn_ = false;
+  Clock::time_point last_draw_{};
+};
+
+}  // namespace reident
