@@ -1,8 +1,9 @@
 // Every telemetry sample that was received, once.
 //
 // A sample's identity is (spacecraft, origin, parameter, generation time). The same sample twice is
-// one sample; of two values for one identity the better quality wins, then the first. A parameter
-// needs no descriptor to be archived.
+// one sample; of two values for one identity the better quality wins, then the first. Values are
+// the same when their bits are, and all NaNs are one value. A parameter needs no descriptor to be
+// archived.
 #pragma once
 
 #include <optional>
@@ -15,16 +16,17 @@
 
 namespace reident::storage {
 
-/// What one append did. Samples are counted once each: stored + duplicates + conflicts.
+/// What one append did. Samples are counted once each: stored + duplicates + conflicts; `late` and
+/// `non_finite` are counted beside that.
 struct AppendReport {
   std::uint64_t frames = 0;
   std::uint64_t stored = 0;
-  std::uint64_t duplicates = 0;  // same identity, same value
+  std::uint64_t duplicates = 0;  // same identity, same value; the better quality is kept
   std::uint64_t conflicts = 0;   // same identity, another value
   std::uint64_t late = 0;        // stored behind a newer sample of its series
-  std::uint64_t non_finite = 0;  // NaN or infinite; stored as invalid
+  std::uint64_t non_finite = 0;  // NaN or infinite, repeated ones too; stored as invalid
 
-  /// The stretch of time in which new samples of one series landed.
+  /// The stretch of time in which samples of one series landed or changed.
   struct Touched {
     std::string spacecraft;
     Origin origin = Origin::real;
@@ -41,7 +43,8 @@ struct Series {
   std::vector<Quality> quality;
 };
 
-/// Counts of one source since the archive was made.
+/// Counts of one source since the archive was made. Of its samples,
+/// samples - duplicates - conflicts were stored as new ones.
 struct SourceCounts {
   std::string spacecraft;
   std::string source;
@@ -52,17 +55,31 @@ struct SourceCounts {
   std::uint64_t conflicts = 0;
   std::uint64_t late = 0;
   std::uint64_t non_finite = 0;
-  std::uint64_t out_of_order = 0;  // frames whose sequence is not above the one before
-  std::uint64_t missing = 0;       // sequence numbers that were skipped and have not come since
-  std::uint64_t last_sequence = 0;
+  std::uint64_t out_of_order = 0;   // frames whose sequence is not above the highest before them
+  std::uint64_t restarts = 0;       // times that the source began to count again
+  std::uint64_t missing = 0;        // sequence numbers that were skipped and have not come since
+  std::uint64_t last_sequence = 0;  // the highest since the last restart
 };
 
-/// Sequence numbers [first, last] of a source that have not come.
+/// Sequence numbers [first, last] of a source that have not come. The frames on either side of the
+/// gap have the generation times `before` and `after`.
 struct SequenceGap {
   std::string spacecraft;
   std::string source;
+  Origin origin = Origin::real;
   std::uint64_t first = 0;
   std::uint64_t last = 0;
+  Time before = 0;
+  Time after = 0;
+};
+
+/// A stretch of sealed time (see Archive::seal) in which samples of one series landed or changed.
+struct LateRange {
+  std::int64_t id = 0;  // never used again
+  std::string spacecraft;
+  Origin origin = Origin::real;
+  std::uint32_t parameter = 0;
+  TimeRange range;
 };
 
 class Archive {
@@ -72,16 +89,35 @@ class Archive {
 
   /// One transaction: all of it is stored, or (Error thrown) none.
   AppendReport append(std::span<const TelemetryFrame> frames);
+  /// Adds descriptors, or replaces those of the same spacecraft and id. One transaction.
   void describe(std::span<const ParameterDescriptor> descriptors);
 
+  /// Says that a window which ends at `end` is about to be read: from now on append() marks what
+  /// lands or changes before `end`, in the transaction that stores it. Call it, then read the
+  /// window, and nothing falls between. The seal only moves forward and outlives a crash.
+  void seal(const std::string& spacecraft, Time end);
+  /// Marks that were not forgotten yet, ascending by id. Near ones of a series are one range.
+  std::vector<LateRange> late_ranges(const std::string& spacecraft) const;
+  /// To be called when the windows were looked at again. A mark that grew since it was read has
+  /// another id and stays.
+  void forget_late(std::span<const LateRange> ranges);
+
+  /// All that have samples or descriptors, in alphabetical order.
   std::vector<std::string> spacecraft() const;
+  /// Those described, ascending by id.
   std::vector<ParameterDescriptor> parameters(const std::string& spacecraft) const;
+  /// Of several with one name the lowest id.
   std::optional<ParameterDescriptor> parameter(const std::string& spacecraft,
                                                const std::string& name) const;
 
   /// Samples with a generation time in `range`.
   Series read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
               TimeRange range) const;
+  /// Generation time of the series' nearest sample on one side of `time`, itself included.
+  std::optional<Time> first_at_or_after(const std::string& spacecraft, Origin origin,
+                                        std::uint32_t parameter, Time time) const;
+  std::optional<Time> last_at_or_before(const std::string& spacecraft, Origin origin,
+                                        std::uint32_t parameter, Time time) const;
 
   /// From the first sample to just after the last one of a spacecraft's series of this origin;
   /// absent when there is none.

@@ -3,6 +3,9 @@
 // A file has at most one writer: a read_write Database holds an advisory lock on "<path>.lock"
 // for its lifetime (the kernel drops it if the process dies). Readers need no lock. SQLite runs in
 // WAL mode; SCHEMA.md states what survives which failure.
+//
+// A Database, with every Archive and Registry made on it, belongs to one thread at a time. Threads
+// that work at the same time each open their own.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +18,15 @@ namespace reident::storage {
 /// like; nothing that was committed is lost.
 class Error : public std::runtime_error {
  public:
-  enum class Kind { cannot_open, locked, newer_schema, corrupt, full, read_only, failed };
+  enum class Kind {
+    cannot_open,   // no such file, a folder, not ours, no permission
+    locked,        // another process writes
+    newer_schema,  // made by a newer program
+    corrupt,       // damaged or cut short
+    full,          // no room on the disk, in the quota or in the file size limit
+    read_only,     // the file, its folder or the connection cannot be written
+    failed         // anything else; the message has SQLite's own words
+  };
   Error(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
   Kind kind() const { return kind_; }
 

@@ -3,7 +3,8 @@
 // Rows are only ever added. Every attempt at a window is recorded. An attempt that gave a model has
 // a version; its number counts the versions of one equipment from 1. Every version has at least one
 // decision. The champion of an equipment at a time is the version named by the last decision of
-// kind `approve` or `roll_back` not later than it.
+// kind `approve` or `roll_back` not later than it; the last one is the one with the highest id,
+// which also holds when the clock was set back.
 #pragma once
 
 #include <cstdint>
@@ -89,6 +90,9 @@ class Registry {
   /// Returns the version's number.
   std::int64_t record(const NewAttempt& attempt, const NewVersion& version,
                       const NewDecision& decision);
+  /// One more decision about a version that exists. Returns the decision's id.
+  std::int64_t decide(const std::string& spacecraft, const std::string& equipment,
+                      std::int64_t version, const NewDecision& decision, Time time);
 
   std::optional<Version> version(const std::string& spacecraft, const std::string& equipment,
                                  std::int64_t number) const;

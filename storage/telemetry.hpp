@@ -12,7 +12,8 @@ namespace reident::storage {
 /// Nanoseconds since 1970-01-01T00:00:00 UTC.
 using Time = std::int64_t;
 
-/// Half-open stretch of time [begin, end).
+/// Half-open stretch of time [begin, end). An end at the greatest Time includes it, so that every
+/// time lies in some range.
 struct TimeRange {
   Time begin = 0;
   Time end = 0;

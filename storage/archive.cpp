@@ -1,0 +1,215 @@
+#include "storage/archive.hpp"
+
+#include <limits>
+
+#include "storage/append.hpp"
+#include "storage/connection.hpp"
+
+namespace reident::storage {
+namespace {
+
+sqlite::Connection& connection(Database& database) {
+  return *database.impl().connection;
+}
+
+// Greatest time in the range; absent for an empty one.
+std::optional<Time> last_in(TimeRange range) {
+  if (range.end == std::numeric_limits<Time>::max()) return range.end;
+  if (range.begin >= range.end) return std::nullopt;
+  return range.end - 1;
+}
+
+std::optional<double> optional_real(const sqlite::Query& row, int column) {
+  return row.is_null(column) ? std::nullopt : std::optional(row.real(column));
+}
+
+constexpr std::string_view descriptor_columns =
+    "spacecraft, id, name, unit, description, kind = 'digital', low_limit, high_limit";
+
+ParameterDescriptor descriptor(const sqlite::Query& row) {
+  return {.spacecraft = row.text(0),
+          .id = row.integer<std::uint32_t>(1),
+          .name = row.text(2),
+          .unit = row.text(3),
+          .description = row.text(4),
+          .kind = row.integer<ParameterKind>(5),
+          .low_limit = optional_real(row, 6),
+          .high_limit = optional_real(row, 7)};
+}
+
+}  // namespace
+
+Archive::Archive(Database& database) : database_(database) {}
+
+AppendReport Archive::append(std::span<const TelemetryFrame> frames) {
+  sqlite::Transaction transaction(connection(database_));
+  AppendReport report = Append(connection(database_), frames).run();
+  transaction.commit();
+  return report;
+}
+
+void Archive::describe(std::span<const ParameterDescriptor> descriptors) {
+  sqlite::Transaction transaction(connection(database_));
+  {
+    sqlite::Query replace = connection(database_).query(
+        "INSERT OR REPLACE INTO parameter (spacecraft, id, name, unit, description, kind, "
+        "low_limit, high_limit) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+    for (const ParameterDescriptor& d : descriptors)
+      replace.run(d.spacecraft, d.id, d.name, d.unit, d.description, name(d.kind), d.low_limit,
+                  d.high_limit);
+  }
+  transaction.commit();
+}
+
+void Archive::seal(const std::string& spacecraft, Time end) {
+  connection(database_)
+      .query(
+          "INSERT INTO seal (spacecraft, until) VALUES (?, ?) "
+          "ON CONFLICT DO UPDATE SET until = excluded.until WHERE excluded.until > until")
+      .run(spacecraft, end);
+}
+
+std::vector<LateRange> Archive::late_ranges(const std::string& spacecraft) const {
+  std::vector<LateRange> ranges;
+  sqlite::Query row = connection(database_).query(
+      "SELECT late_range.id, origin, parameter, begin_time, end_time FROM late_range "
+      "JOIN series ON series.id = late_range.series WHERE spacecraft = ? ORDER BY late_range.id",
+      spacecraft);
+  while (row.step())
+    ranges.push_back({.id = row.integer(0),
+                      .spacecraft = spacecraft,
+                      .origin = row.integer<Origin>(1),
+                      .parameter = row.integer<std::uint32_t>(2),
+                      .range = {row.integer(3), row.integer(4)}});
+  return ranges;
+}
+
+void Archive::forget_late(std::span<const LateRange> ranges) {
+  sqlite::Transaction transaction(connection(database_));
+  {
+    sqlite::Query remove = connection(database_).query("DELETE FROM late_range WHERE id = ?");
+    for (const LateRange& range : ranges) remove.run(range.id);
+  }
+  transaction.commit();
+}
+
+std::vector<std::string> Archive::spacecraft() const {
+  std::vector<std::string> names;
+  sqlite::Query row = connection(database_).query(
+      "SELECT spacecraft FROM series UNION SELECT spacecraft FROM parameter ORDER BY 1");
+  while (row.step()) names.push_back(row.text(0));
+  return names;
+}
+
+std::vector<ParameterDescriptor> Archive::parameters(const std::string& spacecraft) const {
+  std::vector<ParameterDescriptor> descriptors;
+  sqlite::Query row =
+      connection(database_).query("SELECT " + std::string(descriptor_columns) +
+                                      " FROM parameter WHERE spacecraft = ? ORDER BY id",
+                                  spacecraft);
+  while (row.step()) descriptors.push_back(descriptor(row));
+  return descriptors;
+}
+
+std::optional<ParameterDescriptor> Archive::parameter(const std::string& spacecraft,
+                                                      const std::string& name) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT " + std::string(descriptor_columns) +
+          " FROM parameter WHERE spacecraft = ? AND name = ? ORDER BY id LIMIT 1",
+      spacecraft, name);
+  return row.step() ? std::optional(descriptor(row)) : std::nullopt;
+}
+
+Series Archive::read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
+                     TimeRange range) const {
+  Series series;
+  const std::optional<Time> last = last_in(range);
+  if (!last) return series;
+  sqlite::Query row = connection(database_).query(
+      "SELECT time, value, quality FROM sample WHERE series = "
+      "(SELECT id FROM series WHERE spacecraft = ? AND origin = ? AND parameter = ?) "
+      "AND time BETWEEN ? AND ? ORDER BY time",
+      spacecraft, origin, parameter, range.begin, *last);
+  while (row.step()) {
+    series.time.push_back(row.integer(0));
+    series.value.push_back(row.is_null(1) ? std::numeric_limits<double>::quiet_NaN() : row.real(1));
+    series.quality.push_back(row.integer<Quality>(2));
+  }
+  return series;
+}
+
+std::optional<Time> Archive::first_at_or_after(const std::string& spacecraft, Origin origin,
+                                               std::uint32_t parameter, Time time) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT time FROM sample WHERE series = "
+      "(SELECT id FROM series WHERE spacecraft = ? AND origin = ? AND parameter = ?) "
+      "AND time >= ? ORDER BY time LIMIT 1",
+      spacecraft, origin, parameter, time);
+  return row.step() ? std::optional(row.integer(0)) : std::nullopt;
+}
+
+std::optional<Time> Archive::last_at_or_before(const std::string& spacecraft, Origin origin,
+                                               std::uint32_t parameter, Time time) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT time FROM sample WHERE series = "
+      "(SELECT id FROM series WHERE spacecraft = ? AND origin = ? AND parameter = ?) "
+      "AND time <= ? ORDER BY time DESC LIMIT 1",
+      spacecraft, origin, parameter, time);
+  return row.step() ? std::optional(row.integer(0)) : std::nullopt;
+}
+
+std::optional<TimeRange> Archive::extent(const std::string& spacecraft, Origin origin) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT min(first_time), max(last_time) FROM series WHERE spacecraft = ? AND origin = ?",
+      spacecraft, origin);
+  if (!row.step() || row.is_null(0)) return std::nullopt;
+  return TimeRange{row.integer(0), just_after(row.integer(1))};
+}
+
+std::uint64_t Archive::sample_count() const {
+  sqlite::Query row = connection(database_).query("SELECT coalesce(sum(samples), 0) FROM series");
+  row.step();
+  return row.integer<std::uint64_t>(0);
+}
+
+std::vector<SourceCounts> Archive::sources() const {
+  std::vector<SourceCounts> sources;
+  sqlite::Query row = connection(database_).query(
+      "SELECT spacecraft, name, origin, frames, samples, duplicates, conflicts, late, non_finite, "
+      "out_of_order, restarts, missing, highest_sequence FROM source "
+      "ORDER BY spacecraft, name, origin");
+  while (row.step())
+    sources.push_back({.spacecraft = row.text(0),
+                       .source = row.text(1),
+                       .origin = row.integer<Origin>(2),
+                       .frames = row.integer<std::uint64_t>(3),
+                       .samples = row.integer<std::uint64_t>(4),
+                       .duplicates = row.integer<std::uint64_t>(5),
+                       .conflicts = row.integer<std::uint64_t>(6),
+                       .late = row.integer<std::uint64_t>(7),
+                       .non_finite = row.integer<std::uint64_t>(8),
+                       .out_of_order = row.integer<std::uint64_t>(9),
+                       .restarts = row.integer<std::uint64_t>(10),
+                       .missing = row.integer<std::uint64_t>(11),
+                       .last_sequence = from_column(row.integer(12))});
+  return sources;
+}
+
+std::vector<SequenceGap> Archive::sequence_gaps() const {
+  std::vector<SequenceGap> gaps;
+  sqlite::Query row = connection(database_).query(
+      "SELECT spacecraft, name, origin, first, last, time_before, time_after FROM sequence_gap "
+      "JOIN source ON source.id = sequence_gap.source ORDER BY spacecraft, name, origin, run, "
+      "first");
+  while (row.step())
+    gaps.push_back({.spacecraft = row.text(0),
+                    .source = row.text(1),
+                    .origin = row.integer<Origin>(2),
+                    .first = from_column(row.integer(3)),
+                    .last = from_column(row.integer(4)),
+                    .before = row.integer(5),
+                    .after = row.integer(6)});
+  return gaps;
+}
+
+}  // namespace reident::storage

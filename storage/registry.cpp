@@ -1,0 +1,213 @@
+#include "storage/registry.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "storage/connection.hpp"
+
+namespace reident::storage {
+namespace {
+
+sqlite::Connection& connection(Database& database) {
+  return *database.impl().connection;
+}
+
+constexpr std::array kinds{
+    std::pair{DecisionKind::approve, std::string_view("approve")},
+    std::pair{DecisionKind::reject, std::string_view("reject")},
+    std::pair{DecisionKind::wait, std::string_view("wait")},
+    std::pair{DecisionKind::roll_back, std::string_view("roll_back")},
+};
+
+DecisionKind decision_kind(std::string_view text) {
+  const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                  [&](const auto& kind) { return kind.second == text; });
+  if (found == kinds.end())
+    throw Error(Error::Kind::corrupt, "a decision has the unknown kind '" + std::string(text) +
+                                          "': restore the database from a backup");
+  return found->first;
+}
+
+std::int64_t add_attempt(sqlite::Connection& connection, const NewAttempt& attempt) {
+  connection
+      .query(
+          "INSERT INTO attempt (spacecraft, equipment, window_begin, window_end, cause, time, "
+          "outcome, reason, evidence_json, configuration_digest, program_version) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      .run(attempt.spacecraft, attempt.equipment, attempt.window.begin, attempt.window.end,
+           attempt.trigger, attempt.time, attempt.outcome, attempt.reason, attempt.evidence_json,
+           attempt.configuration_digest, attempt.program_version);
+  return connection.last_id();
+}
+
+std::int64_t add_decision(sqlite::Connection& connection, const std::string& spacecraft,
+                          const std::string& equipment, std::int64_t version,
+                          const NewDecision& decision, Time time) {
+  connection
+      .query(
+          "INSERT INTO decision (spacecraft, equipment, version, kind, actor, reason, time) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?)")
+      .run(spacecraft, equipment, version, name(decision.kind), decision.actor, decision.reason,
+           time);
+  return connection.last_id();
+}
+
+std::int64_t next_number(sqlite::Connection& connection, const NewAttempt& attempt) {
+  sqlite::Query row = connection.query(
+      "SELECT coalesce(max(number), 0) + 1 FROM version WHERE spacecraft = ? AND equipment = ?",
+      attempt.spacecraft, attempt.equipment);
+  row.step();
+  return row.integer(0);
+}
+
+std::string version_sql(std::string_view rest) {
+  return "SELECT spacecraft, equipment, version, attempt, window_begin, window_end, created, "
+         "model_json, digest, status FROM model_version " +
+         std::string(rest);
+}
+
+Version read_version(const sqlite::Query& row) {
+  return {.spacecraft = row.text(0),
+          .equipment = row.text(1),
+          .number = row.integer(2),
+          .attempt = row.integer(3),
+          .window = {row.integer(4), row.integer(5)},
+          .created = row.integer(6),
+          .model_json = row.text(7),
+          .digest = row.text(8),
+          .status = row.text(9)};
+}
+
+Decision read_decision(const sqlite::Query& row) {
+  Decision decision;
+  decision.id = row.integer(0);
+  decision.spacecraft = row.text(1);
+  decision.equipment = row.text(2);
+  decision.version = row.integer(3);
+  decision.kind = decision_kind(row.text(4));
+  decision.actor = row.text(5);
+  decision.reason = row.text(6);
+  decision.time = row.integer(7);
+  return decision;
+}
+
+Attempt read_attempt(const sqlite::Query& row) {
+  Attempt attempt;
+  attempt.id = row.integer(0);
+  attempt.spacecraft = row.text(1);
+  attempt.equipment = row.text(2);
+  attempt.window = {row.integer(3), row.integer(4)};
+  attempt.trigger = row.text(5);
+  attempt.time = row.integer(6);
+  attempt.outcome = row.text(7);
+  attempt.reason = row.text(8);
+  attempt.evidence_json = row.text(9);
+  attempt.configuration_digest = row.text(10);
+  attempt.program_version = row.text(11);
+  if (!row.is_null(12)) attempt.version = row.integer(12);
+  return attempt;
+}
+
+}  // namespace
+
+std::string_view name(DecisionKind kind) {
+  return kinds[static_cast<std::size_t>(kind)].second;
+}
+
+Registry::Registry(Database& database) : database_(database) {}
+
+std::int64_t Registry::record(const NewAttempt& attempt) {
+  return add_attempt(connection(database_), attempt);
+}
+
+std::int64_t Registry::record(const NewAttempt& attempt, const NewVersion& version,
+                              const NewDecision& decision) {
+  sqlite::Connection& db = connection(database_);
+  sqlite::Transaction transaction(db);
+  const std::int64_t id = add_attempt(db, attempt);
+  const std::int64_t number = next_number(db, attempt);
+  db.query(
+        "INSERT INTO version (spacecraft, equipment, number, attempt, model_json, digest) "
+        "VALUES (?, ?, ?, ?, ?, ?)")
+      .run(attempt.spacecraft, attempt.equipment, number, id, version.model_json, version.digest);
+  add_decision(db, attempt.spacecraft, attempt.equipment, number, decision, attempt.time);
+  transaction.commit();
+  return number;
+}
+
+std::int64_t Registry::decide(const std::string& spacecraft, const std::string& equipment,
+                              std::int64_t version, const NewDecision& decision, Time time) {
+  if (!this->version(spacecraft, equipment, version))
+    throw Error(Error::Kind::failed, equipment + " of " + spacecraft + " has no version " +
+                                         std::to_string(version) +
+                                         ": 'reident history' lists those that exist");
+  return add_decision(connection(database_), spacecraft, equipment, version, decision, time);
+}
+
+std::optional<Version> Registry::version(const std::string& spacecraft,
+                                         const std::string& equipment, std::int64_t number) const {
+  sqlite::Query row = connection(database_).query(
+      version_sql("WHERE spacecraft = ? AND equipment = ? AND version = ?"), spacecraft, equipment,
+      number);
+  return row.step() ? std::optional(read_version(row)) : std::nullopt;
+}
+
+std::optional<Version> Registry::champion(const std::string& spacecraft,
+                                          const std::string& equipment,
+                                          std::optional<Time> time) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT version FROM decision WHERE spacecraft = ?1 AND equipment = ?2 "
+      "AND kind IN ('approve', 'roll_back') AND (?3 IS NULL OR time <= ?3) "
+      "ORDER BY id DESC LIMIT 1",
+      spacecraft, equipment, time);
+  return row.step() ? version(spacecraft, equipment, row.integer(0)) : std::nullopt;
+}
+
+std::vector<Version> Registry::champions() const {
+  std::vector<Version> champions;
+  sqlite::Query row = connection(database_).query(
+      version_sql("WHERE status = 'approved' ORDER BY spacecraft, equipment"));
+  while (row.step()) champions.push_back(read_version(row));
+  return champions;
+}
+
+std::vector<Decision> Registry::decisions(const std::string& spacecraft,
+                                          const std::string& equipment,
+                                          std::optional<std::int64_t> version) const {
+  std::vector<Decision> decisions;
+  sqlite::Query row = connection(database_).query(
+      "SELECT id, spacecraft, equipment, version, kind, actor, reason, time FROM decision "
+      "WHERE spacecraft = ?1 AND equipment = ?2 AND (?3 IS NULL OR version = ?3) ORDER BY id",
+      spacecraft, equipment, version);
+  while (row.step()) decisions.push_back(read_decision(row));
+  return decisions;
+}
+
+std::vector<Attempt> Registry::attempts(const HistoryFilter& filter) const {
+  std::vector<Attempt> attempts;
+  std::optional<Time> begin, end;
+  if (filter.window) begin = filter.window->begin, end = filter.window->end;
+  sqlite::Query row = connection(database_).query(
+      "SELECT attempt.id, attempt.spacecraft, attempt.equipment, window_begin, window_end, cause, "
+      "time, outcome, reason, evidence_json, configuration_digest, program_version, number "
+      "FROM attempt LEFT JOIN version ON version.attempt = attempt.id "
+      "WHERE (?1 = '' OR attempt.spacecraft = ?1) AND (?2 = '' OR attempt.equipment = ?2) "
+      "AND (?3 IS NULL OR (window_begin < ?4 AND window_end > ?3)) "
+      "AND (NOT ?5 OR number IS NOT NULL) ORDER BY attempt.id DESC LIMIT ?6",
+      filter.spacecraft, filter.equipment, begin, end, filter.versions_only,
+      filter.last ? static_cast<std::int64_t>(*filter.last) : -1);
+  while (row.step()) attempts.push_back(read_attempt(row));
+  std::reverse(attempts.begin(), attempts.end());
+  return attempts;
+}
+
+std::optional<Time> Registry::last_window_end(const std::string& spacecraft,
+                                              const std::string& equipment) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT max(window_end) FROM attempt WHERE spacecraft = ? AND equipment = ?", spacecraft,
+      equipment);
+  return row.step() && !row.is_null(0) ? std::optional(row.integer(0)) : std::nullopt;
+}
+
+}  // namespace reident::storage

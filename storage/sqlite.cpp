@@ -1,0 +1,170 @@
+#include "storage/sqlite.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+namespace reident::storage::sqlite {
+namespace {
+
+// Readers never wait in WAL mode but for moments such as a recovery after a crash.
+constexpr int busy_timeout_ms = 5000;
+
+struct Diagnosis {
+  Error::Kind kind;
+  const char* what_and_remedy;
+};
+
+// SQLite reports ENOSPC alone as SQLITE_FULL; a quota and a file size limit come as I/O errors.
+bool no_room(int system_error) {
+  return system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG;
+}
+
+Diagnosis diagnose(int code, int system_error) {
+  using Kind = Error::Kind;
+  const bool io_error = (code & 0xff) == SQLITE_IOERR;
+  switch (code & 0xff) {
+    case SQLITE_CANTOPEN:
+      return {Kind::cannot_open, "cannot be opened: check that it exists and its permissions"};
+    case SQLITE_NOTADB:
+      return {Kind::cannot_open, "is not a database: name another file"};
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return {Kind::locked, "is locked by another program: end that program's transaction"};
+    case SQLITE_CORRUPT:
+      return {Kind::corrupt,
+              "is damaged: restore a backup, or save what can be read with "
+              "'sqlite3 FILE .recover'"};
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+      return {Kind::read_only,
+              "cannot be written: check the permissions of the file and of its "
+              "folder"};
+    default:
+      break;
+  }
+  if (code == SQLITE_FULL || (io_error && no_room(system_error)))
+    return {Kind::full,
+            "has no room to grow: free space on its disk or raise the quota or file "
+            "size limit; what was stored before is kept"};
+  if (io_error) return {Kind::failed, "cannot be read or written: check the disk"};
+  return {Kind::failed, "failed"};
+}
+
+[[noreturn]] void fail_on(sqlite3* connection, int code, const std::string& path) {
+  const int system_error = connection ? sqlite3_system_errno(connection) : 0;
+  const Diagnosis diagnosis = diagnose(code, system_error);
+  std::string message = "database " + path + " " + diagnosis.what_and_remedy;
+  message +=
+      std::string(" (SQLite: ") + (connection ? sqlite3_errmsg(connection) : sqlite3_errstr(code));
+  if ((code & 0xff) == SQLITE_IOERR && system_error != 0)
+    message += std::string("; system: ") + std::strerror(system_error);
+  throw Error(diagnosis.kind, message + ")");
+}
+
+}  // namespace
+
+void fail(sqlite3* connection, int code) {
+  const char* path = sqlite3_db_filename(connection, "main");
+  fail_on(connection, code, path ? path : "");
+}
+
+Query::~Query() {
+  sqlite3_reset(statement_);
+  sqlite3_clear_bindings(statement_);
+}
+
+void Query::check(int code) const {
+  if (code != SQLITE_OK) fail(sqlite3_db_handle(statement_), code);
+}
+
+bool Query::step() {
+  const int code = sqlite3_step(statement_);
+  if (code == SQLITE_ROW) return true;
+  if (code != SQLITE_DONE) fail(sqlite3_db_handle(statement_), code);
+  return false;
+}
+
+std::int64_t Query::run_bound() {
+  step();
+  return sqlite3_changes64(sqlite3_db_handle(statement_));
+}
+
+bool Query::is_null(int column) const {
+  return sqlite3_column_type(statement_, column) == SQLITE_NULL;
+}
+
+double Query::real(int column) const {
+  return sqlite3_column_double(statement_, column);
+}
+
+std::string Query::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+  return text
+             ? std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column)))
+             : std::string();
+}
+
+void Query::bind_one(int index, double value) {
+  std::isnan(value) ? bind_null(index) : check(sqlite3_bind_double(statement_, index, value));
+}
+
+void Query::bind_one(int index, std::int64_t value) {
+  check(sqlite3_bind_int64(statement_, index, value));
+}
+
+void Query::bind_null(int index) {
+  check(sqlite3_bind_null(statement_, index));
+}
+
+void Query::bind_one(int index, std::string_view text) {
+  check(sqlite3_bind_text64(statement_, index, text.empty() ? "" : text.data(), text.size(),
+                            SQLITE_TRANSIENT, SQLITE_UTF8));
+}
+
+Connection::Connection(const std::string& name, const std::filesystem::path& path, int flags) {
+  sqlite3* handle = nullptr;
+  const int code = sqlite3_open_v2(name.c_str(), &handle,
+                                   flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
+  handle_.reset(handle);
+  if (code != SQLITE_OK) fail_on(handle, code, path.string());
+  sqlite3_busy_timeout(handle, busy_timeout_ms);
+}
+
+void Connection::execute(const std::string& sql) {
+  const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) fail(handle_.get(), code);
+}
+
+sqlite3_stmt* Connection::prepared(std::string_view sql) {
+  Statement& kept = statements_[std::string(sql)];
+  if (!kept) {
+    sqlite3_stmt* statement = nullptr;
+    const int code = sqlite3_prepare_v3(handle_.get(), sql.data(), static_cast<int>(sql.size()),
+                                        SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
+    kept.reset(statement);
+    if (code != SQLITE_OK) fail(handle_.get(), code);
+  }
+  return kept.get();
+}
+
+Transaction::Transaction(Connection& connection) : connection_(connection) {
+  connection_.query("BEGIN IMMEDIATE").run();
+}
+
+Transaction::~Transaction() {
+  // A failure such as a full disk may have rolled back already.
+  if (!connection_.in_transaction()) return;
+  try {
+    connection_.query("ROLLBACK").run();
+  } catch (const Error&) {
+    // The file is as it was: an uncommitted transaction never counts.
+  }
+}
+
+void Transaction::commit() {
+  connection_.query("COMMIT").run();
+}
+
+}  // namespace reident::storage::sqlite

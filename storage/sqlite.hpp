@@ -1,0 +1,125 @@
+// The part of SQLite's C API that storage uses, with owners for its handles. Private to storage.
+//
+// Failures are thrown as storage::Error with the file and the remedy. A connection keeps every
+// statement that it prepared; a Query borrows one and gives it back clean.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <unordered_map>
+
+#include <sqlite3.h>
+
+#include "storage/database.hpp"
+
+namespace reident::storage::sqlite {
+
+/// Throws the Error that fits `code`, which a call on `connection` returned.
+[[noreturn]] void fail(sqlite3* connection, int code);
+
+/// A statement in use: bound by position, stepped, read. It is reset when the Query ends.
+class Query {
+ public:
+  template <typename... Values>
+  explicit Query(sqlite3_stmt* statement, const Values&... values) : statement_(statement) {
+    bind(values...);
+  }
+  ~Query();
+  Query(const Query&) = delete;
+  Query& operator=(const Query&) = delete;
+
+  /// Binds all parameters in their order; starts the statement anew if it ran already.
+  template <typename... Values>
+  Query& bind(const Values&... values) {
+    sqlite3_reset(statement_);
+    int index = 0;
+    (bind_one(++index, values), ...);
+    return *this;
+  }
+  /// True while there is a row to read.
+  bool step();
+  /// For statements that give no row; without values with those bound. Returns how many rows it
+  /// changed.
+  template <typename... Values>
+  std::int64_t run(const Values&... values) {
+    bind(values...);
+    return run_bound();
+  }
+
+  bool is_null(int column) const;
+  double real(int column) const;
+  std::string text(int column) const;
+  template <typename T = std::int64_t>
+  T integer(int column) const {
+    return static_cast<T>(sqlite3_column_int64(statement_, column));
+  }
+
+ private:
+  void bind_one(int index, double value);  // NaN becomes NULL: SQLite has no NaN
+  void bind_one(int index, std::string_view text);
+  void bind_one(int index, std::int64_t value);
+  void bind_null(int index);
+  template <typename T>
+  void bind_one(int index, const std::optional<T>& value) {
+    value ? bind_one(index, *value) : bind_null(index);
+  }
+  template <typename T>
+  requires std::is_enum_v<T> ||
+      (std::is_integral_v<T> && !std::is_same_v<T, std::int64_t>)void bind_one(int index, T value) {
+    bind_one(index, static_cast<std::int64_t>(value));
+  }
+  std::int64_t run_bound();
+  void check(int code) const;
+
+  sqlite3_stmt* statement_;
+};
+
+/// One open file.
+class Connection {
+ public:
+  /// `name` is a path or, with SQLITE_OPEN_URI in `flags`, a URI; `path` is for messages.
+  Connection(const std::string& name, const std::filesystem::path& path, int flags);
+
+  /// Runs statements that give no rows and are not worth keeping.
+  void execute(const std::string& sql);
+  /// The same text must not be in use by another Query.
+  template <typename... Values>
+  Query query(std::string_view sql, const Values&... values) {
+    return Query(prepared(sql), values...);
+  }
+  std::int64_t last_id() const { return sqlite3_last_insert_rowid(handle_.get()); }
+  bool in_transaction() const { return sqlite3_get_autocommit(handle_.get()) == 0; }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
+  };
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
+  sqlite3_stmt* prepared(std::string_view sql);
+
+  std::unique_ptr<sqlite3, Close> handle_;
+  std::unordered_map<std::string, Statement> statements_;
+};
+
+/// Rolls back unless it was committed.
+class Transaction {
+ public:
+  explicit Transaction(Connection& connection);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit();
+
+ private:
+  Connection& connection_;
+};
+
+}  // namespace reident::storage::sqlite

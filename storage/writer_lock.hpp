@@ -1,0 +1,22 @@
+// The right to be the one writer of a database file. Private to storage.
+#pragma once
+
+#include <filesystem>
+
+namespace reident::storage {
+
+/// Holds an advisory lock (flock) on "<database>.lock" until it is destroyed or its process ends
+/// in whatever way. The file stays: taking it away could give two writers a lock each.
+class WriterLock {
+ public:
+  /// Throws Error: locked, with the process that holds it, or cannot_open or read_only.
+  explicit WriterLock(const std::filesystem::path& database);
+  ~WriterLock();
+  WriterLock(const WriterLock&) = delete;
+  WriterLock& operator=(const WriterLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace reident::storage
