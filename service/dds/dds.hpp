@@ -29,7 +29,8 @@ struct Endpoint {
   std::string partition = "operations";  // separates operations, training and test
 };
 
-/// Joins a domain. Without CYCLONEDDS_URI in the environment all traffic stays on 127.0.0.1.
+/// Joins a domain. Without CYCLONEDDS_URI in the environment all traffic stays on 127.0.0.1. Must
+/// outlive its readers, writers and wait sets.
 class Participant {
  public:
   explicit Participant(const Endpoint& endpoint);
@@ -58,8 +59,13 @@ class Writer {
   Writer(Writer&&) noexcept;
   Writer& operator=(Writer&&) noexcept;
 
-  /// Blocks while the readers' bounds are reached. Throws Error.
+  /// Telemetry blocks while the readers' bounds are reached, so that nothing is lost; other topics
+  /// give up after 10 s. Throws Error.
   void write(const M& message);
+  /// The same, but asks `stop` several times a second while it blocks. False when it stopped: then
+  /// the message was not written (a reader in this process that was full may find it missing, those
+  /// in other processes may have it).
+  bool write(const M& message, const std::function<bool()>& stop);
   std::uint32_t matched_readers() const;
   /// False when `timeout` passed before every matched reader had everything.
   bool wait_for_acknowledgments(std::chrono::nanoseconds timeout);
@@ -71,8 +77,8 @@ class Writer {
 
 /// Bounds of what a reader keeps before it is taken, and of what it accepts.
 struct ReaderOptions {
-  std::int32_t max_samples = 4096;          // KEEP_ALL topics; writers wait when it is reached
-  std::size_t max_frame_samples = 65536;    // a TelemetryFrame with more is refused and counted
+  std::int32_t max_samples = 4096;        // KEEP_ALL topics; writers wait when it is reached
+  std::size_t max_frame_samples = 65536;  // a TelemetryFrame with more is refused and counted
 };
 
 template <class M>
@@ -83,12 +89,20 @@ class Reader {
   Reader(Reader&&) noexcept;
   Reader& operator=(Reader&&) noexcept;
 
-  /// Calls `sink` for each message taken, at most `max`; returns how many were taken, malformed
-  /// ones included.
-  std::size_t take(std::size_t max, const std::function<void(M&&)>& sink);
+  using Sink = std::function<void(M&&)>;
+  /// A malformed message, filled in as far as it could be read, and what is wrong with it.
+  using Refused = std::function<void(const M&, const std::string& reason)>;
+
+  /// Calls `sink` for each message taken, at most `max`, and `refused` for each malformed one;
+  /// returns how many were taken, malformed ones included. Neither may throw.
+  std::size_t take(std::size_t max, const Sink& sink, const Refused& refused = {});
+  /// For a clean stop: hands out every message that was accepted and not taken yet. It frees no
+  /// room, so that a writer at full speed ends up waiting and the drain ends after `max_samples`
+  /// messages at most. Nothing but the destructor may follow.
+  std::size_t drain(const Sink& sink, const Refused& refused = {});
   std::uint32_t matched_writers() const;
   /// Messages that broke the contract (sizes, ranges, strings) and were not handed out, and why
-  /// the last of them was.
+  /// the last of them was. From any thread.
   std::uint64_t malformed() const;
   std::string last_malformed() const;
 

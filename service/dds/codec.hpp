@@ -1,0 +1,128 @@
+// One codec for each message: its wire type, its profile, and the two directions.
+//
+// An Encoder holds the buffers that the wire sample borrows; the reference that it returns is good
+// until its next call and as long as the message lives. `decode` never trusts the wire: it fills
+// `message` as far as it can, identity first, and returns what breaks the contract.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <dds/dds.h>
+
+#include "reident.h"
+#include "satcs.h"
+#include "service/dds/dds.hpp"
+#include "service/dds/qos.hpp"
+#include "service/dds/wire.hpp"
+
+namespace reident::dds {
+
+template <class M>
+struct Codec;
+
+template <>
+struct Codec<storage::TelemetryFrame> {
+  using Wire = satcs_TelemetryFrame;
+  static constexpr const dds_topic_descriptor_t& descriptor = satcs_TelemetryFrame_desc;
+  static constexpr const Profile& profile = telemetry_frame;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const storage::TelemetryFrame& frame);
+
+   private:
+    Wire wire_{};
+    std::vector<std::uint32_t> parameter_;
+    std::vector<double> value_;
+    std::vector<std::uint8_t> quality_;
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options,
+                      storage::TelemetryFrame& frame);
+};
+
+template <>
+struct Codec<storage::ParameterDescriptor> {
+  using Wire = satcs_ParameterDescriptor;
+  static constexpr const dds_topic_descriptor_t& descriptor = satcs_ParameterDescriptor_desc;
+  static constexpr const Profile& profile = parameter_descriptor;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const storage::ParameterDescriptor& parameter);
+
+   private:
+    Wire wire_{};
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options,
+                      storage::ParameterDescriptor& parameter);
+};
+
+template <>
+struct Codec<ModelVersion> {
+  using Wire = reident_ModelVersion;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_ModelVersion_desc;
+  static constexpr const Profile& profile = model_version;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const ModelVersion& version);
+
+   private:
+    Wire wire_{};
+    std::vector<reident_Signal> inputs_, outputs_;
+    std::vector<double> a_, b_, c_, d_, k_, u0_, y0_, mrse_, fit_;
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, ModelVersion& version);
+};
+
+template <>
+struct Codec<IdentificationReport> {
+  using Wire = reident_IdentificationReport;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_IdentificationReport_desc;
+  static constexpr const Profile& profile = identification_report;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const IdentificationReport& report);
+
+   private:
+    Wire wire_{};
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, IdentificationReport& report);
+};
+
+template <>
+struct Codec<ModelAcknowledgement> {
+  using Wire = reident_ModelAcknowledgement;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_ModelAcknowledgement_desc;
+  static constexpr const Profile& profile = model_acknowledgement;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const ModelAcknowledgement& acknowledgement);
+
+   private:
+    Wire wire_{};
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options,
+                      ModelAcknowledgement& acknowledgement);
+};
+
+template <>
+struct Codec<ServiceStatus> {
+  using Wire = reident_ServiceStatus;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_ServiceStatus_desc;
+  static constexpr const Profile& profile = service_status;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const ServiceStatus& status);
+
+   private:
+    Wire wire_{};
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, ServiceStatus& status);
+};
+
+}  // namespace reident::dds

@@ -1,0 +1,80 @@
+#include "service/dds/domain.hpp"
+
+#include <cstdlib>
+#include <map>
+
+#include "service/dds/qos.hpp"
+#include "service/support/mutex.hpp"
+
+namespace reident::dds {
+namespace {
+
+struct SharedDomain {
+  Entity entity;  // empty where the middleware made the domain on its own
+  std::size_t users = 0;
+};
+
+Mutex domains_mutex;
+
+std::map<std::uint32_t, SharedDomain>& domains() REIDENT_REQUIRES(domains_mutex) {
+  static std::map<std::uint32_t, SharedDomain> instance;
+  return instance;
+}
+
+bool configured_by_environment() {
+  const char* uri = std::getenv("CYCLONEDDS_URI");
+  return uri != nullptr && *uri != '\0';
+}
+
+Entity create_loopback_domain(std::uint32_t domain) {
+  const dds_entity_t result = dds_create_domain(domain, loopback_configuration);
+  // Another library of this process was first; its configuration holds.
+  if (result == DDS_RETCODE_PRECONDITION_NOT_MET) return {};
+  return {result, "dds_create_domain", "domain " + std::to_string(domain)};
+}
+
+Entity create_participant(std::uint32_t domain) {
+  const dds_entity_t result = dds_create_participant(domain, nullptr, nullptr);
+  if (result < 0) {
+    throw Error("dds_create_participant failed for domain " + std::to_string(domain) + ": " +
+                dds_strretcode(result) +
+                "; use a domain from 0 to 230, raise MaxAutoParticipantIndex where many processes "
+                "share a machine, and check the interfaces that CYCLONEDDS_URI names");
+  }
+  return {result, "dds_create_participant", ""};
+}
+
+}  // namespace
+
+DomainUse::DomainUse(std::uint32_t domain) : domain_(domain) {
+  const MutexLock lock(domains_mutex);
+  auto found = domains().find(domain);
+  if (found == domains().end()) {
+    Entity entity = configured_by_environment() ? Entity() : create_loopback_domain(domain);
+    found = domains().emplace(domain, SharedDomain{std::move(entity), 0}).first;
+  }
+  ++found->second.users;
+}
+
+DomainUse::~DomainUse() {
+  const MutexLock lock(domains_mutex);
+  const auto found = domains().find(domain_);
+  if (--found->second.users == 0) domains().erase(found);
+}
+
+Participant::Impl::Impl(const Endpoint& endpoint)
+    : domain(endpoint.domain), participant(create_participant(endpoint.domain)) {
+  const std::string about = "partition \"" + endpoint.partition + "\"";
+  const Qos qos = partition_qos(endpoint.partition);
+  publisher = {dds_create_publisher(participant.get(), qos.get(), nullptr), "dds_create_publisher",
+               about};
+  subscriber = {dds_create_subscriber(participant.get(), qos.get(), nullptr),
+                "dds_create_subscriber", about};
+}
+
+Participant::Participant(const Endpoint& endpoint) : impl_(std::make_unique<Impl>(endpoint)) {}
+Participant::~Participant() = default;
+Participant::Participant(Participant&&) noexcept = default;
+Participant& Participant::operator=(Participant&&) noexcept = default;
+
+}  // namespace reident::dds

@@ -1,0 +1,36 @@
+// The domain of a process, configured once and shared by its participants.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "service/dds/entity.hpp"
+
+namespace reident::dds {
+
+/// Cyclone DDS configuration that keeps all traffic on 127.0.0.1 (service/dds/loopback.xml).
+extern const char* const loopback_configuration;
+
+/// Keeps a domain configured for as long as anyone in the process uses it. Without CYCLONEDDS_URI
+/// the domain is the loopback one; with it the middleware reads the configuration itself.
+class DomainUse {
+ public:
+  explicit DomainUse(std::uint32_t domain);
+  ~DomainUse();
+  DomainUse(const DomainUse&) = delete;
+  DomainUse& operator=(const DomainUse&) = delete;
+
+ private:
+  std::uint32_t domain_;
+};
+
+struct Participant::Impl {
+  explicit Impl(const Endpoint& endpoint);
+
+  DomainUse domain;
+  Entity participant;
+  Entity publisher;
+  Entity subscriber;
+};
+
+}  // namespace reident::dds

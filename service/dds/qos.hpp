@@ -1,0 +1,53 @@
+// Every QoS profile. idl/README.md says why each is as it is.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <dds/dds.h>
+
+#include "service/dds/dds.hpp"
+
+namespace reident::dds {
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+inline constexpr std::int32_t keep_all = 0;
+
+/// What differs between the topics. All are RELIABLE and in the participant's partition. A KEEP_ALL
+/// writer whose readers are full waits until there is room, however long that takes; a KEEP_LAST
+/// writer replaces what is old, and gives up after `patience` where even that is not possible.
+struct Profile {
+  const char* topic;
+  std::int32_t history;       // samples kept of an instance, or keep_all
+  std::int32_t late_joiners;  // the same for readers that join late; with keep_all the writer's
+                              // options say how many
+  /// The instances of a writer that ends are disposed of. False where what was said last stays
+  /// true without its writer.
+  bool autodispose;
+};
+
+inline constexpr Profile telemetry_frame{"satcs/TelemetryFrame", keep_all, keep_all, false};
+inline constexpr Profile parameter_descriptor{"satcs/ParameterDescriptor", 1, 1, false};
+inline constexpr Profile model_version{"reident/ModelVersion", 1, 1, false};
+inline constexpr Profile identification_report{"reident/IdentificationReport", 64, 64, false};
+inline constexpr Profile model_acknowledgement{"reident/ModelAcknowledgement", 1, 1, true};
+inline constexpr Profile service_status{"reident/ServiceStatus", 1, 1, true};
+
+/// The middleware's blocking time of one attempt to write: how soon a stop request is seen.
+inline constexpr std::chrono::milliseconds write_slice{100};
+/// How long a KEEP_LAST writer tries.
+inline constexpr std::chrono::seconds patience{10};
+
+Qos partition_qos(const std::string& partition);
+Qos writer_qos(const Profile& profile, const WriterOptions& options);
+/// `transient_local`: whether history of writers that keep some is asked for; such a reader does
+/// not match a volatile writer.
+Qos reader_qos(const Profile& profile, const ReaderOptions& options, bool transient_local);
+
+}  // namespace reident::dds

@@ -1,0 +1,155 @@
+#include "service/dds/reader_core.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+namespace reident::dds {
+namespace {
+
+constexpr std::size_t loan_samples = 128;
+
+std::vector<dds_instance_handle_t> matched(dds_entity_t reader, const char* topic) {
+  const dds_return_t count = check(dds_get_matched_publications(reader, nullptr, 0),
+                                   "dds_get_matched_publications", topic);
+  std::vector<dds_instance_handle_t> writers(static_cast<std::size_t>(count));
+  const dds_return_t now =
+      check(dds_get_matched_publications(reader, writers.data(), writers.size()),
+            "dds_get_matched_publications", topic);
+  writers.resize(std::min(writers.size(), static_cast<std::size_t>(now)));
+  return writers;
+}
+
+}  // namespace
+
+struct ReaderCore::Loan {
+  Loan(dds_entity_t from, std::size_t max, bool remove, const char* topic) : reader(from) {
+    const auto size = static_cast<std::uint32_t>(std::min(max, loan_samples));
+    const dds_return_t result =
+        remove ? dds_take(reader, samples.data(), infos.data(), size, size)
+               : dds_read_mask(
+                     reader, samples.data(), infos.data(), size, size,
+                     DDS_NOT_READ_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ANY_INSTANCE_STATE);
+    count = static_cast<std::size_t>(check(result, remove ? "dds_take" : "dds_read_mask", topic));
+  }
+  ~Loan() {
+    if (count > 0) dds_return_loan(reader, samples.data(), static_cast<std::int32_t>(count));
+  }
+  Loan(const Loan&) = delete;
+  Loan& operator=(const Loan&) = delete;
+
+  dds_entity_t reader;
+  std::array<void*, loan_samples> samples{};  // null: the middleware lends its own
+  std::array<dds_sample_info_t, loan_samples> infos;
+  std::size_t count = 0;
+};
+
+ReaderCore::ReaderCore(Participant& participant, const Profile& profile,
+                       const dds_topic_descriptor_t& descriptor, const ReaderOptions& options)
+    : participant_(participant),
+      profile_(profile),
+      options_(options),
+      topic_(dds_create_topic(participant.impl().participant.get(), &descriptor, profile.topic,
+                              nullptr, nullptr),
+             "dds_create_topic", profile.topic),
+      first_(make_ear(true)) {}
+
+ReaderCore::Ear ReaderCore::make_ear(bool transient_local) const {
+  const Qos qos = reader_qos(profile_, options_, transient_local);
+  Ear ear;
+  ear.reader = {
+      dds_create_reader(participant_.impl().subscriber.get(), topic_.get(), qos.get(), nullptr),
+      "dds_create_reader", profile_.topic};
+  ear.has_samples = {dds_create_readcondition(ear.reader.get(), DDS_ANY_STATE),
+                     "dds_create_readcondition", profile_.topic};
+  check(dds_set_status_mask(ear.reader.get(), DDS_REQUESTED_INCOMPATIBLE_QOS_STATUS),
+        "dds_set_status_mask", profile_.topic);
+  return ear;
+}
+
+void ReaderCore::hear_volatile_writers() {
+  if (second_.reader) return;
+  dds_requested_incompatible_qos_status_t status{};
+  check(dds_get_requested_incompatible_qos_status(first_.reader.get(), &status),
+        "dds_get_requested_incompatible_qos_status", profile_.topic);
+  if (status.total_count == 0) return;
+  second_ = make_ear(false);
+  for (const dds_entity_t wait_set : wait_sets_) {
+    check(dds_waitset_attach(wait_set, second_.has_samples.get(), 0), "dds_waitset_attach",
+          profile_.topic);
+  }
+}
+
+void ReaderCore::attach_to(dds_entity_t wait_set) {
+  wait_sets_.push_back(wait_set);
+  for (const dds_entity_t entity :
+       {first_.reader.get(), first_.has_samples.get(), second_.has_samples.get()}) {
+    if (entity == 0) continue;
+    check(dds_waitset_attach(wait_set, entity, 0), "dds_waitset_attach", profile_.topic);
+  }
+}
+
+bool ReaderCore::is_heard_by_first(dds_instance_handle_t writer) {
+  const auto known = keeps_history_.find(writer);
+  if (known != keeps_history_.end()) return known->second;
+  dds_builtintopic_endpoint_t* endpoint =
+      dds_get_matched_publication_data(second_.reader.get(), writer);
+  // The writer is gone already: rather the same sample twice than not at all.
+  if (endpoint == nullptr) return false;
+  dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
+  dds_qget_durability(endpoint->qos, &durability);
+  dds_builtintopic_free_endpoint(endpoint);
+  return keeps_history_[writer] = durability != DDS_DURABILITY_VOLATILE;
+}
+
+std::size_t ReaderCore::visit_some(const Ear& ear, std::size_t max, bool remove,
+                                   const Visit& visit) {
+  const Loan loan(ear.reader.get(), max, remove, profile_.topic);
+  const bool is_second = &ear == &second_;
+  for (std::size_t i = 0; i < loan.count; ++i) {
+    const dds_sample_info_t& info = loan.infos[i];
+    if (!info.valid_data) continue;
+    if (is_second && is_heard_by_first(info.publication_handle)) continue;
+    visit(loan.samples[i]);
+  }
+  return loan.count;
+}
+
+std::size_t ReaderCore::take(std::size_t max, const Visit& visit) {
+  hear_volatile_writers();
+  std::size_t taken = 0;
+  for (const Ear* ear : {&first_, &second_}) {
+    while (ear->reader && taken < max) {
+      const std::size_t count = visit_some(*ear, max - taken, true, visit);
+      taken += count;
+      if (count == 0) break;
+    }
+  }
+  return taken;
+}
+
+std::size_t ReaderCore::drain(const Visit& visit) {
+  std::size_t visited = 0;
+  for (const Ear* ear : {&first_, &second_}) {
+    while (ear->reader) {
+      const std::size_t count =
+          visit_some(*ear, std::numeric_limits<std::size_t>::max(), false, visit);
+      visited += count;
+      if (count == 0) break;
+    }
+  }
+  return visited;
+}
+
+std::uint32_t ReaderCore::matched_writers() {
+  hear_volatile_writers();
+  std::set<dds_instance_handle_t> writers;
+  for (const Ear* ear : {&first_, &second_}) {
+    if (!ear->reader) continue;
+    const auto heard = matched(ear->reader.get(), profile_.topic);
+    writers.insert(heard.begin(), heard.end());
+  }
+  return static_cast<std::uint32_t>(writers.size());
+}
+
+}  // namespace reident::dds

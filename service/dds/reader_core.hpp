@@ -1,0 +1,58 @@
+// What a reader does whatever its message is: entities, loans, and which writers it hears.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "service/dds/domain.hpp"
+#include "service/dds/qos.hpp"
+
+namespace reident::dds {
+
+/// A TRANSIENT_LOCAL reader gets the kept history of writers that keep some, and does not match
+/// volatile writers at all; a volatile reader matches both and gets no history. So the first reader
+/// asks for history, and when the middleware reports that a writer does not offer what it asks for,
+/// a second, volatile one joins it, whose samples of history-keeping writers are skipped.
+class ReaderCore {
+ public:
+  using Visit = std::function<void(const void* wire)>;
+
+  ReaderCore(Participant& participant, const Profile& profile,
+             const dds_topic_descriptor_t& descriptor, const ReaderOptions& options);
+
+  /// Visits at most `max` samples and removes them; returns how many were removed.
+  std::size_t take(std::size_t max, const Visit& visit);
+  /// Visits every sample that was not visited yet and removes none.
+  std::size_t drain(const Visit& visit);
+  std::uint32_t matched_writers();
+
+  /// Lets the wait set wake for this reader: for samples, and for writers that it cannot hear yet.
+  void attach_to(dds_entity_t wait_set);
+  /// Creates the second reader where it is needed and was not created yet.
+  void hear_volatile_writers();
+
+ private:
+  struct Ear {
+    Entity reader;
+    Entity has_samples;  // read condition
+  };
+  /// Samples and their information, borrowed from the middleware for a moment.
+  struct Loan;
+
+  Ear make_ear(bool transient_local) const;
+  std::size_t visit_some(const Ear& ear, std::size_t max, bool remove, const Visit& visit);
+  bool is_heard_by_first(dds_instance_handle_t writer);
+
+  Participant& participant_;
+  const Profile& profile_;
+  ReaderOptions options_;
+  Entity topic_;
+  Ear first_;
+  Ear second_;
+  std::map<dds_instance_handle_t, bool> keeps_history_;  // writers that the second reader met
+  std::vector<dds_entity_t> wait_sets_;
+};
+
+}  // namespace reident::dds

@@ -1,0 +1,54 @@
+#include <vector>
+
+#include "service/dds/reader_impl.hpp"
+
+namespace reident::dds {
+
+struct WaitSet::Impl {
+  explicit Impl(dds_entity_t participant)
+      : wait_set(dds_create_waitset(participant), "dds_create_waitset", "the participant"),
+        guard(dds_create_guardcondition(participant), "dds_create_guardcondition",
+              "the participant") {
+    check(dds_waitset_attach(wait_set.get(), guard.get(), 0), "dds_waitset_attach", "the guard");
+  }
+
+  Entity wait_set;
+  Entity guard;
+  std::vector<std::weak_ptr<ReaderCore>> readers;
+};
+
+WaitSet::WaitSet(Participant& participant)
+    : impl_(std::make_unique<Impl>(participant.impl().participant.get())) {}
+WaitSet::~WaitSet() = default;
+
+template <class M>
+void WaitSet::attach(Reader<M>& reader) {
+  reader.impl_->core->attach_to(impl_->wait_set.get());
+  impl_->readers.push_back(reader.impl_->core);
+}
+
+bool WaitSet::wait(std::chrono::nanoseconds timeout) {
+  const dds_return_t ready =
+      check(dds_waitset_wait(impl_->wait_set.get(), nullptr, 0, timeout.count()),
+            "dds_waitset_wait", "the wait set");
+  bool woken = false;
+  check(dds_take_guardcondition(impl_->guard.get(), &woken), "dds_take_guardcondition",
+        "the wait set");
+  for (const std::weak_ptr<ReaderCore>& reader : impl_->readers) {
+    if (const auto core = reader.lock()) core->hear_volatile_writers();
+  }
+  return ready > 0;
+}
+
+void WaitSet::wake() {
+  check(dds_set_guardcondition(impl_->guard.get(), true), "dds_set_guardcondition", "the wait set");
+}
+
+template void WaitSet::attach(Reader<storage::TelemetryFrame>& reader);
+template void WaitSet::attach(Reader<storage::ParameterDescriptor>& reader);
+template void WaitSet::attach(Reader<ModelVersion>& reader);
+template void WaitSet::attach(Reader<IdentificationReport>& reader);
+template void WaitSet::attach(Reader<ModelAcknowledgement>& reader);
+template void WaitSet::attach(Reader<ServiceStatus>& reader);
+
+}  // namespace reident::dds
