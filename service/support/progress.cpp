@@ -13,9 +13,13 @@ Progress::~Progress() {
   clear();
 }
 
-void Progress::update(double fraction, std::string_view detail, Clock::time_point now) {
+bool Progress::due(Clock::time_point now) const {
   constexpr auto interval = std::chrono::milliseconds(100);
-  if (!enabled_ || (drawn_ && now - last_draw_ < interval)) return;
+  return enabled_ && (!drawn_ || now - last_draw_ >= interval);
+}
+
+void Progress::update(double fraction, std::string_view detail, Clock::time_point now) {
+  if (!due(now)) return;
   constexpr int width = 30;
   // Written so that a fraction that is no number shows as 0.
   const double held = fraction > 0 ? std::min(fraction, 1.0) : 0.0;

@@ -20,7 +20,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Draws at most ten times a second. `fraction` is held to [0, 1]; `detail` follows the bar.
+  /// Whether update() would draw: on a terminal, ten times a second.
+  bool due(Clock::time_point now = Clock::now()) const;
+  /// Draws when it is due. `fraction` is held to [0, 1]; `detail` follows the bar.
   void update(double fraction, std::string_view detail, Clock::time_point now = Clock::now());
   /// Takes the bar off the terminal, so that other text can be written.
   void clear();

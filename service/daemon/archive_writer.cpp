@@ -1,0 +1,143 @@
+#include "service/daemon/archive_writer.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include "service/support/log.hpp"
+
+namespace reident {
+namespace {
+
+using namespace std::chrono_literals;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr auto idle_wait = 500ms;  // for the first event of a batch; post() ends it earlier
+constexpr auto retry_wait = 1s;    // between two tries of a batch that the disk refused
+
+}  // namespace
+
+ArchiveWriter::ArchiveWriter(storage::Database&& database, BoundedQueue<TelemetryEvent>& queue,
+                             std::size_t batch_frames, Duration batch_delay,
+                             ArchiveListener& listener)
+    : database_(std::move(database)),
+      archive_(database_),
+      registry_(database_),
+      queue_(queue),
+      batch_frames_(batch_frames),
+      batch_delay_(batch_delay),
+      listener_(listener) {}
+
+std::future<void> ArchiveWriter::post(
+    std::function<void(storage::Registry&, storage::Archive&)> task) {
+  Task packaged(std::move(task));
+  auto future = packaged.get_future();
+  {
+    MutexLock lock(mutex_);
+    if (ended_) return future;  // `packaged` goes and breaks the promise
+    tasks_.push_back(std::move(packaged));
+    tasks_changed_.notify_one();
+  }
+  queue_.wake();
+  return future;
+}
+
+ArchiveWriter::Counts ArchiveWriter::counts() const {
+  MutexLock lock(mutex_);
+  return counts_;
+}
+
+void ArchiveWriter::run_tasks() {
+  std::deque<Task> tasks;
+  {
+    MutexLock lock(mutex_);
+    tasks.swap(tasks_);
+  }
+  for (Task& task : tasks) task(registry_, archive_);
+}
+
+std::vector<TelemetryEvent> ArchiveWriter::next_batch() {
+  std::vector<TelemetryEvent> batch;
+  if (queue_.pop(batch, batch_frames_, idle_wait) == 0) return batch;
+  in_hand_ = batch.size();
+  const auto deadline = SteadyClock::now() + std::chrono::nanoseconds(batch_delay_);
+  while (batch.size() < batch_frames_ && !queue_.drained()) {
+    const auto left = deadline - SteadyClock::now();
+    if (left <= 0ns || queue_.pop(batch, batch_frames_ - batch.size(), left) == 0) break;
+    in_hand_ = batch.size();
+  }
+  return batch;
+}
+
+void ArchiveWriter::commit(const std::vector<storage::TelemetryFrame>& frames,
+                           const std::vector<storage::ParameterDescriptor>& descriptors) {
+  if (!descriptors.empty()) {
+    archive_.describe(descriptors);
+    listener_.described(descriptors, archive_);
+  }
+  if (frames.empty()) return;
+  const storage::AppendReport report = archive_.append(frames);
+  std::uint64_t missing = 0;
+  for (const storage::SourceCounts& source : archive_.sources()) missing += source.missing;
+  {
+    MutexLock lock(mutex_);
+    counts_.stored += report.stored;
+    counts_.duplicates += report.duplicates;
+    counts_.conflicts += report.conflicts;
+    counts_.late += report.late;
+    counts_.sequence_missing = missing;
+  }
+  listener_.stored(frames, report);
+}
+
+void ArchiveWriter::store(std::vector<TelemetryEvent>&& batch, const std::atomic<bool>& give_up) {
+  std::vector<storage::TelemetryFrame> frames;
+  std::vector<storage::ParameterDescriptor> descriptors;
+  for (TelemetryEvent& event : batch) {
+    if (auto* frame = std::get_if<storage::TelemetryFrame>(&event))
+      frames.push_back(std::move(*frame));
+    else
+      descriptors.push_back(std::get<storage::ParameterDescriptor>(std::move(event)));
+  }
+  for (bool failed_before = false;; failed_before = true) {
+    try {
+      commit(frames, descriptors);
+      if (failed_before) log::info("archive", "storing again", {{"frames", frames.size()}});
+      MutexLock lock(mutex_);
+      counts_.last_error.clear();
+      return;
+    } catch (const storage::Error& error) {
+      if (error.kind() == storage::Error::Kind::corrupt) throw;
+      if (!failed_before)
+        log::error("archive", "cannot store telemetry; it is kept and tried again each second",
+                   {{"error", error.what()}, {"frames", frames.size()}});
+      MutexLock lock(mutex_);
+      counts_.last_error = error.what();
+      if (give_up) {
+        counts_.lost += frames.size();
+        return;
+      }
+      tasks_changed_.wait_for(mutex_, retry_wait);
+    }
+  }
+}
+
+void ArchiveWriter::run(const std::atomic<bool>& give_up) {
+  struct End {
+    ArchiveWriter& writer;
+    ~End() {
+      std::deque<Task> left;
+      MutexLock lock(writer.mutex_);
+      writer.ended_ = true;
+      left.swap(writer.tasks_);
+    }
+  } end{*this};
+  while (!queue_.drained()) {
+    run_tasks();
+    auto batch = next_batch();
+    if (!batch.empty()) store(std::move(batch), give_up);
+    in_hand_ = 0;
+  }
+  run_tasks();
+}
+
+}  // namespace reident

@@ -1,0 +1,87 @@
+// The one thread that writes the database: telemetry from the queue, and what others post.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <future>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "service/daemon/bounded_queue.hpp"
+#include "service/daemon/config.hpp"
+#include "service/support/mutex.hpp"
+#include "storage/archive.hpp"
+#include "storage/registry.hpp"
+
+namespace reident {
+
+using TelemetryEvent = std::variant<storage::TelemetryFrame, storage::ParameterDescriptor>;
+
+/// Told, on the writer's thread, what has been committed.
+class ArchiveListener {
+ public:
+  virtual ~ArchiveListener() = default;
+  virtual void stored(const std::vector<storage::TelemetryFrame>& frames,
+                      const storage::AppendReport& report) = 0;
+  virtual void described(const std::vector<storage::ParameterDescriptor>& descriptors,
+                         const storage::Archive& archive) = 0;
+};
+
+class ArchiveWriter {
+ public:
+  /// The queue and the listener must outlive the writer.
+  ArchiveWriter(storage::Database&& database, BoundedQueue<TelemetryEvent>& queue,
+                std::size_t batch_frames, Duration batch_delay, ArchiveListener& listener);
+
+  /// The thread's body: until the queue is closed and drained. While the disk refuses a batch
+  /// (full, read-only, I/O error) it is kept and tried again each second, and the queue's bound
+  /// holds the sources back; `give_up` ends that, and the frames that then stay behind are counted
+  /// in lost(). Throws storage::Error for a damaged file.
+  void run(const std::atomic<bool>& give_up);
+
+  /// Runs `task` on the writer's thread before the next batch; the future holds its exception. A
+  /// task posted after run() returned is never run, and its future is broken.
+  std::future<void> post(std::function<void(storage::Registry&, storage::Archive&)> task);
+
+  struct Counts {
+    std::uint64_t stored = 0;
+    std::uint64_t duplicates = 0;
+    std::uint64_t conflicts = 0;
+    std::uint64_t late = 0;
+    std::uint64_t lost = 0;              // frames given up at the end
+    std::uint64_t sequence_missing = 0;  // of all sources, since the archive was made
+    std::string last_error;              // empty when the last batch was stored
+  };
+  Counts counts() const;
+  /// Events queued or taken from the queue and not yet committed.
+  std::size_t backlog() const { return queue_.size() + in_hand_; }
+
+ private:
+  using Task = std::packaged_task<void(storage::Registry&, storage::Archive&)>;
+
+  void run_tasks();
+  /// Pops until the batch is full or `batch_delay` has passed since its first event.
+  std::vector<TelemetryEvent> next_batch();
+  void store(std::vector<TelemetryEvent>&& batch, const std::atomic<bool>& give_up);
+  void commit(const std::vector<storage::TelemetryFrame>& frames,
+              const std::vector<storage::ParameterDescriptor>& descriptors);
+
+  storage::Database database_;
+  storage::Archive archive_;
+  storage::Registry registry_;
+  BoundedQueue<TelemetryEvent>& queue_;
+  const std::size_t batch_frames_;
+  const Duration batch_delay_;
+  ArchiveListener& listener_;
+  std::atomic<std::size_t> in_hand_ = 0;
+
+  mutable Mutex mutex_;
+  CondVar tasks_changed_;
+  std::deque<Task> tasks_ REIDENT_GUARDED_BY(mutex_);
+  bool ended_ REIDENT_GUARDED_BY(mutex_) = false;
+  Counts counts_ REIDENT_GUARDED_BY(mutex_);
+};
+
+}  // namespace reident

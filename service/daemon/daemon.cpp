@@ -1,0 +1,211 @@
+#include "service/daemon/daemon.hpp"
+
+#include <limits>
+
+#include "service/model/model_json.hpp"
+#include "service/support/log.hpp"
+#include "service/support/time_text.hpp"
+#include "service/support/version.hpp"
+
+namespace reident {
+namespace {
+
+storage::Database open_for_writing(const Config& config) {
+  return {config.database, storage::Database::Mode::read_write};
+}
+
+IdentificationReport report_of(const RefreshResult& result) {
+  IdentificationReport report;
+  const storage::NewAttempt& attempt = result.attempt;
+  report.spacecraft = attempt.spacecraft;
+  report.equipment = attempt.equipment;
+  report.window = attempt.window;
+  report.trigger = attempt.trigger;
+  report.outcome = attempt.outcome;
+  report.reason = attempt.reason;
+  report.time = attempt.time;
+  constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+  const Evidence& evidence = result.evidence;
+  report.order = result.candidate ? static_cast<int>(result.candidate->dynamics.order()) : 0;
+  report.mrse_percent = result.candidate ? evidence.mrse_percent : absent;
+  report.fit_percent = result.candidate ? evidence.fit_percent : absent;
+  report.champion_mrse_percent = evidence.champion ? evidence.champion->mrse_percent : absent;
+  return report;
+}
+
+void log_attempt(const IdentificationReport& report) {
+  log::info("identify", "window decided",
+            {{"equipment", report.spacecraft + "/" + report.equipment},
+             {"window_end", time_text(report.window.end)},
+             {"outcome", report.outcome},
+             {"version", report.version},
+             {"order", report.order},
+             {"mrse_percent", report.mrse_percent},
+             {"fit_percent", report.fit_percent},
+             {"reason", report.reason}});
+}
+
+}  // namespace
+
+Daemon::Daemon(const Config& config, Clock clock)
+    : config_(config),
+      clock_(std::move(clock)),
+      started_(clock_()),
+      queue_(config.queue_frames),
+      feed_(config, clock_),
+      writer_(open_for_writing(config), queue_, config.batch_frames, config.batch_delay, feed_),
+      participant_(dds::Endpoint{config.domain, config.partition}),
+      publisher_(participant_),
+      ingest_(participant_, config, queue_) {
+  storage::Database database(config.database, storage::Database::Mode::read_only);
+  const storage::Registry registry(database);
+  feed_.recover(storage::Archive(database), registry);
+  const std::size_t published = publisher_.publish_champions(registry);
+  log::info("service", "started",
+            {{"version", program_version()},
+             {"database", config.database.string()},
+             {"domain", config.domain},
+             {"partition", config.partition},
+             {"champions", published},
+             {"windows_pending", feed_.pending()}});
+}
+
+Daemon::~Daemon() {
+  stop();
+}
+
+void Daemon::start() {
+  writer_thread_ = spawn("archive", [this] { writer_.run(stopping_); });
+  ingest_thread_ = spawn("ingest", [this] { ingest_.run(); });
+  for (unsigned i = 0; i < config_.workers; ++i)
+    identification_threads_.push_back(spawn("identify", [this] { identify_windows(); }));
+}
+
+std::thread Daemon::spawn(const char* name, std::function<void()> body) {
+  return std::thread([this, name, body = std::move(body)] {
+    try {
+      body();
+    } catch (const std::exception& error) {
+      log::error(name, "ended by an error", {{"error", error.what()}});
+      failed_ = true;
+    }
+  });
+}
+
+void Daemon::identify_windows() {
+  storage::Database database(config_.database, storage::Database::Mode::read_only);
+  const storage::Archive archive(database);
+  const storage::Registry registry(database);
+  while (const auto job = feed_.next()) {
+    bool completed = false;
+    try {
+      completed = identify(*job, archive, registry);
+    } catch (const storage::Error& error) {
+      log::error(
+          "identify", "window put off",
+          {{"equipment", *job->spacecraft + "/" + job->equipment->name}, {"error", error.what()}});
+    }
+    feed_.finished(*job, completed);
+    if (completed)
+      writer_.post([this, spacecraft = *job->spacecraft](auto&, storage::Archive& stored) {
+        feed_.forget_settled(spacecraft, stored);
+      });
+  }
+}
+
+bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
+                      const storage::Registry& registry) {
+  const storage::TimeRange window = job.window.window;
+  try {
+    // From here on the archive marks what still falls into the window.
+    writer_
+        .post([&job, window](auto&, storage::Archive& stored) {
+          stored.seal(*job.spacecraft, window.end);
+        })
+        .get();
+    RefreshRequest request{*job.spacecraft, *job.equipment, window,
+                           job.window.again ? "late telemetry" : "slide", config_.digest};
+    return conclude(refresh(archive, registry, request, [this] { return stopping_.load(); }));
+  } catch (const Stopped&) {
+    return false;
+  } catch (const std::future_error&) {  // the writer has ended
+    return false;
+  }
+}
+
+bool Daemon::conclude(RefreshResult&& result) {
+  std::optional<storage::Version> approved;
+  storage::Decision decision;
+  std::int64_t number = 0;
+  writer_
+      .post([&](storage::Registry& registry, auto&) {
+        result.attempt.time = clock_();
+        if (!result.candidate) {
+          registry.record(result.attempt);
+          return;
+        }
+        number = registry.record(
+            result.attempt, {to_json(*result.candidate).dump(), model_digest(*result.candidate)},
+            *result.decision);
+        if (result.decision->kind != storage::DecisionKind::approve) return;
+        approved = registry.version(result.attempt.spacecraft, result.attempt.equipment, number);
+        decision =
+            registry.decisions(result.attempt.spacecraft, result.attempt.equipment, number).back();
+      })
+      .get();
+  ++attempts_;
+  if (approved && publisher_.publish(*approved, decision)) ++approvals_;
+  IdentificationReport report = report_of(result);
+  report.version = number;
+  publisher_.report(report);
+  log_attempt(report);
+  return true;
+}
+
+void Daemon::heartbeat() {
+  const ArchiveWriter::Counts stored = writer_.counts();
+  ServiceStatus status;
+  status.service = config_.service_name;
+  status.program_version = program_version();
+  status.started = started_;
+  status.time = clock_();
+  status.frames_received = ingest_.frames_received();
+  status.frames_rejected = ingest_.frames_rejected();
+  status.samples_stored = stored.stored;
+  status.duplicates = stored.duplicates;
+  status.conflicts = stored.conflicts;
+  status.late = stored.late;
+  status.sequence_missing = stored.sequence_missing;
+  status.clock_jumps = feed_.clock_jumps();
+  status.queue_length = writer_.backlog();
+  status.queue_waits = queue_.waits();
+  status.windows_pending = feed_.pending();
+  status.attempts = attempts_;
+  status.approvals = approvals_;
+  status.newest_telemetry = feed_.newest_telemetry();
+  status.last_error = stored.last_error;
+  publisher_.status(status);
+}
+
+bool Daemon::stop() {
+  if (stopping_.exchange(true)) return true;
+  feed_.stop();
+  ingest_.stop();
+  if (ingest_thread_.joinable()) ingest_thread_.join();
+  queue_.close();
+  if (writer_thread_.joinable()) writer_thread_.join();
+  for (std::thread& thread : identification_threads_) thread.join();
+  const ArchiveWriter::Counts stored = writer_.counts();
+  if (stored.lost > 0)
+    log::error("archive",
+               "telemetry could not be stored; a gateway that keeps history sends it again",
+               {{"frames", stored.lost}, {"error", stored.last_error}});
+  log::info("service", "stopped",
+            {{"frames", ingest_.frames_received()},
+             {"samples_stored", stored.stored},
+             {"attempts", attempts_.load()},
+             {"approvals", approvals_.load()}});
+  return stored.lost == 0;
+}
+
+}  // namespace reident

@@ -1,0 +1,70 @@
+// The service: telemetry in, archive, windows, identification, gate, registry, versions out.
+//
+//   ingest thread -> bounded queue -> writer thread (owns the database for writing)
+//                                        | stored, described
+//                                     window feed -> identification threads (read-only databases)
+//                                        ^               | attempt, version, decision
+//                                        '- writer <-----' then publisher
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "service/daemon/archive_writer.hpp"
+#include "service/daemon/bounded_queue.hpp"
+#include "service/daemon/config.hpp"
+#include "service/daemon/ingest.hpp"
+#include "service/daemon/publisher.hpp"
+#include "service/daemon/refresh.hpp"
+#include "service/daemon/window_feed.hpp"
+#include "service/dds/dds.hpp"
+
+namespace reident {
+
+class Daemon {
+ public:
+  /// Opens the database for writing, joins the domain, publishes every champion and takes up what
+  /// an earlier run left. Throws storage::Error or dds::Error. The configuration must outlive it.
+  Daemon(const Config& config, Clock clock);
+  /// Stops.
+  ~Daemon();
+
+  void start();
+  /// Publishes the state of the service; call about once a second.
+  void heartbeat();
+  /// A thread ended by an error, which is logged: the service must be stopped.
+  bool failed() const { return failed_; }
+  /// Ends all threads: what was taken from the middleware is committed first, identification that
+  /// runs is abandoned (its window is tried again at the next start). False when telemetry that
+  /// was taken could not be stored.
+  bool stop();
+
+ private:
+  std::thread spawn(const char* name, std::function<void()> body);
+  void identify_windows();
+  /// False when the service stops before the window is decided.
+  bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
+                const storage::Registry& registry);
+  /// Commits the attempt, then publishes what follows from it. False when the service stops.
+  bool conclude(RefreshResult&& result);
+
+  const Config& config_;
+  const Clock clock_;
+  const storage::Time started_;
+  BoundedQueue<TelemetryEvent> queue_;
+  WindowFeed feed_;
+  ArchiveWriter writer_;
+  dds::Participant participant_;
+  Publisher publisher_;
+  Ingest ingest_;
+
+  std::thread ingest_thread_, writer_thread_;
+  std::vector<std::thread> identification_threads_;
+  std::atomic<bool> stopping_ = false;
+  std::atomic<bool> failed_ = false;
+  std::atomic<std::uint64_t> attempts_ = 0, approvals_ = 0;
+};
+
+}  // namespace reident

@@ -1,0 +1,84 @@
+#include "service/daemon/ingest.hpp"
+
+#include <chrono>
+
+#include "service/support/log.hpp"
+
+namespace reident {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t take_at_most = 256;  // messages of one topic in a turn
+constexpr auto look_around = 500ms;        // for stop(); data and wake() end the wait earlier
+constexpr auto drain_limit = 1s;
+
+dds::ReaderOptions options_of(const Config& config) {
+  dds::ReaderOptions options;
+  options.max_frame_samples = config.max_frame_samples;
+  return options;
+}
+
+void log_acknowledgement(const ModelAcknowledgement& acknowledgement) {
+  if (acknowledgement.accepted)
+    log::info("simulator", "runs a version",
+              {{"simulator", acknowledgement.simulator},
+               {"equipment", acknowledgement.spacecraft + "/" + acknowledgement.equipment},
+               {"version", acknowledgement.version}});
+  else
+    log::warning("simulator", "refused a version",
+                 {{"simulator", acknowledgement.simulator},
+                  {"equipment", acknowledgement.spacecraft + "/" + acknowledgement.equipment},
+                  {"version", acknowledgement.version},
+                  {"reason", acknowledgement.reason}});
+}
+
+}  // namespace
+
+Ingest::Ingest(dds::Participant& participant, const Config& config,
+               BoundedQueue<TelemetryEvent>& queue)
+    : queue_(queue),
+      descriptors_(participant),
+      frames_(participant, options_of(config)),
+      acknowledgements_(participant),
+      ready_(participant) {
+  ready_.attach(descriptors_);
+  ready_.attach(frames_);
+  ready_.attach(acknowledgements_);
+}
+
+std::size_t Ingest::take() {
+  std::size_t taken = descriptors_.take(
+      take_at_most,
+      [&](storage::ParameterDescriptor&& descriptor) { queue_.push(std::move(descriptor)); });
+  taken += frames_.take(take_at_most, [&](storage::TelemetryFrame&& frame) {
+    ++frames_received_;
+    queue_.push(std::move(frame));
+  });
+  if (frames_.malformed() != frames_rejected_) {
+    log::warning("ingest", "refused a telemetry frame",
+                 {{"reason", frames_.last_malformed()}, {"refused", frames_.malformed()}});
+    frames_rejected_ = frames_.malformed();
+  }
+  taken += acknowledgements_.take(
+      take_at_most, [](ModelAcknowledgement&& message) { log_acknowledgement(message); });
+  return taken;
+}
+
+void Ingest::run() {
+  while (!stopping_) {
+    ready_.wait(look_around);
+    while (take() > 0 && !stopping_) {
+    }
+  }
+  const auto deadline = std::chrono::steady_clock::now() + drain_limit;
+  while (take() > 0 && std::chrono::steady_clock::now() < deadline) {
+  }
+}
+
+void Ingest::stop() {
+  stopping_ = true;
+  ready_.wake();
+}
+
+}  // namespace reident

@@ -1,0 +1,43 @@
+// The thread between the middleware and the queue: it takes, checks, counts and copies; it never
+// waits for the disk, only for room in the queue.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "service/daemon/archive_writer.hpp"
+#include "service/daemon/bounded_queue.hpp"
+#include "service/daemon/config.hpp"
+#include "service/dds/dds.hpp"
+
+namespace reident {
+
+class Ingest {
+ public:
+  /// The participant and the queue must outlive it. Throws dds::Error.
+  Ingest(dds::Participant& participant, const Config& config, BoundedQueue<TelemetryEvent>& queue);
+
+  /// The thread's body: until stop(). What the readers had accepted by then is still queued before
+  /// it returns, within `drain_limit`.
+  void run();
+  void stop();
+
+  std::uint64_t frames_received() const { return frames_received_; }
+  /// Frames that broke the contract of the topic and were refused.
+  std::uint64_t frames_rejected() const { return frames_rejected_; }
+
+ private:
+  /// Returns how many messages there were.
+  std::size_t take();
+
+  BoundedQueue<TelemetryEvent>& queue_;
+  dds::Reader<storage::ParameterDescriptor> descriptors_;
+  dds::Reader<storage::TelemetryFrame> frames_;
+  dds::Reader<ModelAcknowledgement> acknowledgements_;
+  dds::WaitSet ready_;
+  std::atomic<bool> stopping_ = false;
+  std::atomic<std::uint64_t> frames_received_ = 0;
+  std::atomic<std::uint64_t> frames_rejected_ = 0;
+};
+
+}  // namespace reident

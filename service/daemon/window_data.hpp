@@ -1,0 +1,47 @@
+// The samples of a window, straight from the archive onto the grid of identification.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "identification/record.hpp"
+#include "service/daemon/config.hpp"
+#include "storage/archive.hpp"
+
+namespace reident {
+
+/// What is read and how it is put on the grid; an equipment's configuration and a published model
+/// both say it.
+struct WindowRequest {
+  std::string spacecraft;
+  std::vector<std::string> inputs;  // parameter names
+  std::vector<std::string> outputs;
+  Duration period = 0;
+  Duration hold = 0;
+  storage::Origin origin = storage::Origin::real;
+  bool operator==(const WindowRequest&) const = default;
+};
+
+struct WindowData {
+  identification::Record record;
+  std::vector<storage::ParameterDescriptor> inputs;
+  std::vector<storage::ParameterDescriptor> outputs;
+  double coverage = 0;  // share of the window's ticks at which every channel is valid
+};
+
+/// A parameter that telemetry has not described yet, so that nobody knows its samples.
+struct UnknownParameter {
+  std::string name;
+};
+
+/// Samples of quality good or out of limits count; suspect and invalid ones are holes.
+std::variant<WindowData, UnknownParameter> load_window(const storage::Archive& archive,
+                                                       const WindowRequest& request,
+                                                       storage::TimeRange window);
+
+/// Time of a row of a record with this period.
+storage::Time time_of_row(const identification::Record& record, identification::Index row,
+                          Duration period);
+
+}  // namespace reident

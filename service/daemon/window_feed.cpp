@@ -1,0 +1,198 @@
+#include "service/daemon/window_feed.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+namespace reident {
+namespace {
+
+std::vector<WindowScheduler::Plan> plans(const Config& config) {
+  std::vector<WindowScheduler::Plan> result;
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      result.push_back({equipment.window, equipment.slide});
+  return result;
+}
+
+template <class T>
+bool contains(const std::vector<T>& all, const T& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+}  // namespace
+
+WindowFeed::WindowFeed(const Config& config, Clock clock)
+    : clock_(std::move(clock)),
+      max_clock_lead_(config.max_clock_lead),
+      scheduler_(plans(config), config.settle) {
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      equipment_.push_back({spacecraft.name, &equipment});
+}
+
+void WindowFeed::join(const storage::ParameterDescriptor& descriptor,
+                      const storage::Archive& archive) {
+  for (std::size_t i = 0; i < equipment_.size(); ++i) {
+    const Equipment& equipment = equipment_[i];
+    if (equipment.spacecraft != descriptor.spacecraft ||
+        !(contains(equipment.config->inputs, descriptor.name) ||
+          contains(equipment.config->outputs, descriptor.name)))
+      continue;
+    EquipmentIds& ids = membership_[descriptor.spacecraft][descriptor.id];
+    if (contains(ids, i)) continue;
+    ids.push_back(i);
+    touch_stored(i, descriptor.spacecraft, descriptor.id, {equipment.tried_until, INT64_MAX},
+                 archive);
+  }
+}
+
+const WindowFeed::EquipmentIds* WindowFeed::members(const std::string& spacecraft,
+                                                    std::uint32_t parameter) const {
+  const auto ids = membership_.find(spacecraft);
+  if (ids == membership_.end()) return nullptr;
+  const auto found = ids->second.find(parameter);
+  return found == ids->second.end() ? nullptr : &found->second;
+}
+
+void WindowFeed::touch_stored(std::size_t equipment, const std::string& spacecraft,
+                              std::uint32_t parameter, storage::TimeRange range,
+                              const storage::Archive& archive) {
+  const storage::Time now = clock_();
+  const Duration slide = equipment_[equipment].config->slide;
+  const auto last = archive.last_at_or_before(spacecraft, storage::Origin::real, parameter,
+                                              std::min(range.end - 1, now + max_clock_lead_));
+  if (!last) return;
+  scheduler_.reached(equipment, *last);
+  newest_ = std::max(newest_, *last);
+  for (auto time = range.begin; time <= *last;) {
+    const auto sample =
+        archive.first_at_or_after(spacecraft, storage::Origin::real, parameter, time);
+    if (!sample || *sample > *last) return;
+    scheduler_.touched(equipment, *sample, now);
+    time = *sample - ((*sample % slide) + slide) % slide + slide;  // the next stretch
+  }
+}
+
+void WindowFeed::recover(const storage::Archive& archive, const storage::Registry& registry) {
+  MutexLock lock(mutex_);
+  for (std::size_t i = 0; i < equipment_.size(); ++i) {
+    Equipment& equipment = equipment_[i];
+    storage::HistoryFilter all;
+    all.spacecraft = equipment.spacecraft;
+    all.equipment = equipment.config->name;
+    for (const storage::Attempt& attempt : registry.attempts(all)) {
+      scheduler_.tried_before(i, attempt.window.end);
+      equipment.tried_until = std::max(equipment.tried_until, attempt.window.end);
+    }
+  }
+  for (const std::string& spacecraft : archive.spacecraft()) {
+    for (const storage::ParameterDescriptor& descriptor : archive.parameters(spacecraft))
+      join(descriptor, archive);
+    for (const storage::LateRange& late : archive.late_ranges(spacecraft)) {
+      const EquipmentIds* ids = members(spacecraft, late.parameter);
+      if (!ids || late.origin != storage::Origin::real) continue;
+      for (const std::size_t i : *ids)
+        touch_stored(i, spacecraft, late.parameter, late.range, archive);
+    }
+  }
+}
+
+void WindowFeed::described(const std::vector<storage::ParameterDescriptor>& descriptors,
+                           const storage::Archive& archive) {
+  MutexLock lock(mutex_);
+  for (const storage::ParameterDescriptor& descriptor : descriptors) join(descriptor, archive);
+  changed_.notify_all();
+}
+
+void WindowFeed::forget_settled(const std::string& spacecraft, storage::Archive& archive) {
+  std::vector<storage::LateRange> settled;
+  {
+    MutexLock lock(mutex_);
+    for (const storage::LateRange& late : archive.late_ranges(spacecraft)) {
+      const EquipmentIds* ids = members(spacecraft, late.parameter);
+      if (!ids || std::none_of(ids->begin(), ids->end(), [&](std::size_t i) {
+            return scheduler_.pending_within(i, late.range);
+          }))
+        settled.push_back(late);
+    }
+  }
+  if (!settled.empty()) archive.forget_late(settled);
+}
+
+void WindowFeed::stored(const std::vector<storage::TelemetryFrame>& frames,
+                        const storage::AppendReport& report) {
+  const storage::Time now = clock_();
+  MutexLock lock(mutex_);
+  // Where nothing new was stored nothing is touched: a frame sent twice starts no work.
+  std::map<std::size_t, std::vector<storage::TimeRange>> news;
+  for (const storage::AppendReport::Touched& touched : report.touched)
+    if (touched.origin == storage::Origin::real)
+      if (const EquipmentIds* ids = members(touched.spacecraft, touched.parameter))
+        for (const std::size_t i : *ids) news[i].push_back(touched.range);
+
+  std::set<std::size_t> equipment;
+  for (const storage::TelemetryFrame& frame : frames) {
+    if (is_jump(frame.generation_time, now)) {
+      ++clock_jumps_;
+      continue;
+    }
+    if (frame.origin != storage::Origin::real) continue;
+    newest_ = std::max(newest_, frame.generation_time);
+    equipment.clear();
+    for (const storage::Sample& sample : frame.samples)
+      if (const EquipmentIds* ids = members(frame.spacecraft, sample.parameter))
+        equipment.insert(ids->begin(), ids->end());
+    for (const std::size_t i : equipment) {
+      scheduler_.reached(i, frame.generation_time);
+      const auto fresh = news.find(i);
+      if (fresh == news.end()) continue;
+      for (const storage::TimeRange& range : fresh->second)
+        if (frame.generation_time >= range.begin && frame.generation_time < range.end) {
+          scheduler_.touched(i, frame.generation_time, now);
+          break;
+        }
+    }
+  }
+  changed_.notify_all();
+}
+
+std::optional<WindowFeed::Job> WindowFeed::next() {
+  MutexLock lock(mutex_);
+  while (!stopped_) {
+    const storage::Time now = clock_();
+    if (const auto job = scheduler_.next(now)) {
+      const Equipment& equipment = equipment_[job->equipment];
+      return Job{*job, &equipment.spacecraft, equipment.config};
+    }
+    if (const auto due = scheduler_.next_due())
+      changed_.wait_for(mutex_, std::chrono::nanoseconds(std::max<Duration>(*due - now, 1)));
+    else
+      changed_.wait(mutex_);
+  }
+  return std::nullopt;
+}
+
+void WindowFeed::finished(const Job& job, bool completed) {
+  MutexLock lock(mutex_);
+  scheduler_.finished(job.window, completed, clock_());
+  changed_.notify_all();
+}
+
+void WindowFeed::stop() {
+  MutexLock lock(mutex_);
+  stopped_ = true;
+  changed_.notify_all();
+}
+
+std::size_t WindowFeed::pending() const {
+  MutexLock lock(mutex_);
+  return scheduler_.pending();
+}
+
+storage::Time WindowFeed::newest_telemetry() const {
+  MutexLock lock(mutex_);
+  return newest_;
+}
+
+}  // namespace reident

@@ -1,0 +1,96 @@
+// From committed telemetry to windows: the scheduler behind its lock, fed by the archive's writer
+// and asked by the identification threads.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "service/daemon/archive_writer.hpp"
+#include "service/daemon/config.hpp"
+#include "service/daemon/window_scheduler.hpp"
+#include "service/support/mutex.hpp"
+#include "storage/archive.hpp"
+#include "storage/registry.hpp"
+
+namespace reident {
+
+/// UTC, nanoseconds since 1970; given in from outside so that tests own it.
+using Clock = std::function<storage::Time()>;
+
+class WindowFeed : public ArchiveListener {
+ public:
+  struct Job {
+    WindowScheduler::Job window;
+    const std::string* spacecraft = nullptr;
+    const EquipmentConfig* equipment = nullptr;
+  };
+
+  /// The configuration must outlive the feed.
+  WindowFeed(const Config& config, Clock clock);
+
+  /// Takes up what an earlier run left: windows that were never tried although their telemetry is
+  /// stored, and those that late telemetry has touched since. Call once, before the threads start.
+  void recover(const storage::Archive& archive, const storage::Registry& registry);
+
+  void stored(const std::vector<storage::TelemetryFrame>& frames,
+              const storage::AppendReport& report) override;
+  void described(const std::vector<storage::ParameterDescriptor>& descriptors,
+                 const storage::Archive& archive) override;
+
+  /// Waits for a window that is due. Absent after stop().
+  std::optional<Job> next();
+  void finished(const Job& job, bool completed);
+  void stop();
+
+  /// Forgets the archive's marks of late telemetry that no window has to be looked at for any more.
+  /// Call on the writer's thread.
+  void forget_settled(const std::string& spacecraft, storage::Archive& archive);
+
+  std::size_t pending() const;
+  storage::Time newest_telemetry() const;
+  /// Frames whose generation time was ahead of the clock by more than the configuration allows.
+  std::uint64_t clock_jumps() const { return clock_jumps_; }
+
+ private:
+  struct Equipment {
+    std::string spacecraft;
+    const EquipmentConfig* config = nullptr;
+    storage::Time tried_until = INT64_MIN;  // end of the latest window tried in earlier runs
+  };
+  using EquipmentIds = std::vector<std::size_t>;
+  /// Equipment that a parameter belongs to, by spacecraft and parameter id.
+  using Membership = std::map<std::string, std::unordered_map<std::uint32_t, EquipmentIds>>;
+
+  const EquipmentIds* members(const std::string& spacecraft, std::uint32_t parameter) const
+      REIDENT_REQUIRES(mutex_);
+  /// Makes the parameter known to the equipment that names it, and touches the windows that were
+  /// stored before it was described.
+  void join(const storage::ParameterDescriptor& descriptor, const storage::Archive& archive)
+      REIDENT_REQUIRES(mutex_);
+  /// Touches each stretch of `slide` in `range` that holds a stored sample of the parameter.
+  void touch_stored(std::size_t equipment, const std::string& spacecraft, std::uint32_t parameter,
+                    storage::TimeRange range, const storage::Archive& archive)
+      REIDENT_REQUIRES(mutex_);
+  bool is_jump(storage::Time time, storage::Time now) const {
+    return time > now && time - now > max_clock_lead_;
+  }
+
+  const Clock clock_;
+  const Duration max_clock_lead_;
+  std::vector<Equipment> equipment_;
+  std::atomic<std::uint64_t> clock_jumps_ = 0;
+
+  mutable Mutex mutex_;
+  CondVar changed_;
+  WindowScheduler scheduler_ REIDENT_GUARDED_BY(mutex_);
+  Membership membership_ REIDENT_GUARDED_BY(mutex_);
+  storage::Time newest_ REIDENT_GUARDED_BY(mutex_) = 0;
+  bool stopped_ REIDENT_GUARDED_BY(mutex_) = false;
+};
+
+}  // namespace reident

@@ -1,0 +1,75 @@
+// Which window of which equipment is to be identified next.
+//
+// Windows follow time, not arrival: window k of an equipment is [k * slide - window, k * slide)
+// counted from the epoch. It is due when
+//   - its last `slide` holds a new sample of the equipment, or it was tried before and a late
+//     sample fell into it,
+//   - telemetry has reached its end, and
+//   - nothing has fallen into it for the time `settle` of the service's clock.
+// One window of an equipment runs at a time, the oldest due first, so that a candidate meets the
+// champion of the windows before it. A window that keeps receiving late telemetry holds nothing up.
+//
+// Not thread-safe; the clock is the argument `now`.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "service/daemon/config.hpp"
+#include "storage/telemetry.hpp"
+
+namespace reident {
+
+class WindowScheduler {
+ public:
+  /// Equipment are named by their position in `plans` from here on.
+  struct Plan {
+    Duration window = 0;
+    Duration slide = 0;
+  };
+  struct Job {
+    std::size_t equipment = 0;
+    storage::TimeRange window;
+    bool again = false;  // tried before; late telemetry fell into it
+    bool operator==(const Job&) const = default;
+  };
+
+  WindowScheduler(std::vector<Plan> plans, Duration settle);
+
+  /// A new sample of the equipment at `time` was stored.
+  void touched(std::size_t equipment, storage::Time time, storage::Time now);
+  /// Telemetry of the equipment has reached `time`; it never goes back.
+  void reached(std::size_t equipment, storage::Time time);
+  /// The window that ends at `end` was tried in an earlier run of the service.
+  void tried_before(std::size_t equipment, storage::Time end);
+
+  /// The next window to identify, which then counts as running; absent when none is due.
+  std::optional<Job> next(storage::Time now);
+  /// The job that `next` gave is over. `completed` is false when it has to be tried once more.
+  void finished(const Job& job, bool completed, storage::Time now);
+
+  /// When `next` may give a job without any further call; absent when only new telemetry can.
+  std::optional<storage::Time> next_due() const;
+  /// Windows due or running, those that settle included.
+  std::size_t pending() const;
+  /// Whether a touched or running window of the equipment overlaps `range`.
+  bool pending_within(std::size_t equipment, storage::TimeRange range) const;
+
+ private:
+  struct Equipment {
+    Plan plan;
+    storage::Time reached = INT64_MIN;
+    std::map<std::int64_t, storage::Time> touched;  // window number -> when it was last touched
+    std::set<std::int64_t> tried;                   // window numbers
+    std::optional<std::int64_t> running;
+  };
+  storage::TimeRange window(const Plan& plan, std::int64_t number) const;
+
+  std::vector<Equipment> equipment_;
+  Duration settle_;
+};
+
+}  // namespace reident

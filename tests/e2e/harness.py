@@ -1,0 +1,169 @@
+"""Real processes on a DDS domain and in a folder of their own.
+
+Every program is started in a process group of its own and ended by its id. Waiting is for a
+condition, with a deadline; nothing sleeps a guess.
+"""
+
+import json
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+BIN = Path(os.environ["REIDENT_BIN"])  # folder of the programs under test
+DEADLINE_S = float(os.environ.get("REIDENT_E2E_DEADLINE", "60"))
+
+
+def wait_until(condition, what, deadline_s=DEADLINE_S):
+    """The first true value of condition()."""
+    end = time.monotonic() + deadline_s
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > end:
+            raise AssertionError(f"after {deadline_s:g} s still not: {what}")
+        time.sleep(0.02)  # poll
+
+
+class Process:
+    """A program under test; its output is in files, so that no pipe can fill."""
+
+    def __init__(self, folder, name, arguments):
+        self.log = folder / f"{name}.log"
+        self.out = folder / f"{name}.out"
+        environment = {key: value for key, value in os.environ.items() if key != "CYCLONEDDS_URI"}
+        with open(self.log, "ab") as log, open(self.out, "ab") as out:
+            self.process = subprocess.Popen(
+                [str(BIN / arguments[0]), *map(str, arguments[1:])], stdin=subprocess.DEVNULL,
+                stdout=out, stderr=log, env=environment, start_new_session=True)
+
+    def text(self):
+        return self.out.read_text() + self.log.read_text()
+
+    def running(self):
+        return self.process.poll() is None
+
+    def signal(self, number):
+        self.process.send_signal(number)
+
+    def wait(self, deadline_s=DEADLINE_S):
+        try:
+            return self.process.wait(deadline_s)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"still running after {deadline_s:g} s:\n{self.text()}") from None
+
+    def terminate(self):
+        """Asks it to stop; returns the exit status and the seconds that it took."""
+        begin = time.monotonic()
+        self.signal(signal.SIGTERM)
+        return self.wait(), time.monotonic() - begin
+
+    def kill(self):
+        self.signal(signal.SIGKILL)
+        self.process.wait()
+
+
+class EndToEnd(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="reident-e2e-"))
+        self.domain = 1 + os.getpid() % 200
+        self.partition = f"test-{os.getpid()}-{self._testMethodName}"[:60]
+        self.processes = []
+        self.addCleanup(self._end)
+
+    def _end(self):
+        for process in self.processes:
+            if process.running():
+                process.kill()
+        if self._outcome.success:
+            shutil.rmtree(self.folder)
+        else:
+            for process in self.processes:
+                print(f"---- {process.log.stem}\n{process.text()[-4000:]}")
+            print(f"files: {self.folder}")
+
+    # -- programs
+
+    def start(self, *arguments, name=None):
+        name = name or f"{arguments[0]}-{len(self.processes)}"
+        process = Process(self.folder, name, arguments)
+        self.processes.append(process)
+        return process
+
+    def endpoint(self):
+        return ["--domain", self.domain, "--partition", self.partition]
+
+    @property
+    def database(self):
+        return self.folder / "reident.db"
+
+    def configure(self, equipment, spacecraft="SAT", **limits):
+        """Writes the configuration; `equipment` are tables of [[spacecraft.equipment]]."""
+
+        def toml(value):
+            return json.dumps(value)
+
+        lines = ["[service]", 'log_level = "debug"', "[archive]", 'database = "reident.db"',
+                 "[dds]", f"domain = {self.domain}", f"partition = {toml(self.partition)}",
+                 "[limits]", 'settle = "300ms"',
+                 *(f"{key} = {toml(value)}" for key, value in limits.items()),
+                 "[[spacecraft]]", f"name = {toml(spacecraft)}"]
+        for table in equipment:
+            lines += ["[[spacecraft.equipment]]",
+                      *(f"{key} = {toml(value)}" for key, value in table.items())]
+        path = self.folder / "reident.toml"
+        path.write_text("\n".join(lines) + "\n")
+        return path
+
+    def start_daemon(self):
+        daemon = self.start("reidentd", "--config", self.folder / "reident.toml")
+        wait_until(lambda: "service: started" in daemon.text() or not daemon.running(),
+                   "reidentd has started")
+        self.assertTrue(daemon.running(), daemon.text())
+        return daemon
+
+    def replay(self, csv, *options, spacecraft="SAT"):
+        return self.start("satcs-replay", csv, "--spacecraft", spacecraft, "--json",
+                          *self.endpoint(), *options)
+
+    def replay_all(self, csv, *options, **keywords):
+        """Replays to the end at full speed; returns the summary."""
+        replay = self.replay(csv, "--speed", "max", *options, **keywords)
+        self.assertEqual(replay.wait(), 0, replay.text())
+        return json.loads(replay.out.read_text())
+
+    def reident(self, *arguments):
+        """Runs a command of the command line; returns its exit status and its output."""
+        done = subprocess.run([str(BIN / "reident"), *map(str, arguments)], capture_output=True,
+                              text=True, timeout=DEADLINE_S, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    def wait_idle(self):
+        status, text = self.reident("status", "--wait", "idle", "--timeout", DEADLINE_S, "--json",
+                                    *self.endpoint())
+        self.assertEqual(status, 0, text)
+        return json.loads(text)
+
+    # -- what is stored
+
+    def query(self, sql, *values):
+        connection = sqlite3.connect(f"file:{self.database}?mode=ro", uri=True, timeout=10)
+        try:
+            return connection.execute(sql, values).fetchall()
+        finally:
+            connection.close()
+
+    def samples(self, origin="real"):
+        """{(parameter, time): (value, quality)} of all that is archived."""
+        return {(parameter, at): (value, quality) for parameter, at, value, quality in self.query(
+            "SELECT parameter, time, value, quality FROM telemetry WHERE origin = ?", origin)}
+
+
+def csv_lines(header, rows):
+    return "\n".join([",".join(header), *(",".join(map(str, row)) for row in rows)]) + "\n"

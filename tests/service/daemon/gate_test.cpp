@@ -1,0 +1,131 @@
+#include "service/daemon/gate.hpp"
+
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace reident {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+EquipmentConfig limits() {
+  EquipmentConfig config;
+  config.max_mrse_percent = 10;
+  config.min_fit_percent = 40;
+  config.margin_percent = 5;
+  return config;
+}
+
+/// Passes every condition against a champion of 8 %.
+Evidence good() {
+  Evidence evidence;
+  evidence.well_formed = true;
+  evidence.spectral_radius = 0.9;
+  evidence.mrse_percent = 5;
+  evidence.fit_percent = 70;
+  evidence.residual_over_span = 0.3;
+  evidence.window_end = 1000;
+  evidence.champion = Evidence::Champion{3, 8, 900};
+  return evidence;
+}
+
+struct Case {
+  const char* name;
+  std::function<void(Evidence&, EquipmentConfig&)> change;
+  Outcome expected;
+};
+
+class Gate : public testing::TestWithParam<Case> {};
+
+TEST_P(Gate, Decides) {
+  Evidence evidence = good();
+  EquipmentConfig config = limits();
+  GetParam().change(evidence, config);
+  const GateDecision decision = decide(evidence, config);
+  EXPECT_EQ(name(decision.outcome), name(GetParam().expected)) << decision.reason;
+  EXPECT_THAT(decision.reason, testing::EndsWith("."));
+}
+
+// Each reason, and the evidence that just misses it.
+const Case cases[] = {
+    {"Good", [](auto&, auto&) {}, Outcome::approved},
+    {"ByHand", [](auto&, auto& c) { c.approval = ApprovalPolicy::by_hand; }, Outcome::waiting},
+    {"Malformed", [](auto& e, auto&) { e.well_formed = false; }, Outcome::not_finite},
+    {"ErrorNotFinite", [](auto& e, auto&) { e.mrse_percent = infinity; }, Outcome::not_finite},
+    {"ErrorNotANumber", [](auto& e, auto&) { e.mrse_percent = nan; }, Outcome::not_finite},
+    {"FitNotANumber", [](auto& e, auto&) { e.fit_percent = nan; }, Outcome::not_finite},
+    {"RadiusOfOne", [](auto& e, auto&) { e.spectral_radius = 1; }, Outcome::unstable},
+    {"RadiusNotANumber", [](auto& e, auto&) { e.spectral_radius = nan; }, Outcome::unstable},
+    {"RadiusJustBelowOne", [](auto& e, auto&) { e.spectral_radius = 0.999999; }, Outcome::approved},
+    {"ErrorAboveLimit",
+     [](auto& e, auto&) {
+       e.mrse_percent = 10.01;
+       e.champion->mrse_percent = 100;
+     },
+     Outcome::error_above_limit},
+    {"ErrorAtLimit",
+     [](auto& e, auto&) {
+       e.mrse_percent = 10;
+       e.champion->mrse_percent = 100;
+     },
+     Outcome::approved},
+    {"FitBelowLimit", [](auto& e, auto&) { e.fit_percent = 39.9; }, Outcome::fit_below_limit},
+    {"FitAtLimit", [](auto& e, auto&) { e.fit_percent = 40; }, Outcome::approved},
+    {"FitOfAConstant",
+     [](auto& e, auto& c) {
+       e.fit_percent = 0;
+       c.min_fit_percent = 0;
+     },
+     Outcome::fit_below_limit},
+    {"FitMinusInfinity", [](auto& e, auto&) { e.fit_percent = -infinity; },
+     Outcome::fit_below_limit},
+    {"ResidualBeyondSpan", [](auto& e, auto&) { e.residual_over_span = 1.01; },
+     Outcome::residual_out_of_range},
+    {"ResidualAtSpan", [](auto& e, auto&) { e.residual_over_span = 1; }, Outcome::approved},
+    {"ResidualNotANumber", [](auto& e, auto&) { e.residual_over_span = nan; },
+     Outcome::residual_out_of_range},
+    {"EqualToChampion", [](auto& e, auto&) { e.champion->mrse_percent = 5; },
+     Outcome::not_better_than_champion},
+    {"BetterByLessThanTheMargin", [](auto& e, auto&) { e.champion->mrse_percent = 5.26; },
+     Outcome::not_better_than_champion},
+    {"BetterByMoreThanTheMargin", [](auto& e, auto&) { e.champion->mrse_percent = 5.27; },
+     Outcome::approved},
+    {"ChampionWentAstray", [](auto& e, auto&) { e.champion->mrse_percent = infinity; },
+     Outcome::approved},
+    {"ChampionCannotRun", [](auto& e, auto&) { e.champion->mrse_percent = nan; },
+     Outcome::approved},
+    {"OlderThanChampion", [](auto& e, auto&) { e.window_end = 899; }, Outcome::older_than_champion},
+    {"SameWindowAsChampion", [](auto& e, auto&) { e.window_end = 900; }, Outcome::approved},
+    {"FirstAndWorseThanBaseline",
+     [](auto& e, auto& c) {
+       e.champion.reset();
+       c.baseline_mrse_percent = 5;
+     },
+     Outcome::not_better_than_baseline},
+    {"FirstAndBetterThanBaseline",
+     [](auto& e, auto& c) {
+       e.champion.reset();
+       c.baseline_mrse_percent = 5.01;
+     },
+     Outcome::approved},
+    {"FirstWithoutBaseline", [](auto& e, auto&) { e.champion.reset(); }, Outcome::approved},
+    {"BaselineNoLongerCountsOnceThereIsAChampion",
+     [](auto&, auto& c) { c.baseline_mrse_percent = 1; }, Outcome::approved},
+};
+
+INSTANTIATE_TEST_SUITE_P(Reasons, Gate, testing::ValuesIn(cases),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(GateReason, NamesTheFiguresThatDecided) {
+  Evidence evidence = good();
+  evidence.champion->mrse_percent = 5;
+  EXPECT_EQ(decide(evidence, limits()).reason,
+            "MRSE 5.000 % does not undercut champion 3 (5.000 % on the same samples) by 5 %.");
+}
+
+}  // namespace
+}  // namespace reident

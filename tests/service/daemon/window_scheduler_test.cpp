@@ -1,0 +1,131 @@
+#include "service/daemon/window_scheduler.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace reident {
+namespace {
+
+using Job = WindowScheduler::Job;
+
+// One equipment; windows of 30 that end at multiples of 10; a settle time of 5.
+class Scheduler : public testing::Test {
+ protected:
+  WindowScheduler scheduler{{{.window = 30, .slide = 10}}, 5};
+
+  /// Samples at each of [begin, end), all stored at `now`.
+  void telemetry(storage::Time begin, storage::Time end, storage::Time now) {
+    for (auto time = begin; time < end; ++time) {
+      scheduler.touched(0, time, now);
+      scheduler.reached(0, time);
+    }
+  }
+  Job complete(storage::Time now) {
+    const auto job = scheduler.next(now);
+    EXPECT_TRUE(job.has_value());
+    scheduler.finished(job.value_or(Job{}), true, now);
+    return job.value_or(Job{});
+  }
+};
+
+TEST_F(Scheduler, GivesAWindowOnceTelemetryHasReachedItsEndAndNothingFellIntoItForTheSettleTime) {
+  telemetry(0, 10, 100);
+  EXPECT_FALSE(scheduler.next(200)) << "the sample at 9 does not reach the end at 10";
+  telemetry(10, 11, 110);
+  EXPECT_EQ(scheduler.next(200), (Job{0, {-20, 10}, false}));
+}
+
+TEST_F(Scheduler, WaitsForStragglers) {
+  telemetry(0, 11, 100);
+  EXPECT_FALSE(scheduler.next(104));
+  EXPECT_EQ(scheduler.next_due(), 105);
+  EXPECT_TRUE(scheduler.next(105));
+}
+
+TEST_F(Scheduler, LeavesOutWindowsWhoseLastStretchIsEmpty) {
+  telemetry(0, 11, 100);
+  telemetry(95, 101, 100);
+  EXPECT_EQ(complete(200).window, (storage::TimeRange{-20, 10}));
+  EXPECT_EQ(complete(200).window, (storage::TimeRange{-10, 20})) << "holds the sample at 10";
+  EXPECT_EQ(complete(200).window, (storage::TimeRange{70, 100}));
+  EXPECT_FALSE(scheduler.next(200));
+}
+
+TEST_F(Scheduler, RunsOneWindowOfAnEquipmentAtATimeOldestFirst) {
+  telemetry(0, 31, 100);
+  const auto first = scheduler.next(200);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->window.end, 10);
+  EXPECT_FALSE(scheduler.next(200)) << "the first still runs";
+  scheduler.finished(*first, true, 200);
+  EXPECT_EQ(complete(200).window.end, 20);
+}
+
+TEST_F(Scheduler, LooksAgainAtTriedWindowsThatLateTelemetryTouched) {
+  telemetry(0, 41, 100);
+  for (int i = 0; i < 4; ++i) complete(200);
+  scheduler.touched(0, 15, 300);
+  EXPECT_FALSE(scheduler.next(304));
+  EXPECT_EQ(complete(305), (Job{0, {-10, 20}, true}));
+  EXPECT_EQ(complete(305), (Job{0, {0, 30}, true}));
+  EXPECT_EQ(complete(305), (Job{0, {10, 40}, true}));
+  EXPECT_FALSE(scheduler.next(400));
+}
+
+TEST_F(Scheduler, DoesNotLetAWindowThatKeepsReceivingLateTelemetryHoldUpTheNext) {
+  telemetry(0, 21, 100);
+  scheduler.touched(0, 3, 199);
+  EXPECT_EQ(scheduler.next(200)->window.end, 20);
+}
+
+TEST_F(Scheduler, TriesAWindowAgainThatWasNotCompleted) {
+  telemetry(0, 11, 100);
+  const auto job = scheduler.next(200);
+  scheduler.finished(*job, false, 200);
+  EXPECT_FALSE(scheduler.next(204));
+  EXPECT_EQ(scheduler.next(205), job);
+}
+
+TEST_F(Scheduler, KnowsWhatAnEarlierRunTried) {
+  scheduler.tried_before(0, 10);
+  scheduler.tried_before(0, 20);
+  scheduler.reached(0, 20);
+  EXPECT_FALSE(scheduler.next(200));
+  scheduler.touched(0, 5, 200);
+  EXPECT_EQ(complete(300), (Job{0, {-20, 10}, true}));
+  EXPECT_EQ(complete(300), (Job{0, {-10, 20}, true}));
+}
+
+TEST_F(Scheduler, CountsWhatIsPendingAndWhere) {
+  EXPECT_EQ(scheduler.pending(), 0U);
+  telemetry(0, 21, 100);
+  EXPECT_EQ(scheduler.pending(), 2U);
+  const auto running = scheduler.next(200);
+  EXPECT_EQ(scheduler.pending(), 2U);
+  EXPECT_TRUE(scheduler.pending_within(0, {-15, -14})) << "the running one counts";
+  scheduler.finished(*running, true, 200);
+  EXPECT_FALSE(scheduler.pending_within(0, {-15, -14}));
+  EXPECT_TRUE(scheduler.pending_within(0, {19, 20}));
+}
+
+TEST_F(Scheduler, SurvivesTimesFromTheEndsOfTheScale) {
+  for (const auto time :
+       {std::numeric_limits<storage::Time>::min(), std::numeric_limits<storage::Time>::max()}) {
+    scheduler.touched(0, time, 100);
+    EXPECT_FALSE(scheduler.next(std::numeric_limits<storage::Time>::max() / 2));
+  }
+}
+
+TEST(SchedulerOfSeveral, GivesTheOldestWindowOfAllEquipmentFirst) {
+  WindowScheduler scheduler({{.window = 20, .slide = 10}, {.window = 20, .slide = 5}}, 0);
+  for (std::size_t equipment = 0; equipment < 2; ++equipment) {
+    scheduler.touched(equipment, 1, 0);
+    scheduler.reached(equipment, 100);
+  }
+  EXPECT_EQ(scheduler.next(0), (Job{1, {-15, 5}, false}));
+  EXPECT_EQ(scheduler.next(0), (Job{0, {-10, 10}, false}));
+}
+
+}  // namespace
+}  // namespace reident
