@@ -19,7 +19,7 @@ double tuning_error(const AC& ac, const Record& record, RowRange fit, RowRange t
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!ac.A.allFinite() || !(spectral_radius({ac.A, {}, {}, {}, {}, {}, {}, 1}) < 1))
     return infinity;
-  const Response response = fit_response(ac.A, ac.C, record, fit);
+  const Response response = fit_response(ac.A, ac.C, record, fit, Accuracy::fast);
   const Matrix y_hat = free_run(response.model, record, {fit.begin, tune.end}, response.x0);
   const Matrix error = record.y.middleRows(tune.begin, tune.size()) - y_hat.bottomRows(tune.size());
   const double result = error.colwise().norm().mean() / std::sqrt(double(tune.size()));

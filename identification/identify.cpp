@@ -139,7 +139,7 @@ class Identification {
     Identified result;
     result.spectral_radius = spectral_radius({ac.A, {}, {}, {}, {}, {}, {}, 1});
     if (!(result.spectral_radius < 1)) return std::nullopt;
-    const Response response = fit_response(ac.A, ac.C, work, work.all());
+    const Response response = fit_response(ac.A, ac.C, work, work.all(), Accuracy::exact);
     result.model = in_units(response.model, scaling);
     if (!is_well_formed(result.model)) return std::nullopt;
     result.x0 = response.x0;

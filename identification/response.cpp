@@ -1,104 +1,110 @@
 #include "identification/response.hpp"
 
 #include <cmath>
+#include <optional>
+
+#include "identification/regression.hpp"
 
 namespace reident::identification {
 namespace {
 
-/// Regressors of one segment, one block of rows an output. Since C A^j B is linear in B, the row of
-/// B(i, j) is found from the dual system x[k+1] = A' x[k] + c' u_j[k]: one simulation of order n
-/// for each pair of output and input gives the regressors of all n entries of a column of B.
-class Regressors {
- public:
-  Regressors(const Matrix& A, const Matrix& C, const Record& record)
-      : A_(A), At_(A.transpose()), C_(C), record_(record) {}
-
-  Index shared() const { return inputs() * order() + outputs() * (inputs() + 1); }
-  Index columns() const { return shared() + order(); }
-
-  /// Columns: B by columns, D by rows, y0, x0; then the measured output.
-  Matrix of(const Segment& segment, Index q) const {
-    const Index n = order(), m = inputs(), p = outputs(), N = segment.size();
-    Matrix phi = Matrix::Zero(N, columns() + 1);
-    const Vector c = C_.row(q).transpose();
-    Vector x(n), next(n);
-    for (Index j = 0; j < m; ++j) {
-      x.setZero();
-      for (Index k = 0; k < N; ++k) {
-        phi.row(k).segment(j * n, n) = x.transpose();
-        next.noalias() = At_ * x;
-        next += c * record_.u(segment.begin + k, j);
-        x.swap(next);
-      }
-    }
-    phi.middleCols(m * n + q * m, m) = record_.u.middleRows(segment.begin, N);
-    phi.col(m * n + p * m + q).setOnes();
-    x = c;
-    for (Index k = 0; k < N; ++k) {
-      phi.row(k).segment(shared(), n) = x.transpose();
-      next.noalias() = At_ * x;
-      x.swap(next);
-    }
-    phi.col(columns()) = record_.y.col(q).segment(segment.begin, N);
-    return phi;
-  }
-
-  Index order() const { return A_.rows(); }
-  Index inputs() const { return record_.u.cols(); }
-  Index outputs() const { return C_.rows(); }
-
- private:
-  const Matrix& A_;
-  Matrix At_;
-  const Matrix& C_;
-  const Record& record_;
+/// A response with what the refinement needs besides.
+struct Fitted {
+  StateSpaceModel model;
+  std::vector<Vector> x0;
+  double sum_of_squares = 0;
 };
 
-Matrix triangular(const Matrix& rows) {
-  const Index size = std::min(rows.rows(), rows.cols());
-  return rows.householderQr().matrixQR().topRows(size).triangularView<Eigen::Upper>();
+Fitted from(const RegressionSolution& solution, const Columns& columns, StateSpaceModel model) {
+  const Index n = columns.n, m = columns.m, p = columns.p;
+  const double* theta = solution.theta.data();
+  model.B = Eigen::Map<const Matrix>(theta + columns.B(), n, m);
+  for (Index q = 0; q < p; ++q) {
+    model.D.row(q) = solution.theta.segment(columns.output(q), m).transpose();
+    model.y0(q) = solution.theta(columns.y0(q));
+  }
+  return {std::move(model), solution.x0, solution.sum_of_squares};
+}
+
+template <typename Accumulator>
+Accumulator accumulate(const Columns& columns, const StateSpaceModel& model, const Record& record,
+                       const std::vector<Segment>& segments, const std::vector<Vector>& x0) {
+  Accumulator accumulator(columns);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    walk_regression(columns, model, record, segments[i], x0.empty() ? Vector() : x0[i],
+                    [&accumulator](const RegressionRows& rows) { accumulator.add(rows); });
+    accumulator.end_segment();
+  }
+  return accumulator;
+}
+
+Fitted fit(const StateSpaceModel& dynamics, const Record& record,
+           const std::vector<Segment>& segments, Accuracy accuracy) {
+  const Columns columns{dynamics.A.rows(), record.u.cols(), dynamics.C.rows(), false};
+  if (accuracy == Accuracy::fast) {
+    const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
+    if (const auto solution = sums.solve(0)) return from(*solution, columns, dynamics);
+  }
+  const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, record, segments, {});
+  return from(factor.solve(), columns, dynamics);
+}
+
+Response response_of(const Fitted& fitted, Index rows) {
+  return {fitted.model, fitted.x0.empty() ? Vector::Zero(fitted.model.order()) : fitted.x0.front(),
+          std::sqrt(fitted.sum_of_squares / double(rows))};
+}
+
+StateSpaceModel with_dynamics(const Matrix& A, const Matrix& C, const Record& record) {
+  const Index n = A.rows(), m = record.u.cols(), p = C.rows();
+  return {A,
+          Matrix::Zero(n, m),
+          C,
+          Matrix::Zero(p, m),
+          {},
+          Vector::Zero(m),
+          Vector::Zero(p),
+          record.period_s};
 }
 
 }  // namespace
 
-Response fit_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows) {
-  const Regressors regressors(A, C, record);
-  const Index n = regressors.order(), m = regressors.inputs(), p = regressors.outputs();
-  const Index shared = regressors.shared();
+Response fit_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows,
+                      Accuracy accuracy) {
+  const std::vector<Segment> segments = segments_within(record, rows);
+  return response_of(fit(with_dynamics(A, C, record), record, segments, accuracy), rows.size());
+}
 
-  // Each segment has an initial state of its own: it is eliminated within the segment, and what
-  // remains says something about the shared unknowns.
-  Matrix total(0, shared + 1);
-  Matrix first;  // the rows of the first segment that determine its initial state
-  for (const Segment& segment : segments_within(record, rows)) {
-    Matrix stacked(0, n + shared + 1);
-    for (Index q = 0; q < p; ++q) {
-      const Matrix phi = regressors.of(segment, q);
-      Matrix ordered(phi.rows(), phi.cols());
-      ordered << phi.middleCols(shared, n), phi.leftCols(shared), phi.rightCols(1);
-      Matrix both(stacked.rows() + ordered.rows(), ordered.cols());
-      both << stacked, ordered;
-      stacked = triangular(both);
+Response refine_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows,
+                         int steps) {
+  const std::vector<Segment> segments = segments_within(record, rows);
+  const Columns columns{A.rows(), record.u.cols(), C.rows(), true};
+  Fitted best = fit(with_dynamics(A, C, record), record, segments, Accuracy::fast);
+  double damping = 1e-3;
+  for (int step = 0; step < steps; ++step) {
+    const auto sums = accumulate<NormalEquations>(columns, best.model, record, segments, best.x0);
+    bool lowered = false;
+    double before = best.sum_of_squares;
+    for (int attempt = 0; attempt < 5 && !lowered; ++attempt, damping *= 10) {
+      const auto solution = sums.solve(damping);
+      if (!solution) continue;
+      const Matrix L =
+          Eigen::Map<const Matrix>(solution->theta.data() + columns.L(), columns.n, columns.p);
+      Matrix moved_C = best.model.C;
+      for (Index q = 0; columns.p > 1 && q < columns.p; ++q)
+        moved_C.row(q) += solution->theta.segment(columns.dC(q), columns.n).transpose();
+      const Matrix moved_A = best.model.A + L * best.model.C;
+      const StateSpaceModel moved = with_dynamics(moved_A, moved_C, record);
+      if (!is_well_formed(moved) || !(spectral_radius(moved) < 1)) continue;
+      Fitted trial = fit(moved, record, segments, Accuracy::fast);
+      if (!(trial.sum_of_squares < best.sum_of_squares)) continue;
+      best = std::move(trial);
+      lowered = true;
+      damping /= 100;
     }
-    const Index own = std::min(n, stacked.rows());
-    if (first.rows() == 0) first = stacked.topRows(own);
-    Matrix both(total.rows() + stacked.rows() - own, shared + 1);
-    both << total, stacked.bottomRightCorner(stacked.rows() - own, shared + 1);
-    total = triangular(both);
+    damping = std::max(damping, 1e-9);
+    if (!lowered || best.sum_of_squares > before * (1 - 1e-4)) break;
   }
-
-  const Vector theta =
-      total.leftCols(shared).completeOrthogonalDecomposition().solve(total.col(shared));
-  Vector x0 = Vector::Zero(n);
-  if (first.rows() > 0) {
-    x0 = first.leftCols(n).completeOrthogonalDecomposition().solve(
-        first.col(n + shared) - first.middleCols(n, shared) * theta);
-  }
-  StateSpaceModel model{A, Matrix(n, m), C, Matrix(p, m), {}, Vector::Zero(m), {}, record.period_s};
-  model.B = Eigen::Map<const Matrix>(theta.data(), n, m);
-  model.D = Eigen::Map<const Matrix>(theta.data() + n * m, m, p).transpose();
-  model.y0 = theta.tail(p);
-  return {model, x0};
+  return response_of(best, rows.size());
 }
 
 }  // namespace reident::identification

@@ -1,8 +1,11 @@
-// B, D, the operating point's remainder and the initial states of given A and C, by linear least
-// squares on the simulated output.
+// The part of a model that is linear once A and C are given, and the refinement of A and C.
+//
+//   y[k] = C A^k x0 + sum_{j<k} C A^(k-1-j) B u[j] + D u[k] + y0
+//
+// is linear in B, D, y0 and in one initial state for each segment, so that these follow from linear
+// least squares on the simulated output. What is left of the output error is a function of A and C
+// alone, and Levenberg-Marquardt steps lower it (METHOD.md, "Refinement").
 #pragma once
-
-#include <vector>
 
 #include "identification/record.hpp"
 #include "identification/state_space.hpp"
@@ -10,13 +13,23 @@
 namespace reident::identification {
 
 struct Response {
-  StateSpaceModel model;  // A, C as given; B, D, y0 fitted; u0 zero; K empty
+  StateSpaceModel model;  // in normalised channels: u0 = 0; K empty
   Vector x0;              // state at the first row
+  double error = 0;       // root mean square over rows of the output error's norm
 };
 
-/// Fits over `rows` of a normalised record. Requires a stable A.
-///   y[k] = C A^k x0 + sum_{j<k} C A^(k-1-j) B u[j] + D u[k] + y0
-/// is linear in B, D, y0 and one x0 for each segment.
-Response fit_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows);
+/// `fast` sums the normal equations and turns to `exact` where these have lost too many digits;
+/// `exact` factors the regressors themselves.
+enum class Accuracy { fast, exact };
+
+/// B, D, y0 and the initial states for A (stable) and C over `rows`; of least norm where the rows
+/// do not determine them.
+Response fit_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows,
+                      Accuracy accuracy);
+
+/// The same, with A and C moved by at most `steps` Levenberg-Marquardt steps that lower the output
+/// error. The result is stable when A is.
+Response refine_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows,
+                         int steps);
 
 }  // namespace reident::identification

@@ -1,0 +1,222 @@
+#include "identification/regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reident::identification {
+namespace {
+
+constexpr Index stretch = 256;
+
+/// The dual system of one output: since C A^j B is linear in B, the regressors of a column of B are
+/// the states of x[k+1] = A' x[k] + c' v[k] driven by that column's input. All inputs v at once.
+class DualFilter {
+ public:
+  DualFilter(const Matrix& A, const Vector& c, Index inputs)
+      : At_(A.transpose()), c_(c), states_(Matrix::Zero(A.rows(), inputs)), next_(A.rows()) {}
+
+  /// Writes the states to `out` (n * inputs), then takes the inputs `v`.
+  void step(const double* v, double* out) {
+    const Index n = At_.rows();
+    for (Index j = 0; j < states_.cols(); ++j) {
+      double* x = states_.data() + j * n;
+      std::copy(x, x + n, out + j * n);
+      for (Index i = 0; i < n; ++i) next_(i) = c_(i) * v[j];
+      const double* column = At_.data();
+      for (Index k = 0; k < n; ++k, column += n)
+        for (Index i = 0; i < n; ++i) next_(i) += column[i] * x[k];
+      std::copy(next_.data(), next_.data() + n, x);
+    }
+  }
+
+ private:
+  Matrix At_;
+  Vector c_;
+  Matrix states_;
+  Vector next_;
+};
+
+/// The state of the model along a stretch, and C x.
+struct Trajectory {
+  Matrix states;   // n x count
+  Matrix outputs;  // p x count
+};
+
+Trajectory advance(const StateSpaceModel& model, const Record& record, Index begin, Index count,
+                   Vector& x) {
+  Trajectory result{Matrix(model.order(), count), {}};
+  const Matrix driven = model.B * record.u.middleRows(begin, count).transpose();
+  Vector next(model.order());
+  for (Index k = 0; k < count; ++k) {
+    result.states.col(k) = x;
+    next.noalias() = model.A * x;
+    x = next + driven.col(k);
+  }
+  result.outputs = model.C * result.states;
+  return result;
+}
+
+/// Where the local column `i` of an output's rows stands among all columns.
+Index global(const Columns& columns, Index output, Index i) {
+  const Index common = columns.output(0);
+  if (i < common) return i;
+  if (i < common + columns.per_output()) return columns.output(output) + (i - common);
+  return columns.target();
+}
+
+}  // namespace
+
+void walk_regression(const Columns& columns, const StateSpaceModel& model, const Record& record,
+                     const Segment& segment, const Vector& x0,
+                     const std::function<void(const RegressionRows&)>& visit) {
+  const Index n = columns.n, m = columns.m, p = columns.p;
+  const Index extra = columns.moves ? p : 0;
+  const Index common = columns.output(0), width = common + columns.per_output() + 1;
+  std::vector<DualFilter> filters;  // of B and L
+  std::vector<DualFilter> free;     // of x0: the response to an impulse before the first row
+  for (Index q = 0; q < p; ++q) {
+    filters.emplace_back(model.A, model.C.row(q).transpose(), m + extra);
+    free.emplace_back(model.A, model.C.row(q).transpose(), 1);
+    const double impulse = 1;
+    Vector ignored(n);
+    free.back().step(&impulse, ignored.data());
+  }
+  Vector x = x0;
+  Matrix values(width, stretch), driving(m + extra, stretch);
+  for (Index begin = segment.begin; begin < segment.end; begin += stretch) {
+    const Index count = std::min(stretch, segment.end - begin);
+    driving.topLeftCorner(m, count) = record.u.middleRows(begin, count).transpose();
+    Trajectory trajectory;
+    if (columns.moves) {
+      trajectory = advance(model, record, begin, count, x);
+      driving.bottomLeftCorner(p, count) = trajectory.outputs;
+    }
+    for (Index q = 0; q < p; ++q) {
+      const double nothing = 0;
+      for (Index k = 0; k < count; ++k) {
+        double* column = values.data() + k * width;
+        free[static_cast<std::size_t>(q)].step(&nothing, column);
+        filters[static_cast<std::size_t>(q)].step(driving.data() + k * (m + extra), column + n);
+      }
+      values.block(common, 0, m, count) = driving.topLeftCorner(m, count);
+      values.row(common + m).head(count).setOnes();
+      if (columns.per_output() > m + 1)
+        values.block(common + m + 1, 0, n, count) = trajectory.states;
+      values.row(width - 1).head(count) = record.y.col(q).segment(begin, count).transpose();
+      visit({q, values.leftCols(count)});
+    }
+  }
+}
+
+NormalEquations::NormalEquations(const Columns& columns)
+    : columns_(columns),
+      of_output_(static_cast<std::size_t>(columns.p),
+                 Matrix::Zero(columns.output(0) + columns.per_output() + 1,
+                              columns.output(0) + columns.per_output() + 1)),
+      sums_(Matrix::Zero(columns.count() - columns.n, columns.count() - columns.n)) {}
+
+void NormalEquations::add(const RegressionRows& rows) {
+  of_output_[static_cast<std::size_t>(rows.output)].selfadjointView<Eigen::Lower>().rankUpdate(
+      rows.values);
+}
+
+void NormalEquations::end_segment() {
+  const Index n = columns_.n, rest = columns_.count() - n;
+  Matrix sums = Matrix::Zero(columns_.count(), columns_.count());
+  for (Index q = 0; q < columns_.p; ++q) {
+    Matrix& own = of_output_[static_cast<std::size_t>(q)];
+    for (Index j = 0; j < own.cols(); ++j)
+      for (Index i = j; i < own.rows(); ++i)
+        sums(global(columns_, q, i), global(columns_, q, j)) += own(i, j);
+    own.setZero();
+  }
+  sums.triangularView<Eigen::StrictlyUpper>() = sums.transpose();
+  Elimination elimination{
+      sums.topLeftCorner(n, n).completeOrthogonalDecomposition().pseudoInverse(),
+      sums.topRightCorner(n, rest)};
+  sums_ += sums.bottomRightCorner(rest, rest);
+  sums_.noalias() -= elimination.coupling.transpose() * elimination.inverse * elimination.coupling;
+  segments_.push_back(std::move(elimination));
+}
+
+std::optional<RegressionSolution> NormalEquations::solve(double damping) const {
+  const Index n = columns_.n, unknowns = columns_.target() - n;
+  Vector weight = sums_.diagonal().head(unknowns);
+  const auto damp = [&](Index begin, Index count) {
+    weight.segment(begin - n, count) *= 1 + damping;
+  };
+  if (columns_.moves) {
+    damp(columns_.L(), n * columns_.p);
+    for (Index q = 0; columns_.p > 1 && q < columns_.p; ++q) damp(columns_.dC(q), n);
+  }
+  Matrix G = sums_.topLeftCorner(unknowns, unknowns);
+  G.diagonal() = weight;
+  const Vector scale = weight.unaryExpr([](double w) { return w > 0 ? 1 / std::sqrt(w) : 0.0; });
+  G = (scale.asDiagonal() * G * scale.asDiagonal()).eval();
+  const Eigen::LLT<Matrix> llt(G);
+  constexpr double least_pivot = 1e-5;  // its square is the share of a column that is its own
+  if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least_pivot))
+    return std::nullopt;
+
+  const Vector target = sums_.col(unknowns).head(unknowns);
+  const Vector found = scale.asDiagonal() * llt.solve(scale.asDiagonal() * target);
+  RegressionSolution solution{Vector::Zero(columns_.target()), {}, 0};
+  solution.theta.tail(unknowns) = found;
+  // Of the undamped equations.
+  solution.sum_of_squares =
+      std::max(0.0, sums_(unknowns, unknowns) - 2 * target.dot(found) +
+                        found.dot(sums_.topLeftCorner(unknowns, unknowns) * found));
+  for (const Elimination& e : segments_)
+    solution.x0.push_back(e.inverse *
+                          (e.coupling.rightCols(1) - e.coupling.leftCols(unknowns) * found));
+  return solution;
+}
+
+namespace {
+
+Matrix triangular(const Eigen::Ref<const Matrix>& rows) {
+  const Index size = std::min(rows.rows(), rows.cols());
+  return rows.householderQr().matrixQR().topRows(size).triangularView<Eigen::Upper>();
+}
+
+/// The triangular factor of `factor` with `rows` below.
+Matrix folded(const Matrix& factor, const Eigen::Ref<const Matrix>& rows) {
+  Matrix both(factor.rows() + rows.rows(), rows.cols());
+  both << factor, rows;
+  return triangular(both);
+}
+
+}  // namespace
+
+OrthogonalFactor::OrthogonalFactor(const Columns& columns)
+    : columns_(columns), open_(0, columns.count()), factor_(0, columns.count() - columns.n) {}
+
+void OrthogonalFactor::add(const RegressionRows& rows) {
+  Matrix all = Matrix::Zero(rows.values.cols(), columns_.count());
+  for (Index i = 0; i < rows.values.rows(); ++i)
+    all.col(global(columns_, rows.output, i)) = rows.values.row(i).transpose();
+  open_ = folded(open_, all);
+}
+
+void OrthogonalFactor::end_segment() {
+  const Index own = std::min(columns_.n, open_.rows()), rest = columns_.count() - columns_.n;
+  segments_.push_back(open_.topRows(own));
+  factor_ = folded(factor_, open_.bottomRightCorner(open_.rows() - own, rest));
+  open_.resize(0, columns_.count());
+}
+
+RegressionSolution OrthogonalFactor::solve() const {
+  const Index n = columns_.n, unknowns = columns_.target() - n;
+  RegressionSolution solution{Vector::Zero(columns_.target()), {}, 0};
+  const Vector found =
+      factor_.leftCols(unknowns).completeOrthogonalDecomposition().solve(factor_.col(unknowns));
+  solution.theta.tail(unknowns) = found;
+  solution.sum_of_squares =
+      (factor_.col(unknowns) - factor_.leftCols(unknowns) * found).squaredNorm();
+  for (const Matrix& rows : segments_)
+    solution.x0.push_back(rows.leftCols(n).completeOrthogonalDecomposition().solve(
+        rows.rightCols(1) - rows.middleCols(n, unknowns) * found));
+  return solution;
+}
+
+}  // namespace reident::identification

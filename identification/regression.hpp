@@ -1,0 +1,92 @@
+// The regression of the measured output on everything that the simulated output is linear in.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "identification/record.hpp"
+#include "identification/state_space.hpp"
+
+namespace reident::identification {
+
+/// Columns of the regression, in their order:
+///   x0 (n) | B by columns (n m) | L (n p) | for each output q: D_q (m), y0_q (1), dC_q (n) |
+///   target
+/// L and dC move the dynamics to A + L C and C + dC: they are there with `moves`, dC with more than
+/// one output only, since L reaches every spectrum of a single output.
+struct Columns {
+  Index n = 0, m = 0, p = 0;
+  bool moves = false;
+
+  Index B() const { return n; }
+  Index L() const { return B() + n * m; }
+  Index output(Index q) const { return L() + (moves ? n * p : 0) + q * per_output(); }
+  Index y0(Index q) const { return output(q) + m; }
+  Index dC(Index q) const { return y0(q) + 1; }
+  Index per_output() const { return m + 1 + (moves && p > 1 ? n : 0); }
+  Index target() const { return output(p); }
+  Index count() const { return target() + 1; }
+};
+
+/// A stretch of the rows that belong to one output: column t of `values` holds, for one time, the
+/// columns before output(0), those of the output, and the target. All others are zero.
+struct RegressionRows {
+  Index output;
+  Eigen::Ref<const Matrix> values;
+};
+
+/// Walks the regression over a segment in stretches, so that memory does not follow its length.
+/// With `columns.moves`, B, D and y0 of the model and the segment's initial state `x0` give the
+/// trajectory about which the dynamics move.
+void walk_regression(const Columns& columns, const StateSpaceModel& model, const Record& record,
+                     const Segment& segment, const Vector& x0,
+                     const std::function<void(const RegressionRows&)>& visit);
+
+/// B, D, y0 and dynamics' moves (all columns between x0 and the target), and the initial states.
+struct RegressionSolution {
+  Vector theta;            // indexed by Columns; the first n entries are zero
+  std::vector<Vector> x0;  // one for each segment
+  double sum_of_squares = 0;
+};
+
+/// Least squares by the normal equations: fast, at the price of squaring the condition. The initial
+/// state of each segment is eliminated as the segment ends.
+class NormalEquations {
+ public:
+  explicit NormalEquations(const Columns& columns);
+  void add(const RegressionRows& rows);
+  void end_segment();
+
+  /// Weights the moves of the dynamics down by `damping` times their own sums of squares. Absent
+  /// when too few digits are left.
+  std::optional<RegressionSolution> solve(double damping) const;
+
+ private:
+  struct Elimination {
+    Matrix inverse;  // of the initial state's own sums
+    Matrix coupling;
+  };
+  Columns columns_;
+  std::vector<Matrix> of_output_;  // sums of the open segment, one for each output
+  Matrix sums_;                    // of the closed segments, over the columns after x0
+  std::vector<Elimination> segments_;
+};
+
+/// The same by orthogonal factors, to full accuracy; solutions are of least norm where the rows do
+/// not determine them.
+class OrthogonalFactor {
+ public:
+  explicit OrthogonalFactor(const Columns& columns);
+  void add(const RegressionRows& rows);
+  void end_segment();
+  RegressionSolution solve() const;
+
+ private:
+  Columns columns_;
+  Matrix open_;    // triangular factor of the open segment
+  Matrix factor_;  // triangular factor of the closed segments, over the columns after x0
+  std::vector<Matrix> segments_;  // rows of each segment that determine its initial state
+};
+
+}  // namespace reident::identification
