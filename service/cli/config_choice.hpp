@@ -1,0 +1,19 @@
+// The configuration that a command works with.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "service/cli/command.hpp"
+#include "service/daemon/config.hpp"
+
+namespace reident::cli {
+
+inline constexpr const char* default_config_file = "reident.toml";
+
+/// The configuration in `file`, by default reident.toml of the current folder; nullopt where there
+/// is none of that name and none was asked for.
+std::variant<std::optional<Config>, Refusal> chosen_config(const std::optional<std::string>& file);
+
+}  // namespace reident::cli

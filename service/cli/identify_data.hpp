@@ -1,0 +1,35 @@
+// The rows of a CSV file as a record to identify from.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "identification/record.hpp"
+#include "service/cli/command.hpp"
+
+namespace reident::cli {
+
+struct DataRequest {
+  std::filesystem::path file;
+  std::vector<std::string> inputs;
+  std::vector<std::string> outputs;
+  std::optional<std::string> time;      // column; without it rows are one period apart
+  std::optional<double> period_s;       // default: 1, or the median step of the time column
+  std::optional<std::string> identify;  // "A:B", rows of the file
+  std::optional<std::string> validate;
+};
+
+struct IdentifyData {
+  identification::Record record;
+  identification::RowRange identify;         // rows of the record
+  identification::RowRange validate;         // at least one row
+  std::vector<std::string> inputs, outputs;  // columns of u and y
+  std::vector<std::string> warnings;
+};
+
+std::variant<IdentifyData, Refusal> read_data(const DataRequest& request);
+
+}  // namespace reident::cli

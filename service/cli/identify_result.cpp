@@ -1,0 +1,98 @@
+#include "service/cli/identify_result.hpp"
+
+#include <fmt/format.h>
+
+#include "service/cli/model_text.hpp"
+#include "service/cli/table.hpp"
+#include "service/model/model_json.hpp"
+
+namespace reident::cli {
+namespace {
+
+using identification::Score;
+using identification::StateSpaceModel;
+using nlohmann::ordered_json;
+
+std::string dumped(const ordered_json& value) {
+  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+bool all_finite(const Score& score) {
+  return score.mrse_percent.allFinite() && score.fit_percent.allFinite();
+}
+
+Table error_table(const IdentifyOutcome& outcome) {
+  Table table({{"output"},
+               {"MRSE identify %", Table::Align::right},
+               {"MRSE validate %", Table::Align::right},
+               {"fit identify %", Table::Align::right},
+               {"fit validate %", Table::Align::right}});
+  for (std::size_t q = 0; q < outcome.outputs.size(); ++q) {
+    const auto at = static_cast<Eigen::Index>(q);
+    table.add({outcome.outputs[q], fmt::format("{:.4g}", outcome.identify.mrse_percent(at)),
+               fmt::format("{:.4g}", outcome.validate.mrse_percent(at)),
+               fmt::format("{:.4g}", outcome.identify.fit_percent(at)),
+               fmt::format("{:.4g}", outcome.validate.fit_percent(at))});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string to_json_text(const IdentifyOutcome& outcome) {
+  const StateSpaceModel& model = outcome.identified.model;
+  ordered_json warnings = outcome.warnings;
+  if (!all_finite(outcome.identify) || !all_finite(outcome.validate))
+    warnings.push_back(
+        "an error or a fit is not finite, since an output is zero or does not move; it is null");
+  ordered_json timing = ordered_json::object();
+  for (const auto& [phase, milliseconds] : outcome.timing_ms) timing[phase] = milliseconds;
+
+  const std::pair<const char*, ordered_json> entries[] = {
+      {"order", model.order()},
+      {"horizon", outcome.identified.horizon},
+      {"weighting", name(outcome.identified.weighting)},
+      {"sample_period_s", model.period_s},
+      {"inputs", outcome.inputs},
+      {"outputs", outcome.outputs},
+      {"A", to_json(model.A)},
+      {"B", to_json(model.B)},
+      {"C", to_json(model.C)},
+      {"D", to_json(model.D)},
+      {"K", to_json(model.K)},
+      {"x0", to_json(outcome.identified.x0)},
+      {"input_offset", to_json(model.u0)},
+      {"output_offset", to_json(model.y0)},
+      {"stable", outcome.identified.spectral_radius < 1},
+      {"spectral_radius", outcome.identified.spectral_radius},
+      {"mrse_percent",
+       {{"identify", to_json(outcome.identify.mrse_percent)},
+        {"validate", to_json(outcome.validate.mrse_percent)}}},
+      {"fit_percent",
+       {{"identify", to_json(outcome.identify.fit_percent)},
+        {"validate", to_json(outcome.validate.fit_percent)}}},
+      {"timing_ms", timing},
+      {"warnings", warnings}};
+  std::string text;
+  for (const auto& [key, value] : entries)
+    text += fmt::format("{}\n  \"{}\": {}", text.empty() ? "{" : ",", key, dumped(value));
+  return text + "\n}\n";
+}
+
+std::string to_report(const IdentifyOutcome& outcome) {
+  const identification::Identified& identified = outcome.identified;
+  double total = 0;
+  for (const auto& [phase, milliseconds] : outcome.timing_ms) total += milliseconds;
+  std::string text = fmt::format(
+      "order {}, horizon {}, weighting {}, sample period {:g} s\n"
+      "poles {} (spectral radius {:.6g}, {})\n"
+      "free run over {} identification and {} validation rows:\n{}",
+      identified.model.order(), identified.horizon, name(identified.weighting),
+      identified.model.period_s, poles_text(identified.model), identified.spectral_radius,
+      identified.spectral_radius < 1 ? "stable" : "unstable", outcome.identify.rows,
+      outcome.validate.rows, error_table(outcome).text(0));
+  for (const std::string& warning : outcome.warnings) text += fmt::format("warning: {}\n", warning);
+  return text + fmt::format("{:.0f} ms; --json prints the matrices\n", total);
+}
+
+}  // namespace reident::cli

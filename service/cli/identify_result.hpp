@@ -1,0 +1,27 @@
+// What `reident identify` prints about a model.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "identification/identify.hpp"
+
+namespace reident::cli {
+
+struct IdentifyOutcome {
+  identification::Identified identified;
+  identification::Score identify;  // on the rows that it was identified from
+  identification::Score validate;
+  std::vector<std::string> inputs, outputs;  // column names
+  std::vector<std::pair<std::string, double>> timing_ms;
+  std::vector<std::string> warnings;
+};
+
+/// One JSON object, a key a line.
+std::string to_json_text(const IdentifyOutcome& outcome);
+
+/// A short report for a terminal.
+std::string to_report(const IdentifyOutcome& outcome);
+
+}  // namespace reident::cli

@@ -1,0 +1,45 @@
+// reident: the command line.
+#include <cstdio>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "service/cli/command.hpp"
+
+namespace reident::cli {
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app("Keeps the equipment models of satellite simulators true to the satellite",
+               "reident");
+  app.require_subcommand(1);
+  app.footer("reident COMMAND --help shows the options of a command and an example.");
+  int exit_code = exit_done;
+  add_identify(app, exit_code);
+  add_history(app, exit_code);
+  add_show(app, exit_code);
+  add_check_config(app, exit_code);
+  add_status(app, exit_code);
+  add_version(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    std::string command = "reident";
+    for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
+    return refuse({fmt::format("{}; see {} --help", error.what(), command)});
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace reident::cli
+
+int main(int argc, char** argv) {
+  try {
+    return reident::cli::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "reident: {}\n", error.what());
+    return reident::cli::exit_failed;
+  }
+}

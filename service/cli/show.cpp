@@ -1,0 +1,239 @@
+#include <cstdio>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "service/cli/model_text.hpp"
+#include "service/cli/stored.hpp"
+#include "service/cli/table.hpp"
+#include "service/model/model_json.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using storage::Attempt;
+using storage::Decision;
+using storage::Registry;
+using storage::Version;
+
+struct Arguments {
+  DatabaseOptions database;
+  std::string subject;
+  bool json = false;
+};
+
+/// SPACECRAFT/EQUIPMENT@VERSION taken apart; the spacecraft and the version may be left out.
+struct Subject {
+  std::string spacecraft;
+  std::string equipment;
+  std::optional<std::int64_t> version;
+};
+
+std::variant<Subject, Refusal> parse_subject(const std::string& text) {
+  Subject subject;
+  std::string rest = text;
+  if (const std::size_t at = rest.rfind('@'); at != std::string::npos) {
+    subject.version = whole_number(rest.substr(at + 1));
+    if (!subject.version || *subject.version < 1)
+      return Refusal{fmt::format("{} names no version; write it as SPACECRAFT/EQUIPMENT@1", text)};
+    rest.resize(at);
+  }
+  const std::size_t slash = rest.find('/');
+  if (slash != std::string::npos) subject.spacecraft = rest.substr(0, slash);
+  subject.equipment = slash == std::string::npos ? rest : rest.substr(slash + 1);
+  if (subject.equipment.empty())
+    return Refusal{fmt::format("{} names no equipment; write it as SPACECRAFT/EQUIPMENT", text)};
+  return subject;
+}
+
+std::string versions_text(const std::vector<Attempt>& attempts, const Registry& registry) {
+  std::string text;
+  for (const Attempt& attempt : attempts) {
+    if (!attempt.version) continue;
+    const auto version = registry.version(attempt.spacecraft, attempt.equipment, *attempt.version);
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", *attempt.version,
+                        version ? version->status : "unknown");
+  }
+  return text.empty() ? "none yet" : text;
+}
+
+/// All that is stored about one version.
+struct Story {
+  Version version;
+  Attempt attempt;
+  std::vector<Decision> decisions;
+  EquipmentModel model;
+  bool digest_matches = false;
+};
+
+std::variant<Story, Refusal> find_story(const Registry& registry, const Subject& subject) {
+  storage::HistoryFilter filter;
+  filter.spacecraft = subject.spacecraft;
+  filter.equipment = subject.equipment;
+  const std::vector<Attempt> attempts = registry.attempts(filter);
+  if (attempts.empty())
+    return Refusal{fmt::format("nothing is known about {}; the database has {}",
+                               subject.spacecraft.empty()
+                                   ? subject.equipment
+                                   : full_name(subject.spacecraft, subject.equipment),
+                               equipment_in(registry))};
+  const std::string& spacecraft = attempts.front().spacecraft;
+  for (const Attempt& attempt : attempts)
+    if (attempt.spacecraft != spacecraft)
+      return Refusal{fmt::format("{} is on {} and on {}; name the spacecraft, as in {}",
+                                 subject.equipment, spacecraft, attempt.spacecraft,
+                                 full_name(spacecraft, subject.equipment))};
+  auto version = subject.version ? registry.version(spacecraft, subject.equipment, *subject.version)
+                                 : registry.champion(spacecraft, subject.equipment);
+  const std::string name = full_name(spacecraft, subject.equipment);
+  if (!version)
+    return Refusal{subject.version
+                       ? fmt::format("{} has no version {}; versions: {}", name, *subject.version,
+                                     versions_text(attempts, registry))
+                       : fmt::format("{} has no approved version; versions: {}", name,
+                                     versions_text(attempts, registry))};
+  Story story;
+  for (const Attempt& attempt : attempts)
+    if (attempt.id == version->attempt) story.attempt = attempt;
+  story.decisions = registry.decisions(spacecraft, subject.equipment, version->number);
+  story.model = equipment_model_from_json(version->model_json);
+  story.digest_matches = model_digest(story.model) == version->digest;
+  story.version = *std::move(version);
+  return story;
+}
+
+ordered_json range_json(const storage::TimeRange& range) {
+  return {{"begin", time_text(range.begin)}, {"end", time_text(range.end)}};
+}
+
+void print_json(const Story& story) {
+  ordered_json decisions = ordered_json::array();
+  for (const Decision& decision : story.decisions)
+    decisions.push_back({{"kind", name(decision.kind)},
+                         {"time", time_text(decision.time)},
+                         {"actor", decision.actor},
+                         {"reason", decision.reason}});
+  const ordered_json object = {{"spacecraft", story.version.spacecraft},
+                               {"equipment", story.version.equipment},
+                               {"version", story.version.number},
+                               {"status", story.version.status},
+                               {"digest", story.version.digest},
+                               {"digest_matches", story.digest_matches},
+                               {"created", time_text(story.version.created)},
+                               {"window", range_json(story.version.window)},
+                               {"trigger", story.attempt.trigger},
+                               {"outcome", story.attempt.outcome},
+                               {"reason", story.attempt.reason},
+                               {"evidence", evidence_of(story.attempt)},
+                               {"decisions", decisions},
+                               {"configuration_digest", story.attempt.configuration_digest},
+                               {"program_version", story.attempt.program_version},
+                               {"model", to_json(story.model)}};
+  fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+std::string range_text(const storage::TimeRange& range) {
+  return fmt::format("{} to {} ({})", time_text(range.begin), time_text(range.end),
+                     duration_text(range.end - range.begin));
+}
+
+std::string signals_text(const EquipmentModel& model) {
+  Table table({{"signal"},
+               {""},
+               {"unit"},
+               {"lowest", Table::Align::right},
+               {"highest", Table::Align::right}});
+  for (const auto& [kind, signals] :
+       {std::pair("input", &model.inputs), std::pair("output", &model.outputs)})
+    for (const Signal& signal : *signals)
+      table.add({signal.name, kind, signal.unit, fmt::format("{:.6g}", signal.low),
+                 fmt::format("{:.6g}", signal.high)});
+  return table.text(0);
+}
+
+std::string scores_text(const EquipmentModel& model) {
+  Table table({{"output"}, {"MRSE %", Table::Align::right}, {"fit %", Table::Align::right}});
+  for (std::size_t q = 0; q < model.outputs.size(); ++q) {
+    const auto at = static_cast<Eigen::Index>(q);
+    table.add({model.outputs[q].name, fmt::format("{:.4g}", model.validation.mrse_percent(at)),
+               fmt::format("{:.4g}", model.validation.fit_percent(at))});
+  }
+  return table.text(0);
+}
+
+std::string champion_text(const ordered_json& evidence) {
+  const auto champion = evidence.find("champion");
+  if (champion == evidence.end() || !champion->is_object()) return "";
+  return fmt::format("the champion of that time, version {}, on the same rows: MRSE {} %\n",
+                     evidence_number(*champion, "version"),
+                     evidence_number(*champion, "mrse_percent"));
+}
+
+std::string decisions_text(const std::vector<Decision>& decisions) {
+  Table table({{"decided (UTC)"}, {"what"}, {"by"}, {"reason"}});
+  for (const Decision& decision : decisions)
+    table.add({time_text(decision.time), std::string(name(decision.kind)), decision.actor,
+               decision.reason});
+  return table.text(terminal_width());
+}
+
+void print_story(const Story& story) {
+  const EquipmentModel& model = story.model;
+  const identification::StateSpaceModel& dynamics = model.dynamics;
+  fmt::print("{} version {}: {}\n", full_name(model.spacecraft, model.equipment),
+             story.version.number, story.version.status);
+  fmt::print("window          {}\n", range_text(story.version.window));
+  fmt::print("identified from {}\n", range_text(model.identified_from));
+  fmt::print("validated on    {}\n", range_text(model.validated_on));
+  fmt::print("trigger         {}\n", story.attempt.trigger);
+  fmt::print("method          {}, sample period {:g} s\n", model.method, dynamics.period_s);
+  fmt::print("poles           {} (spectral radius {:.6g})\n", poles_text(dynamics),
+             spectral_radius(dynamics));
+  fmt::print("digest          {}{}\n", story.version.digest,
+             story.digest_matches ? "" : " DOES NOT MATCH the stored model");
+  fmt::print("configuration   {}\nprogram         {}\n", story.attempt.configuration_digest,
+             story.attempt.program_version);
+  fmt::print("\n{}\n", signals_text(model));
+  fmt::print("free run over {} rows that the identification did not use:\n{}{}\n",
+             model.validation.rows, scores_text(model), champion_text(evidence_of(story.attempt)));
+  fmt::print("{}\n", decisions_text(story.decisions));
+  fmt::print("x[k+1] = A x[k] + B (u[k] - u0),  y[k] = C x[k] + D (u[k] - u0) + y0\n");
+  fmt::print("{}{}{}{}{}{}{}", matrix_text("A", dynamics.A), matrix_text("B", dynamics.B),
+             matrix_text("C", dynamics.C), matrix_text("D", dynamics.D),
+             matrix_text("K", dynamics.K), matrix_text("u0", dynamics.u0.transpose()),
+             matrix_text("y0", dynamics.y0.transpose()));
+}
+
+int run(const Arguments& arguments) {
+  const auto subject = parse_subject(arguments.subject);
+  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
+  return with_registry(arguments.database, [&](const Registry& registry) {
+    const auto story = find_story(registry, std::get<Subject>(subject));
+    if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
+    if (arguments.json)
+      print_json(std::get<Story>(story));
+    else
+      print_story(std::get<Story>(story));
+    return static_cast<int>(exit_done);
+  });
+}
+
+}  // namespace
+
+void add_show(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("show", "Show all that is stored about one version of a model");
+  command
+      ->add_option("subject", arguments->subject,
+                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      ->required();
+  add_database_options(*command, arguments->database);
+  command->add_flag("--json", arguments->json, "one JSON object with the matrices");
+  command->footer("Example:\n  reident show CBERS-4/BDR@3 --config reident.toml");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

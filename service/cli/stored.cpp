@@ -1,0 +1,74 @@
+#include "service/cli/stored.hpp"
+
+#include <set>
+
+#include <fmt/format.h>
+
+#include "service/cli/config_choice.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::variant<std::filesystem::path, Refusal> database_path(const DatabaseOptions& options) {
+  if (options.database) return *options.database;
+  auto chosen = chosen_config(options.config);
+  if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
+  if (const auto& config = std::get<std::optional<Config>>(chosen)) return config->database;
+  return Refusal{
+      fmt::format("no database: there is no {} here; name one with --database FILE or "
+                  "--config FILE",
+                  default_config_file)};
+}
+
+}  // namespace
+
+void add_database_options(CLI::App& command, DatabaseOptions& options) {
+  CLI::Option* database =
+      command.add_option("--database", options.database, "database of the service");
+  command
+      .add_option("--config", options.config,
+                  fmt::format("configuration that names the database ({})", default_config_file))
+      ->excludes(database);
+}
+
+int with_registry(const DatabaseOptions& options,
+                  const std::function<int(const storage::Registry&)>& work) {
+  const auto path = database_path(options);
+  if (const auto* refusal = std::get_if<Refusal>(&path)) return refuse(*refusal);
+  try {
+    storage::Database database(std::get<std::filesystem::path>(path),
+                               storage::Database::Mode::read_only);
+    return work(storage::Registry(database));
+  } catch (const storage::Error& error) {
+    return refuse({error.what()});
+  }
+}
+
+std::string full_name(const std::string& spacecraft, const std::string& equipment) {
+  return spacecraft + "/" + equipment;
+}
+
+std::string equipment_in(const storage::Registry& registry) {
+  std::set<std::string> names;
+  for (const storage::Attempt& attempt : registry.attempts())
+    names.insert(full_name(attempt.spacecraft, attempt.equipment));
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "nothing yet" : text;
+}
+
+ordered_json evidence_of(const storage::Attempt& attempt) {
+  ordered_json evidence = ordered_json::parse(attempt.evidence_json, nullptr, false);
+  return evidence.is_object() ? evidence : ordered_json::object();
+}
+
+std::string evidence_number(const ordered_json& evidence, const char* key) {
+  const auto found = evidence.find(key);
+  if (found == evidence.end() || !found->is_number()) return "-";
+  if (found->is_number_integer()) return found->dump();
+  return fmt::format("{:.4g}", found->get<double>());
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,41 @@
+// What the commands that read a database share: which file, and what is in it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "service/cli/command.hpp"
+#include "storage/registry.hpp"
+
+namespace reident::cli {
+
+/// --database and --config; without either, reident.toml in the current folder says which file.
+struct DatabaseOptions {
+  std::optional<std::string> database;
+  std::optional<std::string> config;
+};
+
+void add_database_options(CLI::App& command, DatabaseOptions& options);
+
+/// Calls `work` with the registry of a database opened for reading. A database that cannot be used
+/// is refused.
+int with_registry(const DatabaseOptions& options,
+                  const std::function<int(const storage::Registry&)>& work);
+
+/// Name of an equipment with its spacecraft, such as "CBERS-4/BDR".
+std::string full_name(const std::string& spacecraft, const std::string& equipment);
+
+/// The equipment of the database for messages, such as "CBERS-4/BDR, CBERS-4/MEA".
+std::string equipment_in(const storage::Registry& registry);
+
+/// The evidence of an attempt as a JSON object, empty where it holds none.
+nlohmann::ordered_json evidence_of(const storage::Attempt& attempt);
+
+/// A number of the evidence for a table, "-" where it is absent.
+std::string evidence_number(const nlohmann::ordered_json& evidence, const char* key);
+
+}  // namespace reident::cli

@@ -1,0 +1,40 @@
+// Text in columns for a terminal.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace reident::cli {
+
+/// Columns that the terminal on standard output has; 0 (no bound) where there is none.
+std::size_t terminal_width();
+
+/// Columns that a text takes on a terminal: the code points of its UTF-8.
+std::size_t display_width(std::string_view text);
+
+class Table {
+ public:
+  enum class Align { left, right };
+  struct Column {
+    std::string title;
+    Align align = Align::left;
+  };
+
+  explicit Table(std::vector<Column> columns);
+
+  /// As many cells as columns.
+  void add(std::vector<std::string> cells);
+  bool empty() const { return rows_.empty(); }
+
+  /// The title row and the rows, a line each. Where `width` is not 0 and the last column would
+  /// reach over it, that column's text is wrapped at its blanks.
+  std::string text(std::size_t width) const;
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace reident::cli
