@@ -1,0 +1,31 @@
+// When each frame is due, for a telemetry source that runs at a multiple of real time.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "storage/telemetry.hpp"
+
+namespace reident::satcs {
+
+class Pacer {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// `speed` > 0: seconds of telemetry a second; infinity for as fast as the readers take it.
+  explicit Pacer(double speed) : speed_(speed) {}
+
+  /// The instant at which the frame of this generation time is due, `now` at the earliest. A source
+  /// that is more than a second late, or whose time jumps back, goes on at its speed from here.
+  Clock::time_point due(storage::Time generation_time, Clock::time_point now);
+
+ private:
+  struct Anchor {
+    storage::Time generation_time;
+    Clock::time_point instant;
+  };
+  double speed_;
+  std::optional<Anchor> anchor_;
+};
+
+}  // namespace reident::satcs

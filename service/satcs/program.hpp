@@ -1,0 +1,58 @@
+// What the programs that publish telemetry have in common: their options, exit statuses and
+// summary.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "service/satcs/publisher.hpp"
+
+namespace reident::satcs {
+
+enum ExitCode : int {
+  exit_complete = 0,       // every reader has every frame
+  exit_failed = 1,         // the middleware or the machine failed
+  exit_bad_request = 2,    // one line says what is wrong and what would mend it
+  exit_not_delivered = 3,  // readers were missing, or did not take everything, within the time-out
+  exit_signal = 128,       // plus the number of the signal that stopped it before it was complete
+};
+
+/// A request that cannot be met: what is wrong and what would mend it.
+class BadRequest : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// An option whose text becomes `value` by `parse`, or is refused with a word on what it takes.
+template <class T, class Parsed>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, T& value,
+                        std::optional<Parsed> (*parse)(std::string_view),
+                        const std::string& description, const std::string& takes) {
+  return app.add_option_function<std::string>(
+      name,
+      [&value, parse, takes, name](const std::string& text) {
+        auto parsed = parse(text);
+        if (!parsed) throw CLI::ValidationError(name, "'" + text + "' is not " + takes);
+        value = *std::move(parsed);
+      },
+      description);
+}
+
+/// --spacecraft, --source, --origin, --speed and all that says how frames are published.
+void add_publisher_options(CLI::App& app, PublisherOptions& options, bool& json);
+
+/// Parses the command line, makes the source and publishes it. Returns the exit status.
+int run_program(CLI::App& app, int argc, char** argv, const PublisherOptions& options,
+                const bool& json, const std::function<std::unique_ptr<FrameSource>()>& make_source);
+
+/// The summary as one JSON object on one line.
+std::string to_json(const PublisherSummary& summary, const PublisherOptions& options);
+
+}  // namespace reident::satcs

@@ -1,0 +1,81 @@
+// Recorded telemetry in a CSV file as a source of frames: one frame a row, one parameter a column.
+//
+// The file is read twice: once to see that all of it can be replayed and what it holds, before
+// anything is published, and once to replay it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "service/satcs/publisher.hpp"
+#include "service/support/csv.hpp"
+
+namespace reident::satcs {
+
+/// COLUMN=PARAMETER[:UNIT].
+struct ColumnMapping {
+  std::string column;
+  std::string parameter;
+  std::string unit;
+};
+std::optional<ColumnMapping> parse_mapping(std::string_view text);
+
+/// One end of the stretch to replay: a time, or an offset from the earliest row ("+90", "2h").
+struct ReplayBound {
+  bool relative = false;
+  std::int64_t ns = 0;
+};
+std::optional<ReplayBound> parse_bound(std::string_view text);
+
+struct ReplayOptions {
+  std::filesystem::path file;
+  std::optional<std::string> time_column;  // absent: the first that looks like one
+  std::vector<ColumnMapping> mappings;
+  /// Unmapped columns keep their names; otherwise a unit at the end of a name becomes the
+  /// parameter's unit: bus_u_mv is bus_u in mV.
+  bool keep_names = false;
+  std::vector<std::string> only;     // columns to replay; empty: all
+  std::optional<ReplayBound> start;  // rows with start <= time < end
+  std::optional<ReplayBound> end;
+};
+
+/// What a file holds and how it will be replayed.
+struct ReplayPlan {
+  struct Column {
+    std::size_t position = 0;  // in the file
+    storage::ParameterDescriptor parameter;
+  };
+  std::filesystem::path file;
+  std::size_t time_position = 0;
+  std::string time_column;
+  std::vector<Column> columns;
+  std::vector<std::string> left_out;  // columns without a single number
+  storage::TimeRange range;           // of the rows to replay
+  std::uint64_t rows = 0;             // in that range
+};
+
+/// Reads the whole file; every mistake in the options or the file is one sentence.
+std::variant<ReplayPlan, csv::Error> plan_replay(const ReplayOptions& options);
+
+/// Rows in the order of the file, whatever their times are. A cell without a finite number becomes
+/// a sample of quality invalid whose value is NaN.
+class ReplaySource : public FrameSource {
+ public:
+  /// Throws std::runtime_error when the file cannot be opened any more.
+  explicit ReplaySource(ReplayPlan plan);
+
+  std::vector<storage::ParameterDescriptor> parameters() const override;
+  bool next(storage::Time& generation_time, std::vector<storage::Sample>& samples) override;
+  double progress() const override;
+
+ private:
+  ReplayPlan plan_;
+  csv::Reader reader_;
+  std::uint64_t rows_done_ = 0;
+};
+
+}  // namespace reident::satcs
