@@ -1,6 +1,7 @@
 #include "service/daemon/config_document.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -55,14 +56,23 @@ bool parses(std::string_view text) {
   return static_cast<bool>(toml::parse(text));
 }
 
-std::string wording(const toml::parse_error& error) {
+/// Whether the line gives a key letters without quotes, such as 10min.
+bool lacks_quotes(std::string_view line) {
+  const std::size_t equals = line.find('=');
+  if (equals == std::string_view::npos) return false;
+  const std::string_view value = line.substr(equals + 1);
+  const std::size_t first = value.find_first_not_of(" \t\r\n");
+  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
+  return first != std::string_view::npos &&
+         std::isalnum(static_cast<unsigned char>(value[first])) &&
+         std::any_of(value.begin(), value.end(), is_letter);
+}
+
+std::string wording(const toml::parse_error& error, std::string_view line) {
+  if (lacks_quotes(line)) return "mistake in value: a text or a duration needs double quotes";
   std::string text(error.description());
-  if (constexpr std::string_view prefix = "Error while "; text.starts_with(prefix)) {
-    text = "mistake " + text.substr(prefix.size());
-    text.replace(0, std::string_view("mistake parsing").size(), "mistake in");
-  }
-  if (text.find("could not determine value type") != std::string::npos)
-    text += "; a text or a duration needs double quotes";
+  if (constexpr std::string_view prefix = "Error while parsing "; text.starts_with(prefix))
+    text = "mistake in " + text.substr(prefix.size());
   return text;
 }
 
@@ -82,7 +92,7 @@ void leave_out_mistake(const toml::parse_error& error, Lines& lines, ConfigDocum
   const bool unfinished = lines.ends_after(at.line - 1, at.column - 1);
   std::size_t begin = index;
   if (unfinished || parses(lines[index])) begin = beginning_of_value(lines, index);
-  std::string message = wording(error);
+  std::string message = wording(error, begin == index ? lines[index] : "");
   if (begin != index) message += fmt::format(" (noticed on line {})", index + 1);
   document.mistakes.push_back({static_cast<std::uint32_t>(begin + 1), std::move(message)});
   // The line on which an unfinished value is noticed belongs to the next statement.
