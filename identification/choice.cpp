@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <tuple>
 
 #include "identification/hankel.hpp"
 #include "identification/response.hpp"
@@ -12,50 +14,104 @@ namespace reident::identification {
 namespace {
 
 constexpr double equal_errors = 1.01;
+constexpr double worthwhile_recency = 0.95;
 
-/// Error of the response fitted on `fit`, run on through `tune` and scored there; +inf for an
-/// unstable model.
-double tuning_error(const AC& ac, const Record& record, RowRange fit, RowRange tune) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (!ac.A.allFinite() || !(spectral_radius({ac.A, {}, {}, {}, {}, {}, {}, 1}) < 1))
-    return infinity;
-  const Response response = fit_response(ac.A, ac.C, record, fit, Accuracy::fast);
-  const Matrix y_hat = free_run(response.model, record, {fit.begin, tune.end}, response.x0);
-  const Matrix error = record.y.middleRows(tune.begin, tune.size()) - y_hat.bottomRows(tune.size());
-  const double result = error.colwise().norm().mean() / std::sqrt(double(tune.size()));
-  return std::isfinite(result) ? result : infinity;
+/// Mean over outputs of the root mean square over rows.
+double rms(const Matrix& errors) {
+  return errors.colwise().norm().mean() / std::sqrt(double(errors.rows()));
+}
+
+/// Errors of one candidate on held-out rows, with both operating points.
+struct FoldErrors {
+  double whole = 0;
+  double recent = 0;
+};
+
+std::optional<FoldErrors> fold_errors(const Dynamics& dynamics, const Record& record,
+                                      const Fold& fold) {
+  if (!is_stable(dynamics.A)) return std::nullopt;
+  const Response response = fit_response(dynamics.A, dynamics.C, record, fold.fit, Accuracy::fast);
+  const bool forwards = fold.fit.begin < fold.tune.begin;
+  // Forwards the state is carried on; backwards the run starts anew from its first outputs.
+  const RowRange run{fold.fit.begin, forwards ? fold.tune.end : fold.fit.end};
+  const Matrix y_hat = free_run(response.model, record, run, response.x0);
+  const Matrix residuals =
+      record.y.middleRows(fold.fit.begin, fold.fit.size()) - y_hat.topRows(fold.fit.size());
+  const Matrix errors = record.y.middleRows(fold.tune.begin, fold.tune.size()) -
+                        (forwards ? Matrix(y_hat.bottomRows(fold.tune.size()))
+                                  : free_run(response.model, record, fold.tune));
+  const Vector shift = recent_operating_point(residuals, forwards);
+  const FoldErrors result{rms(errors), rms(errors.rowwise() - shift.transpose())};
+  if (!std::isfinite(result.whole)) return std::nullopt;
+  return result;
+}
+
+/// Best first by the rule of the header.
+void rank(std::vector<ScoredRecipe>& recipes) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const ScoredRecipe& candidate : recipes) best = std::min(best, candidate.error);
+  const auto key = [best](const ScoredRecipe& candidate) {
+    const bool equal = candidate.error <= equal_errors * best;
+    return std::tuple(!equal, equal ? candidate.recipe.order : 0, candidate.error);
+  };
+  std::stable_sort(recipes.begin(), recipes.end(),
+                   [&key](const auto& a, const auto& b) { return key(a) < key(b); });
 }
 
 }  // namespace
 
-std::vector<ScoredRecipe> ranked_recipes(const Record& normalised, RowRange fit, RowRange tune,
+std::array<Fold, 2> folds_of(Index rows, double tune_share) {
+  const Index tune = std::clamp<Index>(std::lround(double(rows) * tune_share), 1, rows - 1);
+  return {Fold{{0, rows - tune}, {rows - tune, rows}}, Fold{{tune, rows}, {0, tune}}};
+}
+
+std::vector<ScoredRecipe> ranked_recipes(const Record& normalised, const std::array<Fold, 2>& folds,
                                          const SearchSpace& space) {
-  const HankelFactor factor = compress(normalised, fit, 2 * space.horizons.back());
+  const Index p = normalised.y.cols();
+  const std::array<HankelFactor, 2> factors{
+      compress(normalised, folds[0].fit, 2 * space.horizons.back()),
+      compress(normalised, folds[1].fit, 2 * space.horizons.back())};
   std::vector<ScoredRecipe> found;
   for (const int horizon : space.horizons) {
-    const Projection projection(factor, horizon);
+    const std::array<Projection, 2> projections{Projection(factors[0], horizon),
+                                                Projection(factors[1], horizon)};
+    const int limit = std::min(space.max_order, (horizon - 1) * static_cast<int>(p));
     for (const Weighting weighting : space.weightings) {
-      const auto [gamma, singular_values] = projection.observability(weighting);
-      const int limit = std::min(space.max_order, (horizon - 1) * int(factor.outputs));
+      const std::array<Matrix, 2> gammas{projections[0].observability(weighting).gamma,
+                                         projections[1].observability(weighting).gamma};
       for (int order = space.min_order; order <= limit; ++order) {
-        const double error =
-            tuning_error(shift_invariant(gamma, factor.outputs, order), normalised, fit, tune);
-        if (std::isfinite(error)) found.push_back({{order, horizon, weighting}, error});
+        const auto first = fold_errors(shift_invariant(gammas[0], p, order), normalised, folds[0]);
+        const auto second =
+            first ? fold_errors(shift_invariant(gammas[1], p, order), normalised, folds[1])
+                  : std::nullopt;
+        if (!second) continue;
+        const double whole = (first->whole + second->whole) / 2;
+        const double recent = (first->recent + second->recent) / 2;
+        if (recent < worthwhile_recency * whole)
+          found.push_back({{order, horizon, weighting, OperatingPoint::recent}, recent});
+        else
+          found.push_back({{order, horizon, weighting, OperatingPoint::whole}, whole});
       }
     }
   }
-  if (found.empty()) return found;
-  const double best =
-      std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
-        return a.error < b.error;
-      })->error;
-  std::stable_sort(found.begin(), found.end(), [best](const auto& a, const auto& b) {
-    const bool a_equals = a.error <= equal_errors * best, b_equals = b.error <= equal_errors * best;
-    if (a_equals != b_equals) return a_equals;
-    if (a_equals && a.recipe.order != b.recipe.order) return a.recipe.order < b.recipe.order;
-    return a.error < b.error;
-  });
+  rank(found);
   return found;
+}
+
+double held_out_error_of_constant(const Record& normalised, const std::array<Fold, 2>& folds) {
+  double sum = 0;
+  for (const Fold& fold : folds) {
+    const Eigen::RowVectorXd mean =
+        normalised.y.middleRows(fold.fit.begin, fold.fit.size()).colwise().mean();
+    sum += rms(normalised.y.middleRows(fold.tune.begin, fold.tune.size()).rowwise() - mean);
+  }
+  return sum / double(folds.size());
+}
+
+Vector recent_operating_point(const Matrix& residuals, bool towards_end) {
+  const Index half = (residuals.rows() + 1) / 2;
+  const auto nearest = residuals.middleRows(towards_end ? residuals.rows() - half : 0, half);
+  return nearest.colwise().mean().transpose();
 }
 
 }  // namespace reident::identification

@@ -1,6 +1,7 @@
 // The search over order, horizon and weighting, scored on rows that no candidate has seen.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "identification/identify.hpp"
@@ -8,20 +9,32 @@
 
 namespace reident::identification {
 
+/// A model is fitted on `fit` and scored on `tune`, the rows just before or just after.
+struct Fold {
+  RowRange fit;
+  RowRange tune;
+};
+
+/// The two folds of `rows` rows: the last `tune_share` held out, and the first.
+std::array<Fold, 2> folds_of(Index rows, double tune_share);
+
+/// Where the output's operating point is taken from: all rows, or the half of them nearest to the
+/// rows that the model is meant for, which follows an output whose zero drifts.
+enum class OperatingPoint { whole, recent };
+
 /// What is chosen: with it and the rows, the model follows.
 struct Recipe {
   int order = 0;
   int horizon = 0;
   Weighting weighting = Weighting::n4sid;
-  bool operator==(const Recipe&) const = default;
+  OperatingPoint operating_point = OperatingPoint::whole;
 };
 
 struct ScoredRecipe {
   Recipe recipe;
-  double error = 0;  // mean over outputs of the free run's root mean square error, normalised
+  double error = 0;  // see held_out_error_of_constant
 };
 
-/// The recipes to try on `rows` rows in `segments`, under the options.
 struct SearchSpace {
   std::vector<int> horizons;  // ascending
   std::vector<Weighting> weightings;
@@ -29,10 +42,19 @@ struct SearchSpace {
   int max_order = 1;
 };
 
-/// Fits every recipe on `fit` and scores its free run on `tune`, the rows that follow. Returns the
-/// stable ones, best first: within 1 % of the smallest error the lower order wins, then the lower
-/// error.
-std::vector<ScoredRecipe> ranked_recipes(const Record& normalised, RowRange fit, RowRange tune,
+/// Fits every recipe on each fold of a normalised record and scores its free run on the rows held
+/// out. Returns those that are stable on both folds, best first: within 1 % of the smallest error
+/// the lower order wins, then the lower error, then the shorter horizon. A recent operating point
+/// is taken where it lowers the error by more than 5 %.
+std::vector<ScoredRecipe> ranked_recipes(const Record& normalised, const std::array<Fold, 2>& folds,
                                          const SearchSpace& space);
+
+/// The error of the model that says the mean of the fitted rows. An error is the mean over folds
+/// and outputs of the root mean square on the rows held out, in units of the output's deviation.
+double held_out_error_of_constant(const Record& normalised, const std::array<Fold, 2>& folds);
+
+/// Shifts the model's y0 to the operating point of the last half (`towards_end`) or the first half
+/// of the rows it was fitted on, given the fit's residuals there.
+Vector recent_operating_point(const Matrix& residuals, bool towards_end);
 
 }  // namespace reident::identification

@@ -1,10 +1,15 @@
 #include "identification/identify.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
 #include "identification/choice.hpp"
+#include "identification/excitation.hpp"
 #include "identification/hankel.hpp"
+#include "identification/kalman.hpp"
 #include "identification/normalise.hpp"
 #include "identification/response.hpp"
 #include "identification/subspace.hpp"
@@ -12,103 +17,82 @@
 namespace reident::identification {
 namespace {
 
-constexpr int default_horizons[] = {6, 10, 15, 20, 30};
+constexpr int preferred_horizons[] = {6, 10, 15, 20, 30};
 
 std::string text(double value) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  std::snprintf(buffer, sizeof buffer, "%.4g", value);
   return buffer;
 }
 
-/// Where the first non-finite value stands, if there is one.
+/// "input 3" for the channel 2: people count from one.
+std::string ordinal(const char* kind, Index channel) {
+  return std::string(kind) + " " + std::to_string(channel + 1);
+}
+
 std::optional<Verdict> non_finite_values(const Record& record, RowRange rows) {
   const auto look = [rows](const Matrix& channels, const char* kind) -> std::optional<Verdict> {
     for (Index c = 0; c < channels.cols(); ++c)
       for (Index r = rows.begin; r < rows.end; ++r)
         if (!std::isfinite(channels(r, c)))
-          return Verdict{VerdictCode::non_finite, std::string(kind) + " " + std::to_string(c + 1) +
-                                                      " is not finite in row " + std::to_string(r) +
-                                                      "; mark such samples as invalid"};
+          return Verdict{VerdictCode::non_finite,
+                         ordinal(kind, c) + " is not a finite number in row " + std::to_string(r) +
+                             "; mark such samples as invalid or leave the row out"};
     return std::nullopt;
   };
   if (auto verdict = look(record.u, "input")) return verdict;
   return look(record.y, "output");
 }
 
-/// Columns of H that determine its factor with some margin.
-bool enough(const std::vector<Segment>& segments, Index block_rows, Index width) {
-  return hankel_columns(segments, block_rows) >= 1 + block_rows * width;
+/// A smaller horizon than this cannot carry the order asked for.
+int least_horizon(const IdentifyOptions& options) {
+  return std::max(2, options.order.value_or(options.min_order) + 1);
 }
 
-/// Horizons that the segments can feed, ascending; the preferred ones that leave at least half of
-/// the columns that the shortest one has.
-std::vector<int> feasible_horizons(const std::vector<Segment>& segments, Index width,
+/// Columns of the Hankel matrix of 2 * horizon block rows in the poorer of the folds, 0 where they
+/// do not determine its factor.
+Index usable_columns(const Record& record, const std::array<Fold, 2>& folds, int horizon) {
+  const Index width = record.u.cols() + record.y.cols();
+  Index least = std::numeric_limits<Index>::max();
+  for (const Fold& fold : folds)
+    least = std::min(least, hankel_columns(segments_within(record, fold.fit), 2 * horizon));
+  return least >= 2 * horizon * width + 1 ? least : 0;
+}
+
+/// Horizons that the segments can feed, ascending. A longer one must leave at least half of the
+/// columns that the shortest one has, since gaps cost columns.
+std::vector<int> feasible_horizons(const Record& record, const std::array<Fold, 2>& folds,
                                    const IdentifyOptions& options) {
-  const int least = std::max(2, options.order.value_or(options.min_order) + 1);
-  if (options.horizon) {
-    if (enough(segments, 2 * *options.horizon, width)) return {*options.horizon};
-    return {};
-  }
-  if (!enough(segments, 2 * least, width)) return {};
-  int longest = least;
-  while (longest < 30 && enough(segments, 2 * (longest + 1), width) &&
-         2 * hankel_columns(segments, 2 * (longest + 1)) >= hankel_columns(segments, 2 * least))
-    ++longest;
+  const int least = options.horizon.value_or(least_horizon(options));
+  const Index columns = usable_columns(record, folds, least);
+  if (columns == 0) return {};
+  if (options.horizon) return {least};
   std::vector<int> horizons;
-  for (const int horizon : default_horizons)
-    if (horizon >= least && horizon <= longest) horizons.push_back(horizon);
-  if (horizons.empty()) horizons.push_back(longest);
+  for (const int horizon : preferred_horizons)
+    if (horizon >= least && 2 * usable_columns(record, folds, horizon) >= columns)
+      horizons.push_back(horizon);
+  if (horizons.empty()) horizons.push_back(least);
   return horizons;
 }
 
-/// Splits the rows so that the last `tune_share` of them is held out.
-std::pair<RowRange, RowRange> split(Index rows, double tune_share) {
-  const Index tune = std::max<Index>(1, static_cast<Index>(std::lround(double(rows) * tune_share)));
-  return {{0, rows - tune}, {rows - tune, rows}};
-}
-
+/// One call of identify(): the steps in their order, each of which may end it with a verdict.
 class Identification {
  public:
   Identification(const Record& record, RowRange rows, const IdentifyOptions& options)
       : record_(record), rows_(rows), options_(options) {}
 
   IdentifyResult run() {
-    if (auto verdict = non_finite_values(record_, rows_)) return *verdict;
+    phase("prepare");
+    if (auto verdict = prepare()) return *verdict;
     phase("choose");
-    const auto [fit, tune] = split(rows_.size(), options_.tune_share);
-    const Index width = record_.u.cols() + record_.y.cols();
-    const RowRange fit_rows{rows_.begin, rows_.begin + fit.end};
-    SearchSpace space;
-    space.horizons = feasible_horizons(segments_within(record_, fit_rows), width, options_);
-    if (space.horizons.empty()) return too_few(width);
-    const Normalisation scaling = normalisation_of(record_, fit_rows);
-    if (scaling.outputs.empty())
-      return Verdict{
-          VerdictCode::constant_outputs,
-          "no output moves in the identification rows; choose a window in which it does"};
-    if (scaling.inputs.empty() && record_.u.cols() > 0)
-      return Verdict{
-          VerdictCode::constant_inputs,
-          "no input moves in the identification rows; choose a window in which one does"};
-    space.weightings = {Weighting::n4sid, Weighting::moesp, Weighting::cva};
-    if (options_.weighting) space.weightings = {*options_.weighting};
-    space.min_order = options_.order.value_or(options_.min_order);
-    space.max_order = options_.order.value_or(options_.max_order);
-    const Record work = normalised(record_, rows_, scaling);
-    const std::vector<ScoredRecipe> ranked = ranked_recipes(work, fit, tune, space);
-    if (ranked.empty())
-      return Verdict{VerdictCode::unstable, "no stable model of any order was found"};
-    const double constant = work.y.middleRows(tune.begin, tune.size()).colwise().norm().mean() /
-                            std::sqrt(double(tune.size()));
-    if (ranked.front().error >= constant)
-      return Verdict{VerdictCode::no_better_than_mean,
-                     "the best model's error on held-out rows, " + text(ranked.front().error) +
-                         ", is not below the constant model's, " + text(constant)};
+    std::vector<ScoredRecipe> ranked;
+    if (auto verdict = choose(ranked)) return *verdict;
     phase("identify");
     for (const ScoredRecipe& candidate : ranked)
-      if (auto identified = realise(candidate.recipe)) return *identified;
+      if (auto identified = realise(candidate.recipe)) return std::move(*identified);
     return Verdict{VerdictCode::unstable,
-                   "no recipe gave a stable model on all identification rows"};
+                   "no choice that was stable on part of the rows is stable on all of them; choose "
+                   "a longer window"};
   }
 
  private:
@@ -116,48 +100,159 @@ class Identification {
     if (options_.on_phase) options_.on_phase(name);
   }
 
-  Verdict too_few(Index width) const {
-    const Index s =
-        options_.horizon.value_or(std::max(2, options_.order.value_or(options_.min_order) + 1));
+  /// Checks the samples and leaves out the channels that say nothing.
+  std::optional<Verdict> prepare() {
+    if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols());
+    if (auto verdict = non_finite_values(record_, rows_)) return verdict;
+    normalisation_ = normalisation_of(record_, rows_);
+    warn_of_constants(normalisation_.inputs, record_.u.cols(), "input");
+    warn_of_constants(normalisation_.outputs, record_.y.cols(), "output");
+    if (normalisation_.outputs.empty())
+      return Verdict{VerdictCode::constant_outputs,
+                     "no output moves in the rows to identify from; choose a window in which the "
+                     "equipment does something"};
+    if (normalisation_.inputs.empty() && record_.u.cols() > 0)
+      return Verdict{VerdictCode::constant_inputs,
+                     "no input moves in the rows to identify from; choose a window in which the "
+                     "equipment is driven"};
+    work_ = normalised(record_, rows_, normalisation_);
+    leave_out_redundant_inputs();
+    return std::nullopt;
+  }
+
+  void warn_of_constants(const std::vector<Index>& moving, Index channels, const char* kind) {
+    for (Index c = 0; c < channels; ++c)
+      if (!std::binary_search(moving.begin(), moving.end(), c))
+        warnings_.push_back(ordinal(kind, c) +
+                            " is constant in the rows to identify from: the "
+                            "model does not say how " +
+                            (kind[0] == 'i' ? "it acts" : "it moves"));
+  }
+
+  void leave_out_redundant_inputs() {
+    const std::vector<RedundantInput> redundant = redundant_inputs(work_.u);
+    if (redundant.empty()) return;
+    std::vector<Index>& inputs = normalisation_.inputs;
+    const std::vector<Index> before = inputs;
+    for (auto found = redundant.rbegin(); found != redundant.rend(); ++found) {
+      std::string others;
+      for (const Index other : found->explained_by)
+        others += (others.empty() ? "" : ", ") +
+                  ordinal("input", before[static_cast<std::size_t>(other)]);
+      warnings_.push_back(ordinal("input", before[static_cast<std::size_t>(found->input)]) +
+                          " is a linear combination of " + others +
+                          " at every row and is left out of the model");
+      inputs.erase(inputs.begin() + found->input);
+    }
+    work_ = normalised(record_, rows_, normalisation_);
+  }
+
+  /// Ranks what can be identified, best first.
+  std::optional<Verdict> choose(std::vector<ScoredRecipe>& ranked) {
+    const std::array<Fold, 2> folds = folds_of(rows_.size(), options_.tune_share);
+    SearchSpace space{feasible_horizons(work_, folds, options_),
+                      {Weighting::n4sid, Weighting::moesp, Weighting::cva},
+                      options_.order.value_or(options_.min_order),
+                      options_.order.value_or(options_.max_order)};
+    if (space.horizons.empty()) return too_few_samples(work_.u.cols() + work_.y.cols());
+    if (options_.weighting) space.weightings = {*options_.weighting};
+    if (auto verdict = limit_by_excitation(space)) return verdict;
+    ranked = ranked_recipes(work_, folds, space);
+    if (ranked.empty())
+      return Verdict{VerdictCode::unstable,
+                     "every model of order " + std::to_string(space.min_order) + " to " +
+                         std::to_string(space.max_order) +
+                         " is unstable; choose a longer window or fewer orders"};
+    const double constant = held_out_error_of_constant(work_, folds);
+    if (!(ranked.front().error < constant))
+      return Verdict{VerdictCode::no_better_than_mean,
+                     "on rows held out the best model errs by " + text(ranked.front().error) +
+                         " standard deviations and the mean by " + text(constant) +
+                         "; the inputs do not explain the outputs in this window"};
+    return std::nullopt;
+  }
+
+  Verdict too_few_samples(Index width) const {
+    const Index s = options_.horizon.value_or(least_horizon(options_));
     const Index fit = 2 * s * (width + 1);
     const auto needed = static_cast<Index>(std::ceil(double(fit) / (1 - options_.tune_share))) + 1;
     return {VerdictCode::too_few_samples,
             std::to_string(rows_.size()) + " rows in " +
                 std::to_string(segments_within(record_, rows_).size()) +
                 " segments are too few; at least " + std::to_string(needed) +
-                " rows without a gap are needed"};
+                " rows without a gap are needed for a horizon of " + std::to_string(s)};
   }
 
+  /// An order of n needs inputs that excite n + 1 block rows.
+  std::optional<Verdict> limit_by_excitation(SearchSpace& space) {
+    if (work_.u.cols() == 0) return std::nullopt;
+    const int horizon = space.horizons.back();
+    const HankelFactor factor = compress(work_, work_.all(), 2 * horizon);
+    const Excitation excitation = excitation_of(Projection(factor, horizon).input_innovations());
+    if (excitation.order >= horizon) return std::nullopt;
+    const std::string weakest =
+        ordinal("input", normalisation_.inputs[static_cast<std::size_t>(excitation.weakest_input)]);
+    const int highest = static_cast<int>(excitation.order) - 1;
+    if (highest < space.min_order)
+      return Verdict{VerdictCode::insufficient_excitation,
+                     weakest + " follows from its own past and the other inputs after " +
+                         std::to_string(excitation.order) + " samples, but order " +
+                         std::to_string(space.min_order) + " needs " +
+                         std::to_string(space.min_order + 1) +
+                         "; choose a window in which it moves more freely"};
+    if (highest < space.max_order) {
+      space.max_order = highest;
+      warnings_.push_back(weakest + " excites no order above " + std::to_string(highest));
+    }
+    return std::nullopt;
+  }
+
+  /// The recipe on all rows, absent when it gives no stable model there.
   std::optional<Identified> realise(const Recipe& recipe) const {
-    const Normalisation scaling = normalisation_of(record_, rows_);
-    const Record work = normalised(record_, rows_, scaling);
-    const HankelFactor factor = compress(work, work.all(), 2 * recipe.horizon);
-    const auto [gamma, singular_values] =
-        Projection(factor, recipe.horizon).observability(recipe.weighting);
-    const AC ac = shift_invariant(gamma, factor.outputs, recipe.order);
-    if (!ac.A.allFinite()) return std::nullopt;
+    const HankelFactor factor = compress(work_, work_.all(), 2 * recipe.horizon);
+    const Projection projection(factor, recipe.horizon);
+    auto [gamma, singular_values] = projection.observability(recipe.weighting);
+    const Dynamics dynamics = shift_invariant(gamma, factor.outputs, recipe.order);
+    if (!is_stable(dynamics.A)) return std::nullopt;
+    Response response = fit_response(dynamics.A, dynamics.C, work_, work_.all(), Accuracy::exact);
     Identified result;
-    result.spectral_radius = spectral_radius({ac.A, {}, {}, {}, {}, {}, {}, 1});
-    if (!(result.spectral_radius < 1)) return std::nullopt;
-    const Response response = fit_response(ac.A, ac.C, work, work.all(), Accuracy::exact);
-    result.model = in_units(response.model, scaling);
-    if (!is_well_formed(result.model)) return std::nullopt;
+    result.warnings = warnings_;
+    if (const auto K =
+            kalman_gain(dynamics.A, dynamics.C, projection.noise_covariance(response.model)))
+      response.model.K = *K;
+    else
+      result.warnings.push_back(
+          "the model has no Kalman gain: its Riccati equation has no checked solution");
+    if (recipe.operating_point == OperatingPoint::recent)
+      response.model.y0 += recent_operating_point(
+          work_.y - free_run(response.model, work_, work_.all(), response.x0), true);
+    result.model = in_units(response.model, normalisation_);
+    if (!is_well_formed(result.model) || !response.x0.allFinite()) return std::nullopt;
     result.x0 = response.x0;
     result.horizon = recipe.horizon;
     result.weighting = recipe.weighting;
-    result.singular_values = singular_values;
+    result.spectral_radius = spectral_radius(result.model);
+    result.singular_values = std::move(singular_values);
+    describe(result);
+    return result;
+  }
+
+  /// What is said of the model besides its matrices.
+  void describe(Identified& result) const {
     const auto u = record_.u.middleRows(rows_.begin, rows_.size());
     result.input_min = u.colwise().minCoeff().transpose();
     result.input_max = u.colwise().maxCoeff().transpose();
-    const auto [fit, tune] = split(rows_.size(), options_.tune_share);
+    const RowRange tune = folds_of(rows_.size(), options_.tune_share)[0].tune;
     result.tune = score_free_run(result.model, record_, rows_,
                                  {rows_.begin + tune.begin, rows_.begin + tune.end}, result.x0);
-    return result;
   }
 
   const Record& record_;
   RowRange rows_;
   const IdentifyOptions& options_;
+  Normalisation normalisation_;
+  Record work_;  // the rows, normalised, without the channels left out
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace

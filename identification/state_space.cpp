@@ -1,12 +1,24 @@
 #include "identification/state_space.hpp"
 
+#include <cmath>
+
 #include <Eigen/Eigenvalues>
 
 namespace reident::identification {
+namespace {
+
+double largest_eigenvalue(const Matrix& A) {
+  return A.rows() == 0 ? 0 : A.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+}  // namespace
 
 double spectral_radius(const StateSpaceModel& model) {
-  if (model.order() == 0) return 0;
-  return model.A.eigenvalues().cwiseAbs().maxCoeff();
+  return largest_eigenvalue(model.A);
+}
+
+bool is_stable(const Matrix& A) {
+  return A.allFinite() && largest_eigenvalue(A) < 1;
 }
 
 bool is_well_formed(const StateSpaceModel& model) {

@@ -38,6 +38,9 @@ struct StateSpaceModel {
 /// Largest |eigenvalue| of A; 0 for an order of 0. The model is stable when it is below 1.
 double spectral_radius(const StateSpaceModel& model);
 
+/// Every eigenvalue of the square, finite or non-finite matrix A lies inside the unit circle.
+bool is_stable(const Matrix& A);
+
 /// Sizes agree, every number is finite and the period is positive.
 bool is_well_formed(const StateSpaceModel& model);
 

@@ -25,15 +25,24 @@ class Projection {
   };
   Observability observability(Weighting weighting) const;
 
+  /// Deviation of each future input that no earlier one foretells (horizon x m, in the record's
+  /// units): the row k column i speaks of input i against the inputs of k rows before.
+  Matrix input_innovations() const;
+
+  /// Covariance [Q S; S' R] of the process and measurement noises that the model leaves, the
+  /// model's x, u and y being those of the record.
+  Matrix noise_covariance(const StateSpaceModel& model) const;
+
  private:
-  Index inputs_, outputs_, horizon_;
-  Matrix T_uw_, T_ww_, T_wy_, T_yy_;  // blocks of the triangular factor
+  Index inputs_, outputs_, horizon_, columns_;
+  // Blocks of the triangular factor; the row of the constant is left out, which centres the rest.
+  Matrix T_uu_, T_uw_, T_uy_, T_ww_, T_wy_, T_yy_;
 };
 
 /// A and C of the order n by the shift invariance of the extended observability matrix.
-struct AC {
+struct Dynamics {
   Matrix A, C;
 };
-AC shift_invariant(const Matrix& gamma, Index outputs, Index order);
+Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order);
 
 }  // namespace reident::identification
