@@ -12,9 +12,11 @@ namespace reident {
 namespace {
 
 // A file with more syntax mistakes is something else than a configuration.
-constexpr std::size_t max_syntax_mistakes = 50;
+constexpr std::size_t max_syntax_mistakes = 20;
 // How far back the beginning of an unfinished value is looked for.
-constexpr std::size_t max_value_lines = 200;
+constexpr std::size_t max_value_lines = 50;
+// The text is parsed again after each mistake: of a longer one only the first is reported.
+constexpr std::size_t max_recovered_bytes = std::size_t{128} << 10;
 
 /// The lines of a text that is parsed again and again with less and less in it.
 class Lines {
@@ -137,7 +139,8 @@ std::string described(const toml::node& node) {
 ConfigDocument parse_document(std::string_view text) {
   ConfigDocument document;
   Lines lines(text);
-  while (document.mistakes.size() < max_syntax_mistakes) {
+  const std::size_t most = text.size() > max_recovered_bytes ? 1 : max_syntax_mistakes;
+  while (document.mistakes.size() < most) {
     toml::parse_result result = toml::parse(std::string_view(lines.first(lines.size())));
     if (result) {
       document.table = std::move(result).table();
