@@ -1,5 +1,8 @@
 #include "storage/database.hpp"
 
+#include <cstring>
+#include <fstream>
+#include <unistd.h>
 #include <utility>
 
 #include "storage/connection.hpp"
@@ -24,15 +27,43 @@ void refuse_what_is_no_file(const fs::path& path, Database::Mode mode) {
   const std::string what = "database " + path.string();
   if (fs::is_directory(status))
     throw Error(Error::Kind::cannot_open, what + " is a folder: name a file in it");
-  if (mode == Database::Mode::read_only && status.type() == fs::file_type::not_found)
-    throw Error(Error::Kind::cannot_open,
-                what + " does not exist: check the path, or start the service that makes it");
   if (fs::exists(status) && !fs::is_regular_file(status))
     throw Error(Error::Kind::cannot_open, what + " is not a regular file: name another");
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::exists(folder, error))
     throw Error(Error::Kind::cannot_open,
-                what + " cannot be made: its folder does not exist; make the folder first");
+                what + " cannot be opened: its folder does not exist; check the path");
+  if (mode == Database::Mode::read_only && !fs::exists(status))
+    throw Error(Error::Kind::cannot_open,
+                what + " does not exist: check the path, or start the service that makes it");
+}
+
+bool has_content(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  return !error && size > 0;
+}
+
+// SQLite reads what is missing of a last page as zeros. With a log or journal beside it a file may
+// be shorter than its first page says.
+void refuse_what_was_cut_short(const fs::path& path) {
+  constexpr std::size_t header_size = 32;
+  unsigned char header[header_size] = {};
+  std::ifstream file(path, std::ios::binary);
+  if (has_content(path.string() + "-wal") || fs::exists(path.string() + "-journal") ||
+      !file.read(reinterpret_cast<char*>(header), header_size))
+    return;
+  if (std::memcmp(header, "SQLite format 3", 16) != 0) return;
+  const std::uint64_t stored_size = header[16] * 256U + header[17];
+  const std::uint64_t page_size = stored_size == 1 ? 65536 : stored_size;
+  std::uint64_t pages = 0;
+  for (std::size_t i = 28; i < 32; ++i) pages = pages * 256 + header[i];
+  if (fs::file_size(path) < pages * page_size)
+    throw Error(Error::Kind::corrupt, "database " + path.string() + " was cut short: it has " +
+                                          std::to_string(fs::file_size(path)) + " of " +
+                                          std::to_string(pages * page_size) +
+                                          " bytes; restore a backup, or save what can be read "
+                                          "with 'sqlite3 FILE .recover'");
 }
 
 std::int64_t pragma(Connection& connection, std::string_view name) {
@@ -63,6 +94,9 @@ void refuse_what_is_not_ours(Connection& connection, const fs::path& path) {
 Connection open_writer(const fs::path& path) {
   Connection connection(path.string(), path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   connection.execute("PRAGMA foreign_keys = ON; PRAGMA cache_size = -65536");
+  if (connection.is_read_only())
+    throw Error(Error::Kind::read_only,
+                "database " + path.string() + " cannot be written: check its permissions");
   if (is_empty(connection)) {
     sqlite::Transaction transaction(connection);
     connection.execute(schema::creation());
@@ -91,21 +125,33 @@ std::string immutable_uri(const fs::path& path) {
   return uri + "?immutable=1";
 }
 
+// In a folder that cannot be written SQLite cannot make the shared memory that a log needs.
+// Without a log the file is complete, and a file that nobody can write beside does not change.
+Connection open_sealed(const fs::path& path) {
+  const fs::path log = path.string() + "-wal";
+  if (has_content(log))
+    throw Error(Error::Kind::cannot_open,
+                "database " + path.string() + " cannot be opened: its newest data are in " +
+                    log.string() +
+                    ", which cannot be read in a folder without write permission; "
+                    "copy both to a folder that can be written");
+  return Connection(immutable_uri(path), path, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+}
+
 Connection open_reader(const fs::path& path) {
+  const auto checked = [&](Connection connection) {
+    refuse_what_is_not_ours(connection, path);
+    return connection;
+  };
   try {
-    Connection connection(path.string(), path, SQLITE_OPEN_READONLY);
-    refuse_what_is_not_ours(connection, path);
-    return connection;
+    return checked(Connection(path.string(), path, SQLITE_OPEN_READONLY));
   } catch (const Error& error) {
-    // In a folder that cannot be written SQLite cannot make its shared memory file. Without a log
-    // beside it the file is complete, and nobody who writes is there.
-    std::error_code ignored;
-    if (error.kind() != Error::Kind::cannot_open || fs::exists(path.string() + "-wal", ignored))
-      throw;
-    Connection connection(immutable_uri(path), path, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
-    refuse_what_is_not_ours(connection, path);
-    return connection;
+    const bool folder_is_writable = ::access(path.parent_path().c_str(), W_OK) == 0;
+    const bool could_not_make_files =
+        error.kind() == Error::Kind::cannot_open || error.kind() == Error::Kind::read_only;
+    if (!could_not_make_files || folder_is_writable || ::access(path.c_str(), R_OK) != 0) throw;
   }
+  return checked(open_sealed(path));
 }
 
 }  // namespace
@@ -113,8 +159,9 @@ Connection open_reader(const fs::path& path) {
 Database::Database(const std::filesystem::path& path, Mode mode) : impl_(std::make_unique<Impl>()) {
   impl_->path = resolved(path);
   refuse_what_is_no_file(impl_->path, mode);
+  if (mode == Mode::read_write) impl_->lock.emplace(impl_->path);
+  refuse_what_was_cut_short(impl_->path);
   if (mode == Mode::read_write) {
-    impl_->lock.emplace(impl_->path);
     impl_->connection.emplace(open_writer(impl_->path));
   } else {
     impl_->connection.emplace(open_reader(impl_->path));

@@ -147,6 +147,13 @@ CREATE VIEW telemetry_gap AS
              printf('%llu', last - 9223372036854775807 - 1)) AS last,
          time_before, time_after
   FROM sequence_gap JOIN source ON source.id = sequence_gap.source;
+
+CREATE VIEW telemetry_late AS
+  SELECT series.spacecraft, coalesce(parameter.name, series.parameter) AS parameter,
+         iif(origin, 'simulated', 'real') AS origin, begin_time, end_time
+  FROM late_range JOIN series ON series.id = late_range.series
+  LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
+                      AND parameter.id = series.parameter;
 )sql";
 
 constexpr std::string_view registry_views = R"sql(

@@ -1,7 +1,6 @@
 #include "storage/sqlite.hpp"
 
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -21,9 +20,15 @@ bool no_room(int system_error) {
   return system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG;
 }
 
-Diagnosis diagnose(int code, int system_error) {
+bool no_room(sqlite3* connection, int code, int system_error) {
+  if ((code & 0xff) == SQLITE_FULL) return true;
+  if ((code & 0xff) != SQLITE_IOERR || code == SQLITE_IOERR_READ) return false;
+  // SQLite does not note the system's error of every failure; errno still has it then.
+  return no_room(system_error) || (connection && no_room(sqlite3_system_errno(connection)));
+}
+
+Diagnosis diagnose(int code) {
   using Kind = Error::Kind;
-  const bool io_error = (code & 0xff) == SQLITE_IOERR;
   switch (code & 0xff) {
     case SQLITE_CANTOPEN:
       return {Kind::cannot_open, "cannot be opened: check that it exists and its permissions"};
@@ -41,20 +46,21 @@ Diagnosis diagnose(int code, int system_error) {
       return {Kind::read_only,
               "cannot be written: check the permissions of the file and of its "
               "folder"};
+    case SQLITE_FULL:
+      return {Kind::full,
+              "has no room to grow: free space on its disk or raise the quota or file size limit; "
+              "what was stored before is kept"};
+    case SQLITE_IOERR:
+      return {Kind::failed, "cannot be read or written: check the disk"};
     default:
-      break;
+      return {Kind::failed, "failed"};
   }
-  if (code == SQLITE_FULL || (io_error && no_room(system_error)))
-    return {Kind::full,
-            "has no room to grow: free space on its disk or raise the quota or file "
-            "size limit; what was stored before is kept"};
-  if (io_error) return {Kind::failed, "cannot be read or written: check the disk"};
-  return {Kind::failed, "failed"};
 }
 
 [[noreturn]] void fail_on(sqlite3* connection, int code, const std::string& path) {
-  const int system_error = connection ? sqlite3_system_errno(connection) : 0;
-  const Diagnosis diagnosis = diagnose(code, system_error);
+  const int system_error = errno;
+  const bool full = no_room(connection, code, system_error);
+  const Diagnosis diagnosis = diagnose(full ? SQLITE_FULL : code);
   std::string message = "database " + path + " " + diagnosis.what_and_remedy;
   message +=
       std::string(" (SQLite: ") + (connection ? sqlite3_errmsg(connection) : sqlite3_errstr(code));

@@ -93,6 +93,7 @@ class Connection {
     return Query(prepared(sql), values...);
   }
   std::int64_t last_id() const { return sqlite3_last_insert_rowid(handle_.get()); }
+  bool is_read_only() const { return sqlite3_db_readonly(handle_.get(), "main") == 1; }
   bool in_transaction() const { return sqlite3_get_autocommit(handle_.get()) == 0; }
 
  private:

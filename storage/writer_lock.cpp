@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include "storage/database.hpp"
 
@@ -32,12 +33,21 @@ std::string holder(int descriptor) {
                   "path and the folder's permissions");
 }
 
+// A lock file that root made would keep the database's owner from writing; SQLite does the same for
+// its own files.
+void share_with_owner(int descriptor, const std::filesystem::path& database) {
+  struct stat owner {};
+  if (::geteuid() != 0 || ::stat(database.c_str(), &owner) != 0) return;
+  if (::fchown(descriptor, owner.st_uid, owner.st_gid) != 0) return;
+}
+
 }  // namespace
 
 WriterLock::WriterLock(const std::filesystem::path& database) {
   const std::filesystem::path file = database.string() + ".lock";
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) cannot_lock(file, errno);
+  share_with_owner(descriptor_, database);
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     const int system_error = errno;
     const std::string who = holder(descriptor_);
