@@ -1,0 +1,47 @@
+// A writer in another process at full speed against a reader that is far slower than it.
+#include "tests/service/dds/child.hpp"
+#include "tests/service/dds/dds_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+using storage::TelemetryFrame;
+
+std::vector<std::string> sender(const dds::Endpoint& endpoint, int history, std::size_t count,
+                                std::size_t samples) {
+  return {FRAME_SENDER,           std::to_string(endpoint.domain), endpoint.partition,
+          std::to_string(history), std::to_string(count),           std::to_string(samples)};
+}
+
+/// Takes a few frames at a time and checks that they are 1, 2, 3, ...
+std::uint64_t take_in_order(dds::Participant& participant, dds::Reader<TelemetryFrame>& reader,
+                            std::uint64_t count) {
+  dds::WaitSet wait_set(participant);
+  wait_set.attach(reader);
+  std::uint64_t next = 1;
+  while (next <= count && !testing::Test::HasFailure() && wait_set.wait(20s)) {
+    reader.take(5, [&](TelemetryFrame&& frame) {
+      EXPECT_EQ(frame.sequence, next);
+      next = frame.sequence + 1;
+    });
+  }
+  return next - 1;
+}
+
+class BackPressure : public testing::TestWithParam<int> {};
+
+TEST_P(BackPressure, a_tiny_reader_gets_every_frame_of_a_fast_process_that_ends) {
+  constexpr std::uint64_t count = 50'000;
+  const dds::Endpoint endpoint = own_endpoint();
+  dds::Participant participant(endpoint);
+  dds::Reader<TelemetryFrame> reader(participant, {.max_samples = 64});
+  Child child(sender(endpoint, GetParam(), count, 20));
+  EXPECT_EQ(take_in_order(participant, reader, count), count);
+  EXPECT_EQ(child.wait(), 0);
+  EXPECT_EQ(reader.malformed(), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(with_and_without_history, BackPressure, testing::Values(0, 1, 1000));
+
+}  // namespace
+}  // namespace reident::test

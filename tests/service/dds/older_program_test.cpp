@@ -1,0 +1,55 @@
+// Fields can be added to a topic's type without breaking programs compiled before.
+#include <array>
+#include <cstdio>
+
+#include <gmock/gmock.h>
+
+#include "tests/service/dds/child.hpp"
+#include "tests/service/dds/dds_fixture.hpp"
+#include "tests/service/dds/example_model.hpp"
+
+namespace reident::test {
+namespace {
+
+class OlderProgram : public testing::Test {
+ protected:
+  void SetUp() override { setenv("CYCLONEDDS_URI", LOOPBACK_URI, 1); }
+  void TearDown() override { unsetenv("CYCLONEDDS_URI"); }
+
+  std::vector<std::string> command(const std::string& what) const {
+    return {OLDER_PROGRAM, what, std::to_string(endpoint_.domain), endpoint_.partition};
+  }
+  dds::Endpoint endpoint_ = own_endpoint();
+};
+
+TEST_F(OlderProgram, reads_a_version_that_has_fields_it_does_not_know) {
+  dds::Participant participant(endpoint_);
+  dds::Writer<ModelVersion> writer(participant);
+  writer.write(example_version(3));
+  std::string line;
+  for (const std::string& word : command("read")) line += word + " ";
+  FILE* program = popen(line.c_str(), "r");
+  ASSERT_NE(program, nullptr);
+  std::array<char, 400> said{};
+  ASSERT_NE(fgets(said.data(), said.size(), program), nullptr);
+  EXPECT_EQ(pclose(program), 0);
+  EXPECT_EQ(std::string(said.data()),
+            "CBERS4/BDR 3 " + example_version(3).digest + " I_BDRIN1 0.9 1\n");
+}
+
+TEST_F(OlderProgram, is_read_with_what_it_does_not_say_left_empty) {
+  dds::Participant participant(endpoint_);
+  dds::Reader<ModelVersion> reader(participant);
+  const Child child(command("write"));
+  const auto versions = take_all(reader, 1);
+  ASSERT_EQ(versions.size(), 1U) << reader.last_malformed();
+  EXPECT_EQ(versions[0].number, 4);
+  EXPECT_EQ(versions[0].model.method, "");
+  EXPECT_EQ(versions[0].model.validation.rows, 0);
+  EXPECT_EQ(versions[0].model.inputs[0].low, -1);
+  EXPECT_EQ(versions[0].model.inputs[0].high, 0);
+  EXPECT_EQ(versions[0].model.dynamics.A(0, 0), 0.5);
+}
+
+}  // namespace
+}  // namespace reident::test

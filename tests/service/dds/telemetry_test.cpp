@@ -1,0 +1,155 @@
+#include <gmock/gmock.h>
+
+#include "tests/service/dds/dds_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+using storage::TelemetryFrame;
+
+std::vector<std::uint64_t> sequences(const std::vector<TelemetryFrame>& frames) {
+  std::vector<std::uint64_t> numbers;
+  for (const TelemetryFrame& frame : frames) numbers.push_back(frame.sequence);
+  return numbers;
+}
+
+std::vector<std::uint64_t> count_to(std::uint64_t last) {
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = 1; i <= last; ++i) numbers.push_back(i);
+  return numbers;
+}
+
+TEST(Telemetry, arrives_as_it_was_sent) {
+  dds::Participant participant(own_endpoint());
+  dds::Reader<TelemetryFrame> reader(participant);
+  dds::Writer<TelemetryFrame> writer(participant);
+  TelemetryFrame sent = make_frame(7);
+  sent.origin = storage::Origin::simulated;
+  sent.samples[1].quality = storage::Quality::suspect;
+  sent.samples[2].value = -0.0;
+  writer.write(sent);
+
+  const auto received = take_all(reader, 1);
+  ASSERT_EQ(received.size(), 1U);
+  EXPECT_EQ(received[0].spacecraft, "CBERS4");
+  EXPECT_EQ(received[0].source, "station");
+  EXPECT_EQ(received[0].origin, storage::Origin::simulated);
+  EXPECT_EQ(received[0].sequence, 7U);
+  EXPECT_EQ(received[0].generation_time, sent.generation_time);
+  EXPECT_EQ(received[0].reception_time, sent.reception_time);
+  ASSERT_EQ(received[0].samples.size(), 3U);
+  EXPECT_EQ(received[0].samples[1].quality, storage::Quality::suspect);
+  EXPECT_TRUE(std::signbit(received[0].samples[2].value));
+}
+
+TEST(Telemetry, a_late_reader_gets_the_history_that_the_writer_keeps) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  dds::Writer<TelemetryFrame> writer(ground, {.history = 5});
+  for (std::uint64_t i = 1; i <= 8; ++i) writer.write(make_frame(i));
+  dds::Reader<TelemetryFrame> reader(service);
+  EXPECT_THAT(sequences(take_all(reader, 5)), testing::ElementsAre(4, 5, 6, 7, 8));
+}
+
+TEST(Telemetry, a_writer_without_history_is_heard_beside_one_with_history) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  dds::Writer<TelemetryFrame> keeps(ground, {.history = 3});
+  dds::Writer<TelemetryFrame> keeps_nothing(ground, {.history = 0});
+  for (std::uint64_t i = 1; i <= 3; ++i) keeps.write(make_frame(i));
+  dds::Reader<TelemetryFrame> reader(service);
+  ASSERT_TRUE(eventually([&] { return reader.matched_writers() == 2; }));
+  ASSERT_TRUE(eventually([&] { return keeps_nothing.matched_readers() == 1; }));
+  for (std::uint64_t i = 4; i <= 6; ++i) keeps.write(make_frame(i));
+  TelemetryFrame other = make_frame(100);
+  other.source = "other station";
+  keeps_nothing.write(other);
+
+  const auto received = sequences(take_all(reader, 7));
+  EXPECT_THAT(received, testing::UnorderedElementsAre(1, 2, 3, 4, 5, 6, 100));
+  EXPECT_EQ(reader.take(100, [](TelemetryFrame&&) { FAIL() << "a frame came twice"; }), 0U);
+}
+
+TEST(Telemetry, a_wait_set_wakes_for_a_writer_without_history) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  dds::Reader<TelemetryFrame> reader(service);
+  dds::WaitSet wait_set(service);
+  wait_set.attach(reader);
+  dds::Writer<TelemetryFrame> writer(ground, {.history = 0});
+  while (writer.matched_readers() == 0) ASSERT_TRUE(wait_set.wait(10s));
+  writer.write(make_frame(1));
+  std::size_t taken = 0;
+  while (taken == 0) {
+    ASSERT_TRUE(wait_set.wait(10s));
+    taken = reader.take(10, [](TelemetryFrame&&) {});
+  }
+  EXPECT_EQ(taken, 1U);
+}
+
+TEST(Telemetry, partitions_do_not_hear_each_other) {
+  dds::Endpoint training = own_endpoint();
+  training.partition += "-training";
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  dds::Participant school(training);
+  dds::Writer<TelemetryFrame> writer(ground);
+  dds::Reader<TelemetryFrame> hears(service);
+  dds::Reader<TelemetryFrame> does_not(school);
+  writer.write(make_frame(1));
+  EXPECT_EQ(take_all(hears, 1).size(), 1U);
+  EXPECT_EQ(does_not.matched_writers(), 0U);
+  EXPECT_EQ(does_not.take(10, [](TelemetryFrame&&) {}), 0U);
+}
+
+TEST(Telemetry, a_full_reader_makes_the_writer_wait_and_loses_nothing) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  dds::Reader<TelemetryFrame> reader(service, {.max_samples = 4});
+  dds::Writer<TelemetryFrame> writer(ground, {.history = 0});
+  ASSERT_TRUE(eventually([&] { return reader.matched_writers() == 1; }));
+  std::thread sender([&] {
+    for (std::uint64_t i = 1; i <= 2000; ++i) writer.write(make_frame(i));
+  });
+  const auto received = sequences(take_all(reader, 2000));
+  sender.join();
+  EXPECT_EQ(received, count_to(2000));
+}
+
+TEST(Telemetry, a_writer_that_waits_for_room_stops_when_it_is_asked_to) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  dds::Reader<TelemetryFrame> reader(service, {.max_samples = 2});
+  dds::Writer<TelemetryFrame> writer(ground);
+  ASSERT_TRUE(eventually([&] { return writer.matched_readers() == 1; }));
+  std::uint64_t written = 0;
+  while (writer.write(make_frame(written + 1), [] { return true; })) ++written;
+  EXPECT_EQ(written, 2U);
+}
+
+TEST(Telemetry, drain_hands_out_all_that_was_accepted_and_ends_under_a_writer_at_full_speed) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  auto reader = std::make_unique<dds::Reader<TelemetryFrame>>(
+      service, dds::ReaderOptions{.max_samples = 16});
+  dds::Writer<TelemetryFrame> writer(ground, {.history = 0});
+  ASSERT_TRUE(eventually([&] { return reader->matched_writers() == 1; }));
+  std::atomic<bool> stop = false;
+  std::thread sender([&] {
+    for (std::uint64_t i = 1; writer.write(make_frame(i), [&] { return stop.load(); }); ++i) {
+      if (stop) break;
+    }
+  });
+  std::vector<TelemetryFrame> received = take_all(*reader, 1000);
+  const std::size_t before = received.size();
+  reader->drain([&](TelemetryFrame&& frame) { received.push_back(std::move(frame)); });
+  EXPECT_GE(received.size(), before);
+  EXPECT_LE(received.size(), before + 16);
+  EXPECT_EQ(sequences(received), count_to(received.size()));
+  stop = true;
+  reader.reset();
+  sender.join();
+}
+
+}  // namespace
+}  // namespace reident::test
