@@ -12,6 +12,10 @@ namespace {
 constexpr double residual_limit = 1.0;
 
 std::optional<GateDecision> against_candidate(const Evidence& e, const EquipmentConfig& limits) {
+  if (!e.validation_moves)
+    return GateDecision{Outcome::validation_says_nothing,
+                        "An output does not move in the validation part, so that no score there "
+                        "can tell a good model from a bad one."};
   if (!e.well_formed || !std::isfinite(e.mrse_percent) || std::isnan(e.fit_percent))
     return GateDecision{Outcome::not_finite,
                         "The model or its run holds numbers that are not finite."};
@@ -79,6 +83,8 @@ std::string_view name(Outcome outcome) {
       return "unknown_parameter";
     case Outcome::low_coverage:
       return "low_coverage";
+    case Outcome::validation_says_nothing:
+      return "validation_says_nothing";
     case Outcome::not_finite:
       return "not_finite";
     case Outcome::unstable:

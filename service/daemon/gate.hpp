@@ -19,6 +19,7 @@ enum class Outcome {
   waiting,            // good enough; the policy leaves the decision to an operator
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   low_coverage,
+  validation_says_nothing,
   not_finite,
   unstable,
   error_above_limit,
@@ -34,6 +35,7 @@ std::string_view name(Outcome outcome);
 struct Evidence {
   bool well_formed = false;  // sizes agree, all numbers finite
   double spectral_radius = 0;
+  bool validation_moves = false;  // every output takes more than one value there
   double mrse_percent = 0;
   double fit_percent = 0;         // the worst output's
   double residual_over_span = 0;  // largest |error| of any output over its range in the window

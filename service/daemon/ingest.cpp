@@ -11,7 +11,6 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t take_at_most = 256;  // messages of one topic in a turn
 constexpr auto look_around = 500ms;        // for stop(); data and wake() end the wait earlier
-constexpr auto drain_limit = 1s;
 
 dds::ReaderOptions options_of(const Config& config) {
   dds::ReaderOptions options;
@@ -47,21 +46,29 @@ Ingest::Ingest(dds::Participant& participant, const Config& config,
   ready_.attach(acknowledgements_);
 }
 
+void Ingest::queue(storage::ParameterDescriptor&& descriptor) {
+  queue_.push(std::move(descriptor));
+}
+
+void Ingest::queue(storage::TelemetryFrame&& frame) {
+  ++frames_received_;
+  queue_.push(std::move(frame));
+}
+
+void Ingest::count_rejected() {
+  if (frames_.malformed() == frames_rejected_) return;
+  frames_rejected_ = frames_.malformed();
+  log::warning("ingest", "refused a telemetry frame",
+               {{"reason", frames_.last_malformed()}, {"refused", frames_rejected_.load()}});
+}
+
 std::size_t Ingest::take() {
-  std::size_t taken = descriptors_.take(
-      take_at_most,
-      [&](storage::ParameterDescriptor&& descriptor) { queue_.push(std::move(descriptor)); });
-  taken += frames_.take(take_at_most, [&](storage::TelemetryFrame&& frame) {
-    ++frames_received_;
-    queue_.push(std::move(frame));
-  });
-  if (frames_.malformed() != frames_rejected_) {
-    log::warning("ingest", "refused a telemetry frame",
-                 {{"reason", frames_.last_malformed()}, {"refused", frames_.malformed()}});
-    frames_rejected_ = frames_.malformed();
-  }
+  std::size_t taken =
+      descriptors_.take(take_at_most, [this](auto&& one) { queue(std::move(one)); });
+  taken += frames_.take(take_at_most, [this](auto&& one) { queue(std::move(one)); });
   taken += acknowledgements_.take(
       take_at_most, [](ModelAcknowledgement&& message) { log_acknowledgement(message); });
+  count_rejected();
   return taken;
 }
 
@@ -71,9 +78,9 @@ void Ingest::run() {
     while (take() > 0 && !stopping_) {
     }
   }
-  const auto deadline = std::chrono::steady_clock::now() + drain_limit;
-  while (take() > 0 && std::chrono::steady_clock::now() < deadline) {
-  }
+  descriptors_.drain([this](auto&& one) { queue(std::move(one)); });
+  frames_.drain([this](auto&& one) { queue(std::move(one)); });
+  count_rejected();
 }
 
 void Ingest::stop() {

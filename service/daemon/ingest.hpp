@@ -17,8 +17,8 @@ class Ingest {
   /// The participant and the queue must outlive it. Throws dds::Error.
   Ingest(dds::Participant& participant, const Config& config, BoundedQueue<TelemetryEvent>& queue);
 
-  /// The thread's body: until stop(). What the readers had accepted by then is still queued before
-  /// it returns, within `drain_limit`.
+  /// The thread's body: until stop(). What the readers had accepted by then, and their writers need
+  /// not send again, is still queued before it returns.
   void run();
   void stop();
 
@@ -29,6 +29,9 @@ class Ingest {
  private:
   /// Returns how many messages there were.
   std::size_t take();
+  void queue(storage::ParameterDescriptor&& descriptor);
+  void queue(storage::TelemetryFrame&& frame);
+  void count_rejected();
 
   BoundedQueue<TelemetryEvent>& queue_;
   dds::Reader<storage::ParameterDescriptor> descriptors_;

@@ -1,8 +1,11 @@
 // reidentd: the re-identification service.
 
-#include <csignal>
-#include <ctime>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
 #include <iostream>
+#include <mutex>
+#include <stop_token>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -11,6 +14,7 @@
 #include "service/daemon/daemon.hpp"
 #include "service/daemon/service_manager.hpp"
 #include "service/support/log.hpp"
+#include "service/support/stop_signal.hpp"
 #include "service/support/version.hpp"
 
 namespace {
@@ -24,35 +28,26 @@ reident::storage::Time utc_now() {
       .count();
 }
 
-/// Blocked in every thread that is started from here on; taken by wait_for_signal alone.
-sigset_t block_stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
+/// Waits for a second, or until the stop is requested.
+void wait_a_second(const std::stop_token& stop) {
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any never;
+  never.wait_for(lock, stop, std::chrono::seconds(1), [] { return false; });
 }
 
-/// The signal that came within a second; 0 where none did.
-int wait_for_signal(const sigset_t& signals) {
-  const timespec second{1, 0};
-  const int number = sigtimedwait(&signals, nullptr, &second);
-  return number > 0 ? number : 0;
-}
-
-int serve(const reident::Config& config, const sigset_t& signals) {
+int serve(const reident::Config& config, const reident::StopSignal& signal) {
   reident::Daemon daemon(config, utc_now);
   daemon.start();
   reident::notify_service_manager("READY=1");
-  int signal = 0;
-  while (signal == 0 && !daemon.failed()) {
+  while (!signal.token().stop_requested() && !daemon.failed()) {
     daemon.heartbeat();
     reident::notify_service_manager("WATCHDOG=1");
-    signal = wait_for_signal(signals);
+    wait_a_second(signal.token());
   }
   reident::notify_service_manager("STOPPING=1");
-  if (signal != 0) reident::log::info("service", "asked to stop", {{"signal", strsignal(signal)}});
+  if (signal.number() != 0)
+    reident::log::info("service", "asked to stop", {{"signal", strsignal(signal.number())}});
   const bool all_stored = daemon.stop();
   return all_stored && !daemon.failed() ? 0 : exit_failed;
 }
@@ -60,6 +55,7 @@ int serve(const reident::Config& config, const sigset_t& signals) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const reident::StopSignal signal;
   CLI::App app(
       "Identifies the equipment models of a satellite simulator again and again from telemetry,\n"
       "and publishes those that pass the gate.\n\n"
@@ -83,9 +79,8 @@ int main(int argc, char** argv) {
   }
   const auto& config = std::get<reident::Config>(loaded);
   reident::log::set_level(config.log_level);
-  const sigset_t signals = block_stop_signals();
   try {
-    return serve(config, signals);
+    return serve(config, signal);
   } catch (const std::exception& error) {
     reident::log::error("service", "cannot run", {{"error", error.what()}});
     return exit_failed;

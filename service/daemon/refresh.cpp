@@ -75,6 +75,10 @@ double residual_over_span(const Matrix& y, const Matrix& y_hat, const Matrix& wi
   return worst;
 }
 
+bool every_column_moves(const Matrix& samples) {
+  return (samples.colwise().maxCoeff().array() > samples.colwise().minCoeff().array()).all();
+}
+
 /// The champion's error on the stretch of time that validates the candidate. NaN where telemetry
 /// does not allow to run it there.
 double champion_mrse(const storage::Archive& archive, const EquipmentModel& champion,
@@ -176,6 +180,7 @@ void judge(const storage::Archive& archive, const storage::Registry& registry,
   Evidence& evidence = result.evidence;
   evidence.well_formed = is_well_formed(model.dynamics);
   evidence.spectral_radius = identified.spectral_radius;
+  evidence.validation_moves = every_column_moves(validation(data.record.y));
   evidence.mrse_percent = model.validation.mrse();
   evidence.fit_percent = model.validation.fit();
   evidence.residual_over_span =

@@ -24,6 +24,7 @@ EquipmentConfig limits() {
 Evidence good() {
   Evidence evidence;
   evidence.well_formed = true;
+  evidence.validation_moves = true;
   evidence.spectral_radius = 0.9;
   evidence.mrse_percent = 5;
   evidence.fit_percent = 70;
@@ -54,6 +55,8 @@ TEST_P(Gate, Decides) {
 const Case cases[] = {
     {"Good", [](auto&, auto&) {}, Outcome::approved},
     {"ByHand", [](auto&, auto& c) { c.approval = ApprovalPolicy::by_hand; }, Outcome::waiting},
+    {"ConstantOutput", [](auto& e, auto&) { e.validation_moves = false; },
+     Outcome::validation_says_nothing},
     {"Malformed", [](auto& e, auto&) { e.well_formed = false; }, Outcome::not_finite},
     {"ErrorNotFinite", [](auto& e, auto&) { e.mrse_percent = infinity; }, Outcome::not_finite},
     {"ErrorNotANumber", [](auto& e, auto&) { e.mrse_percent = nan; }, Outcome::not_finite},

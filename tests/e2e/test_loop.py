@@ -1,0 +1,93 @@
+"""Telemetry in, an approved model out to a simulator."""
+
+import json
+import sys
+import unittest
+
+import plant
+from harness import EndToEnd, wait_until
+
+
+class Loop(EndToEnd):
+    def history(self):
+        status, text = self.reident("history", "--database", self.database, "--json")
+        self.assertEqual(status, 0, text)
+        return json.loads(text)["attempts"]
+
+    def champion(self):
+        rows = self.query("SELECT number FROM champion")
+        return rows[0][0] if rows else None
+
+    def start_simulator(self, name):
+        return self.start("reident-simulator", "--spacecraft", "SAT", "--equipment", "PLANT",
+                          "--name", name, "--json", *self.endpoint(), name=name)
+
+    def runs(self, simulator):
+        """Versions that the simulator took up, in order."""
+        events = [json.loads(line) for line in simulator.out.read_text().splitlines() if line]
+        return [event["version"] for event in events if event.get("event") == "swapped"]
+
+    def replay_rows(self, name, **keywords):
+        self.replay_all(plant.write(self.folder / f"{name}.csv", plant.rows(**keywords)))
+        return self.wait_idle()
+
+    def test_two_versions_reach_a_simulator_that_started_late(self):
+        self.configure([plant.equipment()])
+        daemon = self.start_daemon()
+        self.replay_rows("first", count=1900)
+        first = self.champion()
+        self.assertIsNotNone(first, self.history())
+
+        simulator = self.start_simulator("late")
+        wait_until(lambda: self.runs(simulator) == [first], "the simulator runs the champion")
+        self.replay_rows("second", count=1900, first=1900, gain=2.0)
+        second = self.champion()
+        self.assertGreater(second, first)
+        wait_until(lambda: self.runs(simulator)[-1] == second, "the simulator swapped")
+        wait_until(lambda: f"simulator=late equipment=SAT/PLANT version={second}" in daemon.text(),
+                   "the service knows what the simulator runs")
+        self.assertEqual(simulator.terminate()[0], 0, simulator.text())
+
+    def test_after_a_kill_the_champion_is_published_again_and_every_window_is_tried(self):
+        self.configure([plant.equipment()])
+        daemon = self.start_daemon()
+        self.replay_rows("first", count=1900)
+        champion = self.champion()
+        csv = plant.write(self.folder / "second.csv", plant.rows(40_000, first=1900))
+        self.replay_all(csv)
+        wait_until(lambda: "window decided" in daemon.text().split("version=%d" % champion)[-1] or
+                   self.history()[-1]["version"] != champion, "identification is at work")
+        daemon.kill()
+        before = self.history()
+        self.start_daemon()
+        simulator = self.start_simulator("after")
+        wait_until(lambda: self.runs(simulator), "a champion was published again")
+        self.wait_idle()
+        after = self.history()
+        self.assertEqual(after[:len(before)], before)
+        ends = {attempt["window"]["end"] for attempt in after}
+        self.assertEqual(len(ends), (1900 + 40_000) // 300, "each window once")
+        self.assertEqual(len(ends), len(after))
+
+    def test_bad_windows_are_rejected_with_a_reason_and_reach_nobody(self):
+        self.configure([plant.equipment(min_fit=50)])
+        self.start_daemon()
+        simulator = self.start_simulator("alone")
+        self.replay_rows("noise", count=1900, noise=30.0)
+        attempts = self.history()
+        self.assertGreater(len(attempts), 2)
+        self.assertNotIn("approved", {attempt["outcome"] for attempt in attempts})
+        self.assertTrue(all(attempt["reason"] for attempt in attempts))
+        self.assertIsNone(self.champion())
+        self.assertEqual(self.runs(simulator), [])
+
+    def test_by_hand_a_candidate_waits(self):
+        self.configure([plant.equipment(approval="by_hand")])
+        self.start_daemon()
+        self.replay_rows("first", count=1300)
+        self.assertIn("waiting", {attempt["outcome"] for attempt in self.history()})
+        self.assertIsNone(self.champion())
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
