@@ -1,0 +1,54 @@
+// satcs-reference: the reference spacecraft, publishing its telemetry.
+
+#include <memory>
+#include <string>
+
+#include "service/satcs/program.hpp"
+#include "service/satcs/reference_source.hpp"
+#include "service/support/time_text.hpp"
+
+namespace {
+
+using namespace reident::satcs;
+
+constexpr const char* about =
+    "Simulates the electrical power subsystem of a CBERS-4-class spacecraft and publishes its\n"
+    "telemetry at 1 Hz. The same start and seed give the same telemetry.\n\n"
+    "Examples:\n"
+    "  satcs-reference --duration 12h --speed 600\n"
+    "  satcs-reference --start 2017-07-01T06:00:00Z --duration 3d --speed max --seed 7 --json\n\n"
+    "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
+    "missing\n"
+    "or did not take everything; 128 + N stopped by signal N.\n";
+
+std::optional<std::int64_t> parse_positive_duration(std::string_view text) {
+  const auto duration = reident::parse_duration(text);
+  return duration && *duration > 0 ? duration : std::nullopt;
+}
+
+void add_reference_options(CLI::App& app, ReferenceOptions& options) {
+  add_parsed(app, "--start", options.start, reident::parse_time, "Time of the first frame",
+             "a time such as 2017-07-01T00:00:00Z")
+      ->type_name("TIME")
+      ->default_str(reident::time_text(options.start));
+  add_parsed(app, "--duration", options.duration_ns, parse_positive_duration,
+             "How much telemetry to publish", "a duration above 0 such as 12h")
+      ->type_name("DURATION")
+      ->default_str(reident::duration_text(options.duration_ns));
+  app.add_option("--seed", options.seed, "Seed of noise and operations")->capture_default_str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(about, "satcs-reference");
+  ReferenceOptions reference;
+  PublisherOptions publisher;
+  publisher.spacecraft = "REFERENCE";
+  publisher.source = "reference";
+  bool json = false;
+  add_reference_options(app, reference);
+  add_publisher_options(app, publisher, json);
+  return run_program(app, argc, argv, publisher, json,
+                     [&] { return std::make_unique<ReferenceSource>(reference); });
+}
