@@ -44,26 +44,32 @@ bool has_content(const fs::path& file) {
   return !error && size > 0;
 }
 
-// SQLite reads what is missing of a last page as zeros. With a log or journal beside it a file may
-// be shorter than its first page says.
+// SQLite reads what is missing of a last page as zeros, and it deletes the log of an empty file. A
+// file that has a log or journal beside it may be shorter than its first page says.
 void refuse_what_was_cut_short(const fs::path& path) {
+  const auto cut_short = [&](const std::string& found) {
+    return Error(Error::Kind::corrupt, "database " + path.string() + " was cut short: " + found +
+                                           "; restore a backup, or save what can be read with "
+                                           "'sqlite3 FILE .recover'");
+  };
+  const fs::path log = path.string() + "-wal";
+  if (has_content(log)) {
+    if (!has_content(path)) throw cut_short("it is empty, and its log " + log.string() + " is not");
+    return;
+  }
   constexpr std::size_t header_size = 32;
   unsigned char header[header_size] = {};
   std::ifstream file(path, std::ios::binary);
-  if (has_content(path.string() + "-wal") || fs::exists(path.string() + "-journal") ||
-      !file.read(reinterpret_cast<char*>(header), header_size))
+  if (has_content(path.string() + "-journal") ||
+      !file.read(reinterpret_cast<char*>(header), header_size) ||
+      std::memcmp(header, "SQLite format 3", 16) != 0)
     return;
-  if (std::memcmp(header, "SQLite format 3", 16) != 0) return;
-  const std::uint64_t stored_size = header[16] * 256U + header[17];
-  const std::uint64_t page_size = stored_size == 1 ? 65536 : stored_size;
+  const std::uint64_t page_size = header[16] * 256U + header[17];
   std::uint64_t pages = 0;
   for (std::size_t i = 28; i < 32; ++i) pages = pages * 256 + header[i];
   if (fs::file_size(path) < pages * page_size)
-    throw Error(Error::Kind::corrupt, "database " + path.string() + " was cut short: it has " +
-                                          std::to_string(fs::file_size(path)) + " of " +
-                                          std::to_string(pages * page_size) +
-                                          " bytes; restore a backup, or save what can be read "
-                                          "with 'sqlite3 FILE .recover'");
+    throw cut_short("it has " + std::to_string(fs::file_size(path)) + " of " +
+                    std::to_string(pages * page_size) + " bytes");
 }
 
 std::int64_t pragma(Connection& connection, std::string_view name) {

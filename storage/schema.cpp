@@ -78,30 +78,6 @@ CREATE TABLE decision (
 CREATE INDEX decision_by_version ON decision (spacecraft, equipment, version);
 CREATE INDEX decision_for_champion ON decision (spacecraft, equipment)
   WHERE kind IN ('approve', 'roll_back');
-
--- The insert triggers stop INSERT OR REPLACE, which deletes without asking the delete triggers.
-CREATE TRIGGER attempt_insert BEFORE INSERT ON attempt
-  WHEN EXISTS (SELECT 1 FROM attempt WHERE id = NEW.id)
-  BEGIN SELECT RAISE(ABORT, 'attempts are never changed: add a new one'); END;
-CREATE TRIGGER attempt_update BEFORE UPDATE ON attempt
-  BEGIN SELECT RAISE(ABORT, 'attempts are never changed: add a new one'); END;
-CREATE TRIGGER attempt_delete BEFORE DELETE ON attempt
-  BEGIN SELECT RAISE(ABORT, 'attempts are never removed'); END;
-CREATE TRIGGER version_insert BEFORE INSERT ON version
-  WHEN EXISTS (SELECT 1 FROM version WHERE attempt = NEW.attempt OR (spacecraft = NEW.spacecraft
-               AND equipment = NEW.equipment AND number = NEW.number))
-  BEGIN SELECT RAISE(ABORT, 'versions are never changed: add a new one'); END;
-CREATE TRIGGER version_update BEFORE UPDATE ON version
-  BEGIN SELECT RAISE(ABORT, 'versions are never changed: add a new one'); END;
-CREATE TRIGGER version_delete BEFORE DELETE ON version
-  BEGIN SELECT RAISE(ABORT, 'versions are never removed'); END;
-CREATE TRIGGER decision_insert BEFORE INSERT ON decision
-  WHEN EXISTS (SELECT 1 FROM decision WHERE id = NEW.id)
-  BEGIN SELECT RAISE(ABORT, 'decisions are never changed: add a new one'); END;
-CREATE TRIGGER decision_update BEFORE UPDATE ON decision
-  BEGIN SELECT RAISE(ABORT, 'decisions are never changed: add a new one'); END;
-CREATE TRIGGER decision_delete BEFORE DELETE ON decision
-  BEGIN SELECT RAISE(ABORT, 'decisions are never removed'); END;
 )sql";
 
 // CROSS JOIN keeps SQLite from reading all samples first: a question about one parameter finds its
@@ -195,6 +171,17 @@ CREATE VIEW history AS
   FROM attempt LEFT JOIN version ON version.attempt = attempt.id;
 )sql";
 
+// The insert trigger stops INSERT OR REPLACE, which deletes without asking the delete trigger.
+std::string append_only(const std::string& table, const std::string& same_row) {
+  const auto trigger = [&](const std::string& event, const std::string& condition) {
+    return "CREATE TRIGGER " + table + "_" + event + " BEFORE " + event + " ON " + table + " " +
+           condition + " BEGIN SELECT RAISE(ABORT, 'rows of the table " + table +
+           " are never changed or removed: add a new one'); END;\n";
+  };
+  return trigger("update", "") + trigger("delete", "") +
+         trigger("insert", "WHEN EXISTS (SELECT 1 FROM " + table + " WHERE " + same_row + ")");
+}
+
 }  // namespace
 
 std::string creation() {
@@ -202,6 +189,11 @@ std::string creation() {
   for (const std::string_view part :
        {telemetry_tables, registry_tables, telemetry_views, registry_views})
     sql += part;
+  sql += append_only("attempt", "id = NEW.id");
+  sql += append_only("version",
+                     "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
+                     "equipment = NEW.equipment AND number = NEW.number)");
+  sql += append_only("decision", "id = NEW.id");
   return sql + "PRAGMA application_id = " + std::to_string(application_id) +
          "; PRAGMA user_version = " + std::to_string(version) + ";";
 }

@@ -1,7 +1,11 @@
 // What may be opened, how, and what is said of the rest.
 #include "storage/database.hpp"
 
+#include <csignal>
 #include <unistd.h>
+
+#include <sys/stat.h>
+#include <sys/wait.h>
 
 #include "fixture.hpp"
 
@@ -130,18 +134,72 @@ TEST(Database, FindsAFileThatWasCutShort) {
   EXPECT_THAT(opening(folder / "cut.db", Mode::read_write), StartsWith("corrupt: "));
 }
 
+/// A process that holds the database open for writing and has appended one sample; killed at the
+/// end. (SQLite's connections must not be carried into a forked child, so it is the one that
+/// opens.)
+class RunningWriter {
+ public:
+  explicit RunningWriter(const fs::path& path) {
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+    process_ = ::fork();
+    if (process_ == 0) {
+      try {
+        Database database(path, Mode::read_write);
+        Archive(database).append(one_sample);
+        if (::write(ends[1], "+", 1) == 1)
+          for (;;) ::pause();
+      } catch (...) {
+      }
+      ::_exit(1);
+    }
+    ::close(ends[1]);
+    char ready = 0;
+    if (::read(ends[0], &ready, 1) != 1) throw std::runtime_error("the writer did not start");
+    ::close(ends[0]);
+  }
+  ~RunningWriter() {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  RunningWriter(const RunningWriter&) = delete;
+  RunningWriter& operator=(const RunningWriter&) = delete;
+  std::string pid() const { return std::to_string(process_); }
+
+ private:
+  pid_t process_;
+};
+
+std::string in_use_by(const fs::path& path, const std::string& pid) {
+  return "locked: database " + path.string() + " is in use by process " + pid +
+         "; stop it or use another database";
+}
+
 TEST(Database, RefusesASecondWriterAndNamesTheFirst) {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.db";
   fs::create_symlink(path, folder / "other name.db");
-  const Database writer(path, Mode::read_write);
-  const std::string expected = "locked: database " + path.string() + " is in use by process " +
-                               std::to_string(::getpid()) + "; stop it or use another database";
-  EXPECT_EQ(opening(path, Mode::read_write), expected) << "from the same process";
-  EXPECT_EQ(in_child([&] { return opening(path, Mode::read_write); }), expected);
-  EXPECT_EQ(in_child([&] { return opening(folder / "other name.db", Mode::read_write); }), expected)
+  const RunningWriter writer(path);
+  EXPECT_EQ(opening(path, Mode::read_write), in_use_by(path, writer.pid()));
+  EXPECT_EQ(opening(folder / "other name.db", Mode::read_write), in_use_by(path, writer.pid()))
       << "by another name of the same file";
-  EXPECT_EQ(in_child([&] { return opening(path, Mode::read_only); }), "no error");
+}
+
+TEST(Database, RefusesAnEmptyFileWhoseLogHoldsData) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.db";
+  { const RunningWriter killed(path); }
+  write_file(path, "");
+  for (const Mode mode : {Mode::read_write, Mode::read_only})
+    EXPECT_THAT(opening(path, mode), AllOf(StartsWith("corrupt: "), HasSubstr("a.db-wal")));
+  EXPECT_GT(fs::file_size(path.string() + "-wal"), 0U);
+}
+
+TEST(Database, RefusesASecondWriterInItsOwnProcess) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.db";
+  const Database writer(path, Mode::read_write);
+  EXPECT_EQ(opening(path, Mode::read_write), in_use_by(path, std::to_string(::getpid())));
 }
 
 TEST(Database, FreesTheLockWhenItsWriterEndsInWhateverWay) {
@@ -149,12 +207,18 @@ TEST(Database, FreesTheLockWhenItsWriterEndsInWhateverWay) {
   const fs::path path = folder / "a.db";
   make_archive(path);
   EXPECT_EQ(opening(path, Mode::read_write), "no error") << "closed";
-  in_child([&] {
-    const Database writer(path, Mode::read_write);
-    ::kill(::getpid(), SIGKILL);
-    return "";
-  });
+  { const RunningWriter killed(path); }
   EXPECT_EQ(opening(path, Mode::read_write), "no error") << "killed";
+}
+
+TEST(Database, LeavesALockFileThatTheOwnerOfTheDatabaseCanUse) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.db";
+  ASSERT_EQ(in_unprivileged_child([&] { return opening(path, Mode::read_write); }), "no error");
+  ASSERT_EQ(opening(path, Mode::read_write), "no error") << "as another user, or as root";
+  fs::remove(path.string() + ".lock");
+  ASSERT_EQ(opening(path, Mode::read_write), "no error");
+  EXPECT_EQ(in_unprivileged_child([&] { return opening(path, Mode::read_write); }), "no error");
 }
 
 TEST(Database, KeepsItsLockWhenItIsMoved) {
@@ -187,13 +251,17 @@ TEST(Database, ReadersWorkWhetherOrNotAWriterRuns) {
   }
   EXPECT_EQ(reader_finds(path), "1") << "after it stopped";
   EXPECT_EQ(reader_finds(path), "1") << "after a reader was the last one";
-  in_child([&] {
-    Database writer(path, Mode::read_write);
-    Archive(writer).append(std::vector{frame(2, 20, {{1, Quality::good, 2}})});
-    ::kill(::getpid(), SIGKILL);
-    return "";
-  });
-  EXPECT_EQ(reader_finds(path), "2") << "after the writer was killed";
+  const fs::path other = folder / "b.db";
+  { const RunningWriter killed(other); }
+  EXPECT_EQ(reader_finds(other), "1") << "after the writer was killed";
+}
+
+TEST(Database, AUserWhoMayOnlyReadFollowsARunningWriter) {
+  const TemporaryFolder folder;
+  const RunningWriter writer(folder / "a.db");
+  fs::permissions(folder.path(),
+                  fs::perms::owner_all | fs::perms::others_read | fs::perms::others_exec);
+  EXPECT_EQ(in_unprivileged_child([&] { return reader_finds(folder / "a.db"); }), "1");
 }
 
 /// A folder without write permission that holds a copy of the files of `path` named in `suffixes`.

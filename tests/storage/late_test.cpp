@@ -12,7 +12,8 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 constexpr Time second = 1'000'000'000;
-constexpr Time hour = 3600 * second;
+constexpr Time minute = 60 * second;
+constexpr Time hour = 60 * minute;
 
 class LateTest : public ArchiveTest {
  protected:
@@ -86,10 +87,10 @@ TEST_F(LateTest, JoinsNearSamplesAndKeepsFarOnesApart) {
 
 TEST_F(LateTest, JoinsAPlaybackBatchByBatchInEitherDirection) {
   archive.seal("CB4", 100 * hour);
-  for (int i = 0; i < 50; ++i) arrive(10 * hour + i * 60 * second);
-  for (int i = 1; i < 50; ++i) arrive(10 * hour - i * 60 * second);
-  EXPECT_THAT(ranges(), ElementsAre(TimeRange{10 * hour - 49 * 60 * second,
-                                              10 * hour + 49 * 60 * second + 1}));
+  for (int i = 0; i < 50; ++i) arrive(10 * hour + i * minute);
+  for (int i = 1; i < 50; ++i) arrive(10 * hour - i * minute);
+  EXPECT_THAT(ranges(),
+              ElementsAre(TimeRange{10 * hour - 49 * minute, 10 * hour + 49 * minute + 1}));
   arrive(20 * hour);
   arrive(20 * hour + 2 * late_merge_distance);
   EXPECT_EQ(ranges().size(), 3U);
