@@ -79,6 +79,9 @@ class Writer {
 struct ReaderOptions {
   std::int32_t max_samples = 4096;        // KEEP_ALL topics; writers wait when it is reached
   std::size_t max_frame_samples = 65536;  // a TelemetryFrame with more is refused and counted
+  /// KEEP_ALL topics: above 0 the reader keeps so many of the newest messages of each instance and
+  /// loses older ones rather than make a writer wait; for programs that may not slow the source.
+  std::int32_t keep_last = 0;
 };
 
 template <class M>

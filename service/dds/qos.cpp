@@ -51,7 +51,9 @@ Qos reader_qos(const Profile& profile, const ReaderOptions& options, bool transi
   Qos qos = reliable_qos(profile);
   dds_qset_durability(qos.get(),
                       transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
-  if (profile.history == keep_all) {
+  if (profile.history == keep_all && options.keep_last > 0) {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, options.keep_last);
+  } else if (profile.history == keep_all) {
     dds_qset_resource_limits(qos.get(), options.max_samples, DDS_LENGTH_UNLIMITED,
                              DDS_LENGTH_UNLIMITED);
   }

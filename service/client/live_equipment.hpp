@@ -1,0 +1,57 @@
+// One equipment of a simulator that follows the satellite: live telemetry in, the model's free run
+// beside the measured outputs, and versions exchanged on the way.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "service/client/model_runner.hpp"
+#include "service/client/running_score.hpp"
+#include "service/client/telemetry_tracker.hpp"
+
+namespace reident {
+
+class LiveEquipment {
+ public:
+  explicit LiveEquipment(const ModelVersion& version);
+
+  void describe(const storage::ParameterDescriptor& descriptor) { tracker_.describe(descriptor); }
+  void add(const storage::TelemetryFrame& frame);
+
+  /// Runs `version` from the next tick on; the errors count from zero again. Where its signals,
+  /// period and hold are those of the version that runs, the output continues: the swap is
+  /// returned. Otherwise the run starts over with it, and the parameters must be described again.
+  std::optional<ModelRunner::Swap> adopt(const ModelVersion& version);
+
+  std::int64_t version() const { return version_; }
+  /// Since the version was adopted.
+  identification::Score score() const { return score_.score(); }
+  /// Ticks at which an input was outside the identified range, since the version was adopted.
+  std::uint64_t ticks_outside() const { return ticks_outside_; }
+  /// Times that the run had to start over because ticks were missing.
+  std::uint64_t gaps() const { return gaps_; }
+  const TelemetryTracker& tracker() const { return tracker_; }
+
+ private:
+  void run(const Tick& tick);
+  /// After a hole the state is unknown: it is estimated from as many measured ticks as the
+  /// identification's scores take, and where no output is measured the run starts at the operating
+  /// point.
+  void seed(const Tick& tick);
+  void forget_state();
+
+  std::int64_t version_;
+  TelemetryTracker tracker_;
+  ModelRunner runner_;
+  RunningScore score_;
+  storage::Time hold_ns_;
+  std::optional<std::int64_t> last_tick_;
+  bool running_ = false;
+  identification::Matrix seed_u_, seed_y_;
+  identification::Index seeded_ = 0;
+  identification::Index seed_ticks_ = 0;
+  std::uint64_t ticks_outside_ = 0;
+  std::uint64_t gaps_ = 0;
+};
+
+}  // namespace reident

@@ -1,0 +1,116 @@
+#include "service/client/model_runner.hpp"
+
+#include <algorithm>
+
+#include "identification/simulate.hpp"
+
+namespace reident {
+namespace {
+
+bool same_names(const std::vector<Signal>& a, const std::vector<Signal>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Signal& x, const Signal& y) {
+    return x.name == y.name && x.unit == y.unit;
+  });
+}
+
+}  // namespace
+
+ModelRunner::ModelRunner(EquipmentModel model, Index history_rows)
+    : model_(std::move(model)),
+      past_u_(history_rows, model_.dynamics.inputs()),
+      past_y_(history_rows, model_.dynamics.outputs()) {
+  allocate();
+}
+
+void ModelRunner::allocate() {
+  const identification::StateSpaceModel& dynamics = model_.dynamics;
+  x_ = Vector::Zero(dynamics.order());
+  next_x_ = x_;
+  du_ = Vector::Zero(dynamics.inputs());
+  y_ = dynamics.y0;
+  outside_.assign(model_.inputs.size(), 0);
+}
+
+void ModelRunner::start(const Matrix& u, const Matrix& y) {
+  at_ = 0;
+  remembered_ = 0;
+  const auto record = identification::contiguous_record(model_.dynamics.period_s, u, y);
+  x_ = state_after(record);
+  for (Index row = 0; row < u.rows(); ++row) {
+    y_ = y.row(row).transpose();
+    remember(u.row(row).transpose());
+  }
+}
+
+const ModelRunner::Vector& ModelRunner::step(const Vector& u) {
+  const identification::StateSpaceModel& dynamics = model_.dynamics;
+  du_ = u - dynamics.u0;
+  y_ = dynamics.y0;
+  y_.noalias() += dynamics.C * x_;
+  y_.noalias() += dynamics.D * du_;
+  next_x_.noalias() = dynamics.A * x_;
+  next_x_.noalias() += dynamics.B * du_;
+  x_.swap(next_x_);
+  for (std::size_t i = 0; i < outside_.size(); ++i) {
+    const double value = u(static_cast<Index>(i));
+    outside_[i] = !(value >= model_.inputs[i].low && value <= model_.inputs[i].high);
+  }
+  remember(u);
+  return y_;
+}
+
+bool ModelRunner::is_any_outside() const {
+  return std::find(outside_.begin(), outside_.end(), 1) != outside_.end();
+}
+
+void ModelRunner::remember(const Vector& u) {
+  if (past_u_.rows() == 0) return;
+  past_u_.row(at_) = u.transpose();
+  past_y_.row(at_) = y_.transpose();
+  at_ = (at_ + 1) % past_u_.rows();
+  remembered_ = std::min(remembered_ + 1, past_u_.rows());
+}
+
+identification::Record ModelRunner::recent() const {
+  Matrix u(remembered_, past_u_.cols());
+  Matrix y(remembered_, past_y_.cols());
+  const Index capacity = past_u_.rows();
+  for (Index row = 0; row < remembered_; ++row) {
+    const Index from = (at_ - remembered_ + row + capacity) % capacity;
+    u.row(row) = past_u_.row(from);
+    y.row(row) = past_y_.row(from);
+  }
+  return identification::contiguous_record(model_.dynamics.period_s, std::move(u), std::move(y));
+}
+
+ModelRunner::Vector ModelRunner::state_after(const identification::Record& record) {
+  const identification::StateSpaceModel& dynamics = model_.dynamics;
+  if (record.rows() == 0) return Vector::Zero(dynamics.order());
+  Vector x = identification::estimate_initial_state(dynamics, record, record.segments.front(),
+                                                    record.rows());
+  for (Index row = 0; row < record.rows(); ++row) {
+    const Vector du = record.u.row(row).transpose() - dynamics.u0;
+    y_ = dynamics.C * x + dynamics.D * du + dynamics.y0;
+    x = (dynamics.A * x + dynamics.B * du).eval();
+  }
+  return x;
+}
+
+bool ModelRunner::fits(const EquipmentModel& next) const {
+  return same_names(model_.inputs, next.inputs) && same_names(model_.outputs, next.outputs) &&
+         model_.dynamics.period_s == next.dynamics.period_s;
+}
+
+ModelRunner::Swap ModelRunner::swap(EquipmentModel next) {
+  const identification::Record record = recent();
+  const Vector before = y_;
+  model_ = std::move(next);
+  allocate();
+  if (record.rows() == 0) return {0, Vector::Zero(before.size())};
+  x_ = state_after(record);
+  Swap done{record.rows(), y_ - before};
+  y_ = before;
+  return done;
+}
+
+}  // namespace reident

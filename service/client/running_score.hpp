@@ -1,0 +1,27 @@
+// Errors of a run that has no end: the scores of identification/simulate.hpp, sample by sample.
+#pragma once
+
+#include "identification/simulate.hpp"
+
+namespace reident {
+
+class RunningScore {
+ public:
+  using Vector = identification::Vector;
+
+  explicit RunningScore(identification::Index outputs);
+
+  /// The measured and the simulated outputs at one tick. Those that are not finite are left out.
+  void add(const Vector& y, const Vector& y_hat);
+  /// NaN before the first sample of an output, and for a fit before two different values of it.
+  identification::Score score() const;
+  identification::Index rows() const { return rows_; }
+
+ private:
+  using Array = Eigen::ArrayXd;
+  identification::Index rows_ = 0;
+  Array count_, mean_, spread_;  // spread: sum of squared distances from the mean (Welford)
+  Array squares_, errors_;       // sums of y^2 and (y - y_hat)^2
+};
+
+}  // namespace reident

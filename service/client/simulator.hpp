@@ -1,0 +1,57 @@
+// reident-simulator: the example of a simulator that uses the models of reident.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "service/client/live_equipment.hpp"
+#include "service/client/model_subscriber.hpp"
+#include "service/client/simulator_report.hpp"
+#include "service/dds/dds.hpp"
+
+namespace reident {
+
+struct SimulatorOptions {
+  dds::Endpoint endpoint;
+  Subscription subscription;
+  std::chrono::nanoseconds report_period = std::chrono::seconds(5);
+  bool json = false;
+};
+
+/// Subscribes, drives each equipment's model with the live telemetry, exchanges versions while they
+/// run, reports the running errors and acknowledges what runs.
+class Simulator {
+ public:
+  /// Throws dds::Error.
+  explicit Simulator(const SimulatorOptions& options);
+  /// Until the stop is requested.
+  void run(const std::stop_token& stop);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void take_telemetry();
+  void adopt(const ModelVersion& version);
+  void report_running();
+
+  SimulatorOptions options_;
+  SimulatorReport report_;
+  dds::Participant participant_;
+  ModelSubscriber models_;
+  dds::Reader<storage::ParameterDescriptor> descriptors_;
+  dds::Reader<storage::TelemetryFrame> frames_;
+  dds::WaitSet ready_;
+  std::map<std::uint32_t, storage::ParameterDescriptor> parameters_;
+  struct Running {
+    LiveEquipment live;
+    storage::Time since = 0;             // this machine's clock
+    identification::Index reported = 0;  // ticks that the last report spoke of
+  };
+  std::map<std::string, Running> equipment_;
+};
+
+}  // namespace reident

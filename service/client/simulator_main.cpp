@@ -1,0 +1,66 @@
+// reident-simulator: subscribes to the approved models and runs them beside the live telemetry.
+#include <cstdio>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "service/client/simulator.hpp"
+#include "service/support/log.hpp"
+#include "service/support/stop_signal.hpp"
+#include "service/support/version.hpp"
+
+namespace {
+
+constexpr const char* about =
+    "Runs the approved models of a spacecraft's equipment beside its live telemetry: each new\n"
+    "version takes over while it runs, and the running error is printed beside each version.\n\n"
+    "Example:\n"
+    "  reident-simulator --spacecraft CBERS4 --equipment BDR --equipment BAT1 --name trainer-1\n\n"
+    "Exit status: 0 stopped by SIGINT or SIGTERM; 1 failure; 2 bad request.\n";
+
+void add_options(CLI::App& app, reident::SimulatorOptions& options, double& report_s) {
+  app.add_option("--spacecraft", options.subscription.spacecraft, "Spacecraft to simulate")
+      ->required()
+      ->type_name("NAME");
+  app.add_option("--equipment", options.subscription.equipment,
+                 "Equipment to simulate; may be given again (every one)")
+      ->type_name("NAME");
+  app.add_option("--name", options.subscription.simulator,
+                 "Name of this simulator, unique in its partition")
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--domain", options.endpoint.domain, "DDS domain")
+      ->check(CLI::Range(0, 230))
+      ->capture_default_str();
+  app.add_option("--partition", options.endpoint.partition, "DDS partition")->capture_default_str();
+  app.add_option("--report", report_s, "Seconds between two reports of the running errors")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  app.add_flag("--json", options.json, "One JSON object a line");
+  app.set_version_flag("--version", std::string(reident::program_version()));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  reident::SimulatorOptions options;
+  options.subscription.simulator = "simulator-" + std::to_string(getpid());
+  double report_s = 5;
+  CLI::App app(about, "reident-simulator");
+  add_options(app, options, report_s);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  options.report_period =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(report_s));
+  try {
+    const reident::StopSignal stop;
+    reident::Simulator(options).run(stop.token());
+  } catch (const std::exception& error) {
+    reident::log::error("simulator", error.what());
+    return 1;
+  }
+  return 0;
+}

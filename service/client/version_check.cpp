@@ -1,0 +1,40 @@
+#include "service/client/version_check.hpp"
+
+#include "service/model/model_json.hpp"
+
+namespace reident {
+namespace {
+
+bool sizes_agree(const EquipmentModel& model) {
+  const identification::StateSpaceModel& dynamics = model.dynamics;
+  return identification::is_well_formed(dynamics) &&
+         dynamics.inputs() == static_cast<identification::Index>(model.inputs.size()) &&
+         dynamics.outputs() == static_cast<identification::Index>(model.outputs.size());
+}
+
+}  // namespace
+
+std::optional<std::string> damage(const ModelVersion& version) {
+  if (!sizes_agree(version.model)) {
+    return "its matrices, signals and period do not fit together, or are not finite";
+  }
+  if (const std::string digest = model_digest(version.model); digest != version.digest) {
+    return "its content has the digest " + digest + " and it says " + version.digest +
+           "; it was damaged, or another program's format is newer";
+  }
+  if (const double radius = identification::spectral_radius(version.model.dynamics);
+      !(radius < 1)) {
+    return "it is unstable: the spectral radius is " + std::to_string(radius);
+  }
+  return std::nullopt;
+}
+
+Succession succession(const ModelVersion& version, const ModelVersion& running) {
+  if (version.number == running.number) {
+    return version.digest == running.digest ? Succession::same : Succession::different;
+  }
+  if (version.number > running.number || version.rollback) return Succession::newer;
+  return Succession::older;
+}
+
+}  // namespace reident
