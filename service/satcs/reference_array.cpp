@@ -22,9 +22,8 @@ double SolarArray::string_current(int cells, double node_V) const {
   return std::max(0.0, short_A * (1 - std::exp((cell_V - open_V) / c.cell_knee_V)));
 }
 
-void SolarArray::set_sun(double illumination, double beta) {
-  const double cant = constants_.cant_deg * std::numbers::pi / 180;
-  flux_ = illumination * std::cos(std::abs(beta) - cant);
+double SolarArray::incidence(double beta) const {
+  return std::cos(beta - constants_.cant_deg * std::numbers::pi / 180);
 }
 
 void SolarArray::step(double dt_s) {
@@ -33,7 +32,7 @@ void SolarArray::step(double dt_s) {
   const double kelvin = temperature_C_ + 273.15;
   const double absorbed =
       c.solar_flux_W_m2 * flux_ * (c.absorptance - c.electrical_share) + c.earth_infrared_W_m2;
-  const double emitted = 2 * c.emittance * stefan_boltzmann * std::pow(kelvin, 4);
+  const double emitted = 2 * c.emittance * stefan_boltzmann * kelvin * kelvin * kelvin * kelvin;
   temperature_C_ += dt_s * (absorbed - emitted) / c.heat_capacity_J_m2K;
 }
 

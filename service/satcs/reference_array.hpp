@@ -15,8 +15,10 @@ class SolarArray {
   /// negative.
   double string_current(int cells, double node_V) const;
 
-  /// `illumination` in [0, 1]; `beta` is the angle between the orbit's plane and the Sun [rad].
-  void set_sun(double illumination, double beta);
+  /// `incidence` is the cosine of the Sun's angle to the panels, `illumination` lies in [0, 1].
+  void set_sun(double illumination, double incidence) { flux_ = illumination * incidence; }
+  /// The incidence at a beta angle [rad]: the wing follows the Sun in the orbit's plane.
+  double incidence(double beta) const;
   void step(double dt_s);
 
   double temperature_C() const { return temperature_C_; }

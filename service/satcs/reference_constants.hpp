@@ -69,7 +69,6 @@ struct ChargerConstants {
   double cell_limit_V = 1.425;  // at 10 degC
   double cell_limit_V_per_K = -2.5e-3;
   double gain_per_Vs = 0.15;  // of the shunted share
-  double shunt_V = 0.4;       // across a closed shunt switch
 };
 
 /// Battery switching regulators: one module for each battery, one output.
@@ -103,7 +102,6 @@ struct ErrorAmplifierConstants {
 struct BusConstants {
   double capacitance_F = 0.02;
   double fold_back_V = 20;  // loads take less current rather than pull the bus below it
-  double shunt_V = 0.4;     // across a closed shunt switch
 };
 
 struct LoadConstants {

@@ -38,7 +38,7 @@ void Plant::step() {
   if (step_in_second_ == 0) begin_second();
   const double share = static_cast<double>(step_in_second_ + 1) / steps_per_second;
   flows_.illumination = illumination_begin_ + share * (illumination_end_ - illumination_begin_);
-  array_.set_sun(flows_.illumination, beta_);
+  array_.set_sun(flows_.illumination, incidence_);
 
   solve_bus();
   for (std::size_t k = 0; k < battery_count; ++k) solve_battery(k);
@@ -55,7 +55,7 @@ void Plant::step() {
 void Plant::begin_second() {
   illumination_begin_ = illumination_end_;
   illumination_end_ = orbit_.illumination(second_ + second_ns);
-  beta_ = orbit_.beta(second_);
+  incidence_ = array_.incidence(orbit_.beta(second_));
   std::array<double, battery_count> battery_C{};
   for (std::size_t k = 0; k < battery_count; ++k) {
     battery_C[k] = batteries_[k].state().temperature_C;

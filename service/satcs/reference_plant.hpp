@@ -84,7 +84,7 @@ class Plant {
   storage::Time second_;  // the running second began here
   int step_in_second_ = 0;
   double illumination_begin_ = 0, illumination_end_ = 0;  // of the running second
-  double beta_ = 0;
+  double incidence_ = 1;
   std::array<double, battery_count> charging_;  // share of the section's current let through
 };
 
