@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/command.hpp"
+#include "service/cli/config_choice.hpp"
 #include "service/cli/table.hpp"
-#include "service/daemon/config.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {
@@ -30,7 +29,7 @@ int print_mistakes(const Arguments& arguments, const std::vector<ConfigMistake>&
     print_json({{"valid", false}, {"mistakes", list}});
   } else {
     for (const ConfigMistake& mistake : mistakes)
-      fmt::print(stderr, "{}:{}: {}\n", arguments.file, mistake.line, mistake.message);
+      fmt::print(stderr, "{}\n", mistake_text(arguments.file, mistake));
     fmt::print(stderr, "reident: {} has {} mistake{}\n", arguments.file, mistakes.size(),
                mistakes.size() == 1 ? "" : "s");
   }

@@ -13,8 +13,15 @@ std::variant<std::optional<Config>, Refusal> chosen_config(const std::optional<s
   auto loaded = load_config(path);
   if (auto* config = std::get_if<Config>(&loaded)) return std::move(*config);
   const auto& mistakes = std::get<std::vector<ConfigMistake>>(loaded);
-  return Refusal{fmt::format("{}:{}: {}; reident check-config {} lists every mistake", path,
-                             mistakes.front().line, mistakes.front().message, path)};
+  std::string text = mistake_text(path, mistakes.front());
+  if (mistakes.size() > 1)
+    text += fmt::format("; reident check-config {} lists {} mistakes", path, mistakes.size());
+  return Refusal{text};
+}
+
+std::string mistake_text(const std::string& file, const ConfigMistake& mistake) {
+  return mistake.line == 0 ? fmt::format("{}: {}", file, mistake.message)
+                           : fmt::format("{}:{}: {}", file, mistake.line, mistake.message);
 }
 
 }  // namespace reident::cli

@@ -16,4 +16,7 @@ inline constexpr const char* default_config_file = "reident.toml";
 /// is none of that name and none was asked for.
 std::variant<std::optional<Config>, Refusal> chosen_config(const std::optional<std::string>& file);
 
+/// "FILE:LINE: what", or "FILE: what" of the file as a whole.
+std::string mistake_text(const std::string& file, const ConfigMistake& mistake);
+
 }  // namespace reident::cli

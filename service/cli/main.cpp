@@ -1,6 +1,8 @@
 // reident: the command line.
+#include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,11 @@ int run(int argc, char** argv) {
     std::string command = "reident";
     for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
     return refuse({fmt::format("{}; see {} --help", error.what(), command)});
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    fmt::print(stderr, "reident: the output cannot be written: {}\n",
+               std::generic_category().message(errno));
+    return exit_failed;
   }
   return exit_code;
 }

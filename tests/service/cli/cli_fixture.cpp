@@ -1,0 +1,77 @@
+#include "tests/service/cli/cli_fixture.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fcntl.h>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+#include <sys/wait.h>
+
+namespace reident::cli::testing {
+namespace {
+
+std::string text_of(const std::filesystem::path& path) {
+  std::stringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+void redirect(int descriptor, const std::string& path) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  dup2(file, descriptor);
+}
+
+}  // namespace
+
+CliTest::CliTest() {
+  std::string name = (std::filesystem::temp_directory_path() / "reident-cli-XXXXXX").string();
+  folder_ = mkdtemp(name.data());
+}
+
+CliTest::~CliTest() {
+  std::filesystem::remove_all(folder_);
+}
+
+Ran CliTest::reident(const std::vector<std::string>& arguments) const {
+  std::vector<std::string> words = {REIDENT_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const std::string out = folder_ / ".out", err = folder_ / ".err";
+  const pid_t child = fork();
+  if (child == 0) {
+    redirect(STDOUT_FILENO, out);
+    redirect(STDERR_FILENO, err);
+    if (chdir(folder_.c_str()) == 0) execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text_of(out),
+          text_of(err)};
+}
+
+nlohmann::json CliTest::json_of(std::vector<std::string> arguments) const {
+  arguments.emplace_back("--json");
+  const Ran ran = reident(arguments);
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(ran.err, "");
+  return nlohmann::json::parse(ran.out, nullptr, false);
+}
+
+std::string CliTest::refusal_of(const std::vector<std::string>& arguments) const {
+  const Ran ran = reident(arguments);
+  EXPECT_EQ(ran.status, 2) << ran.out << ran.err;
+  EXPECT_EQ(ran.out, "");
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  return ran.err;
+}
+
+void CliTest::write(const std::string& name, const std::string& text) const {
+  std::ofstream(folder_ / name, std::ios::binary) << text;
+}
+
+}  // namespace reident::cli::testing

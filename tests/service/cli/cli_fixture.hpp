@@ -1,0 +1,39 @@
+// The real program, run in a folder of the test's own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace reident::cli::testing {
+
+struct Ran {
+  int status = -1;  // exit status, or 128 + the signal that ended it
+  std::string out;
+  std::string err;
+};
+
+class CliTest : public ::testing::Test {
+ protected:
+  CliTest();
+  ~CliTest() override;
+
+  /// Runs reident with the folder as the current one.
+  Ran reident(const std::vector<std::string>& arguments) const;
+  /// Runs it and expects exit status 0; its output as JSON.
+  nlohmann::json json_of(std::vector<std::string> arguments) const;
+  /// Runs it and expects exit status 2 with one line on standard error; the line.
+  std::string refusal_of(const std::vector<std::string>& arguments) const;
+
+  void write(const std::string& name, const std::string& text) const;
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace reident::cli::testing

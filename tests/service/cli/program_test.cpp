@@ -1,0 +1,174 @@
+// What concerns the program as a whole, and the commands that need no database.
+#include <functional>
+#include <thread>
+#include <unistd.h>
+
+#include "service/dds/dds.hpp"
+#include "tests/service/cli/cli_fixture.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::MatchesRegex;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+
+class Program : public testing::CliTest {};
+
+TEST_F(Program, EveryCommandHasHelpWithAnExample) {
+  EXPECT_THAT(reident({"--help"}).out, HasSubstr("identify"));
+  for (const std::string command :
+       {"identify", "history", "show", "check-config", "status", "version"}) {
+    const testing::Ran ran = reident({command, "--help"});
+    EXPECT_EQ(ran.status, 0) << command;
+    EXPECT_THAT(ran.out, HasSubstr("Example:\n  reident " + command)) << command;
+  }
+}
+
+TEST_F(Program, VersionIsPrinted) {
+  EXPECT_THAT(reident({"version"}).out, MatchesRegex("reident [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST_F(Program, WithoutACommandAndWithAnUnknownOneItIsRefused) {
+  EXPECT_THAT(refusal_of({}), HasSubstr("see reident --help"));
+  EXPECT_THAT(refusal_of({"indentify"}), HasSubstr("see reident --help"));
+}
+
+TEST_F(Program, AFullDiskIsAnError) {
+  write("u.csv", "u1,y1\n");
+  EXPECT_EQ(system(("cd " + folder().string() +
+                    " && " REIDENT_PROGRAM " version > /dev/full 2> /dev/null")
+                       .c_str()),
+            1 << 8);
+}
+
+class CheckConfig : public testing::CliTest {};
+
+TEST_F(CheckConfig, ListsEveryMistakeWithFileAndLine) {
+  write("bad.toml", "[service]\nworkers = 0\n[dds]\ndomian = 1\n");
+  const testing::Ran ran = reident({"check-config", "bad.toml"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, HasSubstr("bad.toml:2: [service] workers must be"));
+  EXPECT_THAT(ran.err, HasSubstr("bad.toml:4: [dds] domian is not known; did you mean domain?"));
+  EXPECT_THAT(ran.err, HasSubstr("bad.toml: there is no spacecraft"));
+  EXPECT_THAT(ran.err, HasSubstr("has 3 mistakes"));
+  const testing::Ran in_json = reident({"check-config", "bad.toml", "--json"});
+  EXPECT_EQ(in_json.status, 2);
+  const json printed = json::parse(in_json.out);
+  EXPECT_EQ(printed["valid"], false);
+  ASSERT_THAT(printed["mistakes"], SizeIs(3));
+  EXPECT_EQ(printed["mistakes"][1]["line"], 2);
+}
+
+TEST_F(CheckConfig, SumsUpAGoodFile) {
+  write("good.toml",
+        "[[spacecraft]]\nname = \"A\"\n[[spacecraft.equipment]]\nname = \"X\"\n"
+        "inputs = [\"u\"]\noutputs = [\"y\"]\nsample_period = \"1s\"\nwindow = \"1h\"\n");
+  const testing::Ran ran = reident({"check-config", "good.toml"});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("A/X"));
+  EXPECT_THAT(ran.out, HasSubstr("u -> y"));
+  const json printed = json_of({"check-config", "good.toml"});
+  EXPECT_EQ(printed["valid"], true);
+  EXPECT_THAT(printed["mistakes"], IsEmpty());
+  EXPECT_EQ(printed["equipment"][0]["window"], "1h");
+}
+
+TEST_F(CheckConfig, RefusesAFileThatIsNotThere) {
+  const testing::Ran ran = reident({"check-config", "none.toml"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, StartsWith("none.toml: cannot be read"));
+}
+
+/// A service that only beats.
+class Status : public testing::CliTest {
+ protected:
+  const std::uint32_t domain = 1 + static_cast<std::uint32_t>(getpid()) % 200;
+  const std::string partition = "cli-" + std::to_string(getpid());
+  dds::Participant participant{{domain, partition}};
+  dds::Writer<ServiceStatus> writer{participant};
+
+  std::vector<std::string> command(std::vector<std::string> more) const {
+    std::vector<std::string> words = {"status", "--domain", std::to_string(domain), "--partition",
+                                      partition};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  ServiceStatus beat(int number) const {
+    ServiceStatus status;
+    status.service = "reident";
+    status.program_version = "0.1.0";
+    status.started = 1'700'000'000'000'000'000;
+    status.time = status.started + number * 1'000'000'000LL;
+    status.frames_received = 4321;
+    status.newest_telemetry = status.started;
+    return status;
+  }
+  /// Writes beat(0), beat(1), ... while the program runs.
+  testing::Ran run_beside(const std::function<ServiceStatus(int)>& next,
+                          const std::vector<std::string>& arguments) {
+    std::jthread beats([&](const std::stop_token& stop) {
+      for (int number = 0; !stop.stop_requested(); ++number) {
+        writer.write(next(number));
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));  // poll: the beat itself
+      }
+    });
+    return reident(arguments);
+  }
+};
+
+TEST_F(Status, IsWhatTheServiceSaidLast) {
+  writer.write(beat(1));
+  const json printed = json_of(command({"--timeout", "30"}));
+  EXPECT_EQ(printed["service"], "reident");
+  EXPECT_EQ(printed["frames_received"], 4321);
+  EXPECT_EQ(printed["newest_telemetry"], "2023-11-14T22:13:20Z");
+  EXPECT_EQ(printed["idle"], true);
+  const testing::Ran ran = reident(command({"--timeout", "30"}));
+  EXPECT_THAT(ran.out, StartsWith("service reident (0.1.0), up since 2023-11-14T22:13:20Z, idle"));
+}
+
+TEST_F(Status, WaitsUntilTwoBeatsAreIdleAndAlike) {
+  const testing::Ran ran = run_beside(
+      [this](int number) {
+        ServiceStatus status = beat(number);
+        status.windows_pending = number < 4 ? 1 : 0;
+        status.attempts = static_cast<std::uint64_t>(std::min(number, 8));
+        return status;
+      },
+      command({"--wait", "idle", "--timeout", "60", "--json"}));
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(json::parse(ran.out)["attempts"], 8);
+}
+
+TEST_F(Status, ExitsFourWhenTheServiceStaysBusy) {
+  const testing::Ran ran = run_beside(
+      [this](int number) {
+        ServiceStatus status = beat(number);
+        status.queue_length = 17;
+        return status;
+      },
+      command({"--wait", "idle", "--timeout", "2"}));
+  EXPECT_EQ(ran.status, 4);
+  EXPECT_THAT(ran.err, HasSubstr("17 frames queued"));
+}
+
+TEST_F(Status, ExitsFourWhenNobodyIsHeard) {
+  const testing::Ran ran = reident(command({"--timeout", "0.3"}));
+  EXPECT_EQ(ran.status, 4);
+  EXPECT_THAT(ran.err, HasSubstr("check that reidentd runs"));
+  writer.write(beat(1));
+  EXPECT_EQ(reident(command({"--service", "other", "--timeout", "2"})).status, 4);
+}
+
+TEST_F(Status, RefusesWhatItCannotWaitFor) {
+  EXPECT_THAT(refusal_of(command({"--wait", "forever"})), HasSubstr("idle"));
+  EXPECT_THAT(refusal_of(command({"--timeout", "-1"})), HasSubstr("--timeout"));
+  EXPECT_THAT(refusal_of({"status", "--domain", "300"}), HasSubstr("--domain"));
+}
+
+}  // namespace
+}  // namespace reident::cli
