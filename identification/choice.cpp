@@ -14,6 +14,7 @@ namespace reident::identification {
 namespace {
 
 constexpr double equal_errors = 1.01;
+constexpr double no_error = 1e-6;  // of an output's deviation
 constexpr double worthwhile_recency = 0.95;
 
 /// Mean over outputs of the root mean square over rows.
@@ -51,7 +52,7 @@ void rank(std::vector<ScoredRecipe>& recipes) {
   double best = std::numeric_limits<double>::infinity();
   for (const ScoredRecipe& candidate : recipes) best = std::min(best, candidate.error);
   const auto key = [best](const ScoredRecipe& candidate) {
-    const bool equal = candidate.error <= equal_errors * best;
+    const bool equal = candidate.error <= std::max(equal_errors * best, no_error);
     return std::tuple(!equal, equal ? candidate.recipe.order : 0, candidate.error);
   };
   std::stable_sort(recipes.begin(), recipes.end(),
@@ -80,17 +81,21 @@ std::vector<ScoredRecipe> ranked_recipes(const Record& normalised, const std::ar
       const std::array<Matrix, 2> gammas{projections[0].observability(weighting).gamma,
                                          projections[1].observability(weighting).gamma};
       for (int order = space.min_order; order <= limit; ++order) {
-        const auto first = fold_errors(shift_invariant(gammas[0], p, order), normalised, folds[0]);
-        const auto second =
-            first ? fold_errors(shift_invariant(gammas[1], p, order), normalised, folds[1])
-                  : std::nullopt;
+        const auto first = fold_errors(shift_invariant(gammas[0], p, order, space.stability),
+                                       normalised, folds[0]);
+        const auto second = first
+                                ? fold_errors(shift_invariant(gammas[1], p, order, space.stability),
+                                              normalised, folds[1])
+                                : std::nullopt;
         if (!second) continue;
         const double whole = (first->whole + second->whole) / 2;
         const double recent = (first->recent + second->recent) / 2;
         if (recent < worthwhile_recency * whole)
-          found.push_back({{order, horizon, weighting, OperatingPoint::recent}, recent});
+          found.push_back(
+              {{order, horizon, weighting, space.stability, OperatingPoint::recent}, recent});
         else
-          found.push_back({{order, horizon, weighting, OperatingPoint::whole}, whole});
+          found.push_back(
+              {{order, horizon, weighting, space.stability, OperatingPoint::whole}, whole});
       }
     }
   }

@@ -6,6 +6,7 @@
 
 #include "identification/identify.hpp"
 #include "identification/record.hpp"
+#include "identification/subspace.hpp"
 
 namespace reident::identification {
 
@@ -27,6 +28,7 @@ struct Recipe {
   int order = 0;
   int horizon = 0;
   Weighting weighting = Weighting::n4sid;
+  Stability stability = Stability::as_found;
   OperatingPoint operating_point = OperatingPoint::whole;
 };
 
@@ -40,12 +42,13 @@ struct SearchSpace {
   std::vector<Weighting> weightings;
   int min_order = 1;
   int max_order = 1;
+  Stability stability = Stability::as_found;
 };
 
 /// Fits every recipe on each fold of a normalised record and scores its free run on the rows held
-/// out. Returns those that are stable on both folds, best first: within 1 % of the smallest error
-/// the lower order wins, then the lower error, then the shorter horizon. A recent operating point
-/// is taken where it lowers the error by more than 5 %.
+/// out. Returns those that are stable on both folds, best first: within 1 % of the smallest error,
+/// or below 1e-6, the lower order wins, then the lower error, then the shorter horizon. A recent
+/// operating point is taken where it lowers the error by more than 5 %.
 std::vector<ScoredRecipe> ranked_recipes(const Record& normalised, const std::array<Fold, 2>& folds,
                                          const SearchSpace& space);
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "identification/choice.hpp"
@@ -21,8 +21,9 @@ constexpr int preferred_horizons[] = {6, 10, 15, 20, 30};
 
 std::string text(double value) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.4g", value);
-  return buffer;
+  const auto end =
+      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 4).ptr;
+  return {buffer, end};
 }
 
 /// "input 3" for the channel 2: people count from one.
@@ -158,13 +159,24 @@ class Identification {
     if (options_.weighting) space.weightings = {*options_.weighting};
     if (auto verdict = limit_by_excitation(space)) return verdict;
     ranked = ranked_recipes(work_, folds, space);
-    if (ranked.empty())
+    const bool unstable = ranked.empty();
+    if (unstable) {
+      space.stability = Stability::enforced;
+      ranked = ranked_recipes(work_, folds, space);
+      warnings_.push_back(
+          "every model asked for was unstable; A was taken so that it is stable, at some bias");
+    }
+    const double constant = held_out_error_of_constant(work_, folds);
+    // A system that really is unstable must not pass as a stable one that follows it a little.
+    const double acceptable = unstable ? constant / 2 : constant;
+    const bool useless = ranked.empty() || !(ranked.front().error < acceptable);
+    if (useless && unstable)
       return Verdict{VerdictCode::unstable,
                      "every model of order " + std::to_string(space.min_order) + " to " +
                          std::to_string(space.max_order) +
-                         " is unstable; choose a longer window or fewer orders"};
-    const double constant = held_out_error_of_constant(work_, folds);
-    if (!(ranked.front().error < constant))
+                         " is unstable, and made stable errs more than half as much as the mean; "
+                         "choose a window in which the equipment stays in its range"};
+    if (useless)
       return Verdict{VerdictCode::no_better_than_mean,
                      "on rows held out the best model errs by " + text(ranked.front().error) +
                          " standard deviations and the mean by " + text(constant) +
@@ -175,7 +187,8 @@ class Identification {
   Verdict too_few_samples(Index width) const {
     const Index s = options_.horizon.value_or(least_horizon(options_));
     const Index fit = 2 * s * (width + 1);
-    const auto needed = static_cast<Index>(std::ceil(double(fit) / (1 - options_.tune_share))) + 1;
+    Index needed = fit;
+    while (folds_of(needed, options_.tune_share)[0].fit.size() < fit) ++needed;
     return {VerdictCode::too_few_samples,
             std::to_string(rows_.size()) + " rows in " +
                 std::to_string(segments_within(record_, rows_).size()) +
@@ -212,7 +225,8 @@ class Identification {
     const HankelFactor factor = compress(work_, work_.all(), 2 * recipe.horizon);
     const Projection projection(factor, recipe.horizon);
     auto [gamma, singular_values] = projection.observability(recipe.weighting);
-    const Dynamics dynamics = shift_invariant(gamma, factor.outputs, recipe.order);
+    const Dynamics dynamics =
+        shift_invariant(gamma, factor.outputs, recipe.order, recipe.stability);
     if (!is_stable(dynamics.A)) return std::nullopt;
     Response response = fit_response(dynamics.A, dynamics.C, work_, work_.all(), Accuracy::exact);
     Identified result;

@@ -134,11 +134,17 @@ Matrix Projection::noise_covariance(const StateSpaceModel& model) const {
   return residual * residual.transpose() / double(columns_);
 }
 
-Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order) {
+Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order, Stability stability) {
   const Index rows = gamma.rows() - outputs;
-  const auto upper = gamma.topLeftCorner(rows, order);
-  const auto lower = gamma.bottomLeftCorner(rows, order);
-  return {upper.colPivHouseholderQr().solve(lower), gamma.topLeftCorner(outputs, order)};
+  const Matrix C = gamma.topLeftCorner(outputs, order);
+  if (stability == Stability::as_found)
+    return {gamma.topLeftCorner(rows, order)
+                .colPivHouseholderQr()
+                .solve(gamma.bottomLeftCorner(rows, order)),
+            C};
+  Matrix shifted = Matrix::Zero(gamma.rows(), order);
+  shifted.topRows(rows) = gamma.bottomLeftCorner(rows, order);
+  return {gamma.leftCols(order).colPivHouseholderQr().solve(shifted), C};
 }
 
 }  // namespace reident::identification

@@ -43,6 +43,12 @@ class Projection {
 struct Dynamics {
   Matrix A, C;
 };
-Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order);
+enum class Stability {
+  as_found,
+  enforced,  // a zero block row below makes A stable (J. Maciejowski, Systems & Control Letters
+             // 26(3), 1995), at the price of a bias where the last block row is not small
+};
+Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order,
+                         Stability stability = Stability::as_found);
 
 }  // namespace reident::identification

@@ -1,0 +1,121 @@
+#include "identification/simulate.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/systems.hpp"
+
+namespace reident::identification {
+namespace {
+
+StateSpaceModel with_operating_point(testing::Noise& noise) {
+  StateSpaceModel model = testing::random_system(noise, 3, 2, 2);
+  model.u0 << 4, -7;
+  model.y0 << 28, 3;
+  return model;
+}
+
+TEST(FreeRun, FollowsTheEquationsOfTheModel) {
+  testing::Noise noise(1);
+  const StateSpaceModel model = with_operating_point(noise);
+  const Matrix u = noise.normal(50, 2);
+  const Vector x0 = noise.normal(3, 1);
+  const Matrix y = testing::simulated(model, u, x0);
+  const Record record = contiguous_record(1, u, Matrix::Zero(50, 2));
+  EXPECT_LT((free_run(model, record, record.all(), x0) - y).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(FreeRun, EstimatesTheStateOfEverySegment) {
+  testing::Noise noise(2);
+  const StateSpaceModel model = with_operating_point(noise);
+  const Matrix u = noise.normal(90, 2);
+  const Record record = testing::with_gap(
+      contiguous_record(1, u, testing::simulated(model, u, noise.normal(3, 1))), 40, 55);
+  EXPECT_LT((free_run(model, record, record.all()) - record.y).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((free_run(model, record, {20, 70}) - record.y.middleRows(20, 50)).norm(), 1e-9);
+}
+
+TEST(FreeRun, OfAnUnstableModelMayOverflowButEnds) {
+  StateSpaceModel model{Matrix::Constant(1, 1, 1e10),
+                        Matrix::Ones(1, 1),
+                        Matrix::Ones(1, 1),
+                        Matrix::Zero(1, 1),
+                        {},
+                        Vector::Zero(1),
+                        Vector::Zero(1),
+                        1};
+  const Record record = contiguous_record(1, Matrix::Ones(100, 1), Matrix::Ones(100, 1));
+  EXPECT_FALSE(free_run(model, record, record.all()).allFinite());
+}
+
+TEST(FreeRun, OfNoRowsIsEmpty) {
+  testing::Noise noise(3);
+  const Record record = contiguous_record(1, noise.normal(5, 2), noise.normal(5, 2));
+  EXPECT_EQ(free_run(with_operating_point(noise), record, {2, 2}).rows(), 0);
+}
+
+TEST(InitialState, IsOfLeastNormWhereItCannotBeSeen) {
+  StateSpaceModel model{Matrix::Identity(2, 2) * 0.5,
+                        Matrix::Zero(2, 1),
+                        Matrix(1, 2),
+                        Matrix::Zero(1, 1),
+                        {},
+                        Vector::Zero(1),
+                        Vector::Zero(1),
+                        1};
+  model.C << 1, 1;  // sees the sum alone
+  Matrix y(4, 1);
+  y << 4, 2, 1, 0.5;
+  const Record record = contiguous_record(1, Matrix::Zero(4, 1), y);
+  const Vector x0 = estimate_initial_state(model, record, record.segments[0], 4);
+  EXPECT_NEAR(x0(0), 2, 1e-12);
+  EXPECT_NEAR(x0(1), 2, 1e-12);
+}
+
+TEST(Score, IsTheErrorOverTheSignalAndOverItsSpread) {
+  Matrix y(4, 1), y_hat(4, 1);
+  y << 1, 3, 1, 3;
+  y_hat << 1, 3, 1, 1;
+  const Score s = score(y, y_hat);
+  EXPECT_NEAR(s.mrse_percent(0), 100 * 2 / std::sqrt(20), 1e-12);
+  EXPECT_NEAR(s.fit_percent(0), 100 * (1 - 2 / std::sqrt(4)), 1e-12);
+  EXPECT_EQ(s.rows, 4);
+}
+
+TEST(Score, OfSeveralOutputsTakesTheMeanErrorAndTheWorstFit) {
+  const Score s{(Vector(2) << 1, 3).finished(), (Vector(2) << 90, 70).finished(), 5};
+  EXPECT_DOUBLE_EQ(s.mrse(), 2);
+  EXPECT_DOUBLE_EQ(s.fit(), 70);
+}
+
+TEST(Score, OfDeadOutputsHasTheLimits) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Matrix zero = Matrix::Zero(5, 1), constant = Matrix::Constant(5, 1, 0.1);
+  EXPECT_EQ(score(zero, constant).mrse_percent(0), infinity);
+  EXPECT_EQ(score(zero, constant).fit_percent(0), -infinity);
+  EXPECT_EQ(score(constant, zero).fit_percent(0), -infinity);
+  EXPECT_EQ(score(constant, constant).mrse_percent(0), 0);
+  EXPECT_EQ(score(constant, constant).fit_percent(0), 100);
+}
+
+TEST(Score, OfANonFiniteRunIsTheWorst) {
+  const Matrix y = Matrix::Random(5, 1);
+  const Score s = score(y, Matrix::Constant(5, 1, std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_EQ(s.mrse_percent(0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(s.fit_percent(0), -std::numeric_limits<double>::infinity());
+}
+
+TEST(Score, OfAFreeRunCountsTheScoredRowsAlone) {
+  testing::Noise noise(4);
+  const StateSpaceModel model = with_operating_point(noise);
+  Record record = testing::excited(model, noise, 200, 0);
+  record.y.topRows(100).array() += 5;  // wrong where it is not scored, once the state has settled
+  const Score s = score_free_run(model, record, {0, 200}, {180, 200}, Vector::Zero(3));
+  EXPECT_EQ(s.rows, 20);
+  EXPECT_LT(s.mrse(), 0.1);
+}
+
+}  // namespace
+}  // namespace reident::identification
