@@ -23,6 +23,14 @@ std::optional<double> optional_real(const sqlite::Query& row, int column) {
   return row.is_null(column) ? std::nullopt : std::optional(row.real(column));
 }
 
+// Bound to spacecraft, origin and parameter, then to what `condition` asks for.
+std::string of_series(const std::string& columns, const std::string& condition) {
+  return "SELECT " + columns +
+         " FROM sample WHERE series = (SELECT id FROM series "
+         "WHERE spacecraft = ? AND origin = ? AND parameter = ?) AND " +
+         condition;
+}
+
 constexpr std::string_view descriptor_columns =
     "spacecraft, id, name, unit, description, kind = 'digital', low_limit, high_limit";
 
@@ -126,10 +134,8 @@ Series Archive::read(const std::string& spacecraft, Origin origin, std::uint32_t
   const std::optional<Time> last = last_in(range);
   if (!last) return series;
   sqlite::Query row = connection(database_).query(
-      "SELECT time, value, quality FROM sample WHERE series = "
-      "(SELECT id FROM series WHERE spacecraft = ? AND origin = ? AND parameter = ?) "
-      "AND time BETWEEN ? AND ? ORDER BY time",
-      spacecraft, origin, parameter, range.begin, *last);
+      of_series("time, value, quality", "time BETWEEN ? AND ? ORDER BY time"), spacecraft, origin,
+      parameter, range.begin, *last);
   while (row.step()) {
     series.time.push_back(row.integer(0));
     series.value.push_back(row.is_null(1) ? std::numeric_limits<double>::quiet_NaN() : row.real(1));
@@ -141,20 +147,15 @@ Series Archive::read(const std::string& spacecraft, Origin origin, std::uint32_t
 std::optional<Time> Archive::first_at_or_after(const std::string& spacecraft, Origin origin,
                                                std::uint32_t parameter, Time time) const {
   sqlite::Query row = connection(database_).query(
-      "SELECT time FROM sample WHERE series = "
-      "(SELECT id FROM series WHERE spacecraft = ? AND origin = ? AND parameter = ?) "
-      "AND time >= ? ORDER BY time LIMIT 1",
-      spacecraft, origin, parameter, time);
+      of_series("time", "time >= ? ORDER BY time LIMIT 1"), spacecraft, origin, parameter, time);
   return row.step() ? std::optional(row.integer(0)) : std::nullopt;
 }
 
 std::optional<Time> Archive::last_at_or_before(const std::string& spacecraft, Origin origin,
                                                std::uint32_t parameter, Time time) const {
-  sqlite::Query row = connection(database_).query(
-      "SELECT time FROM sample WHERE series = "
-      "(SELECT id FROM series WHERE spacecraft = ? AND origin = ? AND parameter = ?) "
-      "AND time <= ? ORDER BY time DESC LIMIT 1",
-      spacecraft, origin, parameter, time);
+  sqlite::Query row =
+      connection(database_).query(of_series("time", "time <= ? ORDER BY time DESC LIMIT 1"),
+                                  spacecraft, origin, parameter, time);
   return row.step() ? std::optional(row.integer(0)) : std::nullopt;
 }
 

@@ -54,6 +54,24 @@ TEST_F(ArchiveTest, ReadsHalfOpenRanges) {
         << "[" << range.begin << ", " << range.end << ")";
 }
 
+TEST_F(ArchiveTest, FindsTheNearestSampleOnEitherSide) {
+  append({frame(1, 10, {{1, Quality::good, 1}}), frame(2, 15, {{2, Quality::good, 1}}),
+          frame(3, 20, {{1, Quality::good, 2}})});
+  const struct {
+    Time time;
+    std::optional<Time> before, after;
+  } table[] = {
+      {9, {}, 10},  {10, 10, 10}, {11, 10, 20},    {19, 10, 20},
+      {20, 20, 20}, {21, 20, {}}, {least, {}, 10}, {most, 20, {}},
+  };
+  for (const auto& [time, before, after] : table) {
+    EXPECT_EQ(archive.last_at_or_before("CB4", Origin::real, 1, time), before) << time;
+    EXPECT_EQ(archive.first_at_or_after("CB4", Origin::real, 1, time), after) << time;
+  }
+  EXPECT_EQ(archive.last_at_or_before("CB4", Origin::simulated, 1, 15), std::nullopt);
+  EXPECT_EQ(archive.first_at_or_after("CB4A", Origin::real, 1, 15), std::nullopt);
+}
+
 TEST_F(ArchiveTest, KeepsTheExtremesOfTime) {
   append({frame(1, most, {{1, Quality::good, 2}}), frame(2, least, {{1, Quality::good, 1}})});
   EXPECT_THAT(read_all(archive, 1).time, ElementsAre(least, most));

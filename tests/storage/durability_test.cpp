@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 
 #include "fixture.hpp"
+#include "storage/connection.hpp"
 
 namespace reident::storage::testing {
 namespace {
@@ -150,6 +151,14 @@ TEST(Durability, ALogThatIsCutAnywhereLeavesWholeBatches) {
     EXPECT_EQ(opened, "no error") << "log cut at " << length << " of " << log.size();
   }
   EXPECT_EQ(most, 6U);
+}
+
+TEST(Durability, ACommitWaitsForTheDisk) {
+  const TemporaryFolder folder;
+  const Database database(folder / "a.db", Mode::read_write);
+  sqlite::Query synchronous = database.impl().connection->query("PRAGMA synchronous");
+  ASSERT_TRUE(synchronous.step());
+  EXPECT_EQ(synchronous.integer(0), 2) << "FULL: the log is flushed before a commit returns";
 }
 
 void limit_files_to(rlim_t bytes) {
