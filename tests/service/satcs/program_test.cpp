@@ -1,0 +1,317 @@
+// The programs as an operator starts them, with a reader of their telemetry in the test.
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "service/satcs/parameter_id.hpp"
+#include "tests/service/dds/child.hpp"
+#include "tests/service/dds/dds_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+using storage::ParameterDescriptor;
+using storage::TelemetryFrame;
+using testing::HasSubstr;
+
+constexpr storage::Time second = 1'000'000'000;
+
+std::string text_of(const std::filesystem::path& path) {
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+class Programs : public testing::Test {
+ protected:
+  Programs() { std::filesystem::create_directories(folder_); }
+  ~Programs() override { std::filesystem::remove_all(folder_); }
+
+  /// `program` on the test's own domain, with its output in files.
+  std::vector<std::string> command(const std::string& program, const std::string& arguments) {
+    return {"/bin/sh", "-c",
+            "cd '" + folder_.string() + "' && exec '" + program + "' " + arguments + " --domain " +
+                std::to_string(endpoint_.domain) + " --partition " + endpoint_.partition +
+                " >out 2>err"};
+  }
+  std::vector<std::string> replay(const std::string& arguments) {
+    return command(SATCS_REPLAY, "t.csv --spacecraft SAT-1 " + arguments);
+  }
+  nlohmann::json summary() { return nlohmann::json::parse(text_of(folder_ / "out")); }
+  std::string errors() { return text_of(folder_ / "err"); }
+
+  void write(const std::string& text) { std::ofstream(folder_ / "t.csv") << text; }
+  /// Rows at 1 Hz: a = the row, b = blank in every third row.
+  void write_rows(int rows) {
+    std::string text = "unix_s,a,b_mv\n";
+    for (int r = 0; r < rows; ++r) {
+      text += std::to_string(1'700'000'000 + r) + "," + std::to_string(r) + "," +
+              (r % 3 == 0 ? "" : std::to_string(2 * r)) + "\n";
+    }
+    write(text);
+  }
+  /// Whether `frame` is the row `r` of write_rows.
+  static void expect_row(const TelemetryFrame& frame, std::uint64_t r) {
+    ASSERT_EQ(frame.samples.size(), 2U);
+    EXPECT_EQ(frame.generation_time, static_cast<storage::Time>(1'700'000'000 + r) * second);
+    EXPECT_EQ(frame.reception_time, frame.generation_time);
+    EXPECT_EQ(frame.samples[0].parameter, satcs::parameter_id("a"));
+    EXPECT_EQ(frame.samples[0].value, static_cast<double>(r));
+    EXPECT_EQ(frame.samples[1].parameter, satcs::parameter_id("b"));
+    const bool blank = r % 3 == 0;
+    EXPECT_EQ(frame.samples[1].quality, blank ? storage::Quality::invalid : storage::Quality::good);
+    EXPECT_EQ(std::isnan(frame.samples[1].value), blank);
+    if (!blank) {
+      EXPECT_EQ(frame.samples[1].value, 2.0 * static_cast<double>(r));
+    }
+  }
+
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                  ("reident-satcs-" + std::to_string(getpid()) + "-" +
+                                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  dds::Endpoint endpoint_ = own_endpoint();
+};
+
+TEST_F(Programs, replay_brings_every_row_and_its_descriptors) {
+  write_rows(1000);
+  dds::Participant participant(endpoint_);
+  dds::Reader<TelemetryFrame> frames(participant);
+  dds::Reader<ParameterDescriptor> descriptors(participant);
+  Child child(
+      replay("--speed max --json --first-sequence 501 --source station --origin simulated"));
+  const auto received = take_all(frames, 1000);
+  ASSERT_EQ(received.size(), 1000U);
+  for (std::uint64_t r = 0; r < 1000; ++r) {
+    EXPECT_EQ(received[r].sequence, 501 + r);
+    EXPECT_EQ(received[r].spacecraft, "SAT-1");
+    EXPECT_EQ(received[r].source, "station");
+    EXPECT_EQ(received[r].origin, storage::Origin::simulated);
+    expect_row(received[r], r);
+  }
+  std::map<std::string, ParameterDescriptor> described;
+  for (auto& d : take_all(descriptors, 2)) described[d.name] = d;
+  EXPECT_EQ(described["a"].unit, "");
+  EXPECT_EQ(described["b"].unit, "mV");
+  EXPECT_EQ(described["b"].spacecraft, "SAT-1");
+  EXPECT_EQ(described["b"].id, satcs::parameter_id("b"));
+
+  EXPECT_EQ(child.wait(), 0) << errors();
+  const auto json = summary();
+  EXPECT_EQ(json["outcome"], "complete");
+  EXPECT_EQ(json["frames"], 1000);
+  EXPECT_EQ(json["samples"], 2000);
+  EXPECT_EQ(json["invalid_samples"], 334);
+  EXPECT_EQ(json["first_sequence"], 501);
+  EXPECT_EQ(json["last_sequence"], 1500);
+  EXPECT_EQ(json["first_time"], "2023-11-14T22:13:20Z");
+  EXPECT_EQ(json["last_time"], "2023-11-14T22:29:59Z");
+}
+
+TEST_F(Programs, replay_at_full_speed_loses_nothing_to_a_slow_reader) {
+  constexpr std::uint64_t rows = 5'000;
+  write_rows(rows);
+  dds::Participant participant(endpoint_);
+  dds::Reader<TelemetryFrame> frames(participant, {.max_samples = 32});
+  dds::WaitSet wait_set(participant);
+  wait_set.attach(frames);
+  Child child(replay("--speed max --json"));
+  std::uint64_t next = 0;
+  while (next < rows && !HasFailure() && wait_set.wait(20s)) {
+    frames.take(3, [&](TelemetryFrame&& frame) {
+      EXPECT_EQ(frame.sequence, next + 1);
+      expect_row(frame, next++);
+    });
+  }
+  EXPECT_EQ(next, rows);
+  EXPECT_EQ(child.wait(), 0) << errors();
+  EXPECT_EQ(summary()["frames"], rows);
+}
+
+TEST_F(Programs, replay_keeps_to_its_speed) {
+  write_rows(31);
+  dds::Participant participant(endpoint_);
+  dds::Reader<TelemetryFrame> frames(participant);
+  Child child(replay("--speed 20 --json"));
+  EXPECT_EQ(child.wait(), 0) << errors();
+  EXPECT_GE(summary()["wall_s"].get<double>(), 1.5);
+  EXPECT_EQ(take_all(frames, 31).size(), 31U);
+}
+
+TEST_F(Programs, replay_writes_nothing_before_its_readers_are_there) {
+  write_rows(10);
+  Child child(replay("--speed max --json --wait-readers 2"));
+  dds::Participant participant(endpoint_);
+  dds::Reader<TelemetryFrame> first(participant);
+  ASSERT_TRUE(
+      eventually([&] { return errors().find("waiting for readers") != std::string::npos; }));
+  ASSERT_TRUE(eventually([&] { return first.matched_writers() == 1; }));
+  EXPECT_EQ(first.take(100, [](TelemetryFrame&&) {}), 0U);
+  dds::Reader<TelemetryFrame> second_reader(participant);
+  EXPECT_EQ(take_all(first, 10).size(), 10U);
+  EXPECT_EQ(take_all(second_reader, 10).size(), 10U);
+  EXPECT_EQ(child.wait(), 0) << errors();
+}
+
+TEST_F(Programs, replay_pauses_while_its_reader_is_gone) {
+  write_rows(2000);
+  dds::Participant participant(endpoint_);
+  Child child(replay("--speed 1000 --json --history 0"));
+  std::vector<TelemetryFrame> received;
+  {
+    dds::Reader<TelemetryFrame> reader(participant);
+    received = take_all(reader, 20);
+  }
+  ASSERT_GE(received.size(), 20U);
+  ASSERT_TRUE(
+      eventually([&] { return errors().find("waiting for readers") != std::string::npos; }));
+  dds::Reader<TelemetryFrame> next_reader(participant);
+  std::uint64_t last = 0;
+  ASSERT_TRUE(eventually([&] {
+    next_reader.take(1000, [&](TelemetryFrame&& frame) {
+      EXPECT_TRUE(last == 0 || frame.sequence == last + 1);
+      last = frame.sequence;
+    });
+    return last == 2000;
+  }));
+  EXPECT_EQ(child.wait(), 0) << errors();
+}
+
+TEST_F(Programs, replay_gives_what_it_kept_to_a_reader_that_joins_late) {
+  write_rows(50);
+  Child child(replay("--speed max --wait-readers 0 --history 20 --linger 60s --json"));
+  dds::Participant participant(endpoint_);
+  dds::Reader<TelemetryFrame> late(participant);
+  std::uint64_t last = 0;
+  ASSERT_TRUE(eventually([&] {
+    late.take(100, [&](TelemetryFrame&& frame) { last = frame.sequence; });
+    return last == 50;
+  }));
+  child.signal(SIGTERM);  // ends the linger and takes nothing from what was delivered
+  EXPECT_EQ(child.wait(), 0) << errors();
+  EXPECT_EQ(summary()["outcome"], "complete");
+}
+
+TEST_F(Programs, stop_at_any_point_with_a_summary_and_the_signal_in_the_status) {
+  write_rows(100'000);
+  const std::map<std::string, int> ways = {{"--speed 1", SIGINT}, {"--speed max", SIGTERM}};
+  for (const auto& [speed, signal] : ways) {
+    dds::Participant participant(endpoint_);
+    // Never taken from: at full speed the write blocks.
+    dds::Reader<TelemetryFrame> full(participant, {.max_samples = 4});
+    Child child(replay(speed + " --json"));
+    ASSERT_TRUE(eventually([&] { return full.matched_writers() == 1; }));
+    child.signal(signal);
+    EXPECT_EQ(child.wait(), 128 + signal) << errors();
+    EXPECT_EQ(summary()["outcome"], "stopped") << speed;
+    EXPECT_LT(summary()["frames"], 100'000);
+  }
+  Child waiting(replay("--json"));
+  ASSERT_TRUE(
+      eventually([&] { return errors().find("waiting for readers") != std::string::npos; }));
+  waiting.signal(SIGTERM);
+  EXPECT_EQ(waiting.wait(), 128 + SIGTERM);
+  EXPECT_EQ(summary()["frames"], 0);
+  EXPECT_TRUE(summary()["last_time"].is_null());
+}
+
+TEST_F(Programs, say_when_nobody_took_the_telemetry) {
+  write_rows(10);
+  EXPECT_EQ(Child(replay("--speed max --json --wait-timeout 100ms")).wait(), 3);
+  EXPECT_EQ(summary()["outcome"], "no_readers");
+  EXPECT_THAT(errors(), HasSubstr("fewer than 1 readers came within the time-out; start reidentd"));
+
+  write_rows(10);
+  dds::Participant participant(endpoint_);
+  dds::Reader<TelemetryFrame> full(participant, {.max_samples = 4});
+  // All ten frames fit what the writer may have in flight, but the reader takes four.
+  EXPECT_EQ(Child(replay("--speed max --json --wait-timeout 1s")).wait(), 3);
+  EXPECT_EQ(summary()["outcome"], "not_acknowledged");
+  EXPECT_EQ(summary()["frames"], 10);
+}
+
+TEST_F(Programs, refuse_impossible_requests_in_one_line) {
+  write("t,a\n1,2\n");
+  struct Case {
+    std::string arguments;
+    const char* complaint;
+  };
+  for (const auto& [arguments, complaint] : {
+           Case{"--speed 0",
+                "satcs-replay: --speed: '0' is not a number above 0 or 'max'; see "
+                "satcs-replay --help\n"},
+           Case{"--origin moon",
+                "satcs-replay: --origin: 'moon' is not 'real' or 'simulated'; see "
+                "satcs-replay --help\n"},
+           Case{"--map a",
+                "satcs-replay: --map: 'a' is not COLUMN=PARAMETER[:UNIT]; see "
+                "satcs-replay --help\n"},
+           Case{"--start noon",
+                "satcs-replay: --start: 'noon' is not a time, or an offset such as "
+                "+90 or 2h; see satcs-replay --help\n"},
+           Case{"--linger -1s",
+                "satcs-replay: --linger: '-1s' is not a duration such as 30s; see "
+                "satcs-replay --help\n"},
+           Case{"--only b", "satcs-replay: t.csv: there is no column 'b'; the columns are: t, a\n"},
+       }) {
+    EXPECT_EQ(Child(replay(arguments)).wait(), 2) << arguments;
+    EXPECT_EQ(errors(), complaint);
+    EXPECT_EQ(text_of(folder_ / "out"), "");
+  }
+  EXPECT_EQ(Child(command(SATCS_REPLAY, "none.csv --spacecraft S")).wait(), 2);
+  EXPECT_EQ(errors(), "satcs-replay: none.csv: there is no such file; check the path\n");
+  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--duration 0s")).wait(), 2);
+  EXPECT_EQ(errors(),
+            "satcs-reference: --duration: '0s' is not a duration above 0 such as 12h; see "
+            "satcs-reference --help\n");
+}
+
+TEST_F(Programs, help_shows_an_example) {
+  for (const char* program : {SATCS_REPLAY, SATCS_REFERENCE}) {
+    EXPECT_EQ(Child({"/bin/sh", "-c",
+                     std::string(program) + " --help >'" + (folder_ / "out").string() + "'"})
+                  .wait(),
+              0);
+    EXPECT_THAT(text_of(folder_ / "out"), HasSubstr("Example"));
+  }
+}
+
+TEST_F(Programs, reference_publishes_the_same_telemetry_for_the_same_seed) {
+  const auto run = [&](const std::string& seed) {
+    dds::Participant participant(endpoint_);
+    dds::Reader<TelemetryFrame> frames(participant);
+    dds::Reader<ParameterDescriptor> descriptors(participant);
+    Child child(command(SATCS_REFERENCE, "--duration 5min --speed max --json --seed " + seed));
+    auto received = take_all(frames, 300);
+    EXPECT_EQ(take_all(descriptors, 24).size(), 24U);
+    EXPECT_EQ(child.wait(), 0) << errors();
+    EXPECT_EQ(summary()["frames"], 300);
+    EXPECT_EQ(summary()["spacecraft"], "REFERENCE");
+    return received;
+  };
+  const auto first = run("3");
+  const auto again = run("3");
+  const auto other = run("4");
+  ASSERT_EQ(first.size(), 300U);
+  ASSERT_EQ(again.size(), 300U);
+  ASSERT_EQ(other.size(), 300U);
+  std::size_t differ = 0;
+  for (std::size_t f = 0; f < 300; ++f) {
+    EXPECT_EQ(first[f].generation_time,
+              1'498'867'200 * second + static_cast<storage::Time>(f) * second);
+    ASSERT_EQ(first[f].samples.size(), 24U);
+    for (std::size_t s = 0; s < 24; ++s) {
+      EXPECT_EQ(first[f].samples[s].value, again[f].samples[s].value);
+      differ += first[f].samples[s].value != other[f].samples[s].value;
+    }
+  }
+  EXPECT_GT(differ, 3000U);
+}
+
+}  // namespace
+}  // namespace reident::test
