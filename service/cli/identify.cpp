@@ -44,6 +44,9 @@ std::optional<Refusal> parse_choice(std::string_view flag, const std::string& te
 }
 
 std::optional<Refusal> parse_options(const Arguments& arguments, IdentifyOptions& options) {
+  // --input and --output take all words that follow them.
+  if (arguments.data.file.empty())
+    return Refusal{"no file; name the CSV file before the flags: identify FILE.csv --input ..."};
   if (auto refusal = parse_choice("--order", arguments.order, 1, max_order, options.order))
     return refusal;
   if (auto refusal = parse_choice("--horizon", arguments.horizon, 2, max_horizon, options.horizon))
@@ -151,8 +154,7 @@ void add_identify(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
       "identify", "Identify a state-space model from a CSV file and score it on other rows");
-  command->add_option("file", arguments->data.file, "CSV file with a header row; opened read-only")
-      ->required();
+  command->add_option("file", arguments->data.file, "CSV file with a header row; opened read-only");
   command->add_option("--input", arguments->data.inputs, "columns that drive the model")
       ->required();
   command->add_option("--output", arguments->data.outputs, "columns that the model computes")

@@ -160,12 +160,6 @@ TEST_F(Identify, TakesNamesInCommasAndInRepeatedFlags) {
   EXPECT_EQ(commas, words);
 }
 
-TEST_F(Identify, FindsTheFileBehindTheNames) {
-  write("plant.csv", csv_of(plant(300)));
-  EXPECT_EQ(json_of({"identify", "--input", "u1", "--output", "y1", "plant.csv"})["outputs"],
-            json({"y1"}));
-}
-
 TEST_F(Identify, WarnsWhenTheRangesOverlap) {
   write("plant.csv", csv_of(plant(600)));
   const json printed = json_of(command({"--identify", "0:400", "--validate", "300:600"}));
@@ -288,6 +282,9 @@ const Impossible requests[] = {
     {"a_folder", {".", "--input", "u1", "--output", "y1"}, ""},
     {"no_input", {"plant.csv", "--output", "y1"}, "--input is required"},
     {"no_output", {"plant.csv", "--input", "u1"}, "--output is required"},
+    {"file_after_the_names",
+     {"--input", "u1", "--output", "y1", "plant.csv", "--json"},
+     "name the CSV file before the flags"},
     {"unknown_flag", {"plant.csv", "--input", "u1", "--output", "y1", "--ordr", "2"}, "--ordr"},
     {"unknown_input", {"plant.csv", "--input", "u9", "--output", "y1"}, "u1, u2, y1, y2"},
     {"unknown_output", {"plant.csv", "--input", "u1", "--output", "y9"}, "--output"},
