@@ -35,6 +35,9 @@ class Programs : public testing::Test {
 
   /// `program` on the test's own domain, with its output in files.
   std::vector<std::string> command(const std::string& program, const std::string& arguments) {
+    // What the program before it wrote must not be taken for what this one writes.
+    std::filesystem::remove(folder_ / "out");
+    std::filesystem::remove(folder_ / "err");
     return {"/bin/sh", "-c",
             "cd '" + folder_.string() + "' && exec '" + program + "' " + arguments + " --domain " +
                 std::to_string(endpoint_.domain) + " --partition " + endpoint_.partition +
