@@ -56,7 +56,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       writer_(open_for_writing(config), queue_, config.batch_frames, config.batch_delay, feed_),
       participant_(dds::Endpoint{config.domain, config.partition}),
       publisher_(participant_),
-      ingest_(participant_, config, queue_) {
+      ingest_(std::in_place, participant_, config, queue_) {
   storage::Database database(config.database, storage::Database::Mode::read_only);
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
@@ -76,7 +76,7 @@ Daemon::~Daemon() {
 
 void Daemon::start() {
   writer_thread_ = spawn("archive", [this] { writer_.run(stopping_); });
-  ingest_thread_ = spawn("ingest", [this] { ingest_.run(); });
+  ingest_thread_ = spawn("ingest", [this] { ingest_->run(); });
   for (unsigned i = 0; i < config_.workers; ++i)
     identification_threads_.push_back(spawn("identify", [this] { identify_windows(); }));
 }
@@ -169,8 +169,8 @@ void Daemon::heartbeat() {
   status.program_version = program_version();
   status.started = started_;
   status.time = clock_();
-  status.frames_received = ingest_.frames_received();
-  status.frames_rejected = ingest_.frames_rejected();
+  status.frames_received = ingest_->frames_received();
+  status.frames_rejected = ingest_->frames_rejected();
   status.samples_stored = stored.stored;
   status.duplicates = stored.duplicates;
   status.conflicts = stored.conflicts;
@@ -190,18 +190,21 @@ void Daemon::heartbeat() {
 bool Daemon::stop() {
   if (stopping_.exchange(true)) return true;
   feed_.stop();
-  ingest_.stop();
+  ingest_->stop();
   if (ingest_thread_.joinable()) ingest_thread_.join();
   queue_.close();
   if (writer_thread_.joinable()) writer_thread_.join();
   for (std::thread& thread : identification_threads_) thread.join();
+  const std::uint64_t frames = ingest_->frames_received();
+  ingest_.reset();
+  participant_.hear_again();  // for the acknowledgments that the publisher's writers wait for
   const ArchiveWriter::Counts stored = writer_.counts();
   if (stored.lost > 0)
     log::error("archive",
                "telemetry could not be stored; a gateway that keeps history sends it again",
                {{"frames", stored.lost}, {"error", stored.last_error}});
   log::info("service", "stopped",
-            {{"frames", ingest_.frames_received()},
+            {{"frames", frames},
              {"samples_stored", stored.stored},
              {"attempts", attempts_.load()},
              {"approvals", approvals_.load()}});

@@ -8,7 +8,7 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -58,7 +58,7 @@ class Daemon {
   ArchiveWriter writer_;
   dds::Participant participant_;
   Publisher publisher_;
-  Ingest ingest_;
+  std::optional<Ingest> ingest_;  // ends before the middleware hears again
 
   std::thread ingest_thread_, writer_thread_;
   std::vector<std::thread> identification_threads_;

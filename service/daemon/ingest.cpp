@@ -36,7 +36,8 @@ void log_acknowledgement(const ModelAcknowledgement& acknowledgement) {
 
 Ingest::Ingest(dds::Participant& participant, const Config& config,
                BoundedQueue<TelemetryEvent>& queue)
-    : queue_(queue),
+    : participant_(participant),
+      queue_(queue),
       descriptors_(participant),
       frames_(participant, options_of(config)),
       acknowledgements_(participant),
@@ -78,6 +79,7 @@ void Ingest::run() {
     while (take() > 0 && !stopping_) {
     }
   }
+  participant_.stop_hearing();
   descriptors_.drain([this](auto&& one) { queue(std::move(one)); });
   frames_.drain([this](auto&& one) { queue(std::move(one)); });
   count_rejected();

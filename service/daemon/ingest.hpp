@@ -17,8 +17,8 @@ class Ingest {
   /// The participant and the queue must outlive it. Throws dds::Error.
   Ingest(dds::Participant& participant, const Config& config, BoundedQueue<TelemetryEvent>& queue);
 
-  /// The thread's body: until stop(). What the readers had accepted by then, and their writers need
-  /// not send again, is still queued before it returns.
+  /// The thread's body: until stop(). What was acknowledged to the writers by then, so that they
+  /// need not keep it, is still queued before it returns.
   void run();
   void stop();
 
@@ -33,6 +33,7 @@ class Ingest {
   void queue(storage::TelemetryFrame&& frame);
   void count_rejected();
 
+  dds::Participant& participant_;
   BoundedQueue<TelemetryEvent>& queue_;
   dds::Reader<storage::ParameterDescriptor> descriptors_;
   dds::Reader<storage::TelemetryFrame> frames_;

@@ -38,6 +38,12 @@ class Participant {
   Participant(Participant&&) noexcept;
   Participant& operator=(Participant&&) noexcept;
 
+  /// From here on nothing that other processes send is received, by any participant of this process
+  /// in the domain, and so nothing more is acknowledged: reliable writers keep it for the next run.
+  void stop_hearing();
+  /// Ends that. Readers that still exist then go on.
+  void hear_again();
+
   struct Impl;
   Impl& impl() const { return *impl_; }
 
@@ -99,9 +105,8 @@ class Reader {
   /// Calls `sink` for each message taken, at most `max`, and `refused` for each malformed one;
   /// returns how many were taken, malformed ones included. Neither may throw.
   std::size_t take(std::size_t max, const Sink& sink, const Refused& refused = {});
-  /// For a clean stop: hands out every message that was accepted and not taken yet. It frees no
-  /// room, so that a writer at full speed ends up waiting and the drain ends after `max_samples`
-  /// messages at most. Nothing but the destructor may follow.
+  /// For a clean stop, after Participant::stop_hearing(): hands out every message that was
+  /// acknowledged to its writer, those included that the middleware has not handed on yet.
   std::size_t drain(const Sink& sink, const Refused& refused = {});
   std::uint32_t matched_writers() const;
   /// Messages that broke the contract (sizes, ranges, strings) and were not handed out, and why

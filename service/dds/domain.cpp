@@ -77,4 +77,14 @@ Participant::~Participant() = default;
 Participant::Participant(Participant&&) noexcept = default;
 Participant& Participant::operator=(Participant&&) noexcept = default;
 
+void Participant::stop_hearing() {
+  check(dds_domain_set_deafmute(impl_->participant.get(), true, false, DDS_INFINITY),
+        "dds_domain_set_deafmute", "the domain");
+}
+
+void Participant::hear_again() {
+  check(dds_domain_set_deafmute(impl_->participant.get(), false, false, DDS_INFINITY),
+        "dds_domain_set_deafmute", "the domain");
+}
+
 }  // namespace reident::dds

@@ -8,6 +8,10 @@ namespace reident::dds {
 namespace {
 
 constexpr std::size_t loan_samples = 128;
+// The middleware's thread hands on what it has acknowledged as fast as there is room: a reader that
+// stays empty for so long has all of it.
+constexpr dds_duration_t quiet = DDS_MSECS(150);
+constexpr dds_duration_t drain_limit = DDS_SECS(1);
 
 std::vector<dds_instance_handle_t> matched(dds_entity_t reader, const char* topic) {
   const dds_return_t count = check(dds_get_matched_publications(reader, nullptr, 0),
@@ -23,14 +27,10 @@ std::vector<dds_instance_handle_t> matched(dds_entity_t reader, const char* topi
 }  // namespace
 
 struct ReaderCore::Loan {
-  Loan(dds_entity_t from, std::size_t max, bool remove, const char* topic) : reader(from) {
+  Loan(dds_entity_t from, std::size_t max, const char* topic) : reader(from) {
     const auto size = static_cast<std::uint32_t>(std::min(max, loan_samples));
-    const dds_return_t result =
-        remove ? dds_take(reader, samples.data(), infos.data(), size, size)
-               : dds_read_mask(
-                     reader, samples.data(), infos.data(), size, size,
-                     DDS_NOT_READ_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ANY_INSTANCE_STATE);
-    count = static_cast<std::size_t>(check(result, remove ? "dds_take" : "dds_read_mask", topic));
+    count = static_cast<std::size_t>(
+        check(dds_take(reader, samples.data(), infos.data(), size, size), "dds_take", topic));
   }
   ~Loan() {
     if (count > 0) dds_return_loan(reader, samples.data(), static_cast<std::int32_t>(count));
@@ -102,9 +102,8 @@ bool ReaderCore::is_heard_by_first(dds_instance_handle_t writer) {
   return keeps_history_[writer] = durability != DDS_DURABILITY_VOLATILE;
 }
 
-std::size_t ReaderCore::visit_some(const Ear& ear, std::size_t max, bool remove,
-                                   const Visit& visit) {
-  const Loan loan(ear.reader.get(), max, remove, profile_.topic);
+std::size_t ReaderCore::take_some(const Ear& ear, std::size_t max, const Visit& visit) {
+  const Loan loan(ear.reader.get(), max, profile_.topic);
   const bool is_second = &ear == &second_;
   for (std::size_t i = 0; i < loan.count; ++i) {
     const dds_sample_info_t& info = loan.infos[i];
@@ -120,7 +119,7 @@ std::size_t ReaderCore::take(std::size_t max, const Visit& visit) {
   std::size_t taken = 0;
   for (const Ear* ear : {&first_, &second_}) {
     while (ear->reader && taken < max) {
-      const std::size_t count = visit_some(*ear, max - taken, true, visit);
+      const std::size_t count = take_some(*ear, max - taken, visit);
       taken += count;
       if (count == 0) break;
     }
@@ -129,15 +128,19 @@ std::size_t ReaderCore::take(std::size_t max, const Visit& visit) {
 }
 
 std::size_t ReaderCore::drain(const Visit& visit) {
-  std::size_t visited = 0;
+  const Entity wait_set(dds_create_waitset(participant_.impl().participant.get()),
+                        "dds_create_waitset", profile_.topic);
   for (const Ear* ear : {&first_, &second_}) {
-    while (ear->reader) {
-      const std::size_t count =
-          visit_some(*ear, std::numeric_limits<std::size_t>::max(), false, visit);
-      visited += count;
-      if (count == 0) break;
-    }
+    if (!ear->reader) continue;
+    check(dds_waitset_attach(wait_set.get(), ear->has_samples.get(), 0), "dds_waitset_attach",
+          profile_.topic);
   }
+  const dds_time_t deadline = dds_time() + drain_limit;
+  std::size_t visited = 0;
+  do {
+    visited += take(std::numeric_limits<std::size_t>::max(), visit);
+  } while (dds_time() < deadline && check(dds_waitset_wait(wait_set.get(), nullptr, 0, quiet),
+                                          "dds_waitset_wait", profile_.topic) > 0);
   return visited;
 }
 

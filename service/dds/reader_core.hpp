@@ -24,7 +24,7 @@ class ReaderCore {
 
   /// Visits at most `max` samples and removes them; returns how many were removed.
   std::size_t take(std::size_t max, const Visit& visit);
-  /// Visits every sample that was not visited yet and removes none.
+  /// Takes until nothing more comes, for a second at most.
   std::size_t drain(const Visit& visit);
   std::uint32_t matched_writers();
 
@@ -42,7 +42,7 @@ class ReaderCore {
   struct Loan;
 
   Ear make_ear(bool transient_local) const;
-  std::size_t visit_some(const Ear& ear, std::size_t max, bool remove, const Visit& visit);
+  std::size_t take_some(const Ear& ear, std::size_t max, const Visit& visit);
   bool is_heard_by_first(dds_instance_handle_t writer);
 
   Participant& participant_;

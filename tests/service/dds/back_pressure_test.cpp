@@ -1,4 +1,7 @@
 // A writer in another process at full speed against a reader that is far slower than it.
+#include <optional>
+#include <set>
+
 #include "tests/service/dds/child.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 
@@ -9,8 +12,9 @@ using storage::TelemetryFrame;
 
 std::vector<std::string> sender(const dds::Endpoint& endpoint, int history, std::size_t count,
                                 std::size_t samples) {
-  return {FRAME_SENDER,           std::to_string(endpoint.domain), endpoint.partition,
-          std::to_string(history), std::to_string(count),           std::to_string(samples)};
+  return {FRAME_SENDER,          std::to_string(endpoint.domain),
+          endpoint.partition,    std::to_string(history),
+          std::to_string(count), std::to_string(samples)};
 }
 
 /// Takes a few frames at a time and checks that they are 1, 2, 3, ...
@@ -42,6 +46,42 @@ TEST_P(BackPressure, a_tiny_reader_gets_every_frame_of_a_fast_process_that_ends)
 }
 
 INSTANTIATE_TEST_SUITE_P(with_and_without_history, BackPressure, testing::Values(0, 1, 1000));
+
+TEST(CleanStop, hands_out_all_that_was_acknowledged_though_the_reader_had_room_for_less) {
+  constexpr std::uint64_t count = 100;
+  const dds::Endpoint endpoint = own_endpoint();
+  dds::Participant participant(endpoint);
+  dds::Reader<TelemetryFrame> reader(participant, {.max_samples = 16});
+  Child child(sender(endpoint, 0, count, 20));
+  ASSERT_EQ(child.wait(), 0) << "the sender has every acknowledgment, and nothing was taken yet";
+  participant.stop_hearing();
+  std::vector<TelemetryFrame> received;
+  reader.drain([&](TelemetryFrame&& frame) { received.push_back(std::move(frame)); });
+  EXPECT_EQ(sequences(received), count_to(count));
+}
+
+TEST(CleanStop, under_a_sender_at_full_speed_that_keeps_history_leaves_nothing_out) {
+  constexpr std::uint64_t count = 20'000;
+  const dds::Endpoint endpoint = own_endpoint();
+  dds::Participant participant(endpoint);
+  std::set<std::uint64_t> received;
+  const auto keep = [&](TelemetryFrame&& frame) { received.insert(frame.sequence); };
+  std::optional<dds::Reader<TelemetryFrame>> reader(std::in_place, participant);
+  Child child(sender(endpoint, count, count, 20));
+  ASSERT_TRUE(eventually([&] { return reader->take(100, keep) > 0 && received.size() > 500; }));
+  participant.stop_hearing();
+  reader->drain(keep);
+  reader.reset();
+  EXPECT_LT(received.size(), count) << "the sender was still at work";
+  participant.hear_again();
+
+  reader.emplace(participant);
+  EXPECT_TRUE(eventually([&] {
+    reader->take(1000, keep);
+    return received.size() == count;
+  })) << received.size();
+  EXPECT_EQ(child.wait(), 0);
+}
 
 }  // namespace
 }  // namespace reident::test

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <csignal>
+#include <spawn.h>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 namespace reident::test {
 

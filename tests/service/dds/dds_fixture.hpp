@@ -1,12 +1,11 @@
 // A domain and a partition of the test's own, waiting for conditions, and sample messages.
 #pragma once
 
-#include <unistd.h>
-
 #include <chrono>
 #include <functional>
 #include <string>
 #include <thread>
+#include <unistd.h>
 
 #include <gtest/gtest.h>
 

@@ -32,9 +32,8 @@ int read(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partitio
   if (dds_take(reader, &sample, &info, 1, 1) != 1 || !info.valid_data) return 4;
   const auto* version = static_cast<const reident_ModelVersion*>(sample);
   std::printf("%s/%s %ld %s %s %g %u\n", version->spacecraft, version->equipment,
-              static_cast<long>(version->number), version->digest,
-              version->inputs._buffer[0].name, version->A._buffer[0],
-              version->fit_percent._length);
+              static_cast<long>(version->number), version->digest, version->inputs._buffer[0].name,
+              version->A._buffer[0], version->fit_percent._length);
   dds_return_loan(reader, &sample, 1);
   return 0;
 }

@@ -6,7 +6,7 @@
 
 #include "tests/service/dds/child.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
-#include "tests/service/dds/example_model.hpp"
+#include "tests/service/model/example_model.hpp"
 
 namespace reident::test {
 namespace {

@@ -127,29 +127,5 @@ TEST(Telemetry, a_writer_that_waits_for_room_stops_when_it_is_asked_to) {
   EXPECT_EQ(written, 2U);
 }
 
-TEST(Telemetry, drain_hands_out_all_that_was_accepted_and_ends_under_a_writer_at_full_speed) {
-  dds::Participant ground(own_endpoint());
-  dds::Participant service(own_endpoint());
-  auto reader = std::make_unique<dds::Reader<TelemetryFrame>>(
-      service, dds::ReaderOptions{.max_samples = 16});
-  dds::Writer<TelemetryFrame> writer(ground, {.history = 0});
-  ASSERT_TRUE(eventually([&] { return reader->matched_writers() == 1; }));
-  std::atomic<bool> stop = false;
-  std::thread sender([&] {
-    for (std::uint64_t i = 1; writer.write(make_frame(i), [&] { return stop.load(); }); ++i) {
-      if (stop) break;
-    }
-  });
-  std::vector<TelemetryFrame> received = take_all(*reader, 1000);
-  const std::size_t before = received.size();
-  reader->drain([&](TelemetryFrame&& frame) { received.push_back(std::move(frame)); });
-  EXPECT_GE(received.size(), before);
-  EXPECT_LE(received.size(), before + 16);
-  EXPECT_EQ(sequences(received), count_to(received.size()));
-  stop = true;
-  reader.reset();
-  sender.join();
-}
-
 }  // namespace
 }  // namespace reident::test
