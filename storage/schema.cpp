@@ -84,7 +84,8 @@ CREATE INDEX decision_for_champion ON decision (spacecraft, equipment)
 // series, then a stretch of the sample table.
 constexpr std::string_view telemetry_views = R"sql(
 CREATE VIEW telemetry AS
-  SELECT series.spacecraft, coalesce(parameter.name, series.parameter) AS parameter,
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
          iif(series.origin, 'simulated', 'real') AS origin, source.name AS source,
          sample.time,
          strftime('%Y-%m-%dT%H:%M:%S',
@@ -100,7 +101,8 @@ CREATE VIEW telemetry AS
   LEFT JOIN source ON source.id = sample.source;
 
 CREATE VIEW telemetry_series AS
-  SELECT series.spacecraft, coalesce(parameter.name, series.parameter) AS parameter,
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
          iif(origin, 'simulated', 'real') AS origin, unit, samples, first_time, last_time
   FROM series
   LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
@@ -125,7 +127,8 @@ CREATE VIEW telemetry_gap AS
   FROM sequence_gap JOIN source ON source.id = sequence_gap.source;
 
 CREATE VIEW telemetry_late AS
-  SELECT series.spacecraft, coalesce(parameter.name, series.parameter) AS parameter,
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
          iif(origin, 'simulated', 'real') AS origin, begin_time, end_time
   FROM late_range JOIN series ON series.id = late_range.series
   LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft

@@ -57,6 +57,11 @@ TEST_F(SqlTest, TelemetryHasARowForEachSample) {
           "CB4|V_BUS|simulated|simcbers|-1|1969-12-31T23:59:59.999999999Z|27.0|suspect"));
 }
 
+TEST_F(SqlTest, AParameterWithoutADescriptorIsNamedByItsId) {
+  append({frame(1, 10, {{7, Quality::good, 5}})});
+  EXPECT_THAT(ask("SELECT value FROM telemetry WHERE parameter = '7'"), ElementsAre("5.0"));
+}
+
 TEST_F(SqlTest, TelemetryShowsTheExtremesOfTime) {
   append({frame(1, std::numeric_limits<Time>::min(), {{1, Quality::good, 1}}),
           frame(2, std::numeric_limits<Time>::max(), {{1, Quality::good, 2}})});
