@@ -34,7 +34,7 @@ struct ModelAcknowledgement {
   std::int64_t version = 0;
   std::string digest;
   storage::Time since = 0;
-  bool accepted = true;   // false: refused, `reason` says why, and the older version goes on
+  bool accepted = true;  // false: refused, `reason` says why, and the older version goes on
   std::string reason;
   double running_mrse_percent = 0;  // since the swap; NaN before the first sample
 };

@@ -12,7 +12,9 @@ using identification::Matrix;
 using identification::Vector;
 using Json = nlohmann::ordered_json;
 
-Json number_to_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number_to_json(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json to_json(const std::vector<Signal>& signals) {
   Json array = Json::array();

@@ -15,7 +15,7 @@ namespace reident {
 struct Signal {
   std::string name;  // SATCS parameter
   std::string unit;
-  double low = 0;    // range visited in the identification window
+  double low = 0;  // range visited in the identification window
   double high = 0;
   bool operator==(const Signal&) const = default;
 };
@@ -37,11 +37,11 @@ struct EquipmentModel {
 /// A version as simulators receive it.
 struct ModelVersion {
   EquipmentModel model;
-  std::int64_t number = 0;      // counts the versions of one equipment from 1
-  std::string digest;           // model_digest(model)
-  storage::Time decided = 0;    // UTC
-  std::string decided_by;       // "gate" or an operator's name
-  bool rollback = false;        // an older version on purpose
+  std::int64_t number = 0;    // counts the versions of one equipment from 1
+  std::string digest;         // model_digest(model)
+  storage::Time decided = 0;  // UTC
+  std::string decided_by;     // "gate" or an operator's name
+  bool rollback = false;      // an older version on purpose
   std::string program_version;
 };
 

@@ -1,0 +1,93 @@
+#include <functional>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "service/support/sha256.hpp"
+#include "tests/service/model/example_model.hpp"
+
+namespace reident::test {
+namespace {
+
+using namespace std::string_literals;
+
+TEST(Digest, is_the_sha256_of_the_documented_encoding) {
+  EquipmentModel model;
+  model.spacecraft = "S"s;
+  model.equipment = "EQ"s;
+  model.inputs = {{"u", "A", 0, 1}};
+  model.outputs = {{"y", "", -2, 0}};
+  model.dynamics.A = identification::Matrix::Constant(1, 1, 0.5);
+  model.dynamics.B = identification::Matrix::Constant(1, 1, 1);
+  model.dynamics.C = identification::Matrix::Constant(1, 1, 2);
+  model.dynamics.D = identification::Matrix::Constant(1, 1, 0);
+  model.dynamics.u0 = identification::Vector::Constant(1, 1);
+  model.dynamics.y0 = identification::Vector::Constant(1, -2);
+  model.dynamics.period_s = 1;
+  model.hold_ns = 0x0102;
+
+  const std::string zero(8, '\0');
+  const std::string half = "\0\0\0\0\0\0\xe0\x3f"s;
+  const std::string one = "\0\0\0\0\0\0\xf0\x3f"s;
+  const std::string two = "\0\0\0\0\0\0\0\x40"s;
+  const std::string minus_two = "\0\0\0\0\0\0\0\xc0"s;
+  const std::vector<std::string> input = {"\x01\0\0\0u"s, "\x01\0\0\0A"s, zero, one};
+  const std::vector<std::string> output = {"\x01\0\0\0y"s, "\0\0\0\0"s, minus_two, zero};
+  const std::vector<std::string> a_b_c_d = {half, one, two, zero};
+  std::string encoding = "\x0f\0\0\0reident model 1\x01\0\0\0S\x02\0\0\0EQ"s;
+  const auto append = [&](const std::vector<std::string>& parts) {
+    for (const std::string& part : parts) encoding.append(part);
+  };
+  append({"\x01\0\0\0"s});
+  append(input);
+  append({"\x01\0\0\0"s});
+  append(output);
+  append({one, "\x02\x01\0\0\0\0\0\0"s, "\x01\0\0\0"s});  // period, hold, order
+  append(a_b_c_d);
+  append({"\0\0\0\0"s, one, minus_two});  // no K, offsets
+  EXPECT_EQ(model_digest(model), sha256_hex(encoding));
+}
+
+TEST(Digest, changes_with_everything_that_a_simulator_computes_with) {
+  const std::vector<std::function<void(EquipmentModel&)>> changes = {
+      [](EquipmentModel&) {},
+      [](EquipmentModel& m) { m.spacecraft = "CBERS4A"s; },
+      [](EquipmentModel& m) { m.equipment = "BDR2"s; },
+      [](EquipmentModel& m) { m.inputs[0].name += "x"; },
+      [](EquipmentModel& m) { m.inputs[0].unit = "mA"s; },
+      [](EquipmentModel& m) { m.inputs[1].low = -0.3; },
+      [](EquipmentModel& m) { m.inputs[1].high = 4.5; },
+      [](EquipmentModel& m) { std::swap(m.inputs[0], m.inputs[1]); },
+      [](EquipmentModel& m) { m.outputs[0].unit = "V"s; },
+      [](EquipmentModel& m) { m.hold_ns += 1; },
+      [](EquipmentModel& m) { m.dynamics.period_s = 2; },
+      [](EquipmentModel& m) { m.dynamics.A(0, 1) += 1e-16; },
+      [](EquipmentModel& m) { m.dynamics.A.transposeInPlace(); },
+      [](EquipmentModel& m) { m.dynamics.B(1, 1) = 0; },
+      [](EquipmentModel& m) { m.dynamics.C(0, 0) = -1; },
+      [](EquipmentModel& m) { m.dynamics.D(0, 1) = -0.0; },
+      [](EquipmentModel& m) { m.dynamics.K(1, 0) = 0; },
+      [](EquipmentModel& m) { m.dynamics.K.resize(0, 0); },
+      [](EquipmentModel& m) { m.dynamics.u0(1) = 1; },
+      [](EquipmentModel& m) { m.dynamics.y0(0) = 1; },
+  };
+  std::set<std::string> digests;
+  for (const auto& change : changes) {
+    EquipmentModel model = example_model();
+    change(model);
+    digests.insert(model_digest(model));
+  }
+  EXPECT_EQ(digests.size(), changes.size());
+}
+
+TEST(Digest, does_not_depend_on_when_and_how_the_model_was_found) {
+  EquipmentModel model = example_model();
+  model.method = "other"s;
+  model.identified_from = {0, 1};
+  model.validated_on = {1, 2};
+  model.validation.mrse_percent(0) = 99;
+  EXPECT_EQ(model_digest(model), model_digest(example_model()));
+}
+
+}  // namespace
+}  // namespace reident::test

@@ -1,0 +1,137 @@
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+
+#include "tests/service/model/example_model.hpp"
+
+namespace reident::test {
+namespace {
+
+using identification::Matrix;
+using identification::Vector;
+
+bool same_bits(const Matrix& a, const Matrix& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
+  for (identification::Index i = 0; i < a.size(); ++i) {
+    const auto bits = [i](const Matrix& m) { return std::bit_cast<std::uint64_t>(m.data()[i]); };
+    if (bits(a) != bits(b)) return false;
+  }
+  return true;
+}
+
+/// Finite doubles of every magnitude, denormals and both zeros among them.
+Matrix any_numbers(identification::Index rows, identification::Index columns, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  Matrix matrix(rows, columns);
+  for (double& value : matrix.reshaped()) {
+    do {
+      value = std::bit_cast<double>(generator());
+    } while (!std::isfinite(value));
+  }
+  return matrix;
+}
+
+TEST(ModelJson, gives_the_same_model_back_to_the_last_bit) {
+  EquipmentModel model = example_model();
+  model.dynamics.A = any_numbers(2, 2, 1);
+  model.dynamics.B = any_numbers(2, 2, 2);
+  model.dynamics.B(0, 0) = -0.0;
+  model.dynamics.B(1, 0) = std::numeric_limits<double>::denorm_min();
+  model.dynamics.B(0, 1) = std::numeric_limits<double>::max();
+  model.dynamics.K = any_numbers(2, 1, 3);
+  model.inputs[0].low = 0.1;
+  model.hold_ns = std::numeric_limits<std::int64_t>::max();
+
+  const EquipmentModel back = equipment_model_from_json(to_json(model).dump());
+  EXPECT_EQ(back.spacecraft, model.spacecraft);
+  EXPECT_EQ(back.equipment, model.equipment);
+  EXPECT_EQ(back.inputs, model.inputs);
+  EXPECT_EQ(back.outputs, model.outputs);
+  EXPECT_EQ(back.hold_ns, model.hold_ns);
+  EXPECT_EQ(back.identified_from, model.identified_from);
+  EXPECT_EQ(back.validated_on, model.validated_on);
+  EXPECT_EQ(back.method, model.method);
+  EXPECT_EQ(back.validation.rows, model.validation.rows);
+  EXPECT_EQ(back.dynamics.period_s, model.dynamics.period_s);
+  EXPECT_TRUE(same_bits(back.dynamics.A, model.dynamics.A));
+  EXPECT_TRUE(same_bits(back.dynamics.B, model.dynamics.B));
+  EXPECT_TRUE(same_bits(back.dynamics.C, model.dynamics.C));
+  EXPECT_TRUE(same_bits(back.dynamics.D, model.dynamics.D));
+  EXPECT_TRUE(same_bits(back.dynamics.K, model.dynamics.K));
+  EXPECT_TRUE(same_bits(back.dynamics.u0, model.dynamics.u0));
+  EXPECT_TRUE(same_bits(back.dynamics.y0, model.dynamics.y0));
+  EXPECT_EQ(model_digest(back), model_digest(model));
+}
+
+TEST(ModelJson, keeps_a_static_model_without_gain) {
+  EquipmentModel model = example_model();
+  model.dynamics.A.resize(0, 0);
+  model.dynamics.B.resize(0, 2);
+  model.dynamics.C.resize(1, 0);
+  model.dynamics.K.resize(0, 0);
+  const EquipmentModel back = equipment_model_from_json(to_json(model).dump());
+  EXPECT_EQ(back.dynamics.order(), 0);
+  EXPECT_EQ(back.dynamics.B.cols(), 2);
+  EXPECT_EQ(back.dynamics.C.rows(), 1);
+  EXPECT_EQ(back.dynamics.K.size(), 0);
+  EXPECT_EQ(model_digest(back), model_digest(model));
+}
+
+TEST(ModelJson, writes_a_figure_that_does_not_exist_as_null_and_reads_it_as_nan) {
+  EquipmentModel model = example_model();
+  model.validation.fit_percent(0) = -std::numeric_limits<double>::infinity();
+  const auto json = to_json(model);
+  EXPECT_TRUE(json["validation"]["fit_percent"][0].is_null());
+  EXPECT_TRUE(std::isnan(equipment_model_from_json(json.dump()).validation.fit_percent(0)));
+}
+
+struct Damage {
+  const char* pointer;  // JSON pointer to what is replaced; by null in `value`: removed
+  const char* value;
+  const char* message;
+};
+
+class DamagedModelJson : public testing::TestWithParam<Damage> {};
+
+TEST_P(DamagedModelJson, is_refused_with_the_name_of_the_field) {
+  auto json = to_json(example_model());
+  const nlohmann::ordered_json::json_pointer pointer(GetParam().pointer);
+  if (GetParam().value == nullptr) {
+    json.at(pointer.parent_pointer()).erase(pointer.back());
+  } else {
+    json[pointer] = nlohmann::ordered_json::parse(GetParam().value);
+  }
+  try {
+    equipment_model_from_json(json.dump());
+    FAIL() << "it was taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(GetParam().message));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    table, DamagedModelJson,
+    testing::Values(Damage{"/A", nullptr, "\"A\" is missing"},
+                    Damage{"/A", "3", "\"A\" must be an array"},
+                    Damage{"/A", "[[1]]", "\"order\" is 2 and A has 1 rows"},
+                    Damage{"/A/1", "[1]", "\"A[1]\" must have 2 entries and has 1"},
+                    Damage{"/B", "[[1,2]]", "\"B\" must have 2 entries and has 1"},
+                    Damage{"/C/0/1", "\"x\"", "\"C[0][1]\" must be a number or null"},
+                    Damage{"/K", "[[1],[2],[3]]", "\"K\" must have 2 entries and has 3"},
+                    Damage{"/input_offset", "[1]", "\"input_offset\" must have 2 entries"},
+                    Damage{"/hold_ns", "1.5", "\"hold_ns\" must be an integer"},
+                    Damage{"/hold_ns", "9223372036854775808", "\"hold_ns\" is above"},
+                    Damage{"/inputs/1/name", "7", "\"inputs[1].name\" must be a string"},
+                    Damage{"/validated_on", "[]", "\"validated_on\" must be an object"},
+                    Damage{"/validation/rows", nullptr, "\"validation.rows\" is missing"}));
+
+TEST(ModelJson, refuses_text_that_is_not_json) {
+  EXPECT_THROW(equipment_model_from_json("{\"A\": [1, "), std::invalid_argument);
+  EXPECT_THROW(equipment_model_from_json("[]"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace reident::test
