@@ -21,6 +21,8 @@ struct HankelFactor {
 /// Columns of the Hankel matrix with `block_rows` block rows over the segments.
 Index hankel_columns(const std::vector<Segment>& segments, Index block_rows);
 
+/// From the sums of lag products; where these would lose too many digits (noise-free data, inputs
+/// that nearly foretell each other), from a QR of the rows.
 HankelFactor compress(const Record& record, RowRange rows, Index block_rows);
 
 }  // namespace reident::identification

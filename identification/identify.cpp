@@ -56,8 +56,8 @@ Index usable_columns(const Record& record, const std::array<Fold, 2>& folds, int
   const Index width = record.u.cols() + record.y.cols();
   Index least = std::numeric_limits<Index>::max();
   for (const Fold& fold : folds)
-    least = std::min(least, hankel_columns(segments_within(record, fold.fit), 2 * horizon));
-  return least >= 2 * horizon * width + 1 ? least : 0;
+    least = std::min(least, hankel_columns(segments_within(record, fold.fit), 2 * Index{horizon}));
+  return least >= 2 * Index{horizon} * width + 1 ? least : 0;
 }
 
 /// Horizons that the segments can feed, ascending. A longer one must leave at least half of the
@@ -200,7 +200,7 @@ class Identification {
   std::optional<Verdict> limit_by_excitation(SearchSpace& space) {
     if (work_.u.cols() == 0) return std::nullopt;
     const int horizon = space.horizons.back();
-    const HankelFactor factor = compress(work_, work_.all(), 2 * horizon);
+    const HankelFactor factor = compress(work_, work_.all(), 2 * Index{horizon});
     const Excitation excitation = excitation_of(Projection(factor, horizon).input_innovations());
     if (excitation.order >= horizon) return std::nullopt;
     const std::string weakest =
@@ -222,17 +222,20 @@ class Identification {
 
   /// The recipe on all rows, absent when it gives no stable model there.
   std::optional<Identified> realise(const Recipe& recipe) const {
-    const HankelFactor factor = compress(work_, work_.all(), 2 * recipe.horizon);
+    const HankelFactor factor = compress(work_, work_.all(), 2 * Index{recipe.horizon});
     const Projection projection(factor, recipe.horizon);
     auto [gamma, singular_values] = projection.observability(recipe.weighting);
     const Dynamics dynamics =
         shift_invariant(gamma, factor.outputs, recipe.order, recipe.stability);
     if (!is_stable(dynamics.A)) return std::nullopt;
-    Response response = fit_response(dynamics.A, dynamics.C, work_, work_.all(), Accuracy::exact);
+    Response response =
+        recipe.refinement_steps > 0
+            ? refine_response(dynamics.A, dynamics.C, work_, work_.all(), recipe.refinement_steps)
+            : fit_response(dynamics.A, dynamics.C, work_, work_.all(), Accuracy::exact);
     Identified result;
     result.warnings = warnings_;
-    if (const auto K =
-            kalman_gain(dynamics.A, dynamics.C, projection.noise_covariance(response.model)))
+    if (const auto K = kalman_gain(response.model.A, response.model.C,
+                                   projection.noise_covariance(response.model)))
       response.model.K = *K;
     else
       result.warnings.push_back(

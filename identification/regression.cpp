@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "identification/kernels.hpp"
 
 namespace reident::identification {
 namespace {
@@ -10,30 +13,21 @@ constexpr Index stretch = 256;
 
 /// The dual system of one output: since C A^j B is linear in B, the regressors of a column of B are
 /// the states of x[k+1] = A' x[k] + c' v[k] driven by that column's input. All inputs v at once.
-class DualFilter {
+class DualFilters {
  public:
-  DualFilter(const Matrix& A, const Vector& c, Index inputs)
-      : At_(A.transpose()), c_(c), states_(Matrix::Zero(A.rows(), inputs)), next_(A.rows()) {}
+  DualFilters(const Matrix& A, const Vector& c, Matrix states)
+      : At_(A.transpose()), c_(c), states_(std::move(states)) {}
 
-  /// Writes the states to `out` (n * inputs), then takes the inputs `v`.
-  void step(const double* v, double* out) {
-    const Index n = At_.rows();
-    for (Index j = 0; j < states_.cols(); ++j) {
-      double* x = states_.data() + j * n;
-      std::copy(x, x + n, out + j * n);
-      for (Index i = 0; i < n; ++i) next_(i) = c_(i) * v[j];
-      const double* column = At_.data();
-      for (Index k = 0; k < n; ++k, column += n)
-        for (Index i = 0; i < n; ++i) next_(i) += column[i] * x[k];
-      std::copy(next_.data(), next_.data() + n, x);
-    }
+  /// Writes the states of `count` steps to `out`, a column of `stride` each.
+  void run(const double* v, Index count, double* out, Index stride) {
+    run_dual_filters(At_.data(), c_.data(), At_.rows(), states_.cols(), v, count, states_.data(),
+                     out, stride);
   }
 
  private:
   Matrix At_;
   Vector c_;
   Matrix states_;
-  Vector next_;
 };
 
 /// The state of the model along a stretch, and C x.
@@ -72,33 +66,25 @@ void walk_regression(const Columns& columns, const StateSpaceModel& model, const
   const Index n = columns.n, m = columns.m, p = columns.p;
   const Index extra = columns.moves ? p : 0;
   const Index common = columns.output(0), width = common + columns.per_output() + 1;
-  std::vector<DualFilter> filters;  // of B and L
-  std::vector<DualFilter> free;     // of x0: the response to an impulse before the first row
+  std::vector<DualFilters> filters;  // of x0, whose regressors start as c, then of B and L
   for (Index q = 0; q < p; ++q) {
-    filters.emplace_back(model.A, model.C.row(q).transpose(), m + extra);
-    free.emplace_back(model.A, model.C.row(q).transpose(), 1);
-    const double impulse = 1;
-    Vector ignored(n);
-    free.back().step(&impulse, ignored.data());
+    Matrix states = Matrix::Zero(n, 1 + m + extra);
+    states.col(0) = model.C.row(q).transpose();
+    filters.emplace_back(model.A, model.C.row(q).transpose(), std::move(states));
   }
   Vector x = x0;
-  Matrix values(width, stretch), driving(m + extra, stretch);
+  Matrix values(width, stretch), driving = Matrix::Zero(1 + m + extra, stretch);
   for (Index begin = segment.begin; begin < segment.end; begin += stretch) {
     const Index count = std::min(stretch, segment.end - begin);
-    driving.topLeftCorner(m, count) = record.u.middleRows(begin, count).transpose();
+    driving.block(1, 0, m, count) = record.u.middleRows(begin, count).transpose();
     Trajectory trajectory;
     if (columns.moves) {
       trajectory = advance(model, record, begin, count, x);
       driving.bottomLeftCorner(p, count) = trajectory.outputs;
     }
     for (Index q = 0; q < p; ++q) {
-      const double nothing = 0;
-      for (Index k = 0; k < count; ++k) {
-        double* column = values.data() + k * width;
-        free[static_cast<std::size_t>(q)].step(&nothing, column);
-        filters[static_cast<std::size_t>(q)].step(driving.data() + k * (m + extra), column + n);
-      }
-      values.block(common, 0, m, count) = driving.topLeftCorner(m, count);
+      filters[static_cast<std::size_t>(q)].run(driving.data(), count, values.data(), width);
+      values.block(common, 0, m, count) = driving.block(1, 0, m, count);
       values.row(common + m).head(count).setOnes();
       if (columns.per_output() > m + 1)
         values.block(common + m + 1, 0, n, count) = trajectory.states;
@@ -116,8 +102,9 @@ NormalEquations::NormalEquations(const Columns& columns)
       sums_(Matrix::Zero(columns.count() - columns.n, columns.count() - columns.n)) {}
 
 void NormalEquations::add(const RegressionRows& rows) {
-  of_output_[static_cast<std::size_t>(rows.output)].selfadjointView<Eigen::Lower>().rankUpdate(
-      rows.values);
+  const VectorSequence sequence{rows.values.data(), rows.values.rows(), rows.values.outerStride()};
+  add_outer_products(sequence, sequence, rows.values.cols(), Triangle::lower,
+                     of_output_[static_cast<std::size_t>(rows.output)].data());
 }
 
 void NormalEquations::end_segment() {
@@ -146,8 +133,8 @@ std::optional<RegressionSolution> NormalEquations::solve(double damping) const {
     weight.segment(begin - n, count) *= 1 + damping;
   };
   if (columns_.moves) {
-    damp(columns_.L(), n * columns_.p);
-    for (Index q = 0; columns_.p > 1 && q < columns_.p; ++q) damp(columns_.dC(q), n);
+    damp(columns_.dynamics(), n * columns_.p);
+    for (Index q = 0; columns_.p > 1 && q < columns_.p; ++q) damp(columns_.output_map(q), n);
   }
   Matrix G = sums_.topLeftCorner(unknowns, unknowns);
   G.diagonal() = weight;

@@ -19,11 +19,11 @@ struct Columns {
   Index n = 0, m = 0, p = 0;
   bool moves = false;
 
-  Index B() const { return n; }
-  Index L() const { return B() + n * m; }
-  Index output(Index q) const { return L() + (moves ? n * p : 0) + q * per_output(); }
-  Index y0(Index q) const { return output(q) + m; }
-  Index dC(Index q) const { return y0(q) + 1; }
+  Index input_gain() const { return n; }                   // B
+  Index dynamics() const { return input_gain() + n * m; }  // L
+  Index output(Index q) const { return dynamics() + (moves ? n * p : 0) + q * per_output(); }
+  Index offset(Index q) const { return output(q) + m; }
+  Index output_map(Index q) const { return offset(q) + 1; }  // dC_q
   Index per_output() const { return m + 1 + (moves && p > 1 ? n : 0); }
   Index target() const { return output(p); }
   Index count() const { return target() + 1; }

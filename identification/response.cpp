@@ -18,10 +18,10 @@ struct Fitted {
 Fitted from(const RegressionSolution& solution, const Columns& columns, StateSpaceModel model) {
   const Index n = columns.n, m = columns.m, p = columns.p;
   const double* theta = solution.theta.data();
-  model.B = Eigen::Map<const Matrix>(theta + columns.B(), n, m);
+  model.B = Eigen::Map<const Matrix>(theta + columns.input_gain(), n, m);
   for (Index q = 0; q < p; ++q) {
     model.D.row(q) = solution.theta.segment(columns.output(q), m).transpose();
-    model.y0(q) = solution.theta(columns.y0(q));
+    model.y0(q) = solution.theta(columns.offset(q));
   }
   return {std::move(model), solution.x0, solution.sum_of_squares};
 }
@@ -87,11 +87,11 @@ Response refine_response(const Matrix& A, const Matrix& C, const Record& record,
     for (int attempt = 0; attempt < 5 && !lowered; ++attempt, damping *= 10) {
       const auto solution = sums.solve(damping);
       if (!solution) continue;
-      const Matrix L =
-          Eigen::Map<const Matrix>(solution->theta.data() + columns.L(), columns.n, columns.p);
+      const Matrix L = Eigen::Map<const Matrix>(solution->theta.data() + columns.dynamics(),
+                                                columns.n, columns.p);
       Matrix moved_C = best.model.C;
       for (Index q = 0; columns.p > 1 && q < columns.p; ++q)
-        moved_C.row(q) += solution->theta.segment(columns.dC(q), columns.n).transpose();
+        moved_C.row(q) += solution->theta.segment(columns.output_map(q), columns.n).transpose();
       const Matrix moved_A = best.model.A + L * best.model.C;
       const StateSpaceModel moved = with_dynamics(moved_A, moved_C, record);
       if (!is_well_formed(moved) || !(spectral_radius(moved) < 1)) continue;

@@ -1,7 +1,10 @@
 #include "identification/simulate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "identification/kernels.hpp"
 
 namespace reident::identification {
 namespace {
@@ -9,15 +12,18 @@ namespace {
 /// Runs one segment from `x`; writes its outputs into y_hat from row `out` on.
 void run_segment(const StateSpaceModel& model, const Record& record, const Segment& segment,
                  Vector x, Matrix& y_hat, Index out) {
-  Vector du(model.inputs()), next(model.order()), y(model.outputs());
-  for (Index row = segment.begin; row < segment.end; ++row, ++out) {
-    du = record.u.row(row).transpose() - model.u0;
-    y.noalias() = model.C * x;
-    y.noalias() += model.D * du;
-    y_hat.row(out) = (y + model.y0).transpose();
-    next.noalias() = model.A * x;
-    next.noalias() += model.B * du;
-    x.swap(next);
+  constexpr Index stretch = 1024;  // of rows at once, so that the work space stays small
+  const Index n = model.order(), m = model.inputs(), p = model.outputs();
+  Matrix M(n + p, n + m);
+  M << model.A, model.B, model.C, model.D;
+  Vector work(n + p);
+  Matrix du(m, stretch), y(p, stretch);
+  for (Index begin = segment.begin; begin < segment.end; begin += stretch) {
+    const Index count = std::min(stretch, segment.end - begin);
+    du.leftCols(count) = record.u.middleRows(begin, count).transpose().colwise() - model.u0;
+    run_state_space(M.data(), n, m, p, du.data(), count, x.data(), work.data(), y.data());
+    y_hat.middleRows(out + (begin - segment.begin), count) =
+        (y.leftCols(count).colwise() + model.y0).transpose();
   }
 }
 
@@ -75,7 +81,8 @@ Score score(const Matrix& y, const Matrix& y_hat) {
     // The mean of a constant may be rounded: its spread is zero all the same.
     const bool constant = y.col(q).maxCoeff() == y.col(q).minCoeff();
     const double mrse = error == 0 ? 0 : 100 * error / size;
-    const double fit = error == 0 ? 100 : constant ? -infinity : 100 * (1 - error / spread);
+    double fit = 100 * (1 - error / spread);
+    if (constant) fit = error == 0 ? 100 : -infinity;
     result.mrse_percent(q) = std::isnan(mrse) ? infinity : mrse;
     result.fit_percent(q) = std::isnan(fit) ? -infinity : fit;
   }
