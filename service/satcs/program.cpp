@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/support/csv.hpp"
+#include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/version.hpp"
@@ -113,7 +114,8 @@ void add_publisher_options(CLI::App& app, PublisherOptions& options, bool& json)
       ->default_str("never");
   app.add_option("--history", options.history, "Frames kept for readers that join late")
       ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+      ->type_name("N")
+      ->default_str("2 MB of them");
   add_parsed(app, "--linger", options.linger, parse_wait,
              "Stay for readers that join late, so long after the last frame",
              "a duration such as 30s")
@@ -141,9 +143,7 @@ std::string to_json(const PublisherSummary& summary, const PublisherOptions& opt
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-int run_program(CLI::App& app, int argc, char** argv, const PublisherOptions& options,
-                const bool& json,
-                const std::function<std::unique_ptr<FrameSource>()>& make_source) {
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
   app.set_version_flag("--version", std::string(program_version()));
   try {
     app.parse(argc, argv);
@@ -153,19 +153,22 @@ int run_program(CLI::App& app, int argc, char** argv, const PublisherOptions& op
                     exit_bad_request);
   }
   try {
-    const StopSignal stop;
-    const auto source = make_source();
-    const PublisherSummary summary = publish(*source, options, stop.token());
-    fmt::print("{}\n", json ? to_json(summary, options) : sentence(summary));
-    if (const std::string what = remedy(summary.outcome, options); !what.empty()) {
-      complain(app, what, exit_not_delivered);
-    }
-    return exit_code(summary.outcome, stop.number());
+    return work();
   } catch (const BadRequest& error) {
     return complain(app, error.what(), exit_bad_request);
   } catch (const std::exception& error) {
     return complain(app, error.what(), exit_failed);
   }
+}
+
+int publish_and_report(FrameSource& source, const PublisherOptions& options, bool json) {
+  const StopSignal stop;
+  const PublisherSummary summary = publish(source, options, stop.token());
+  fmt::print("{}\n", json ? to_json(summary, options) : sentence(summary));
+  if (const std::string what = remedy(summary.outcome, options); !what.empty()) {
+    log::error("satcs", what);
+  }
+  return exit_code(summary.outcome, stop.number());
 }
 
 }  // namespace reident::satcs

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -48,9 +47,13 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, T& value,
 /// --spacecraft, --source, --origin, --speed and all that says how frames are published.
 void add_publisher_options(CLI::App& app, PublisherOptions& options, bool& json);
 
-/// Parses the command line, makes the source and publishes it. Returns the exit status.
-int run_program(CLI::App& app, int argc, char** argv, const PublisherOptions& options,
-                const bool& json, const std::function<std::unique_ptr<FrameSource>()>& make_source);
+/// Parses the command line and does the work; every failure becomes one line on standard error.
+/// Returns the exit status.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
+
+/// Publishes all of `source` until a signal says otherwise, and prints the summary. Returns the
+/// exit status.
+int publish_and_report(FrameSource& source, const PublisherOptions& options, bool json);
 
 /// The summary as one JSON object on one line.
 std::string to_json(const PublisherSummary& summary, const PublisherOptions& options);

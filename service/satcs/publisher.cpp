@@ -25,6 +25,18 @@ bool sleep_until(Clock::time_point until, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
+/// The middleware holds a writer back when 500 kB are on the way to its readers (its default
+/// Internal/Watermarks/WhcHigh). Four times as much leaves room for what is written before the
+/// writer learns that its last reader left.
+std::int32_t history_of_restarts(std::size_t parameters) {
+  constexpr std::size_t kept_bytes = 2'000'000;
+  constexpr std::size_t bytes_of_a_frame = 60;  // without samples, at the least
+  constexpr std::size_t bytes_of_a_sample = 20;
+  return static_cast<std::int32_t>(kept_bytes /
+                                   (bytes_of_a_frame + bytes_of_a_sample * parameters)) +
+         1;
+}
+
 /// One run of publish().
 class Run {
  public:
@@ -34,7 +46,8 @@ class Run {
         stop_(stop),
         participant_(options.endpoint),
         descriptors_(participant_),
-        frames_(participant_, {.history = options.history}) {}
+        frames_(participant_, {.history = options.history.value_or(
+                                   history_of_restarts(source.parameters().size()))}) {}
 
   PublisherSummary operator()() {
     const auto began = Clock::now();

@@ -40,7 +40,9 @@ struct PublisherOptions {
   std::uint32_t wait_readers = 1;  // no frame is written while fewer readers are there
   /// How long to wait for the readers, and for their last acknowledgments; absent: for ever.
   std::optional<std::chrono::nanoseconds> wait_timeout;
-  std::int32_t history = 1000;  // frames kept for readers that join late
+  /// Frames kept for readers that join late; absent: more than the middleware ever has on the way,
+  /// so that a reader that is stopped and started again misses nothing.
+  std::optional<std::int32_t> history;
   /// How long the frames that are kept stay available after the last one.
   std::chrono::nanoseconds linger{0};
 };

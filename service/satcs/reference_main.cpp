@@ -1,8 +1,8 @@
 // satcs-reference: the reference spacecraft, publishing its telemetry.
 
-#include <memory>
 #include <string>
 
+#include "service/satcs/csv_export.hpp"
 #include "service/satcs/program.hpp"
 #include "service/satcs/reference_source.hpp"
 #include "service/support/time_text.hpp"
@@ -16,7 +16,8 @@ constexpr const char* about =
     "telemetry at 1 Hz. The same start and seed give the same telemetry.\n\n"
     "Examples:\n"
     "  satcs-reference --duration 12h --speed 600\n"
-    "  satcs-reference --start 2017-07-01T06:00:00Z --duration 3d --speed max --seed 7 --json\n\n"
+    "  satcs-reference --start 2017-07-01T06:00:00Z --duration 3d --speed max --seed 7 --json\n"
+    "  satcs-reference --duration 6h --csv reference.csv\n\n"
     "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
     "missing\n"
     "or did not take everything; 128 + N stopped by signal N.\n";
@@ -47,8 +48,15 @@ int main(int argc, char** argv) {
   publisher.spacecraft = "REFERENCE";
   publisher.source = "reference";
   bool json = false;
+  std::string csv;
   add_reference_options(app, reference);
+  app.add_option("--csv", csv, "Write the telemetry to this file and publish nothing")
+      ->type_name("FILE");
   add_publisher_options(app, publisher, json);
-  return run_program(app, argc, argv, publisher, json,
-                     [&] { return std::make_unique<ReferenceSource>(reference); });
+  return run_program(app, argc, argv, [&]() -> int {
+    ReferenceSource source(reference);
+    if (csv.empty()) return publish_and_report(source, publisher, json);
+    write_csv(source, csv);
+    return exit_complete;
+  });
 }

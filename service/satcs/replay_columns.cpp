@@ -5,6 +5,7 @@
 #include <map>
 
 #include "service/satcs/parameter_id.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::satcs {
@@ -26,12 +27,6 @@ bool named_like_a_time(std::string_view column) {
   constexpr std::array<std::string_view, 5> hints = {"time", "unix", "date", "utc", "epoch"};
   return std::any_of(hints.begin(), hints.end(),
                      [&](std::string_view hint) { return name.find(hint) != std::string::npos; });
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 /// The columns that the options name, all of them being in the file.

@@ -1,6 +1,5 @@
 // satcs-replay: publishes recorded telemetry as a control centre would.
 
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,7 +60,7 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
       ->type_name("TIME|OFFSET");
 }
 
-std::unique_ptr<FrameSource> make_source(const ReplayOptions& options) {
+ReplaySource open_replay(const ReplayOptions& options) {
   auto planned = plan_replay(options);
   if (const auto* error = std::get_if<reident::csv::Error>(&planned)) {
     throw BadRequest(error->message);
@@ -70,7 +69,7 @@ std::unique_ptr<FrameSource> make_source(const ReplayOptions& options) {
   for (const auto& column : plan.left_out) {
     reident::log::info("satcs", "column left out, there is no number in it", {{"column", column}});
   }
-  return std::make_unique<ReplaySource>(std::move(plan));
+  return ReplaySource(std::move(plan));
 }
 
 }  // namespace
@@ -84,5 +83,8 @@ int main(int argc, char** argv) {
   add_replay_options(app, replay);
   add_publisher_options(app, publisher, json);
   app.get_option("--spacecraft")->required();
-  return run_program(app, argc, argv, publisher, json, [&] { return make_source(replay); });
+  return run_program(app, argc, argv, [&] {
+    ReplaySource source = open_replay(replay);
+    return publish_and_report(source, publisher, json);
+  });
 }

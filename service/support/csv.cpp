@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::csv {
@@ -17,18 +18,6 @@ namespace {
 
 constexpr std::size_t block_bytes = std::size_t{256} << 10;
 constexpr std::size_t max_row_bytes = std::size_t{16} << 20;
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <system_error>
 
+#include "service/support/text.hpp"
+
 namespace reident {
 namespace {
 
@@ -31,12 +33,6 @@ constexpr std::array<Unit, 7> units = {{{"d", day_ns},
 
 constexpr bool is_digit(char c) {
   return c >= '0' && c <= '9';
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 std::optional<std::int64_t> narrow(Wide value) {
