@@ -316,5 +316,29 @@ TEST_F(Programs, reference_publishes_the_same_telemetry_for_the_same_seed) {
   EXPECT_GT(differ, 3000U);
 }
 
+TEST_F(Programs, reference_written_as_a_file_is_replayed_to_the_same_telemetry) {
+  const auto received = [&](const std::vector<std::string>& command) {
+    dds::Participant participant(endpoint_);
+    dds::Reader<TelemetryFrame> frames(participant);
+    Child child(command);
+    auto result = take_all(frames, 120);
+    EXPECT_EQ(child.wait(), 0) << errors();
+    return result;
+  };
+  const auto direct = received(command(SATCS_REFERENCE, "--duration 2min --speed max"));
+  ASSERT_EQ(Child(command(SATCS_REFERENCE, "--duration 2min --csv t.csv")).wait(), 0);
+  const auto replayed = received(replay("--speed max"));
+  ASSERT_EQ(direct.size(), 120U);
+  ASSERT_EQ(replayed.size(), 120U);
+  for (std::size_t f = 0; f < 120; ++f) {
+    EXPECT_EQ(direct[f].generation_time, replayed[f].generation_time);
+    ASSERT_EQ(direct[f].samples.size(), replayed[f].samples.size());
+    for (std::size_t s = 0; s < direct[f].samples.size(); ++s) {
+      EXPECT_EQ(direct[f].samples[s].parameter, replayed[f].samples[s].parameter);
+      EXPECT_EQ(direct[f].samples[s].value, replayed[f].samples[s].value);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace reident::test
