@@ -9,6 +9,7 @@
 #include "identification/identify.hpp"
 #include "service/daemon/window_data.hpp"
 #include "service/model/model_json.hpp"
+#include "service/support/floor_divide.hpp"
 #include "service/support/phase_timer.hpp"
 #include "service/support/version.hpp"
 
@@ -95,11 +96,9 @@ double champion_mrse(const storage::Archive& archive, const EquipmentModel& cham
     source = &own;
   }
   const identification::Record& record = source->record;
-  const auto tick = [&](storage::Time time) {
-    return time / request.period - (time % request.period < 0 ? 1 : 0);
-  };
-  const RowRange scored{first_row_at(record, tick(validation.begin + request.period - 1)),
-                        first_row_at(record, tick(validation.end + request.period - 1))};
+  const RowRange scored{
+      first_row_at(record, floor_divide(validation.begin + request.period - 1, request.period)),
+      first_row_at(record, floor_divide(validation.end + request.period - 1, request.period))};
   if (scored.size() == 0) return std::numeric_limits<double>::quiet_NaN();
   return score_free_run(champion.dynamics, record, record.all(), scored).mrse();
 }

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <set>
 
+#include "service/support/floor_divide.hpp"
+
 namespace reident {
 namespace {
 
@@ -70,7 +72,7 @@ void WindowFeed::touch_stored(std::size_t equipment, const std::string& spacecra
         archive.first_at_or_after(spacecraft, storage::Origin::real, parameter, time);
     if (!sample || *sample > *last) return;
     scheduler_.touched(equipment, *sample, now);
-    time = *sample - ((*sample % slide) + slide) % slide + slide;  // the next stretch
+    time = (floor_divide(*sample, slide) + 1) * slide;  // the next stretch
   }
 }
 

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cassert>
 
+#include "service/support/floor_divide.hpp"
+
 namespace reident {
 namespace {
 
 /// Times further from the epoch than this (year 2200) belong to no window: a clock that is wrong by
 /// centuries must not overflow the arithmetic below.
 constexpr storage::Time time_bound = 7'258'118'400'000'000'000;
-
-std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
-  return a / b - (a % b < 0 ? 1 : 0);
-}
 
 }  // namespace
 

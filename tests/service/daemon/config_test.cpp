@@ -185,7 +185,7 @@ std::string with(int line, const std::string& replacement) {
   return text;
 }
 
-const Mistake table[] = {
+const Mistake structure[] = {
     {"nothing", "", "0: there is no spacecraft; add [[spacecraft]]"},
     {"unknown_section", minimal + "[servce]\n",
      "9: the file: servce is not known; did you mean service?"},
@@ -219,6 +219,9 @@ const Mistake table[] = {
     {"equipment_twice", minimal + minimal.substr(minimal.find("[[spacecraft.equipment]]")),
      "10: [[spacecraft.equipment]] name BDR is taken"},
     {"spacecraft_twice", minimal + minimal, "10: [[spacecraft]] name CBERS-4 is taken"},
+};
+
+const Mistake values[] = {
     {"no_sample_period", with(7, ""), "3: equipment BDR: sample_period is missing"},
     {"period_is_a_number", with(7, "sample_period = 1"),
      "7: equipment BDR: sample_period must be a duration in quotes with its unit"},
@@ -288,6 +291,9 @@ const Mistake table[] = {
      "2: [dds] partition must not be empty"},
     {"large_domain", "[dds]\ndomain = 231\n" + minimal,
      "2: [dds] domain must be a whole number from 0 to 230, not the number 231"},
+};
+
+const Mistake syntax[] = {
     {"no_quotes", with(4, "name = BDR"),
      "4: mistake in value: a text or a duration needs double quotes"},
     {"duration_without_quotes", with(8, "window = 10min"),
@@ -303,8 +309,13 @@ const Mistake table[] = {
     {"no_utf8", with(4, "name = \"\xff\""), "4: "},
 };
 
-INSTANTIATE_TEST_SUITE_P(Table, ConfigMistakes, ::testing::ValuesIn(table),
-                         [](const auto& tested) { return std::string(tested.param.name); });
+std::string name_of(const ::testing::TestParamInfo<Mistake>& tested) {
+  return tested.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Structure, ConfigMistakes, ::testing::ValuesIn(structure), name_of);
+INSTANTIATE_TEST_SUITE_P(Values, ConfigMistakes, ::testing::ValuesIn(values), name_of);
+INSTANTIATE_TEST_SUITE_P(Syntax, ConfigMistakes, ::testing::ValuesIn(syntax), name_of);
 
 TEST(Config, AllMistakesAreReportedAtOnceByLine) {
   EXPECT_THAT(mistakes_of("[service]\n"

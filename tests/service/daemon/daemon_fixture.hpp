@@ -1,0 +1,100 @@
+// A database in a folder of its own, and telemetry of a plant whose truth is known.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "service/daemon/config.hpp"
+#include "storage/archive.hpp"
+#include "storage/registry.hpp"
+
+namespace reident::test {
+
+constexpr std::int64_t second = 1'000'000'000;
+constexpr std::int64_t minute = 60 * second;
+/// A multiple of every slide below.
+constexpr storage::Time day = 19'000LL * 86'400 * second;
+
+class DaemonTest : public testing::Test {
+ protected:
+  DaemonTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "reident-daemon-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~DaemonTest() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path path() const { return folder_ / "reident.db"; }
+  storage::Database open() const { return {path(), storage::Database::Mode::read_write}; }
+
+  /// Inputs u (1) and v (2), output y (3).
+  static std::vector<storage::ParameterDescriptor> descriptors() {
+    std::vector<storage::ParameterDescriptor> result;
+    for (const char* name : {"u", "v", "y"}) {
+      storage::ParameterDescriptor one;
+      one.spacecraft = "SAT";
+      one.id = static_cast<std::uint32_t>(result.size() + 1);
+      one.name = name;
+      one.unit = "V";
+      result.push_back(one);
+    }
+    return result;
+  }
+
+  /// One frame a second from `begin` on. The plant is of first order: its output follows
+  /// gain * (u + v / 2) and two slow oscillations excite it.
+  static std::vector<storage::TelemetryFrame> telemetry(storage::Time begin, int seconds,
+                                                        double gain = 1, double noise = 0.01) {
+    std::vector<storage::TelemetryFrame> frames;
+    double state = 0;
+    std::uint64_t random = 88172645463325252;
+    for (int k = 0; k < seconds; ++k) {
+      const double u = k / 40 % 3 - 1.0;
+      const double v = std::sin(k * 0.07);
+      random ^= random << 13, random ^= random >> 7, random ^= random << 17;
+      const double disturbance = noise * (static_cast<double>(random >> 11) * 0x1p-52 - 1);
+      storage::TelemetryFrame frame;
+      frame.spacecraft = "SAT";
+      frame.source = "station";
+      frame.sequence = static_cast<std::uint64_t>((begin - day) / second + k);
+      frame.generation_time = begin + k * second;
+      frame.reception_time = frame.generation_time;
+      const auto good = storage::Quality::good;
+      frame.samples = {{1, good, u}, {2, good, v}, {3, good, 10 + state + disturbance}};
+      frames.push_back(std::move(frame));
+      state = 0.9 * state + 0.1 * gain * (u + v / 2);
+    }
+    return frames;
+  }
+
+  /// Windows of 10 minutes that slide by 5.
+  static EquipmentConfig plant() {
+    EquipmentConfig equipment;
+    equipment.name = "PLANT";
+    equipment.inputs = {"u", "v"};
+    equipment.outputs = {"y"};
+    equipment.sample_period = second;
+    equipment.hold = 3 * second;
+    equipment.window = 10 * minute;
+    equipment.slide = 5 * minute;
+    return equipment;
+  }
+
+  static Config config() {
+    Config result;
+    result.max_clock_lead = 60 * minute;
+    result.settle = second;
+    result.spacecraft = {{"SAT", {plant()}}};
+    return result;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace reident::test

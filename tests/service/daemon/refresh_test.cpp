@@ -1,0 +1,167 @@
+#include "service/daemon/refresh.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "service/model/model_json.hpp"
+#include "tests/service/daemon/daemon_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+const auto never = [] { return false; };
+
+class Refresh : public DaemonTest {
+ protected:
+  Refresh() { archive.describe(descriptors()); }
+
+  RefreshResult run(storage::Time end, const EquipmentConfig& equipment = plant()) {
+    return refresh(archive, registry,
+                   {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, never);
+  }
+  void record(const RefreshResult& result) {
+    registry.record(result.attempt,
+                    {to_json(*result.candidate).dump(), model_digest(*result.candidate)},
+                    *result.decision);
+  }
+
+  storage::Database database = open();
+  storage::Archive archive{database};
+  storage::Registry registry{database};
+};
+
+TEST_F(Refresh, ApprovesAGoodFirstVersionAndExplainsIt) {
+  archive.append(telemetry(day, 601));
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  ASSERT_TRUE(result.candidate);
+  EXPECT_EQ(result.candidate->inputs[0].name, "u");
+  EXPECT_EQ(result.candidate->inputs[0].unit, "V");
+  EXPECT_EQ(result.candidate->inputs[0].low, -1);
+  EXPECT_EQ(result.candidate->inputs[0].high, 1);
+  EXPECT_EQ(result.candidate->identified_from, (storage::TimeRange{day, day + 7 * minute}));
+  EXPECT_EQ(result.candidate->validated_on,
+            (storage::TimeRange{day + 7 * minute, day + 10 * minute}));
+  EXPECT_GT(result.evidence.fit_percent, 90);
+  const auto evidence = nlohmann::json::parse(result.attempt.evidence_json);
+  EXPECT_EQ(evidence["rows_identified"], 420);
+  EXPECT_EQ(evidence["rows_validated"], 180);
+  EXPECT_EQ(evidence["coverage"], 1.0);
+  EXPECT_TRUE(evidence["timing_ms"].contains("load"));
+}
+
+TEST_F(Refresh, ScoresTheChampionOnTheSameSamples) {
+  archive.append(telemetry(day, 1201));
+  record(run(day + 10 * minute));
+  const RefreshResult result = run(day + 15 * minute);
+  ASSERT_TRUE(result.evidence.champion);
+  EXPECT_EQ(result.evidence.champion->version, 1);
+  EXPECT_NEAR(result.evidence.champion->mrse_percent, result.evidence.mrse_percent, 0.05);
+  EXPECT_EQ(result.attempt.outcome, "not_better_than_champion") << result.attempt.reason;
+}
+
+TEST_F(Refresh, ReplacesAChampionThatThePlantHasLeftBehind) {
+  archive.append(telemetry(day, 601));
+  record(run(day + 10 * minute));
+  archive.append(telemetry(day + 20 * minute, 601, 2.0));
+  const RefreshResult result = run(day + 30 * minute);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  EXPECT_GT(result.evidence.champion->mrse_percent, 3 * result.evidence.mrse_percent);
+}
+
+TEST_F(Refresh, ScoresAChampionOfOtherInputsOnItsOwnInputs) {
+  archive.append(telemetry(day, 1201));
+  EquipmentConfig narrower = plant();
+  narrower.inputs = {"u"};
+  record(run(day + 10 * minute, narrower));
+  const RefreshResult result = run(day + 15 * minute);
+  ASSERT_TRUE(result.evidence.champion);
+  EXPECT_GT(result.evidence.champion->mrse_percent, result.evidence.mrse_percent);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+}
+
+TEST_F(Refresh, LetsAnyGoodCandidateReplaceAChampionThatIsDamagedInTheRegistry) {
+  archive.append(telemetry(day, 1201));
+  const RefreshResult first = run(day + 10 * minute);
+  registry.record(first.attempt, {"{ not a model", "0"}, *first.decision);
+  EXPECT_EQ(run(day + 15 * minute).attempt.outcome, "approved");
+}
+
+TEST_F(Refresh, GivesTheSameBitsForTheSameSamples) {
+  archive.append(telemetry(day, 601));
+  EXPECT_EQ(to_json(*run(day + 10 * minute).candidate).dump(),
+            to_json(*run(day + 10 * minute).candidate).dump());
+}
+
+TEST_F(Refresh, IdentifiesFromWhatLiesBeforeTheValidationAlone) {
+  archive.append(telemetry(day, 420));
+  archive.append(telemetry(day + 420 * second, 181, 1.0, 0.01));
+  const auto one = run(day + 10 * minute);
+  storage::Database other_database(path().string() + "-other", storage::Database::Mode::read_write);
+  storage::Archive other(other_database);
+  storage::Registry other_registry(other_database);
+  other.describe(descriptors());
+  other.append(telemetry(day, 420));
+  other.append(telemetry(day + 420 * second, 181, 5.0, 0.5));
+  const auto two = refresh(other, other_registry,
+                           {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"}, never);
+  ASSERT_TRUE(one.candidate && two.candidate);
+  EXPECT_EQ(one.candidate->dynamics.A, two.candidate->dynamics.A);
+  EXPECT_EQ(one.candidate->dynamics.B, two.candidate->dynamics.B);
+  EXPECT_EQ(one.candidate->dynamics.y0, two.candidate->dynamics.y0);
+  EXPECT_NE(one.evidence.mrse_percent, two.evidence.mrse_percent);
+}
+
+TEST_F(Refresh, NamesAParameterThatTelemetryHasNotDescribed) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs = {"u", "w"};
+  const RefreshResult result = run(day + 10 * minute, equipment);
+  EXPECT_EQ(result.attempt.outcome, "unknown_parameter");
+  EXPECT_THAT(result.attempt.reason, testing::HasSubstr("w"));
+  EXPECT_FALSE(result.candidate);
+}
+
+TEST_F(Refresh, RefusesAWindowFullOfHoles) {
+  archive.append(telemetry(day, 250));
+  EXPECT_EQ(run(day + 10 * minute).attempt.outcome, "low_coverage");
+  EXPECT_EQ(run(day + 60 * minute).attempt.outcome, "low_coverage") << "no sample at all";
+}
+
+TEST_F(Refresh, PassesTheVerdictOfTheIdentificationOn) {
+  auto frames = telemetry(day, 601);
+  for (auto& frame : frames) frame.samples[2].value = 7;
+  archive.append(frames);
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "constant_outputs");
+  EXPECT_THAT(result.attempt.reason, testing::Not(testing::IsEmpty()));
+}
+
+TEST_F(Refresh, SaysThatAQuietValidationPartDecidesNothing) {
+  auto frames = telemetry(day, 601);
+  for (std::size_t k = 420; k < frames.size(); ++k) frames[k].samples[2].value = 7;
+  archive.append(frames);
+  EXPECT_EQ(run(day + 10 * minute).attempt.outcome, "validation_says_nothing");
+}
+
+TEST_F(Refresh, LeavesSamplesOfBadQualityOut) {
+  auto frames = telemetry(day, 601);
+  for (std::size_t k = 100; k < 160; ++k) {
+    frames[k].samples[2].quality = storage::Quality::invalid;
+    frames[k].samples[2].value = 1e6;
+  }
+  archive.append(frames);
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  EXPECT_LT(result.candidate->outputs[0].high, 20);
+}
+
+TEST_F(Refresh, StopsWhenItIsAskedTo) {
+  archive.append(telemetry(day, 601));
+  EXPECT_THROW(
+      refresh(archive, registry, {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"},
+              [] { return true; }),
+      Stopped);
+}
+
+}  // namespace
+}  // namespace reident::test

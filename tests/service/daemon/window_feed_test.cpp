@@ -1,0 +1,153 @@
+#include "service/daemon/window_feed.hpp"
+
+#include <limits>
+
+#include "tests/service/daemon/daemon_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+class Feed : public DaemonTest {
+ protected:
+  std::unique_ptr<WindowFeed> make_feed() {
+    return std::make_unique<WindowFeed>(config_, [this] { return now; });
+  }
+  /// Stores the frames and tells the feed, as the archive's writer does.
+  void store(WindowFeed& feed, const std::vector<storage::TelemetryFrame>& frames) {
+    feed.stored(frames, archive.append(frames));
+  }
+  /// Ends of the windows that are due now, all of them tried and recorded.
+  std::vector<storage::Time> try_all(WindowFeed& feed) {
+    now += 2 * second;
+    std::vector<storage::Time> ends;
+    while (feed.pending() > 0) {
+      const auto job = feed.next();
+      archive.seal(*job->spacecraft, job->window.window.end);
+      storage::NewAttempt attempt;
+      attempt.spacecraft = *job->spacecraft;
+      attempt.equipment = job->equipment->name;
+      attempt.window = job->window.window;
+      attempt.evidence_json = "{}";
+      registry.record(attempt);
+      feed.finished(*job, true);
+      feed.forget_settled(*job->spacecraft, archive);
+      ends.push_back(job->window.window.end);
+    }
+    return ends;
+  }
+
+  const Config config_ = config();
+  storage::Time now = day + 1000 * minute;
+  storage::Database database = open();
+  storage::Archive archive{database};
+  storage::Registry registry{database};
+};
+
+TEST_F(Feed, GivesTheWindowsOfStoredTelemetry) {
+  auto feed = make_feed();
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  store(*feed, telemetry(day, 901));
+  EXPECT_EQ(try_all(*feed), (std::vector{day + 5 * minute, day + 10 * minute, day + 15 * minute}));
+  EXPECT_EQ(feed->newest_telemetry(), day + 15 * minute);
+}
+
+TEST_F(Feed, GivesThemTooWhenTheDescriptorsComeAfterTheFrames) {
+  auto feed = make_feed();
+  store(*feed, telemetry(day, 901));
+  EXPECT_EQ(feed->pending(), 0U);
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  EXPECT_EQ(try_all(*feed).size(), 3U);
+}
+
+TEST_F(Feed, StartsNothingForFramesThatCameBefore) {
+  auto feed = make_feed();
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  store(*feed, telemetry(day, 901));
+  try_all(*feed);
+  store(*feed, telemetry(day, 901));
+  EXPECT_EQ(feed->pending(), 0U);
+}
+
+TEST_F(Feed, StartsNothingForOtherSpacecraftParametersAndSimulatedTelemetry) {
+  auto feed = make_feed();
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  auto other = telemetry(day, 901);
+  for (auto& frame : other) frame.spacecraft = "OTHER";
+  store(*feed, other);
+  auto simulated = telemetry(day, 901);
+  for (auto& frame : simulated) frame.origin = storage::Origin::simulated;
+  store(*feed, simulated);
+  auto foreign = telemetry(day, 901);
+  for (auto& frame : foreign) frame.samples = {{99, storage::Quality::good, 1.0}};
+  store(*feed, foreign);
+  EXPECT_EQ(feed->pending(), 0U);
+}
+
+TEST_F(Feed, LooksAgainWhereLateTelemetryLandsAlsoAfterARestart) {
+  auto feed = make_feed();
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  auto frames = telemetry(day, 1801);
+  const std::vector<storage::TelemetryFrame> late(frames.begin() + 400, frames.begin() + 420);
+  frames.erase(frames.begin() + 400, frames.begin() + 420);
+  store(*feed, frames);
+  EXPECT_EQ(try_all(*feed).size(), 6U);
+  archive.append(late);  // and the service dies before it looks
+
+  feed = make_feed();
+  feed->recover(archive, registry);
+  EXPECT_EQ(try_all(*feed), (std::vector{day + 10 * minute, day + 15 * minute}));
+  EXPECT_TRUE(archive.late_ranges("SAT").empty()) << "the marks are settled";
+
+  feed = make_feed();
+  feed->recover(archive, registry);
+  EXPECT_EQ(feed->pending(), 0U);
+}
+
+TEST_F(Feed, TakesUpWindowsThatAnEarlierRunDidNotTry) {
+  archive.describe(descriptors());
+  archive.append(telemetry(day, 901));
+  {
+    auto feed = make_feed();
+    feed->recover(archive, registry);
+    EXPECT_EQ(try_all(*feed).size(), 3U);
+  }
+  archive.append(telemetry(day + 901 * second, 600));
+  auto feed = make_feed();
+  feed->recover(archive, registry);
+  EXPECT_EQ(try_all(*feed), (std::vector{day + 20 * minute, day + 25 * minute}));
+}
+
+TEST_F(Feed, FollowsNoClockThatRanAwayNowOrAfterARestart) {
+  auto feed = make_feed();
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  auto frames = telemetry(day, 301);
+  auto ahead = frames.back();
+  ahead.generation_time = now + 2 * config_.max_clock_lead;
+  frames.push_back(ahead);
+  ahead.generation_time = std::numeric_limits<storage::Time>::max();
+  frames.push_back(ahead);
+  ahead.generation_time = std::numeric_limits<storage::Time>::min();
+  frames.push_back(ahead);
+  store(*feed, frames);
+  EXPECT_EQ(feed->clock_jumps(), 2U);
+  EXPECT_EQ(feed->pending(), 1U);
+
+  feed = make_feed();
+  feed->recover(archive, registry);
+  EXPECT_EQ(try_all(*feed), (std::vector{day + 5 * minute}));
+}
+
+TEST_F(Feed, EndsTheWaitWhenItIsStopped) {
+  auto feed = make_feed();
+  feed->stop();
+  EXPECT_FALSE(feed->next());
+}
+
+}  // namespace
+}  // namespace reident::test
