@@ -12,6 +12,7 @@ namespace {
 struct SharedDomain {
   Entity entity;  // empty where the middleware made the domain on its own
   std::size_t users = 0;
+  std::size_t silences = 0;
 };
 
 Mutex domains_mutex;
@@ -77,14 +78,28 @@ Participant::~Participant() = default;
 Participant::Participant(Participant&&) noexcept = default;
 Participant& Participant::operator=(Participant&&) noexcept = default;
 
+Silence::Silence(Participant& participant) : participant_(participant.impl()) {
+  const MutexLock lock(domains_mutex);
+  std::size_t& silences = domains().at(participant_.domain.domain_).silences;
+  if (silences == 0) {
+    check(dds_domain_set_deafmute(participant_.participant.get(), true, false, DDS_INFINITY),
+          "dds_domain_set_deafmute", "the domain");
+  }
+  ++silences;
+}
+
+Silence::~Silence() {
+  const MutexLock lock(domains_mutex);
+  if (--domains().at(participant_.domain.domain_).silences > 0) return;
+  dds_domain_set_deafmute(participant_.participant.get(), false, false, DDS_INFINITY);
+}
+
 void Participant::stop_hearing() {
-  check(dds_domain_set_deafmute(impl_->participant.get(), true, false, DDS_INFINITY),
-        "dds_domain_set_deafmute", "the domain");
+  if (!impl_->silence) impl_->silence.emplace(*this);
 }
 
 void Participant::hear_again() {
-  check(dds_domain_set_deafmute(impl_->participant.get(), false, false, DDS_INFINITY),
-        "dds_domain_set_deafmute", "the domain");
+  impl_->silence.reset();
 }
 
 }  // namespace reident::dds

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "service/dds/entity.hpp"
@@ -21,7 +22,21 @@ class DomainUse {
   DomainUse& operator=(const DomainUse&) = delete;
 
  private:
+  friend class Silence;
   std::uint32_t domain_;
+};
+
+/// While one exists, nothing that other processes send in the domain is received, and so nothing
+/// more is acknowledged; reliable writers send it again afterwards.
+class Silence {
+ public:
+  explicit Silence(Participant& participant);
+  ~Silence();
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  Participant::Impl& participant_;
 };
 
 struct Participant::Impl {
@@ -31,6 +46,7 @@ struct Participant::Impl {
   Entity participant;
   Entity publisher;
   Entity subscriber;
+  std::optional<Silence> silence;  // between stop_hearing() and hear_again()
 };
 
 }  // namespace reident::dds

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <set>
 
 namespace reident::dds {
 namespace {
 
 constexpr std::size_t loan_samples = 128;
-// The middleware's thread hands on what it has acknowledged as fast as there is room: a reader that
-// stays empty for so long has all of it.
-constexpr dds_duration_t quiet = DDS_MSECS(150);
+// The middleware's thread hands on what it has acknowledged as soon as there is room; it looks
+// every 10 ms at the latest. A reader that stays empty for longer has all of it.
+constexpr dds_duration_t handed_on_quiet = DDS_MSECS(25);
+constexpr dds_duration_t drained_quiet = DDS_MSECS(150);
 constexpr dds_duration_t drain_limit = DDS_SECS(1);
 
 std::vector<dds_instance_handle_t> matched(dds_entity_t reader, const char* topic) {
@@ -127,7 +129,8 @@ std::size_t ReaderCore::take(std::size_t max, const Visit& visit) {
   return taken;
 }
 
-std::size_t ReaderCore::drain(const Visit& visit) {
+std::size_t ReaderCore::take_until_quiet(dds_duration_t quiet, dds_duration_t limit,
+                                         const Visit& visit) {
   const Entity wait_set(dds_create_waitset(participant_.impl().participant.get()),
                         "dds_create_waitset", profile_.topic);
   for (const Ear* ear : {&first_, &second_}) {
@@ -135,13 +138,32 @@ std::size_t ReaderCore::drain(const Visit& visit) {
     check(dds_waitset_attach(wait_set.get(), ear->has_samples.get(), 0), "dds_waitset_attach",
           profile_.topic);
   }
-  const dds_time_t deadline = dds_time() + drain_limit;
+  const dds_time_t deadline = dds_time() + limit;
   std::size_t visited = 0;
   do {
     visited += take(std::numeric_limits<std::size_t>::max(), visit);
   } while (dds_time() < deadline && check(dds_waitset_wait(wait_set.get(), nullptr, 0, quiet),
                                           "dds_waitset_wait", profile_.topic) > 0);
   return visited;
+}
+
+std::size_t ReaderCore::drain(const Visit& visit) {
+  return take_until_quiet(drained_quiet, drain_limit, visit);
+}
+
+// The deletion of a reader waits for the middleware's receive thread, and that thread waits for
+// room in the reader: a full reader is emptied first, while nothing new can come in.
+ReaderCore::~ReaderCore() {
+  try {
+    std::optional<Silence> silence;
+    if (is_bounded()) {
+      silence.emplace(participant_);
+      take_until_quiet(handed_on_quiet, drain_limit, [](const void*) {});
+    }
+    second_ = {};
+    first_ = {};
+  } catch (const Error&) {  // the participant is gone, and its readers with it
+  }
 }
 
 std::uint32_t ReaderCore::matched_writers() {

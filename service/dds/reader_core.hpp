@@ -21,6 +21,9 @@ class ReaderCore {
 
   ReaderCore(Participant& participant, const Profile& profile,
              const dds_topic_descriptor_t& descriptor, const ReaderOptions& options);
+  ~ReaderCore();
+  ReaderCore(const ReaderCore&) = delete;
+  ReaderCore& operator=(const ReaderCore&) = delete;
 
   /// Visits at most `max` samples and removes them; returns how many were removed.
   std::size_t take(std::size_t max, const Visit& visit);
@@ -44,6 +47,10 @@ class ReaderCore {
   Ear make_ear(bool transient_local) const;
   std::size_t take_some(const Ear& ear, std::size_t max, const Visit& visit);
   bool is_heard_by_first(dds_instance_handle_t writer);
+  /// Takes until nothing came for `quiet`, or until `limit` has passed.
+  std::size_t take_until_quiet(dds_duration_t quiet, dds_duration_t limit, const Visit& visit);
+  /// Whether a full reader makes writers, and the middleware's thread, wait.
+  bool is_bounded() const { return profile_.history == keep_all && options_.keep_last == 0; }
 
   Participant& participant_;
   const Profile& profile_;

@@ -54,4 +54,17 @@ inline storage::TelemetryFrame make_frame(std::uint64_t sequence, std::size_t sa
   return frame;
 }
 
+inline std::vector<std::uint64_t> sequences(const std::vector<storage::TelemetryFrame>& frames) {
+  std::vector<std::uint64_t> numbers;
+  for (const storage::TelemetryFrame& frame : frames) numbers.push_back(frame.sequence);
+  return numbers;
+}
+
+/// 1, 2, ... last.
+inline std::vector<std::uint64_t> count_to(std::uint64_t last) {
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = 1; i <= last; ++i) numbers.push_back(i);
+  return numbers;
+}
+
 }  // namespace reident::test

@@ -7,18 +7,6 @@ namespace {
 
 using storage::TelemetryFrame;
 
-std::vector<std::uint64_t> sequences(const std::vector<TelemetryFrame>& frames) {
-  std::vector<std::uint64_t> numbers;
-  for (const TelemetryFrame& frame : frames) numbers.push_back(frame.sequence);
-  return numbers;
-}
-
-std::vector<std::uint64_t> count_to(std::uint64_t last) {
-  std::vector<std::uint64_t> numbers;
-  for (std::uint64_t i = 1; i <= last; ++i) numbers.push_back(i);
-  return numbers;
-}
-
 TEST(Telemetry, arrives_as_it_was_sent) {
   dds::Participant participant(own_endpoint());
   dds::Reader<TelemetryFrame> reader(participant);

@@ -1,0 +1,143 @@
+// Topics that hold a state: what late readers get, and what the end of a writer takes away.
+#include <cmath>
+#include <memory>
+
+#include <gmock/gmock.h>
+
+#include "service/dds/codec.hpp"
+#include "service/dds/domain.hpp"
+#include "tests/service/dds/child.hpp"
+#include "tests/service/dds/dds_fixture.hpp"
+#include "tests/service/model/example_model.hpp"
+
+namespace reident::test {
+namespace {
+
+TEST(StateTopics, a_late_reader_gets_the_last_version_of_each_equipment) {
+  dds::Participant service(own_endpoint());
+  dds::Participant simulator(own_endpoint());
+  dds::Writer<ModelVersion> writer(service);
+  ModelVersion other = example_version(5);
+  other.model.equipment = "MEA";
+  writer.write(example_version(1));
+  writer.write(example_version(2));
+  writer.write(other);
+  dds::Reader<ModelVersion> reader(simulator);
+  std::map<std::string, std::int64_t> numbers;
+  for (const ModelVersion& version : take_all(reader, 2)) {
+    numbers[version.model.equipment] = version.number;
+  }
+  EXPECT_THAT(numbers, testing::ElementsAre(testing::Pair("BDR", 2), testing::Pair("MEA", 5)));
+}
+
+TEST(StateTopics, the_end_of_the_service_disposes_of_no_model) {
+  dds::Participant simulator(own_endpoint());
+  auto service = std::make_unique<dds::Participant>(own_endpoint());
+  auto writer = std::make_unique<dds::Writer<ModelVersion>>(*service);
+  dds::Reader<ModelVersion> reader(simulator);
+  writer->write(example_version(1));
+  ASSERT_TRUE(eventually([&] { return reader.matched_writers() == 1; }));
+  writer.reset();
+  service.reset();
+  ASSERT_TRUE(eventually([&] { return reader.matched_writers() == 0; }));
+  EXPECT_EQ(take_all(reader, 1).size(), 1U);
+}
+
+TEST(StateTopics, every_message_arrives_as_it_was_sent) {
+  dds::Participant participant(own_endpoint());
+  dds::Writer<IdentificationReport> reports(participant);
+  dds::Writer<ModelAcknowledgement> acknowledgements(participant);
+  dds::Writer<ServiceStatus> statuses(participant);
+  dds::Writer<storage::ParameterDescriptor> descriptors(participant);
+  const storage::ParameterDescriptor descriptor{
+      "CBERS4", 9, "V_BUS", "V", "", storage::ParameterKind::digital, 1.5, std::nullopt};
+  reports.write({"CBERS4", "BDR", 7, {10, 20}, "slide", "unstable", "why", 3, 4, 1, 2, NAN, 99});
+  acknowledgements.write({"trainer", "CBERS4", "BDR", 3, "ab", 5, false, "no", 1.25});
+  ServiceStatus status;
+  status.service = "reident";
+  status.frames_received = 12345678901234;
+  status.last_error = "disk full";
+  statuses.write(status);
+  descriptors.write(descriptor);
+
+  dds::Reader<IdentificationReport> report_reader(participant);
+  dds::Reader<ModelAcknowledgement> acknowledgement_reader(participant);
+  dds::Reader<ServiceStatus> status_reader(participant);
+  dds::Reader<storage::ParameterDescriptor> descriptor_reader(participant);
+  const auto report = take_all(report_reader, 1).at(0);
+  EXPECT_EQ(report.attempt, 7);
+  EXPECT_EQ(report.window, (storage::TimeRange{10, 20}));
+  EXPECT_EQ(report.outcome, "unstable");
+  EXPECT_EQ(report.order, 4);
+  EXPECT_TRUE(std::isnan(report.champion_mrse_percent));
+  const auto acknowledgement = take_all(acknowledgement_reader, 1).at(0);
+  EXPECT_EQ(acknowledgement.simulator, "trainer");
+  EXPECT_FALSE(acknowledgement.accepted);
+  EXPECT_EQ(acknowledgement.reason, "no");
+  EXPECT_EQ(acknowledgement.running_mrse_percent, 1.25);
+  const auto heartbeat = take_all(status_reader, 1).at(0);
+  EXPECT_EQ(heartbeat.frames_received, 12345678901234U);
+  EXPECT_EQ(heartbeat.last_error, "disk full");
+  EXPECT_EQ(take_all(descriptor_reader, 1).at(0), descriptor);
+}
+
+TEST(StateTopics, a_malformed_message_is_counted_and_the_next_one_arrives) {
+  dds::Participant participant(own_endpoint());
+  dds::Reader<ModelVersion> reader(participant);
+  dds::Writer<ModelVersion> writer(participant);
+  // A program of somebody else's, which checks nothing.
+  dds::Codec<ModelVersion>::Encoder encode;
+  const ModelVersion good = example_version(2);
+  reident_ModelVersion wire = encode(good);
+  wire.order = 40;
+  const dds::Entity topic(
+      dds_create_topic(participant.impl().participant.get(), &reident_ModelVersion_desc,
+                       "reident/ModelVersion", nullptr, nullptr),
+      "dds_create_topic", "test");
+  const dds::Entity careless(
+      dds_create_writer(participant.impl().publisher.get(), topic.get(),
+                        dds::writer_qos(dds::model_version, {}).get(), nullptr),
+      "dds_create_writer", "test");
+  ASSERT_EQ(dds_write(careless.get(), &wire), DDS_RETCODE_OK);
+  ModelVersion refused;
+  ASSERT_TRUE(eventually([&] {
+    reader.take(
+        10, [](ModelVersion&&) { FAIL(); },
+        [&](const ModelVersion& message, const std::string&) { refused = message; });
+    return reader.malformed() == 1;
+  }));
+  EXPECT_EQ(refused.model.equipment, "BDR");
+  EXPECT_EQ(refused.number, 2);
+  EXPECT_THAT(reader.last_malformed(), testing::HasSubstr("40 x 40"));
+  writer.write(example_version(3));
+  EXPECT_EQ(take_all(reader, 1).at(0).number, 3);
+}
+
+TEST(Processes, sixteen_take_part_in_one_domain_on_one_machine) {
+  const dds::Endpoint endpoint = own_endpoint();
+  dds::Participant participant(endpoint);
+  dds::Reader<storage::TelemetryFrame> reader(participant, {.max_samples = 1});
+  std::vector<std::unique_ptr<Child>> children;
+  for (int i = 0; i < 16; ++i) {
+    children.push_back(std::make_unique<Child>(std::vector<std::string>{
+        FRAME_SENDER, std::to_string(endpoint.domain), endpoint.partition, "1", "1000000", "1"}));
+  }
+  EXPECT_TRUE(eventually([&] { return reader.matched_writers() == 16; }, 30s));
+}
+
+TEST(Participants, of_one_process_share_a_domain_and_leave_it_one_by_one) {
+  const dds::Endpoint endpoint = own_endpoint();
+  auto first = std::make_unique<dds::Participant>(endpoint);
+  dds::Participant second(endpoint);
+  first.reset();
+  dds::Participant third(endpoint);
+  dds::Writer<ServiceStatus> writer(second);
+  dds::Reader<ServiceStatus> reader(third);
+  ServiceStatus status;
+  status.service = "reident";
+  writer.write(status);
+  EXPECT_EQ(take_all(reader, 1).size(), 1U);
+}
+
+}  // namespace
+}  // namespace reident::test
