@@ -126,9 +126,9 @@ int run(const Arguments& arguments) {
   auto read = read_data(arguments.data);
   if (const auto* refusal = std::get_if<Refusal>(&read)) return refuse(*refusal);
   auto& data = std::get<IdentifyData>(read);
+  timer.end();
 
   options.on_phase = [&timer](std::string_view phase) { timer.begin(phase); };
-  timer.begin("identify");
   auto result = identification::identify(data.record, data.identify, options);
   if (const auto* verdict = std::get_if<Verdict>(&result))
     return print_rejection(*verdict, arguments.json);

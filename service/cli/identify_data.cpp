@@ -47,6 +47,11 @@ std::variant<std::vector<std::string>, Refusal> resolve(const csv::Reader& reade
 
 /// Resolves the names of the request in place.
 std::optional<Refusal> resolve_columns(DataRequest& request) {
+  std::error_code ignored;
+  if (std::filesystem::is_character_file(request.file, ignored) ||
+      std::filesystem::is_fifo(request.file, ignored))
+    return Refusal{
+        fmt::format("{} can be read only once; save it to a file first", request.file.string())};
   auto opened = csv::Reader::open(request.file);
   if (const auto* error = std::get_if<csv::Error>(&opened)) return Refusal{error->message};
   const auto& reader = std::get<csv::Reader>(opened);
@@ -244,6 +249,16 @@ void warn_of_missing(const csv::Table& table, std::vector<std::string>& warnings
                     missing, table.rows));
 }
 
+/// Without a time column ticks are rows of the file.
+void warn_of_late_start(IdentifyData& data, Index asked) {
+  const auto parts = segments_within(data.record, data.identify);
+  if (!parts.empty() && parts.front().first_tick != asked)
+    data.warnings.push_back(
+        fmt::format("identification row {} is incomplete: x0 is the state at "
+                    "row {}",
+                    asked, parts.front().first_tick));
+}
+
 }  // namespace
 
 std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
@@ -289,6 +304,7 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
     return Refusal{
         "the validation rows hold none with every column valid; choose others with "
         "--validate A:B"};
+  if (!request.time) warn_of_late_start(data, identify.begin);
   return data;
 }
 

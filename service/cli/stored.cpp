@@ -42,6 +42,9 @@ int with_registry(const DatabaseOptions& options,
                                storage::Database::Mode::read_only);
     return work(storage::Registry(database));
   } catch (const storage::Error& error) {
+    if (error.kind() != storage::Error::Kind::cannot_open &&
+        error.kind() != storage::Error::Kind::newer_schema)
+      throw;
     return refuse({error.what()});
   }
 }

@@ -1,5 +1,7 @@
 #include <cmath>
+#include <iterator>
 #include <random>
+#include <sstream>
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -184,6 +186,16 @@ TEST_F(Identify, LeavesRowsWithMissingCellsOutAndSaysHowMany) {
   EXPECT_GT(printed["fit_percent"]["validate"][1], 90);
 }
 
+TEST_F(Identify, SaysWhereX0StandsWhenTheFirstRowIsIncomplete) {
+  Plant data = plant(900);
+  data.u.topRows(2).setConstant(std::nan(""));
+  write("plant.csv", csv_of(data));
+  const json printed = json_of(command({"--identify", "0:600", "--validate", "600:900"}));
+  EXPECT_THAT(printed["warnings"], Contains(HasSubstr("x0 is the state at row 2")));
+  const MatrixXd y_hat = simulated(printed, data.u, 2, 900);
+  expect_errors(printed, "validate", data.y.bottomRows(300), y_hat.bottomRows(300));
+}
+
 TEST_F(Identify, PutsTimedRowsOnAGridThatRangesDoNotMove) {
   const Plant data = plant(900);
   write("plant.csv", csv_of(data));
@@ -254,7 +266,7 @@ TEST_F(Identify, RejectsAFileOfFewRows) {
 
 struct Impossible {
   const char* name;
-  Strings words;
+  std::string command;  // words after identify, separated by blanks
   std::string expected;
 };
 void PrintTo(const Impossible& request, std::ostream* out) {
@@ -272,81 +284,54 @@ TEST_P(ImpossibleRequests, ExitTwoWithOneLineThatSaysWhatWouldMendThem) {
   write("back.csv", "t,u1,y1\n1,1,1\n3,2,2\n2,3,3\n");
   write("still.csv", "t,u1,y1\n1,1,1\n1,2,2\n");
   write("holes.csv", "u1,y1\n1,1\n2,2\n3,\n4,\n");
-  Strings words = {"identify"};
-  words.insert(words.end(), GetParam().words.begin(), GetParam().words.end());
+  std::istringstream command("identify " + GetParam().command);
+  const Strings words{std::istream_iterator<std::string>(command), {}};
   EXPECT_THAT(refusal_of(words), HasSubstr(GetParam().expected));
 }
 
 const Impossible requests[] = {
-    {"no_file", {"none.csv", "--input", "u1", "--output", "y1"}, "none.csv"},
-    {"a_folder", {".", "--input", "u1", "--output", "y1"}, ""},
-    {"no_input", {"plant.csv", "--output", "y1"}, "--input is required"},
-    {"no_output", {"plant.csv", "--input", "u1"}, "--output is required"},
-    {"file_after_the_names",
-     {"--input", "u1", "--output", "y1", "plant.csv", "--json"},
+    {"no_file", "none.csv --input u1 --output y1", "none.csv"},
+    {"a_folder", ". --input u1 --output y1", "is a directory"},
+    {"no_regular_file", "/dev/null --input u1 --output y1", "save it to a file"},
+    {"no_input", "plant.csv --output y1", "--input is required"},
+    {"no_output", "plant.csv --input u1", "--output is required"},
+    {"file_after_the_names", "--input u1 --output y1 plant.csv --json",
      "name the CSV file before the flags"},
-    {"unknown_flag", {"plant.csv", "--input", "u1", "--output", "y1", "--ordr", "2"}, "--ordr"},
-    {"unknown_input", {"plant.csv", "--input", "u9", "--output", "y1"}, "u1, u2, y1, y2"},
-    {"unknown_output", {"plant.csv", "--input", "u1", "--output", "y9"}, "--output"},
-    {"unknown_time", {"plant.csv", "--input", "u1", "--output", "y1", "--time", "t"}, "--time"},
-    {"input_twice", {"plant.csv", "--input", "u1", "u1", "--output", "y1"}, "names u1 twice"},
-    {"output_is_input", {"plant.csv", "--input", "u1", "--output", "u1"}, "named already"},
-    {"time_is_input",
-     {"plant.csv", "--input", "row", "--output", "y1", "--time", "row"},
-     "leave it out"},
-    {"column_of_words", {"plant.csv", "--input", "mode", "--output", "y1"}, "mode holds no number"},
-    {"range_without_colon",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--identify", "50"},
-     "write it as A:B"},
-    {"range_of_words",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--identify", "a:b"},
-     "write it as A:B"},
-    {"negative_range",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--identify=-5:50"},
-     "write it as A:B"},
-    {"reversed_range",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--identify", "50:10"},
+    {"unknown_flag", "plant.csv --input u1 --output y1 --ordr 2", "--ordr"},
+    {"unknown_input", "plant.csv --input u9 --output y1", "u1, u2, y1, y2"},
+    {"unknown_output", "plant.csv --input u1 --output y9", "--output"},
+    {"unknown_time", "plant.csv --input u1 --output y1 --time t", "--time"},
+    {"input_twice", "plant.csv --input u1 u1 --output y1", "names u1 twice"},
+    {"output_is_input", "plant.csv --input u1 --output u1", "named already"},
+    {"time_is_input", "plant.csv --input row --output y1 --time row", "leave it out"},
+    {"column_of_words", "plant.csv --input mode --output y1", "mode holds no number"},
+    {"range_without_colon", "plant.csv --input u1 --output y1 --identify 50", "write it as A:B"},
+    {"range_of_words", "plant.csv --input u1 --output y1 --identify a:b", "write it as A:B"},
+    {"negative_range", "plant.csv --input u1 --output y1 --identify=-5:50", "write it as A:B"},
+    {"reversed_range", "plant.csv --input u1 --output y1 --identify 50:10",
      "holds no row; the file has rows 0 to 99"},
-    {"range_beyond_the_file",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--validate", "50:101"},
+    {"range_beyond_the_file", "plant.csv --input u1 --output y1 --validate 50:101",
      "ends after the last row; the file has rows 0 to 99"},
-    {"nothing_left_to_validate",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--identify", "0:100"},
+    {"nothing_left_to_validate", "plant.csv --input u1 --output y1 --identify 0:100",
      "give --validate"},
-    {"nothing_left_to_identify",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--validate", "0:100"},
+    {"nothing_left_to_identify", "plant.csv --input u1 --output y1 --validate 0:100",
      "give --identify"},
-    {"order_zero", {"plant.csv", "--input", "u1", "--output", "y1", "--order", "0"}, "--order 0"},
-    {"order_of_words",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--order", "many"},
+    {"order_zero", "plant.csv --input u1 --output y1 --order 0", "--order 0"},
+    {"order_of_words", "plant.csv --input u1 --output y1 --order many",
      "neither auto nor a whole number"},
-    {"short_horizon",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--order", "5", "--horizon", "3"},
+    {"short_horizon", "plant.csv --input u1 --output y1 --order 5 --horizon 3",
      "make it at least 6"},
-    {"negative_period",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--period", "-1"},
-     "--period -1"},
-    {"period_is_nan",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--period", "nan"},
-     "--period nan"},
-    {"period_too_short_for_the_times",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--time", "row", "--period", "0.1"},
+    {"negative_period", "plant.csv --input u1 --output y1 --period -1", "--period -1"},
+    {"period_is_nan", "plant.csv --input u1 --output y1 --period nan", "--period nan"},
+    {"period_too_short_for_the_times", "plant.csv --input u1 --output y1 --time row --period 0.1",
      "make it at least 333333334ns"},
-    {"no_rows", {"header.csv", "--input", "u1", "--output", "y1"}, "no row of data"},
-    {"empty_file", {"empty.csv", "--input", "u1", "--output", "y1"}, "empty.csv"},
-    {"one_row", {"one.csv", "--input", "u1", "--output", "y1"}, "1 row"},
-    {"time_goes_back",
-     {"back.csv", "--input", "u1", "--output", "y1", "--time", "t"},
-     "row 2 is earlier"},
-    {"time_stands_still",
-     {"still.csv", "--input", "u1", "--output", "y1", "--time", "t"},
-     "never moves"},
-    {"time_of_words",
-     {"plant.csv", "--input", "u1", "--output", "y1", "--time", "mode"},
-     "plant.csv:2"},
-    {"no_row_to_validate_on",
-     {"holes.csv", "--input", "u1", "--output", "y1"},
-     "none with every column valid"},
+    {"no_rows", "header.csv --input u1 --output y1", "no row of data"},
+    {"empty_file", "empty.csv --input u1 --output y1", "empty.csv"},
+    {"one_row", "one.csv --input u1 --output y1", "1 row"},
+    {"time_goes_back", "back.csv --input u1 --output y1 --time t", "row 2 is earlier"},
+    {"time_stands_still", "still.csv --input u1 --output y1 --time t", "never moves"},
+    {"time_of_words", "plant.csv --input u1 --output y1 --time mode", "plant.csv:2"},
+    {"no_row_to_validate_on", "holes.csv --input u1 --output y1", "none with every column valid"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Table, ImpossibleRequests, ::testing::ValuesIn(requests),
