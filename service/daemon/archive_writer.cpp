@@ -98,19 +98,20 @@ void ArchiveWriter::store(std::vector<TelemetryEvent>&& batch, const std::atomic
     else
       descriptors.push_back(std::get<storage::ParameterDescriptor>(std::move(event)));
   }
-  for (bool failed_before = false;; failed_before = true) {
+  while (true) {
     try {
       commit(frames, descriptors);
-      if (failed_before) log::info("archive", "storing again", {{"frames", frames.size()}});
       MutexLock lock(mutex_);
+      if (!counts_.last_error.empty())
+        log::info("archive", "storing again", {{"frames", frames.size()}});
       counts_.last_error.clear();
       return;
     } catch (const storage::Error& error) {
       if (error.kind() == storage::Error::Kind::corrupt) throw;
-      if (!failed_before)
+      MutexLock lock(mutex_);
+      if (counts_.last_error.empty())
         log::error("archive", "cannot store telemetry; it is kept and tried again each second",
                    {{"error", error.what()}, {"frames", frames.size()}});
-      MutexLock lock(mutex_);
       counts_.last_error = error.what();
       if (give_up) {
         counts_.lost += frames.size();
