@@ -37,9 +37,9 @@ CliTest::~CliTest() {
 Ran CliTest::reident(const std::vector<std::string>& arguments) const {
   std::vector<std::string> words = {REIDENT_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
+  std::vector<char*> argv(words.size() + 1, nullptr);
+  std::transform(words.begin(), words.end(), argv.begin(),
+                 [](std::string& word) { return word.data(); });
   const std::string out = folder_ / ".out", err = folder_ / ".err";
   const pid_t child = fork();
   if (child == 0) {

@@ -269,8 +269,8 @@ struct Impossible {
   std::string command;  // words after identify, separated by blanks
   std::string expected;
 };
-void PrintTo(const Impossible& request, std::ostream* out) {
-  *out << request.name;
+std::ostream& operator<<(std::ostream& out, const Impossible& request) {
+  return out << request.name;
 }
 
 class ImpossibleRequests : public testing::CliTest,

@@ -161,8 +161,8 @@ struct Mistake {
   std::string text;
   std::string expected;  // "line: beginning of the message"
 };
-void PrintTo(const Mistake& mistake, std::ostream* out) {
-  *out << mistake.name;
+std::ostream& operator<<(std::ostream& out, const Mistake& mistake) {
+  return out << mistake.name;
 }
 
 class ConfigMistakes : public ::testing::TestWithParam<Mistake> {};
