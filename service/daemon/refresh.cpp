@@ -27,6 +27,7 @@ WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& e
 
 std::vector<std::string> names(const std::vector<Signal>& signals) {
   std::vector<std::string> result;
+  result.reserve(signals.size());
   for (const Signal& signal : signals) result.push_back(signal.name);
   return result;
 }
@@ -39,6 +40,7 @@ WindowRequest request_of(const EquipmentModel& model) {
 std::vector<Signal> signals(const std::vector<storage::ParameterDescriptor>& descriptors,
                             const Matrix& samples) {
   std::vector<Signal> result;
+  result.reserve(descriptors.size());
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     const auto column = samples.col(static_cast<Eigen::Index>(i));
     result.push_back(
