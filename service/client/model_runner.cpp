@@ -35,7 +35,7 @@ void ModelRunner::start(const Matrix& u, const Matrix& y) {
   at_ = 0;
   remembered_ = 0;
   const auto record = identification::contiguous_record(model_.dynamics.period_s, u, y);
-  x_ = state_after(record);
+  x_ = states(record).rightCols(1);
   for (Index row = 0; row < u.rows(); ++row) {
     y_ = y.row(row).transpose();
     remember(u.row(row).transpose());
@@ -83,15 +83,13 @@ identification::Record ModelRunner::recent() const {
   return identification::contiguous_record(model_.dynamics.period_s, std::move(u), std::move(y));
 }
 
-ModelRunner::Vector ModelRunner::state_after(const identification::Record& record) {
+ModelRunner::Matrix ModelRunner::states(const identification::Record& record) const {
   const identification::StateSpaceModel& dynamics = model_.dynamics;
-  if (record.rows() == 0) return Vector::Zero(dynamics.order());
-  Vector x = identification::estimate_initial_state(dynamics, record, record.segments.front(),
+  Matrix x(dynamics.order(), record.rows() + 1);
+  x.col(0) = identification::estimate_initial_state(dynamics, record, record.segments.front(),
                                                     record.rows());
-  for (Index row = 0; row < record.rows(); ++row) {
-    const Vector du = record.u.row(row).transpose() - dynamics.u0;
-    y_ = dynamics.C * x + dynamics.D * du + dynamics.y0;
-    x = (dynamics.A * x + dynamics.B * du).eval();
+  for (Index k = 0; k < record.rows(); ++k) {
+    x.col(k + 1) = dynamics.A * x.col(k) + dynamics.B * (record.u.row(k).transpose() - dynamics.u0);
   }
   return x;
 }
@@ -103,14 +101,27 @@ bool ModelRunner::fits(const EquipmentModel& next) const {
 
 ModelRunner::Swap ModelRunner::swap(EquipmentModel next) {
   const identification::Record record = recent();
-  const Vector before = y_;
   model_ = std::move(next);
+  const Vector put_out = y_;
   allocate();
-  if (record.rows() == 0) return {0, Vector::Zero(before.size())};
-  x_ = state_after(record);
-  Swap done{record.rows(), y_ - before};
-  y_ = before;
-  return done;
+  y_ = put_out;
+  if (record.rows() == 0) return {0, Vector::Zero(put_out.size())};
+
+  const identification::StateSpaceModel& dynamics = model_.dynamics;
+  const Matrix x = states(record);
+  const Index last = record.rows() - 1;
+  const Vector du = record.u.row(last).transpose() - dynamics.u0;
+  Vector missing = put_out - (dynamics.C * x.col(last) + dynamics.D * du + dynamics.y0);
+  // The least change of the state, measured by how far it moved in the recent past (P), that gives
+  // the last output: C P C' lambda = missing. It decays as the model's own motions do.
+  const Matrix spread = x.leftCols(last + 1).colwise() - x.leftCols(last + 1).rowwise().mean();
+  const Matrix P = spread * spread.transpose();
+  const Vector change =
+      P * dynamics.C.transpose() *
+      (dynamics.C * P * dynamics.C.transpose()).completeOrthogonalDecomposition().solve(missing);
+  missing -= dynamics.C * change;
+  x_ = x.col(last + 1) + dynamics.A * change;
+  return {record.rows(), -missing};
 }
 
 }  // namespace reident

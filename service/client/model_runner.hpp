@@ -41,8 +41,10 @@ class ModelRunner {
     Index rows = 0;  // of the history that the new state was estimated from
     Vector step;     // new model's output less the old one's, at the last tick
   };
-  /// Goes on with `next`, which fits, from the state whose outputs over the recent inputs come
-  /// nearest to those that were put out, so that the output continues.
+  /// Goes on with `next`, which fits. Its state is estimated from the recent inputs and outputs and
+  /// then moved as little as it takes to meet the last output, so that the output continues; `step`
+  /// is what remains where no state meets it. The difference between the models comes in as fast as
+  /// their own motions do.
   Swap swap(EquipmentModel next);
 
   const EquipmentModel& model() const { return model_; }
@@ -50,8 +52,9 @@ class ModelRunner {
  private:
   void allocate();
   void remember(const Vector& u);
-  /// The state after the record's last row, estimated from all of its rows.
-  Vector state_after(const identification::Record& record);
+  /// States (n x (N + 1)) at each of the record's N rows and after them, from the initial state
+  /// that agrees best with its outputs.
+  Matrix states(const identification::Record& record) const;
   identification::Record recent() const;
 
   EquipmentModel model_;

@@ -1,0 +1,66 @@
+#include "service/client/version_check.hpp"
+
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "tests/service/model/example_model.hpp"
+
+namespace reident::test {
+namespace {
+
+struct Case {
+  const char* name;
+  std::function<void(ModelVersion&)> change;
+  bool signed_again;  // the digest is computed after the change
+  const char* says;
+};
+void PrintTo(const Case& one, std::ostream* out) {
+  *out << one.name;
+}
+
+class DamagedVersion : public testing::TestWithParam<Case> {};
+
+TEST_P(DamagedVersion, is_told_with_the_reason) {
+  ModelVersion version = example_version(1);
+  GetParam().change(version);
+  if (GetParam().signed_again) version.digest = model_digest(version.model);
+  EXPECT_THAT(damage(version).value_or("sound"), testing::HasSubstr(GetParam().says));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    table, DamagedVersion,
+    testing::Values(
+        Case{"sound", [](auto&) {}, false, "sound"},
+        Case{"one bit", [](auto& v) { v.model.dynamics.A(0, 0) += 1e-16; }, false, "digest"},
+        Case{"renamed input", [](auto& v) { v.model.inputs[0].name = "I_BDRIN9"; }, false,
+             "digest"},
+        Case{"unstable", [](auto& v) { v.model.dynamics.A(0, 0) = 1.2; }, true, "spectral radius"},
+        Case{"integrator",
+             [](auto& v) { v.model.dynamics.A = identification::Matrix::Identity(2, 2); }, true,
+             "spectral radius"},
+        Case{"not finite",
+             [](auto& v) { v.model.dynamics.D(0, 0) = std::numeric_limits<double>::quiet_NaN(); },
+             true, "finite"},
+        Case{"missing column", [](auto& v) { v.model.dynamics.B.conservativeResize(2, 1); }, true,
+             "fit together"},
+        Case{"missing input", [](auto& v) { v.model.inputs.pop_back(); }, true, "fit together"},
+        Case{"no period", [](auto& v) { v.model.dynamics.period_s = 0; }, true, "fit together"}));
+
+TEST(Succession, follows_the_number_and_lets_a_rollback_go_back) {
+  const ModelVersion running = example_version(5);
+  EXPECT_EQ(succession(example_version(6), running), Succession::newer);
+  EXPECT_EQ(succession(example_version(5), running), Succession::same);
+  EXPECT_EQ(succession(example_version(4), running), Succession::older);
+  ModelVersion back = example_version(3);
+  back.rollback = true;
+  EXPECT_EQ(succession(back, running), Succession::newer);
+  ModelVersion other = example_version(5);
+  other.model.dynamics.D(0, 0) = 9;
+  other.digest = model_digest(other.model);
+  EXPECT_EQ(succession(other, running), Succession::different);
+}
+
+}  // namespace
+}  // namespace reident::test
