@@ -53,15 +53,15 @@ void print_table(const std::vector<Attempt>& attempts, const Champions& champion
                {"order", Table::Align::right},
                {"MRSE %", Table::Align::right},
                {"fit %", Table::Align::right},
-               {"outcome"},
-               {"reason"}});
+               {"outcome and reason"}});
   for (const Attempt& attempt : attempts) {
     const ordered_json evidence = evidence_of(attempt);
     table.add({full_name(attempt.spacecraft, attempt.equipment), time_text(attempt.window.begin),
                duration_text(attempt.window.end - attempt.window.begin),
                version_text(attempt, champions.contains(attempt)),
                evidence_number(evidence, "order"), evidence_number(evidence, "mrse_percent"),
-               evidence_number(evidence, "fit_percent"), attempt.outcome, attempt.reason});
+               evidence_number(evidence, "fit_percent"),
+               fmt::format("{}: {}", attempt.outcome, attempt.reason)});
   }
   fmt::print("{}", table.text(terminal_width()));
   fmt::print("* champion: what simulators run now\n");

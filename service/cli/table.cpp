@@ -10,8 +10,9 @@ namespace reident::cli {
 namespace {
 
 constexpr std::string_view separator = "  ";
-// Below this the last column is not worth wrapping.
+// Below this there is hardly any room for the last column.
 constexpr std::size_t least_wrapped = 24;
+constexpr std::size_t below_indent = 4;
 
 std::string padded(const std::string& text, std::size_t width, Table::Align align) {
   const std::string blanks(width - std::min(width, display_width(text)), ' ');
@@ -71,22 +72,28 @@ std::string Table::text(std::size_t width) const {
     for (std::size_t c = 0; c < row.size(); ++c)
       widths[c] = std::max(widths[c], display_width(row[c]));
 
-  std::size_t before_last = 0;
-  for (std::size_t c = 0; c + 1 < widths.size(); ++c) before_last += widths[c] + separator.size();
-  std::size_t room = widths.back();
-  if (width != 0 && before_last + least_wrapped <= width)
-    room = std::min(room, width - before_last);
+  std::size_t indent = 0;
+  for (std::size_t c = 0; c + 1 < widths.size(); ++c) indent += widths[c] + separator.size();
+  const bool bounded = width != 0 && indent + widths.back() > width;
+  const bool below = bounded && indent + least_wrapped > width;
+  if (below) indent = below_indent;
+  const std::size_t room =
+      bounded ? std::max(width, indent + least_wrapped) - indent : widths.back();
 
   std::string text;
   const auto append = [&](const std::vector<std::string>& row) {
     std::string line;
-    for (std::size_t c = 0; c + 1 < row.size(); ++c)
-      line.append(padded(row[c], widths[c], columns_[c].align)).append(separator);
-    for (const std::string& part : wrapped(row.back(), room)) {
-      line += columns_.back().align == Align::left ? part : padded(part, room, Align::right);
+    const auto end_line = [&] {
       line.erase(line.find_last_not_of(' ') + 1);
       text.append(line).append("\n");
-      line.assign(before_last, ' ');
+      line.assign(indent, ' ');
+    };
+    for (std::size_t c = 0; c + 1 < row.size(); ++c)
+      line.append(padded(row[c], widths[c], columns_[c].align)).append(separator);
+    if (below) end_line();
+    for (const std::string& part : wrapped(row.back(), room)) {
+      line += columns_.back().align == Align::left ? part : padded(part, room, Align::right);
+      end_line();
     }
   };
   append(titles);

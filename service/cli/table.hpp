@@ -29,7 +29,8 @@ class Table {
   bool empty() const { return rows_.empty(); }
 
   /// The title row and the rows, a line each. Where `width` is not 0 and the last column would
-  /// reach over it, that column's text is wrapped at its blanks.
+  /// reach over it, that column's text is wrapped at its blanks; where hardly any room is left for
+  /// it, it stands below the others.
   std::string text(std::size_t width) const;
 
  private:

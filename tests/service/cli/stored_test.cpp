@@ -93,10 +93,10 @@ TEST_F(Stored, HistoryListsEveryAttemptWithItsOutcomeAndTheChampion) {
   const testing::Ran ran = reident(command({"history"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out, HasSubstr("CBERS-4/BDR  2023-11-14T22:13:20Z  100min        -      -       "
-                                 "-      -  too_few_samples    The reason of too_few_samples.\n"));
+                                 "-      -  too_few_samples: The reason of too_few_samples.\n"));
   EXPECT_THAT(ran.out, HasSubstr("2023-11-14T23:43:20Z  100min       3*      2     2.5  91.25  "
-                                 "approved"));
-  EXPECT_THAT(ran.out, HasSubstr("        1      2     2.5  91.25  approved"))
+                                 "approved: "));
+  EXPECT_THAT(ran.out, HasSubstr("        1      2     2.5  91.25  approved: "))
       << "a superseded version has no mark";
 }
 

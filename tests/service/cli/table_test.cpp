@@ -29,10 +29,15 @@ TEST(Table, WrapsItsLastColumnAtBlanks) {
             "   limit of the gate\n");
 }
 
-TEST(Table, LeavesTheLastColumnAloneWhereThereIsNoRoomForIt) {
-  Table table({{"a"}, {"reason"}});
-  table.add({"1", "the error is above the limit"});
-  EXPECT_EQ(table.text(10), "a  reason\n1  the error is above the limit\n");
+TEST(Table, PutsTheLastColumnBelowWhereThereIsHardlyRoomForIt) {
+  Table table({{"equipment"}, {"reason"}});
+  table.add({"BDR", "the error is above the limit"});
+  EXPECT_EQ(table.text(30),
+            "equipment\n"
+            "    reason\n"
+            "BDR\n"
+            "    the error is above the\n"
+            "    limit\n");
 }
 
 TEST(Table, GivesALongWordALineOfItsOwn) {
