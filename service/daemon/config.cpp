@@ -170,7 +170,7 @@ int least_horizon(const EquipmentConfig& equipment) {
 /// Ticks that a window needs: the rows left to the subspace step, after the shares for validation
 /// and tuning, must be at least the columns that its 2 s block rows of inputs and outputs ask for.
 std::int64_t least_window_ticks(const EquipmentConfig& equipment) {
-  const double horizon = equipment.horizon.value_or(least_horizon(equipment));
+  const double horizon = equipment.horizon.value_or(equipment.max_order + 1);
   const auto channels = static_cast<double>(equipment.inputs.size() + equipment.outputs.size());
   const double rows = 2 * horizon * (channels + 1);
   return static_cast<std::int64_t>(
