@@ -1,13 +1,13 @@
 #include "service/satcs/reference_spacecraft.hpp"
 
 #include <array>
+#include <chrono>
 
 #include "service/satcs/parameter_id.hpp"
 
 namespace reident::satcs::reference {
 namespace {
 
-constexpr storage::Time second_ns = 1'000'000'000;
 constexpr auto analog = storage::ParameterKind::analog;
 constexpr auto digital = storage::ParameterKind::digital;
 
@@ -93,9 +93,8 @@ constexpr std::array points = {
 };
 
 storage::Time whole_seconds(storage::Time time) {
-  storage::Time seconds = time / second_ns;
-  if (seconds * second_ns > time) --seconds;
-  return seconds * second_ns;
+  using namespace std::chrono;
+  return nanoseconds(floor<seconds>(nanoseconds(time))).count();
 }
 
 }  // namespace

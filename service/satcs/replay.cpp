@@ -42,19 +42,25 @@ std::variant<Survey, Error> survey(const ReplayOptions& options, std::size_t tim
 
 /// The stretch that the options ask for, in a file whose earliest and latest rows are given.
 storage::TimeRange chosen_range(const ReplayOptions& options, storage::Time earliest) {
+  using Limits = std::numeric_limits<storage::Time>;
   const auto resolve = [&](const std::optional<ReplayBound>& bound, storage::Time absent) {
     if (!bound) return absent;
     storage::Time time = bound->ns;
-    // A bound beyond what can be held is beyond every row.
-    if (bound->relative && __builtin_add_overflow(earliest, bound->ns, &time)) return absent;
+    // An offset beyond what can be held is beyond every row.
+    if (bound->relative && __builtin_add_overflow(earliest, bound->ns, &time)) return Limits::max();
     return time;
   };
-  using Limits = std::numeric_limits<storage::Time>;
   return {resolve(options.start, Limits::min()), resolve(options.end, Limits::max())};
 }
 
 bool within(storage::TimeRange range, storage::Time time) {
   return range.begin <= time && time < range.end;
+}
+
+Reader reopened(const std::filesystem::path& file) {
+  auto opened = Reader::open(file);
+  if (const auto* error = std::get_if<Error>(&opened)) throw std::runtime_error(error->message);
+  return std::get<Reader>(std::move(opened));
 }
 
 }  // namespace
@@ -119,16 +125,6 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
   }
   return plan;
 }
-
-namespace {
-
-Reader reopened(const std::filesystem::path& file) {
-  auto opened = Reader::open(file);
-  if (const auto* error = std::get_if<Error>(&opened)) throw std::runtime_error(error->message);
-  return std::get<Reader>(std::move(opened));
-}
-
-}  // namespace
 
 ReplaySource::ReplaySource(ReplayPlan plan)
     : plan_(std::move(plan)), reader_(reopened(plan_.file)) {}

@@ -7,6 +7,7 @@
 #include <limits>
 #include <system_error>
 
+#include "service/support/floor_divide.hpp"
 #include "service/support/text.hpp"
 
 namespace reident {
@@ -223,10 +224,11 @@ std::optional<std::int64_t> parse_duration(std::string_view text) {
 
 std::string time_text(std::int64_t time_ns) {
   using namespace std::chrono;
-  const sys_time<nanoseconds> time{nanoseconds{time_ns}};
-  const auto day = floor<days>(time);
-  const year_month_day date{day};
-  const hh_mm_ss clock{time - day};
+  // Not by floor<days>, which would step outside 64 bits on the first day that they hold.
+  const std::int64_t rest_ns = time_ns % day_ns;
+  const std::int64_t of_day_ns = rest_ns < 0 ? rest_ns + day_ns : rest_ns;
+  const year_month_day date{sys_days{days{floor_divide(time_ns, day_ns)}}};
+  const hh_mm_ss clock{nanoseconds{of_day_ns}};
   std::array<char, 64> text{};
   const int length = std::snprintf(
       text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%09d", static_cast<int>(date.year()),

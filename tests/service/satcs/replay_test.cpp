@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
@@ -248,6 +250,10 @@ TEST_F(Replay, KeepsToTheStretchAskedFor) {
   EXPECT_THAT(values(), ElementsAre(3, 2));
   options_.start.reset();
   EXPECT_THAT(values(), ElementsAre(3, 1, 2));
+  options_.end = ReplayBound{true, std::numeric_limits<std::int64_t>::max()};
+  EXPECT_THAT(values(), ElementsAre(3, 1, 2, 4));
+  std::swap(options_.start, options_.end);
+  EXPECT_THAT(complaint(), HasSubstr("no row lies between the start and the end asked for"));
 }
 
 TEST_F(Replay, FailsWhenTheFileChangesUnderIt) {
