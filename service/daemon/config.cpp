@@ -164,7 +164,7 @@ void read_order(TableReader& reader, EquipmentConfig& equipment) {
 /// than there are states.
 int least_horizon(const EquipmentConfig& equipment) {
   const int outputs = static_cast<int>(std::max<std::size_t>(1, equipment.outputs.size()));
-  return std::max(2, equipment.max_order / outputs + 1);
+  return (equipment.max_order + outputs - 1) / outputs + 1;
 }
 
 /// Ticks that a window needs: the rows left to the subspace step, after the shares for validation
@@ -176,10 +176,6 @@ std::int64_t least_window_ticks(const EquipmentConfig& equipment) {
   return static_cast<std::int64_t>(
       std::ceil(rows / ((1 - tune_share) * (1 - equipment.validation_share))));
 }
-
-struct Timing {
-  std::optional<Duration> period, hold, window, slide;
-};
 
 void check_window(TableReader& reader, const EquipmentConfig& equipment) {
   const Duration period = equipment.sample_period;

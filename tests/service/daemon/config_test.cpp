@@ -271,6 +271,8 @@ const Mistake values[] = {
      "9: equipment BDR: order must be \"auto\" or a whole number"},
     {"short_horizon", minimal + "horizon = 5",
      "9: equipment BDR: horizon 5 is too short for orders up to 10; make it at least 11"},
+    {"short_horizon_for_three_outputs", with(6, "outputs = [\"a\", \"b\", \"c\"]\nhorizon = 4"),
+     "7: equipment BDR: horizon 4 is too short for orders up to 10; make it at least 5"},
     {"negative_fit", minimal + "min_fit = -5",
      "9: equipment BDR: min_fit must be a number from 0 to 100"},
     {"unknown_approval", minimal + "approval = \"by hand\"",
