@@ -235,8 +235,9 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
   equipment.window = *window;
   if (signals_and_orders_are_right) check_window(reader, equipment);
   // As long as the validation part, so that each candidate is judged on telemetry that is new.
-  const auto share_ticks = static_cast<std::int64_t>(equipment.validation_share *
-                                                     static_cast<double>(*window / *period));
+  const std::int64_t ticks = *window / *period;
+  const auto share_ticks =
+      static_cast<std::int64_t>(equipment.validation_share * static_cast<double>(ticks));
   equipment.slide = slide.value_or(std::max<std::int64_t>(1, share_ticks) * *period);
   if (slide || !reader.has("slide")) check_slide(reader, equipment);
 }
