@@ -82,187 +82,23 @@ class Identification {
   Identification(const Record& record, RowRange rows, const IdentifyOptions& options)
       : record_(record), rows_(rows), options_(options) {}
 
-  IdentifyResult run() {
-    phase("prepare");
-    if (auto verdict = prepare()) return *verdict;
-    phase("choose");
-    std::vector<ScoredRecipe> ranked;
-    if (auto verdict = choose(ranked)) return *verdict;
-    phase("identify");
-    for (const ScoredRecipe& candidate : ranked)
-      if (auto identified = realise(candidate.recipe)) return std::move(*identified);
-    return Verdict{VerdictCode::unstable,
-                   "no choice that was stable on part of the rows is stable on all of them; choose "
-                   "a longer window"};
-  }
+  IdentifyResult run();
 
  private:
-  void phase(std::string_view name) const {
-    if (options_.on_phase) options_.on_phase(name);
-  }
-
+  void phase(std::string_view name) const;
   /// Checks the samples and leaves out the channels that say nothing.
-  std::optional<Verdict> prepare() {
-    if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols());
-    if (auto verdict = non_finite_values(record_, rows_)) return verdict;
-    normalisation_ = normalisation_of(record_, rows_);
-    warn_of_constants(normalisation_.inputs, record_.u.cols(), "input");
-    warn_of_constants(normalisation_.outputs, record_.y.cols(), "output");
-    if (normalisation_.outputs.empty())
-      return Verdict{VerdictCode::constant_outputs,
-                     "no output moves in the rows to identify from; choose a window in which the "
-                     "equipment does something"};
-    if (normalisation_.inputs.empty() && record_.u.cols() > 0)
-      return Verdict{VerdictCode::constant_inputs,
-                     "no input moves in the rows to identify from; choose a window in which the "
-                     "equipment is driven"};
-    work_ = normalised(record_, rows_, normalisation_);
-    leave_out_redundant_inputs();
-    return std::nullopt;
-  }
-
-  void warn_of_constants(const std::vector<Index>& moving, Index channels, const char* kind) {
-    for (Index c = 0; c < channels; ++c)
-      if (!std::binary_search(moving.begin(), moving.end(), c))
-        warnings_.push_back(ordinal(kind, c) +
-                            " is constant in the rows to identify from: the "
-                            "model does not say how " +
-                            (kind[0] == 'i' ? "it acts" : "it moves"));
-  }
-
-  void leave_out_redundant_inputs() {
-    const std::vector<RedundantInput> redundant = redundant_inputs(work_.u);
-    if (redundant.empty()) return;
-    std::vector<Index>& inputs = normalisation_.inputs;
-    const std::vector<Index> before = inputs;
-    for (auto found = redundant.rbegin(); found != redundant.rend(); ++found) {
-      std::string others;
-      for (const Index other : found->explained_by)
-        others += (others.empty() ? "" : ", ") +
-                  ordinal("input", before[static_cast<std::size_t>(other)]);
-      warnings_.push_back(ordinal("input", before[static_cast<std::size_t>(found->input)]) +
-                          " is a linear combination of " + others +
-                          " at every row and is left out of the model");
-      inputs.erase(inputs.begin() + found->input);
-    }
-    work_ = normalised(record_, rows_, normalisation_);
-  }
-
+  std::optional<Verdict> prepare();
+  void warn_of_constants(const std::vector<Index>& moving, Index channels, const char* kind);
+  void leave_out_redundant_inputs();
   /// Ranks what can be identified, best first.
-  std::optional<Verdict> choose(std::vector<ScoredRecipe>& ranked) {
-    const std::array<Fold, 2> folds = folds_of(rows_.size(), options_.tune_share);
-    SearchSpace space{feasible_horizons(work_, folds, options_),
-                      {Weighting::n4sid, Weighting::moesp, Weighting::cva},
-                      options_.order.value_or(options_.min_order),
-                      options_.order.value_or(options_.max_order)};
-    if (space.horizons.empty()) return too_few_samples(work_.u.cols() + work_.y.cols());
-    if (options_.weighting) space.weightings = {*options_.weighting};
-    if (auto verdict = limit_by_excitation(space)) return verdict;
-    ranked = ranked_recipes(work_, folds, space);
-    const bool unstable = ranked.empty();
-    if (unstable) {
-      space.stability = Stability::enforced;
-      ranked = ranked_recipes(work_, folds, space);
-      warnings_.push_back(
-          "every model asked for was unstable; A was taken so that it is stable, at some bias");
-    }
-    const double constant = held_out_error_of_constant(work_, folds);
-    // A system that really is unstable must not pass as a stable one that follows it a little.
-    const double acceptable = unstable ? constant / 2 : constant;
-    const bool useless = ranked.empty() || !(ranked.front().error < acceptable);
-    if (useless && unstable)
-      return Verdict{VerdictCode::unstable,
-                     "every model of order " + std::to_string(space.min_order) + " to " +
-                         std::to_string(space.max_order) +
-                         " is unstable, and made stable errs more than half as much as the mean; "
-                         "choose a window in which the equipment stays in its range"};
-    if (useless)
-      return Verdict{VerdictCode::no_better_than_mean,
-                     "on rows held out the best model errs by " + text(ranked.front().error) +
-                         " standard deviations and the mean by " + text(constant) +
-                         "; the inputs do not explain the outputs in this window"};
-    return std::nullopt;
-  }
-
-  Verdict too_few_samples(Index width) const {
-    const Index s = options_.horizon.value_or(least_horizon(options_));
-    const Index fit = 2 * s * (width + 1);
-    Index needed = fit;
-    while (folds_of(needed, options_.tune_share)[0].fit.size() < fit) ++needed;
-    return {VerdictCode::too_few_samples,
-            std::to_string(rows_.size()) + " rows in " +
-                std::to_string(segments_within(record_, rows_).size()) +
-                " segments are too few; at least " + std::to_string(needed) +
-                " rows without a gap are needed for a horizon of " + std::to_string(s)};
-  }
-
+  std::optional<Verdict> choose(std::vector<ScoredRecipe>& ranked);
+  Verdict too_few_samples(Index width) const;
   /// An order of n needs inputs that excite n + 1 block rows.
-  std::optional<Verdict> limit_by_excitation(SearchSpace& space) {
-    if (work_.u.cols() == 0) return std::nullopt;
-    const int horizon = space.horizons.back();
-    const HankelFactor factor = compress(work_, work_.all(), 2 * Index{horizon});
-    const Excitation excitation = excitation_of(Projection(factor, horizon).input_innovations());
-    if (excitation.order >= horizon) return std::nullopt;
-    const std::string weakest =
-        ordinal("input", normalisation_.inputs[static_cast<std::size_t>(excitation.weakest_input)]);
-    const int highest = static_cast<int>(excitation.order) - 1;
-    if (highest < space.min_order)
-      return Verdict{VerdictCode::insufficient_excitation,
-                     weakest + " follows from its own past and the other inputs after " +
-                         std::to_string(excitation.order) + " samples, but order " +
-                         std::to_string(space.min_order) + " needs " +
-                         std::to_string(space.min_order + 1) +
-                         "; choose a window in which it moves more freely"};
-    if (highest < space.max_order) {
-      space.max_order = highest;
-      warnings_.push_back(weakest + " excites no order above " + std::to_string(highest));
-    }
-    return std::nullopt;
-  }
-
+  std::optional<Verdict> limit_by_excitation(SearchSpace& space);
   /// The recipe on all rows, absent when it gives no stable model there.
-  std::optional<Identified> realise(const Recipe& recipe) const {
-    const HankelFactor factor = compress(work_, work_.all(), 2 * Index{recipe.horizon});
-    const Projection projection(factor, recipe.horizon);
-    auto [gamma, singular_values] = projection.observability(recipe.weighting);
-    const Dynamics dynamics =
-        shift_invariant(gamma, factor.outputs, recipe.order, recipe.stability);
-    if (!is_stable(dynamics.A)) return std::nullopt;
-    Response response =
-        recipe.refinement_steps > 0
-            ? refine_response(dynamics.A, dynamics.C, work_, work_.all(), recipe.refinement_steps)
-            : fit_response(dynamics.A, dynamics.C, work_, work_.all(), Accuracy::exact);
-    Identified result;
-    result.warnings = warnings_;
-    if (const auto K = kalman_gain(response.model.A, response.model.C,
-                                   projection.noise_covariance(response.model)))
-      response.model.K = *K;
-    else
-      result.warnings.push_back(
-          "the model has no Kalman gain: its Riccati equation has no checked solution");
-    if (recipe.operating_point == OperatingPoint::recent)
-      response.model.y0 += recent_operating_point(
-          work_.y - free_run(response.model, work_, work_.all(), response.x0), true);
-    result.model = in_units(response.model, normalisation_);
-    if (!is_well_formed(result.model) || !response.x0.allFinite()) return std::nullopt;
-    result.x0 = response.x0;
-    result.horizon = recipe.horizon;
-    result.weighting = recipe.weighting;
-    result.spectral_radius = spectral_radius(result.model);
-    result.singular_values = std::move(singular_values);
-    describe(result);
-    return result;
-  }
-
+  std::optional<Identified> realise(const ScoredRecipe& candidate) const;
   /// What is said of the model besides its matrices.
-  void describe(Identified& result) const {
-    const auto u = record_.u.middleRows(rows_.begin, rows_.size());
-    result.input_min = u.colwise().minCoeff().transpose();
-    result.input_max = u.colwise().maxCoeff().transpose();
-    const RowRange tune = folds_of(rows_.size(), options_.tune_share)[0].tune;
-    result.tune = score_free_run(result.model, record_, rows_,
-                                 {rows_.begin + tune.begin, rows_.begin + tune.end}, result.x0);
-  }
+  void describe(Identified& result) const;
 
   const Record& record_;
   RowRange rows_;
@@ -271,6 +107,184 @@ class Identification {
   Record work_;  // the rows, normalised, without the channels left out
   std::vector<std::string> warnings_;
 };
+
+IdentifyResult Identification::run() {
+  phase("prepare");
+  if (auto verdict = prepare()) return *verdict;
+  phase("choose");
+  std::vector<ScoredRecipe> ranked;
+  if (auto verdict = choose(ranked)) return *verdict;
+  phase("identify");
+  for (const ScoredRecipe& candidate : ranked)
+    if (auto identified = realise(candidate)) return std::move(*identified);
+  return Verdict{VerdictCode::unstable,
+                 "no choice that was stable on part of the rows is stable on all of them; choose "
+                 "a longer window"};
+}
+
+void Identification::phase(std::string_view name) const {
+  if (options_.on_phase) options_.on_phase(name);
+}
+
+std::optional<Verdict> Identification::prepare() {
+  if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols());
+  if (auto verdict = non_finite_values(record_, rows_)) return verdict;
+  normalisation_ = normalisation_of(record_, rows_);
+  warn_of_constants(normalisation_.inputs, record_.u.cols(), "input");
+  warn_of_constants(normalisation_.outputs, record_.y.cols(), "output");
+  if (normalisation_.outputs.empty())
+    return Verdict{VerdictCode::constant_outputs,
+                   "no output moves in the rows to identify from; choose a window in which the "
+                   "equipment does something"};
+  if (normalisation_.inputs.empty() && record_.u.cols() > 0)
+    return Verdict{VerdictCode::constant_inputs,
+                   "no input moves in the rows to identify from; choose a window in which the "
+                   "equipment is driven"};
+  work_ = normalised(record_, rows_, normalisation_);
+  leave_out_redundant_inputs();
+  return std::nullopt;
+}
+
+void Identification::warn_of_constants(const std::vector<Index>& moving, Index channels,
+                                       const char* kind) {
+  for (Index c = 0; c < channels; ++c)
+    if (!std::binary_search(moving.begin(), moving.end(), c))
+      warnings_.push_back(ordinal(kind, c) +
+                          " is constant in the rows to identify from: the "
+                          "model does not say how " +
+                          (kind[0] == 'i' ? "it acts" : "it moves"));
+}
+
+void Identification::leave_out_redundant_inputs() {
+  const std::vector<RedundantInput> redundant = redundant_inputs(work_.u);
+  if (redundant.empty()) return;
+  std::vector<Index>& inputs = normalisation_.inputs;
+  const std::vector<Index> before = inputs;
+  for (auto found = redundant.rbegin(); found != redundant.rend(); ++found) {
+    std::string others;
+    for (const Index other : found->explained_by)
+      others +=
+          (others.empty() ? "" : ", ") + ordinal("input", before[static_cast<std::size_t>(other)]);
+    warnings_.push_back(ordinal("input", before[static_cast<std::size_t>(found->input)]) +
+                        " is a linear combination of " + others +
+                        " at every row and is left out of the model");
+    inputs.erase(inputs.begin() + found->input);
+  }
+  work_ = normalised(record_, rows_, normalisation_);
+}
+
+std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked) {
+  const std::array<Fold, 2> folds = folds_of(rows_.size(), options_.tune_share);
+  SearchSpace space{feasible_horizons(work_, folds, options_),
+                    {Weighting::n4sid, Weighting::moesp, Weighting::cva},
+                    options_.order.value_or(options_.min_order),
+                    options_.order.value_or(options_.max_order)};
+  if (space.horizons.empty()) return too_few_samples(work_.u.cols() + work_.y.cols());
+  if (options_.weighting) space.weightings = {*options_.weighting};
+  if (auto verdict = limit_by_excitation(space)) return verdict;
+  ranked = ranked_recipes(work_, folds, space);
+  const bool unstable = ranked.empty();
+  if (unstable) {
+    space.stability = Stability::enforced;
+    ranked = ranked_recipes(work_, folds, space);
+    warnings_.push_back(
+        "every model asked for was unstable; A was taken so that it is stable, at some bias");
+  }
+  const double constant = held_out_error_of_constant(work_, folds);
+  // A system that really is unstable must not pass as a stable one that follows it a little.
+  const double acceptable = unstable ? constant / 2 : constant;
+  const bool useless = ranked.empty() || !(ranked.front().error < acceptable);
+  if (useless && unstable)
+    return Verdict{VerdictCode::unstable,
+                   "every model of order " + std::to_string(space.min_order) + " to " +
+                       std::to_string(space.max_order) +
+                       " is unstable, and made stable errs more than half as much as the mean; "
+                       "choose a window in which the equipment stays in its range"};
+  if (useless)
+    return Verdict{VerdictCode::no_better_than_mean,
+                   "on rows held out the best model errs by " + text(ranked.front().error) +
+                       " standard deviations and the mean by " + text(constant) +
+                       "; the inputs do not explain the outputs in this window"};
+  return std::nullopt;
+}
+
+Verdict Identification::too_few_samples(Index width) const {
+  const Index s = options_.horizon.value_or(least_horizon(options_));
+  const Index fit = 2 * s * (width + 1);
+  Index needed = fit;
+  while (folds_of(needed, options_.tune_share)[0].fit.size() < fit) ++needed;
+  return {VerdictCode::too_few_samples,
+          std::to_string(rows_.size()) + " rows in " +
+              std::to_string(segments_within(record_, rows_).size()) +
+              " segments are too few; at least " + std::to_string(needed) +
+              " rows without a gap are needed for a horizon of " + std::to_string(s)};
+}
+
+std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
+  if (work_.u.cols() == 0) return std::nullopt;
+  const int horizon = space.horizons.back();
+  const HankelFactor factor = compress(work_, work_.all(), 2 * Index{horizon});
+  const Excitation excitation = excitation_of(Projection(factor, horizon).input_innovations());
+  if (excitation.order >= horizon) return std::nullopt;
+  const std::string weakest =
+      ordinal("input", normalisation_.inputs[static_cast<std::size_t>(excitation.weakest_input)]);
+  const int highest = static_cast<int>(excitation.order) - 1;
+  if (highest < space.min_order)
+    return Verdict{VerdictCode::insufficient_excitation,
+                   weakest + " follows from its own past and the other inputs after " +
+                       std::to_string(excitation.order) + " samples, but order " +
+                       std::to_string(space.min_order) + " needs " +
+                       std::to_string(space.min_order + 1) +
+                       "; choose a window in which it moves more freely"};
+  if (highest < space.max_order) {
+    space.max_order = highest;
+    warnings_.push_back(weakest + " excites no order above " + std::to_string(highest));
+  }
+  return std::nullopt;
+}
+
+std::optional<Identified> Identification::realise(const ScoredRecipe& candidate) const {
+  const Recipe& recipe = candidate.recipe;
+  const HankelFactor factor = compress(work_, work_.all(), 2 * Index{recipe.horizon});
+  const Projection projection(factor, recipe.horizon);
+  auto [gamma, singular_values] = projection.observability(recipe.weighting);
+  const Dynamics dynamics = shift_invariant(gamma, factor.outputs, recipe.order, recipe.stability);
+  if (!is_stable(dynamics.A)) return std::nullopt;
+  Response response =
+      recipe.refinement_steps > 0
+          ? refine_response(dynamics.A, dynamics.C, work_, work_.all(), recipe.refinement_steps)
+          : fit_response(dynamics.A, dynamics.C, work_, work_.all(), Accuracy::exact);
+  Identified result;
+  result.warnings = warnings_;
+  if (const auto K = kalman_gain(response.model.A, response.model.C,
+                                 projection.noise_covariance(response.model)))
+    response.model.K = *K;
+  else
+    result.warnings.push_back(
+        "the model has no Kalman gain: its Riccati equation has no checked solution");
+  if (recipe.operating_point == OperatingPoint::recent)
+    response.model.y0 += recent_operating_point(
+        work_.y - free_run(response.model, work_, work_.all(), response.x0), true);
+  result.model = in_units(response.model, normalisation_);
+  if (!is_well_formed(result.model) || !response.x0.allFinite()) return std::nullopt;
+  result.x0 = response.x0;
+  result.held_out_error = candidate.error;
+  result.horizon = recipe.horizon;
+  result.weighting = recipe.weighting;
+  result.spectral_radius = spectral_radius(result.model);
+  result.singular_values = std::move(singular_values);
+  describe(result);
+  return result;
+}
+
+void Identification::describe(Identified& result) const {
+  const auto u = record_.u.middleRows(rows_.begin, rows_.size());
+  result.input_min = u.colwise().minCoeff().transpose();
+  result.input_max = u.colwise().maxCoeff().transpose();
+  const RowRange tune = folds_of(rows_.size(), options_.tune_share)[0].tune;
+  result.tune = score_free_run(result.model, record_, rows_,
+                               {rows_.begin + tune.begin, rows_.begin + tune.end}, result.x0);
+}
 
 }  // namespace
 

@@ -28,7 +28,8 @@ struct IdentifyOptions {
   int max_order = 10;
   std::optional<int> horizon;          // block rows s; absent: chosen
   std::optional<Weighting> weighting;  // absent: chosen
-  /// The last part of the identification rows that choices are scored on; in (0, 0.9].
+  /// Share of the identification rows that choices are scored on; in (0, 0.9]. The last rows are
+  /// held out, and in a second fold the first.
   double tune_share = 0.3;
   /// Called as each phase of the work begins, with a literal such as "compress"; for timing.
   std::function<void(std::string_view phase)> on_phase;
@@ -45,7 +46,8 @@ struct Identified {
   double spectral_radius = 0;
   Vector singular_values;       // of the weighted oblique projection, descending
   Vector input_min, input_max;  // range visited by each input in the identification rows
-  Score tune;                   // on the held-out part that made the choice
+  double held_out_error = 0;    // of the choice: rms in deviations of the outputs, over both folds
+  Score tune;  // of the model on the last tune_share of the rows, which it was fitted to as well
   std::vector<std::string> warnings;
 };
 

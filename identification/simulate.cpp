@@ -80,9 +80,9 @@ Score score(const Matrix& y, const Matrix& y_hat) {
     const double spread = (y.col(q).array() - y.col(q).mean()).matrix().stableNorm();
     // The mean of a constant may be rounded: its spread is zero all the same.
     const bool constant = y.col(q).maxCoeff() == y.col(q).minCoeff();
-    const double mrse = error == 0 ? 0 : 100 * error / size;
+    const double mrse = error == 0 ? 0.0 : 100 * error / size;
     double fit = 100 * (1 - error / spread);
-    if (constant) fit = error == 0 ? 100 : -infinity;
+    if (constant) fit = error == 0 ? 100.0 : -infinity;
     result.mrse_percent(q) = std::isnan(mrse) ? infinity : mrse;
     result.fit_percent(q) = std::isnan(fit) ? -infinity : fit;
   }

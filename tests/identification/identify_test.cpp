@@ -36,6 +36,7 @@ TEST(Identify, WithoutNoiseTheModelIsTheSystem) {
     EXPECT_LT(testing::pole_distance(found.model, truth), 1e-5) << c.order;
     EXPECT_LT(testing::markov_distance(found.model, truth), 1e-5) << c.order;
     EXPECT_LT(found.tune.mrse(), 1e-3);
+    EXPECT_LT(found.held_out_error, 1e-5);
     EXPECT_NEAR(found.spectral_radius, spectral_radius(truth), 1e-5);
   }
 }
