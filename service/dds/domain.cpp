@@ -27,22 +27,25 @@ bool configured_by_environment() {
   return uri != nullptr && *uri != '\0';
 }
 
+dds_entity_t joined(dds_entity_t result, const char* call, std::uint32_t domain) {
+  if (result >= 0) return result;
+  throw Error(
+      std::string(call) + " failed for domain " + std::to_string(domain) + ": " +
+      dds_strretcode(result) +
+      "; use a domain from 0 to 230 and at most 120 processes of a domain on a machine, and "
+      "where CYCLONEDDS_URI is set, check the configuration and the interfaces it names");
+}
+
 Entity create_loopback_domain(std::uint32_t domain) {
   const dds_entity_t result = dds_create_domain(domain, loopback_configuration);
   // Another library of this process was first; its configuration holds.
   if (result == DDS_RETCODE_PRECONDITION_NOT_MET) return {};
-  return {result, "dds_create_domain", "domain " + std::to_string(domain)};
+  return Entity(joined(result, "dds_create_domain", domain));
 }
 
 Entity create_participant(std::uint32_t domain) {
-  const dds_entity_t result = dds_create_participant(domain, nullptr, nullptr);
-  if (result < 0) {
-    throw Error("dds_create_participant failed for domain " + std::to_string(domain) + ": " +
-                dds_strretcode(result) +
-                "; use a domain from 0 to 230, raise MaxAutoParticipantIndex where many processes "
-                "share a machine, and check the interfaces that CYCLONEDDS_URI names");
-  }
-  return {result, "dds_create_participant", ""};
+  return Entity(
+      joined(dds_create_participant(domain, nullptr, nullptr), "dds_create_participant", domain));
 }
 
 }  // namespace

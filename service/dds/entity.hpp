@@ -24,6 +24,7 @@ inline dds_return_t check(dds_return_t result, const char* call, const std::stri
 class Entity {
  public:
   Entity() = default;
+  explicit Entity(dds_entity_t handle) : handle_(handle) {}
   Entity(dds_entity_t result, const char* call, const std::string& about)
       : handle_(check(result, call, about)) {}
   ~Entity() { reset(); }

@@ -139,5 +139,25 @@ TEST(Participants, of_one_process_share_a_domain_and_leave_it_one_by_one) {
   EXPECT_EQ(take_all(reader, 1).size(), 1U);
 }
 
+TEST(Participants, that_cannot_join_say_which_domain_and_what_to_do) {
+  try {
+    const dds::Participant participant({.domain = 4'000'000});
+    FAIL() << "it joined";
+  } catch (const dds::Error& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("domain 4000000"),
+                                             testing::HasSubstr("use a domain from 0 to 230")));
+  }
+}
+
+TEST(Participants, a_reader_with_an_impossible_bound_names_the_topic) {
+  dds::Participant participant(own_endpoint());
+  try {
+    const dds::Reader<storage::TelemetryFrame> reader(participant, {.max_samples = -7});
+    FAIL() << "it was made";
+  } catch (const dds::Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("satcs/TelemetryFrame"));
+  }
+}
+
 }  // namespace
 }  // namespace reident::test

@@ -115,5 +115,19 @@ TEST(Telemetry, a_writer_that_waits_for_room_stops_when_it_is_asked_to) {
   EXPECT_EQ(written, 2U);
 }
 
+TEST(Telemetry, a_reader_that_keeps_the_newest_makes_no_writer_wait) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant simulator(own_endpoint());
+  dds::Reader<TelemetryFrame> reader(simulator, {.keep_last = 10});
+  dds::Writer<TelemetryFrame> writer(ground);
+  ASSERT_TRUE(eventually([&] { return writer.matched_readers() == 1; }));
+  for (std::uint64_t i = 1; i <= 1000; ++i) {
+    ASSERT_TRUE(writer.write(make_frame(i), [] { return true; }));
+  }
+  ASSERT_TRUE(writer.wait_for_acknowledgments(10s));
+  EXPECT_THAT(sequences(take_all(reader, 10)),
+              testing::ElementsAre(991, 992, 993, 994, 995, 996, 997, 998, 999, 1000));
+}
+
 }  // namespace
 }  // namespace reident::test
