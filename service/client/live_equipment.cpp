@@ -44,6 +44,7 @@ void LiveEquipment::run(const Tick& tick) {
     return;
   }
   score_.add(tick.y, runner_.step(tick.u));
+  runner_.observe(tick.y);
   if (runner_.is_any_outside()) ++ticks_outside_;
 }
 

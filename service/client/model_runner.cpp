@@ -28,12 +28,15 @@ void ModelRunner::allocate() {
   next_x_ = x_;
   du_ = Vector::Zero(dynamics.inputs());
   y_ = dynamics.y0;
+  offset_ = Vector::Zero(dynamics.outputs());
+  fading_ = 0;
   outside_.assign(model_.inputs.size(), 0);
 }
 
 void ModelRunner::start(const Matrix& u, const Matrix& y) {
   at_ = 0;
   remembered_ = 0;
+  fading_ = 0;
   const auto record = identification::contiguous_record(model_.dynamics.period_s, u, y);
   x_ = states(record).rightCols(1);
   for (Index row = 0; row < u.rows(); ++row) {
@@ -48,6 +51,10 @@ const ModelRunner::Vector& ModelRunner::step(const Vector& u) {
   y_ = dynamics.y0;
   y_.noalias() += dynamics.C * x_;
   y_.noalias() += dynamics.D * du_;
+  if (fading_ > 0) {
+    --fading_;
+    y_ += offset_ * (static_cast<double>(fading_) / transition_steps);
+  }
   next_x_.noalias() = dynamics.A * x_;
   next_x_.noalias() += dynamics.B * du_;
   x_.swap(next_x_);
@@ -61,6 +68,11 @@ const ModelRunner::Vector& ModelRunner::step(const Vector& u) {
 
 bool ModelRunner::is_any_outside() const {
   return std::find(outside_.begin(), outside_.end(), 1) != outside_.end();
+}
+
+void ModelRunner::observe(const Vector& y) {
+  if (remembered_ == 0 || !y.allFinite()) return;
+  past_y_.row((at_ + past_y_.rows() - 1) % past_y_.rows()) = y.transpose();
 }
 
 void ModelRunner::remember(const Vector& u) {
@@ -111,17 +123,10 @@ ModelRunner::Swap ModelRunner::swap(EquipmentModel next) {
   const Matrix x = states(record);
   const Index last = record.rows() - 1;
   const Vector du = record.u.row(last).transpose() - dynamics.u0;
-  Vector missing = put_out - (dynamics.C * x.col(last) + dynamics.D * du + dynamics.y0);
-  // The least change of the state, measured by how far it moved in the recent past (P), that gives
-  // the last output: C P C' lambda = missing. It decays as the model's own motions do.
-  const Matrix spread = x.leftCols(last + 1).colwise() - x.leftCols(last + 1).rowwise().mean();
-  const Matrix P = spread * spread.transpose();
-  const Vector change =
-      P * dynamics.C.transpose() *
-      (dynamics.C * P * dynamics.C.transpose()).completeOrthogonalDecomposition().solve(missing);
-  missing -= dynamics.C * change;
-  x_ = x.col(last + 1) + dynamics.A * change;
-  return {record.rows(), -missing};
+  x_ = x.col(last + 1);
+  offset_ = put_out - (dynamics.C * x.col(last) + dynamics.D * du + dynamics.y0);
+  fading_ = transition_steps;
+  return {record.rows(), -offset_};
 }
 
 }  // namespace reident

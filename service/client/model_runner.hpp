@@ -16,6 +16,8 @@ class ModelRunner {
   using Matrix = identification::Matrix;
   using Index = identification::Index;
 
+  static constexpr int transition_steps = 60;
+
   /// Starts at the operating point (x = 0). `history_rows` are kept for a swap. The model's sizes
   /// must agree.
   explicit ModelRunner(EquipmentModel model, Index history_rows = 256);
@@ -28,6 +30,9 @@ class ModelRunner {
   /// The reference is good until the next call.
   const Vector& step(const Vector& u);
   const Vector& output() const { return y_; }
+  /// The measured output (p) at the tick of the last step, where it is known: a swap then estimates
+  /// the state from it rather than from the model's own. Ignored where it is not finite.
+  void observe(const Vector& y);
 
   /// Whether input `i` of the last step was outside the range that the model was identified in. The
   /// input is used as it is.
@@ -39,12 +44,11 @@ class ModelRunner {
 
   struct Swap {
     Index rows = 0;  // of the history that the new state was estimated from
-    Vector step;     // new model's output less the old one's, at the last tick
+    Vector change;   // new model's output at the last tick less what was put out there
   };
-  /// Goes on with `next`, which fits. Its state is estimated from the recent inputs and outputs and
-  /// then moved as little as it takes to meet the last output, so that the output continues; `step`
-  /// is what remains where no state meets it. The difference between the models comes in as fast as
-  /// their own motions do.
+  /// Goes on with `next`, which fits, from the state that agrees best with the recent inputs and
+  /// outputs. The output continues where it was: `change` comes in linearly over the next
+  /// `transition_steps` steps.
   Swap swap(EquipmentModel next);
 
   const EquipmentModel& model() const { return model_; }
@@ -59,6 +63,8 @@ class ModelRunner {
 
   EquipmentModel model_;
   Vector x_, next_x_, du_, y_;
+  Vector offset_;  // what is left of the old model's output in the new one's, while it fades
+  int fading_ = 0;
   std::vector<std::uint8_t> outside_;
   Matrix past_u_, past_y_;  // rings: row `at_` is written next
   Index at_ = 0;

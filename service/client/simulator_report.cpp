@@ -38,7 +38,7 @@ void SimulatorReport::adopted(const ModelVersion& version,
               {"rollback", version.rollback},
               {"mrse_percent", to_json(model.validation.mrse_percent)},
               {"fit_percent", to_json(model.validation.fit_percent)}};
-    if (swap) line["output_step"] = to_json(swap->step);
+    if (swap) line["output_change"] = to_json(swap->change);
     say(line.dump());
     return;
   }
@@ -46,7 +46,9 @@ void SimulatorReport::adopted(const ModelVersion& version,
       "{} v{}: {}, order {}, on unseen data MRSE {:.3f} %, fit {:.1f} %{}", model.equipment,
       version.number, version.rollback ? "rolled back to" : "adopted", model.dynamics.order(),
       model.validation.mrse(), model.validation.fit(),
-      swap ? fmt::format(", output moved by {:.3g}", swap->step.cwiseAbs().maxCoeff()) : ""));
+      swap ? fmt::format(", output changes by {:.3g} over {} ticks",
+                         swap->change.cwiseAbs().maxCoeff(), ModelRunner::transition_steps)
+           : ""));
 }
 
 void SimulatorReport::refused(const ModelSubscriber::Refusal& refusal) const {
