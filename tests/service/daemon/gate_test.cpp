@@ -121,7 +121,7 @@ const Case cases[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Reasons, Gate, testing::ValuesIn(cases),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 TEST(GateReason, NamesTheFiguresThatDecided) {
   Evidence evidence = good();
