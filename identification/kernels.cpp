@@ -48,6 +48,8 @@ namespace {
 // Small sizes known to the compiler keep their vectors in registers; 0 stands for any size.
 // Inlined, so that each clone has its own.
 #define REIDENT_INLINE inline __attribute__((always_inline))
+#define REIDENT_SMALL_SIZES(CASE) \
+  CASE(1) CASE(2) CASE(3) CASE(4) CASE(5) CASE(6) CASE(7) CASE(8) CASE(9) CASE(10) CASE(11) CASE(12)
 
 template <int Rows>
 REIDENT_INLINE void state_space_steps(const double* M, Index n, Index m, Index p, const double* v,
@@ -93,18 +95,8 @@ void run_state_space(const double* M, Index n, Index m, Index p, const double* v
   switch (n + p) {
 #define REIDENT_CASE(size) \
   case size:               \
-    return state_space_steps<size>(M, n, m, p, v, count, state, work, y)
-    REIDENT_CASE(2);
-    REIDENT_CASE(3);
-    REIDENT_CASE(4);
-    REIDENT_CASE(5);
-    REIDENT_CASE(6);
-    REIDENT_CASE(7);
-    REIDENT_CASE(8);
-    REIDENT_CASE(9);
-    REIDENT_CASE(10);
-    REIDENT_CASE(11);
-    REIDENT_CASE(12);
+    return state_space_steps<size>(M, n, m, p, v, count, state, work, y);
+    REIDENT_SMALL_SIZES(REIDENT_CASE)
 #undef REIDENT_CASE
     default:
       return state_space_steps<0>(M, n, m, p, v, count, state, work, y);
@@ -117,17 +109,8 @@ void run_dual_filters(const double* At, const double* c, Index n, Index inputs, 
   switch (n) {
 #define REIDENT_CASE(size) \
   case size:               \
-    return dual_filter_steps<size>(At, c, n, inputs, v, count, states, out, out_stride)
-    REIDENT_CASE(1);
-    REIDENT_CASE(2);
-    REIDENT_CASE(3);
-    REIDENT_CASE(4);
-    REIDENT_CASE(5);
-    REIDENT_CASE(6);
-    REIDENT_CASE(7);
-    REIDENT_CASE(8);
-    REIDENT_CASE(9);
-    REIDENT_CASE(10);
+    return dual_filter_steps<size>(At, c, n, inputs, v, count, states, out, out_stride);
+    REIDENT_SMALL_SIZES(REIDENT_CASE)
 #undef REIDENT_CASE
     default:
       return dual_filter_steps<0>(At, c, n, inputs, v, count, states, out, out_stride);

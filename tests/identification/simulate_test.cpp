@@ -85,7 +85,9 @@ TEST(Score, IsTheErrorOverTheSignalAndOverItsSpread) {
 }
 
 TEST(Score, OfSeveralOutputsTakesTheMeanErrorAndTheWorstFit) {
-  const Score s{(Vector(2) << 1, 3).finished(), (Vector(2) << 90, 70).finished(), 5};
+  Score s{Vector(2), Vector(2), 5};
+  s.mrse_percent << 1, 3;
+  s.fit_percent << 90, 70;
   EXPECT_DOUBLE_EQ(s.mrse(), 2);
   EXPECT_DOUBLE_EQ(s.fit(), 70);
 }
