@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 bool stops_within(const StopSignal& stop, std::chrono::seconds limit) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
   while (!stop.token().stop_requested() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(1ms);
+    std::this_thread::sleep_for(1ms);  // poll
   }
   return stop.token().stop_requested();
 }
@@ -37,7 +37,7 @@ TEST(StopSignal, LetsTheSecondSignalEndTheProcess) {
         const StopSignal stop;
         kill(getpid(), SIGTERM);
         if (stops_within(stop, 10s)) kill(getpid(), SIGINT);
-        std::this_thread::sleep_for(10s);
+        pause();  // until the signal
       },
       testing::KilledBySignal(SIGINT), "");
 }
