@@ -159,6 +159,10 @@ class EndToEnd(unittest.TestCase):
         finally:
             connection.close()
 
+    def stored(self):
+        """How many samples are committed."""
+        return self.query("SELECT sum(samples) FROM telemetry_series")[0][0] or 0
+
     def samples(self, origin="real"):
         """{(parameter, time): (value, quality)} of all that is archived."""
         return {(parameter, at): (value, quality) for parameter, at, value, quality in self.query(

@@ -71,7 +71,7 @@ class Ingest(EndToEnd):
         self.configure([plant.equipment(window="1h", slide="1h")])
         daemon = self.start_daemon()
         replay = self.replay(csv, "--speed", "max")
-        wait_until(lambda: self.query("SELECT sum(samples) FROM telemetry_series")[0][0],
+        wait_until(self.stored,
                    "telemetry is being stored")
         self.assertTrue(replay.running(), "the replay is still at work")
         status, seconds = daemon.terminate()
@@ -89,7 +89,7 @@ class Ingest(EndToEnd):
         self.configure([plant.equipment(window="1h", slide="1h")])
         daemon = self.start_daemon()
         replay = self.replay(csv, "--speed", "max", "--history", 50_000)
-        wait_until(lambda: self.query("SELECT sum(samples) FROM telemetry_series")[0][0],
+        wait_until(self.stored,
                    "telemetry is being stored")
         self.assertTrue(replay.running(), "the replay is still at work")
         daemon.kill()
