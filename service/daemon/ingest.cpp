@@ -64,9 +64,10 @@ void Ingest::count_rejected() {
 }
 
 std::size_t Ingest::take() {
-  std::size_t taken =
-      descriptors_.take(take_at_most, [this](auto&& one) { queue(std::move(one)); });
-  taken += frames_.take(take_at_most, [this](auto&& one) { queue(std::move(one)); });
+  std::size_t taken = descriptors_.take(
+      take_at_most, [this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });
+  taken +=
+      frames_.take(take_at_most, [this](storage::TelemetryFrame&& one) { queue(std::move(one)); });
   taken += acknowledgements_.take(
       take_at_most, [](ModelAcknowledgement&& message) { log_acknowledgement(message); });
   count_rejected();
@@ -80,8 +81,8 @@ void Ingest::run() {
     }
   }
   participant_.stop_hearing();
-  descriptors_.drain([this](auto&& one) { queue(std::move(one)); });
-  frames_.drain([this](auto&& one) { queue(std::move(one)); });
+  descriptors_.drain([this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });
+  frames_.drain([this](storage::TelemetryFrame&& one) { queue(std::move(one)); });
   count_rejected();
 }
 

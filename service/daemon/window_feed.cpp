@@ -112,11 +112,11 @@ void WindowFeed::forget_settled(const std::string& spacecraft, storage::Archive&
   {
     MutexLock lock(mutex_);
     for (const storage::LateRange& late : archive.late_ranges(spacecraft)) {
-      const EquipmentIds* ids = members(spacecraft, late.parameter);
-      if (!ids || std::none_of(ids->begin(), ids->end(), [&](std::size_t i) {
-            return scheduler_.pending_within(i, late.range);
-          }))
-        settled.push_back(late);
+      bool pending = false;
+      if (const EquipmentIds* ids = members(spacecraft, late.parameter))
+        for (const std::size_t i : *ids)
+          pending = pending || scheduler_.pending_within(i, late.range);
+      if (!pending) settled.push_back(late);
     }
   }
   if (!settled.empty()) archive.forget_late(settled);

@@ -14,7 +14,8 @@ constexpr storage::Time time_bound = 7'258'118'400'000'000'000;
 
 }  // namespace
 
-WindowScheduler::WindowScheduler(std::vector<Plan> plans, Duration settle) : settle_(settle) {
+WindowScheduler::WindowScheduler(const std::vector<Plan>& plans, Duration settle)
+    : settle_(settle) {
   for (const Plan& plan : plans) {
     assert(plan.slide > 0 && plan.window >= plan.slide);
     equipment_.push_back({.plan = plan, .touched = {}, .tried = {}, .running = {}});

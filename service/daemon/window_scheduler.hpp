@@ -37,7 +37,7 @@ class WindowScheduler {
     bool operator==(const Job&) const = default;
   };
 
-  WindowScheduler(std::vector<Plan> plans, Duration settle);
+  WindowScheduler(const std::vector<Plan>& plans, Duration settle);
 
   /// A new sample of the equipment at `time` was stored.
   void touched(std::size_t equipment, storage::Time time, storage::Time now);
