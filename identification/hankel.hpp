@@ -1,28 +1,40 @@
 // The one compression of the data: the triangular factor of the block-Hankel rows.
 #pragma once
 
+#include <optional>
+
+#include "identification/lag_sums.hpp"
+#include "identification/normalise.hpp"
 #include "identification/record.hpp"
 #include "identification/state_space.hpp"
 
 namespace reident::identification {
 
-/// Rows of the Hankel matrix are 1 and z[t], z[t+1], ..., z[t+L-1] with z = [u; y] and L block
-/// rows; its columns are all t at which these lie in one segment. With H that matrix,
-/// R is upper triangular and H H' = R' R. The factor of fewer block rows is the upper left part of
-/// this one.
+/// With z = [u; y] normalised, the Hankel matrix H has the columns [z[t]; ...; z[t+2s-1]] for all t
+/// at which these lie in one segment, s the horizon. Of its rows, in the order
+///   1, U_f (m s), W_p = [U_p; Y_p] ((m + p) s), Y_f (p s)
+/// with p the block rows 0 to s - 1 and f those from s on, L is the lower triangular factor:
+/// H H' = L L'. The row of ones makes every later projection one of centred signals.
 struct HankelFactor {
-  Index inputs = 0;
-  Index outputs = 0;
-  Index block_rows = 0;  // L
-  Index columns = 0;     // of H
-  Matrix R;              // square, 1 + L (m + p)
+  Index inputs = 0;        // m
+  Index outputs = 0;       // p
+  Index horizon = 0;       // s
+  Index columns = 0;       // of H
+  Matrix L;                // square, 1 + 2 s (m + p)
+  double least_share = 0;  // of a row of H, squared, that those before it leave; for the condition
 };
 
 /// Columns of the Hankel matrix with `block_rows` block rows over the segments.
 Index hankel_columns(const std::vector<Segment>& segments, Index block_rows);
 
-/// From the sums of lag products; where these would lose too many digits (noise-free data, inputs
-/// that nearly foretell each other), from a QR of the rows.
-HankelFactor compress(const Record& record, RowRange rows, Index block_rows);
+/// From sums of at least 2 * horizon block rows. Absent where they have lost too many digits
+/// (noise-free data, inputs that nearly foretell each other): then the rows have to be factored.
+std::optional<HankelFactor> factor_of_sums(const StretchSums& sums,
+                                           const Normalisation& normalisation, Index horizon);
+
+/// The same to full accuracy from the rows of a normalised record, by orthogonal transformations in
+/// batches, so that memory does not follow the rows.
+HankelFactor factor_of_rows(const Record& normalised, const std::vector<Segment>& segments,
+                            Index horizon);
 
 }  // namespace reident::identification

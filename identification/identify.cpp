@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "identification/choice.hpp"
@@ -17,6 +18,7 @@
 namespace reident::identification {
 namespace {
 
+constexpr double largest_square_root = 1e150;
 constexpr int preferred_horizons[] = {6, 10, 15, 20, 30};
 
 std::string text(double value) {
@@ -39,10 +41,18 @@ std::optional<Verdict> non_finite_values(const Record& record, RowRange rows) {
           return Verdict{VerdictCode::non_finite,
                          ordinal(kind, c) + " is not a finite number in row " + std::to_string(r) +
                              "; mark such samples as invalid or leave the row out"};
+        else if (std::abs(channels(r, c)) > largest_square_root)
+          return Verdict{VerdictCode::non_finite,
+                         ordinal(kind, c) + " is beyond 1e150 in row " + std::to_string(r) +
+                             ", which no sum of squares can hold; give it in another unit"};
     return std::nullopt;
   };
   if (auto verdict = look(record.u, "input")) return verdict;
   return look(record.y, "output");
+}
+
+void in_sequence(std::size_t count, const std::function<void(std::size_t)>& task) {
+  for (std::size_t i = 0; i < count; ++i) task(i);
 }
 
 /// A smaller horizon than this cannot carry the order asked for.
@@ -50,14 +60,18 @@ int least_horizon(const IdentifyOptions& options) {
   return std::max(2, options.order.value_or(options.min_order) + 1);
 }
 
-/// Columns of the Hankel matrix of 2 * horizon block rows in the poorer of the folds, 0 where they
-/// do not determine its factor.
-Index usable_columns(const Record& record, const std::array<Fold, 2>& folds, int horizon) {
+/// Columns of the Hankel matrix of 2 * horizon block rows, 0 where they do not determine its
+/// factor.
+Index usable_columns(const Record& record, RowRange rows, int horizon) {
   const Index width = record.u.cols() + record.y.cols();
-  Index least = std::numeric_limits<Index>::max();
-  for (const Fold& fold : folds)
-    least = std::min(least, hankel_columns(segments_within(record, fold.fit), 2 * Index{horizon}));
-  return least >= 2 * Index{horizon} * width + 1 ? least : 0;
+  const Index columns = hankel_columns(segments_within(record, rows), 2 * Index{horizon});
+  return columns >= 2 * Index{horizon} * width + 1 ? columns : 0;
+}
+
+/// The same of the poorer fold.
+Index usable_columns(const Record& record, const std::array<Fold, 2>& folds, int horizon) {
+  return std::min(usable_columns(record, folds[0].fit, horizon),
+                  usable_columns(record, folds[1].fit, horizon));
 }
 
 /// Horizons that the segments can feed, ascending. A longer one must leave at least half of the
@@ -79,33 +93,46 @@ std::vector<int> feasible_horizons(const Record& record, const std::array<Fold, 
 /// One call of identify(): the steps in their order, each of which may end it with a verdict.
 class Identification {
  public:
-  Identification(const Record& record, RowRange rows, const IdentifyOptions& options)
-      : record_(record), rows_(rows), options_(options) {}
+  Identification(const Record& record, RowRange rows, const IdentifyOptions& options, LagSums& sums,
+                 bool keep)
+      : record_(record), rows_(rows), options_(options), lag_sums_(sums), keep_(keep) {}
 
   IdentifyResult run();
 
  private:
   void phase(std::string_view name) const;
-  /// Checks the samples and leaves out the channels that say nothing.
+  /// Checks the samples, sums them and leaves out the channels that say nothing.
   std::optional<Verdict> prepare();
+  void sum();
   void warn_of_constants(const std::vector<Index>& moving, Index channels, const char* kind);
   void leave_out_redundant_inputs();
   /// Ranks what can be identified, best first.
   std::optional<Verdict> choose(std::vector<ScoredRecipe>& ranked);
-  Verdict too_few_samples(Index width) const;
+  /// The only recipe there is, where the options leave no choice or the rows do not allow one.
+  std::optional<Recipe> given_recipe(const std::array<Fold, 2>& folds) const;
+  Verdict too_few_samples(Index width, bool held_out) const;
+  std::optional<Verdict> useless(const std::vector<ScoredRecipe>& ranked, double constant) const;
   /// An order of n needs inputs that excite n + 1 block rows.
   std::optional<Verdict> limit_by_excitation(SearchSpace& space);
+  HankelFactor factor(int horizon) const;
   /// The recipe on all rows, absent when it gives no stable model there.
-  std::optional<Identified> realise(const ScoredRecipe& candidate) const;
+  std::optional<Identified> realise(const Recipe& recipe) const;
+  Response respond(const Recipe& recipe, const Projection& projection,
+                   const Dynamics& dynamics) const;
   /// What is said of the model besides its matrices.
   void describe(Identified& result) const;
 
   const Record& record_;
   RowRange rows_;
   const IdentifyOptions& options_;
+  LagSums& lag_sums_;
+  bool keep_;
+  std::array<StretchSums, 3> sums_;  // of the stretches between the folds' edges
+  StretchSums all_sums_;
   Normalisation normalisation_;
   Record work_;  // the rows, normalised, without the channels left out
   std::vector<std::string> warnings_;
+  double work_spent_ = 0;
 };
 
 IdentifyResult Identification::run() {
@@ -116,7 +143,10 @@ IdentifyResult Identification::run() {
   if (auto verdict = choose(ranked)) return *verdict;
   phase("identify");
   for (const ScoredRecipe& candidate : ranked)
-    if (auto identified = realise(candidate)) return std::move(*identified);
+    if (auto identified = realise(candidate.recipe)) {
+      if (std::isfinite(candidate.error)) identified->held_out_error = candidate.error;
+      return std::move(*identified);
+    }
   return Verdict{VerdictCode::unstable,
                  "no choice that was stable on part of the rows is stable on all of them; choose "
                  "a longer window"};
@@ -127,9 +157,10 @@ void Identification::phase(std::string_view name) const {
 }
 
 std::optional<Verdict> Identification::prepare() {
-  if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols());
+  if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols(), true);
   if (auto verdict = non_finite_values(record_, rows_)) return verdict;
-  normalisation_ = normalisation_of(record_, rows_);
+  sum();
+  normalisation_ = normalisation_of(all_sums_, record_.u.cols());
   warn_of_constants(normalisation_.inputs, record_.u.cols(), "input");
   warn_of_constants(normalisation_.outputs, record_.y.cols(), "output");
   if (normalisation_.outputs.empty())
@@ -143,6 +174,20 @@ std::optional<Verdict> Identification::prepare() {
   work_ = normalised(record_, rows_, normalisation_);
   leave_out_redundant_inputs();
   return std::nullopt;
+}
+
+void Identification::sum() {
+  const std::array<Fold, 2> folds = folds_of(rows_.size(), options_.tune_share);
+  const std::array<Index, 4> edges{0, std::min(folds[0].fit.end, folds[1].fit.begin),
+                                   std::max(folds[0].fit.end, folds[1].fit.begin), rows_.size()};
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const RowRange stretch{rows_.begin + edges[i], rows_.begin + edges[i + 1]};
+    const std::vector<Segment> parts = segments_within(record_, stretch);
+    if (parts.empty()) continue;
+    const TickRange ticks{parts.front().first_tick, parts.back().first_tick + parts.back().size()};
+    sums_[i] = keep_ ? lag_sums_.keep_over(ticks, record_) : lag_sums_.over(ticks, record_);
+    all_sums_.append(sums_[i]);
+  }
 }
 
 void Identification::warn_of_constants(const std::vector<Index>& moving, Index channels,
@@ -173,46 +218,75 @@ void Identification::leave_out_redundant_inputs() {
   work_ = normalised(record_, rows_, normalisation_);
 }
 
+std::optional<Recipe> Identification::given_recipe(const std::array<Fold, 2>& folds) const {
+  if (!options_.order || !options_.horizon) return std::nullopt;
+  const bool chosen = options_.weighting && options_.direct_feedthrough;
+  if (!chosen && usable_columns(work_, folds, *options_.horizon) > 0) return std::nullopt;
+  if (usable_columns(work_, work_.all(), *options_.horizon) == 0) return std::nullopt;
+  Recipe recipe;
+  recipe.order = *options_.order;
+  recipe.horizon = *options_.horizon;
+  recipe.weighting = options_.weighting.value_or(Weighting::n4sid);
+  recipe.direct = options_.direct_feedthrough.value_or(true);
+  recipe.fit = ResponseFit::simulation;
+  return recipe;
+}
+
 std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked) {
   const std::array<Fold, 2> folds = folds_of(rows_.size(), options_.tune_share);
   SearchSpace space{feasible_horizons(work_, folds, options_),
                     {Weighting::n4sid, Weighting::moesp, Weighting::cva},
                     options_.order.value_or(options_.min_order),
-                    options_.order.value_or(options_.max_order)};
-  if (space.horizons.empty()) return too_few_samples(work_.u.cols() + work_.y.cols());
+                    options_.order.value_or(options_.max_order),
+                    {true, false}};
   if (options_.weighting) space.weightings = {*options_.weighting};
+  if (options_.direct_feedthrough) space.direct = {*options_.direct_feedthrough};
+  if (work_.u.cols() == 0) space.direct = {false};
+  const std::optional<Recipe> given = given_recipe(folds);
+  if (given) space.horizons = {given->horizon};
+  if (space.horizons.empty()) return too_few_samples(work_.u.cols() + work_.y.cols(), true);
   if (auto verdict = limit_by_excitation(space)) return verdict;
-  ranked = ranked_recipes(work_, folds, space);
-  const bool unstable = ranked.empty();
-  if (unstable) {
-    space.stability = Stability::enforced;
-    ranked = ranked_recipes(work_, folds, space);
-    warnings_.push_back(
-        "every model asked for was unstable; A was taken so that it is stable, at some bias");
+  if (given) {
+    if (!options_.weighting)
+      warnings_.push_back("too few rows to choose on rows held out; the weighting n4sid was taken");
+    ranked = {{*given, std::numeric_limits<double>::infinity()}};
+    ranked.push_back(ranked.front());
+    ranked.back().recipe.stability = Stability::enforced;
+    return std::nullopt;
   }
-  const double constant = held_out_error_of_constant(work_, folds);
-  // A system that really is unstable must not pass as a stable one that follows it a little.
-  const double acceptable = unstable ? constant / 2 : constant;
-  const bool useless = ranked.empty() || !(ranked.front().error < acceptable);
-  if (useless && unstable)
-    return Verdict{VerdictCode::unstable,
-                   "every model of order " + std::to_string(space.min_order) + " to " +
-                       std::to_string(space.max_order) +
-                       " is unstable, and made stable errs more than half as much as the mean; "
-                       "choose a window in which the equipment stays in its range"};
-  if (useless)
-    return Verdict{VerdictCode::no_better_than_mean,
-                   "on rows held out the best model errs by " + text(ranked.front().error) +
-                       " standard deviations and the mean by " + text(constant) +
-                       "; the inputs do not explain the outputs in this window"};
-  return std::nullopt;
+  SearchEffort effort{options_.search_budget, 0};
+  const SearchData data{work_, normalisation_, folds, sums_};
+  const ForEach for_each = options_.for_each ? options_.for_each : in_sequence;
+  ranked = ranked_recipes(data, space, for_each, effort);
+  if (ranked.empty()) {
+    space.stability = Stability::enforced;
+    ranked = ranked_recipes(data, space, for_each, effort);
+  }
+  work_spent_ = effort.spent;
+  return useless(ranked, held_out_error_of_constant(work_, folds));
 }
 
-Verdict Identification::too_few_samples(Index width) const {
+std::optional<Verdict> Identification::useless(const std::vector<ScoredRecipe>& ranked,
+                                               double constant) const {
+  const bool unstable = ranked.empty() || ranked.front().recipe.stability == Stability::enforced;
+  // A system that really is unstable must not pass as a stable one that follows it a little.
+  const double acceptable = unstable ? constant / 2 : constant;
+  if (!ranked.empty() && ranked.front().error < acceptable) return std::nullopt;
+  if (unstable)
+    return Verdict{VerdictCode::unstable,
+                   "every model asked for is unstable, and made stable errs more than half as much "
+                   "as the mean; choose a window in which the equipment stays in its range"};
+  return Verdict{VerdictCode::no_better_than_mean,
+                 "on rows held out the best model errs by " + text(ranked.front().error) +
+                     " standard deviations and the mean by " + text(constant) +
+                     "; the inputs do not explain the outputs in this window"};
+}
+
+Verdict Identification::too_few_samples(Index width, bool held_out) const {
   const Index s = options_.horizon.value_or(least_horizon(options_));
-  const Index fit = 2 * s * (width + 1);
+  const Index fit = 2 * s * width + 2 * s;
   Index needed = fit;
-  while (folds_of(needed, options_.tune_share)[0].fit.size() < fit) ++needed;
+  while (held_out && folds_of(needed, options_.tune_share)[0].fit.size() < fit) ++needed;
   return {VerdictCode::too_few_samples,
           std::to_string(rows_.size()) + " rows in " +
               std::to_string(segments_within(record_, rows_).size()) +
@@ -220,11 +294,14 @@ Verdict Identification::too_few_samples(Index width) const {
               " rows without a gap are needed for a horizon of " + std::to_string(s)};
 }
 
+HankelFactor Identification::factor(int horizon) const {
+  return compress(all_sums_, normalisation_, work_, work_.segments, horizon);
+}
+
 std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
   if (work_.u.cols() == 0) return std::nullopt;
   const int horizon = space.horizons.back();
-  const HankelFactor factor = compress(work_, work_.all(), 2 * Index{horizon});
-  const Excitation excitation = excitation_of(Projection(factor, horizon).input_innovations());
+  const Excitation excitation = excitation_of(Projection(factor(horizon)).input_innovations());
   if (excitation.order >= horizon) return std::nullopt;
   const std::string weakest =
       ordinal("input", normalisation_.inputs[static_cast<std::size_t>(excitation.weakest_input)]);
@@ -243,19 +320,31 @@ std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
   return std::nullopt;
 }
 
-std::optional<Identified> Identification::realise(const ScoredRecipe& candidate) const {
-  const Recipe& recipe = candidate.recipe;
-  const HankelFactor factor = compress(work_, work_.all(), 2 * Index{recipe.horizon});
-  const Projection projection(factor, recipe.horizon);
+Response Identification::respond(const Recipe& recipe, const Projection& projection,
+                                 const Dynamics& dynamics) const {
+  const auto& [A, C] = dynamics;
+  if (recipe.fit == ResponseFit::simulation)
+    return recipe.refinement_steps > 0
+               ? refine_response(A, C, recipe.direct, work_, work_.all(), recipe.refinement_steps)
+               : fit_response(A, C, recipe.direct, work_, work_.all(), Accuracy::exact);
+  Response response{projection.with_response(A, C, recipe.direct, work_.period_s), {}, 0};
+  response.x0 = estimate_initial_state(response.model, work_, work_.segments.front(),
+                                       initial_rows(response.model));
+  return response;
+}
+
+std::optional<Identified> Identification::realise(const Recipe& recipe) const {
+  const HankelFactor hankel = factor(recipe.horizon);
+  const Projection projection(hankel);
   auto [gamma, singular_values] = projection.observability(recipe.weighting);
-  const Dynamics dynamics = shift_invariant(gamma, factor.outputs, recipe.order, recipe.stability);
+  const Dynamics dynamics = shift_invariant(gamma, hankel.outputs, recipe.order, recipe.stability);
   if (!is_stable(dynamics.A)) return std::nullopt;
-  Response response =
-      recipe.refinement_steps > 0
-          ? refine_response(dynamics.A, dynamics.C, work_, work_.all(), recipe.refinement_steps)
-          : fit_response(dynamics.A, dynamics.C, work_, work_.all(), Accuracy::exact);
+  Response response = respond(recipe, projection, dynamics);
   Identified result;
   result.warnings = warnings_;
+  if (recipe.stability == Stability::enforced)
+    result.warnings.push_back(
+        "every model asked for was unstable; A was taken so that it is stable, at some bias");
   if (const auto K = kalman_gain(response.model.A, response.model.C,
                                  projection.noise_covariance(response.model)))
     response.model.K = *K;
@@ -268,11 +357,11 @@ std::optional<Identified> Identification::realise(const ScoredRecipe& candidate)
   result.model = in_units(response.model, normalisation_);
   if (!is_well_formed(result.model) || !response.x0.allFinite()) return std::nullopt;
   result.x0 = response.x0;
-  result.held_out_error = candidate.error;
-  result.horizon = recipe.horizon;
-  result.weighting = recipe.weighting;
+  result.recipe = recipe;
   result.spectral_radius = spectral_radius(result.model);
   result.singular_values = std::move(singular_values);
+  result.hankel_condition = hankel.least_share;
+  result.search_work = work_spent_;
   describe(result);
   return result;
 }
@@ -288,18 +377,6 @@ void Identification::describe(Identified& result) const {
 
 }  // namespace
 
-std::string_view name(Weighting weighting) {
-  switch (weighting) {
-    case Weighting::n4sid:
-      return "n4sid";
-    case Weighting::moesp:
-      return "moesp";
-    case Weighting::cva:
-      return "cva";
-  }
-  return "unknown";
-}
-
 std::vector<std::string> mistakes(const IdentifyOptions& options) {
   std::vector<std::string> found;
   if (options.order && *options.order < 1) found.push_back("the order must be at least 1");
@@ -309,13 +386,23 @@ std::vector<std::string> mistakes(const IdentifyOptions& options) {
   if (options.horizon && *options.horizon < 2) found.push_back("the horizon must be at least 2");
   if (!(options.tune_share > 0 && options.tune_share <= 0.9))
     found.push_back("the tuning share must be above 0 and at most 0.9");
+  if (!(options.search_budget > 0)) found.push_back("the search budget must be positive");
   return found;
 }
 
-IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options) {
+Index block_rows_needed(const IdentifyOptions& options) {
+  return 2 * Index{options.horizon.value_or(
+                 std::max(*std::rbegin(preferred_horizons), least_horizon(options)))};
+}
+
+IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
+                        LagSums* kept) {
   eigen_assert(mistakes(options).empty() && record.y.cols() >= 1);
   eigen_assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
-  return Identification(record, rows, options).run();
+  if (kept) return Identification(record, rows, options, *kept, true).run();
+  constexpr Index chunk_ticks = 1024;
+  LagSums own({record.u.cols() + record.y.cols(), block_rows_needed(options), chunk_ticks});
+  return Identification(record, rows, options, own, false).run();
 }
 
 }  // namespace reident::identification

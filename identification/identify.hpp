@@ -1,4 +1,5 @@
-// N4SID with the order, the horizon and the weighting chosen by score on held-out samples.
+// N4SID with the order, the horizon, the weighting and the way of B and D chosen by score on
+// held-out samples.
 //
 // The reference is P. Van Overschee and B. De Moor, "N4SID: Subspace algorithms for the
 // identification of combined deterministic-stochastic systems", Automatica 30(1), 1994; METHOD.md
@@ -12,25 +13,34 @@
 #include <variant>
 #include <vector>
 
+#include "identification/choice.hpp"
+#include "identification/lag_sums.hpp"
 #include "identification/record.hpp"
 #include "identification/simulate.hpp"
 #include "identification/state_space.hpp"
+#include "identification/subspace.hpp"
 #include "identification/verdict.hpp"
 
 namespace reident::identification {
-
-enum class Weighting { n4sid, moesp, cva };
-std::string_view name(Weighting weighting);
 
 struct IdentifyOptions {
   std::optional<int> order;  // absent: chosen in [min_order, max_order]
   int min_order = 1;
   int max_order = 10;
-  std::optional<int> horizon;          // block rows s; absent: chosen
-  std::optional<Weighting> weighting;  // absent: chosen
+  std::optional<int> horizon;              // block rows s; absent: chosen
+  std::optional<Weighting> weighting;      // absent: chosen
+  std::optional<bool> direct_feedthrough;  // whether D may differ from zero; absent: chosen
+  std::vector<int> input_delays;           // samples, one for each input; empty: none
+  int max_input_delay = 0;  // above 0: the delays are estimated, each at most so many samples
   /// Share of the identification rows that choices are scored on; in (0, 0.9]. The last rows are
   /// held out, and in a second fold the first.
   double tune_share = 0.3;
+  /// What the choice may spend, in multiply-adds of free runs and regressions: with it the search
+  /// is as thorough as the rows allow, and the same on every machine. Positive.
+  double search_budget = 3e8;
+  /// Runs the independent parts of the search; absent: one after the other. The result does not
+  /// depend on it.
+  ForEach for_each;
   /// Called as each phase of the work begins, with a literal such as "compress"; for timing.
   std::function<void(std::string_view phase)> on_phase;
 };
@@ -38,23 +48,31 @@ struct IdentifyOptions {
 /// Every mistake in the options, one sentence each; empty when they are usable.
 std::vector<std::string> mistakes(const IdentifyOptions& options);
 
+/// Block rows that the sums of an identification with these options have to hold, at most.
+Index block_rows_needed(const IdentifyOptions& options);
+
 struct Identified {
   StateSpaceModel model;
   Vector x0;  // state at the first identification row
-  int horizon = 0;
-  Weighting weighting = Weighting::n4sid;
+  Recipe recipe;
   double spectral_radius = 0;
   Vector singular_values;       // of the weighted oblique projection, descending
+  double hankel_condition = 0;  // least share of a Hankel row that those before it leave, squared
   Vector input_min, input_max;  // range visited by each input in the identification rows
-  double held_out_error = 0;    // of the choice: rms in deviations of the outputs, over both folds
+  std::optional<double> held_out_error;  // of the choice: rms in deviations of the outputs, over
+                                         // both folds; absent where nothing was to be chosen
   Score tune;  // of the model on the last tune_share of the rows, which it was fitted to as well
+  double search_work = 0;  // spent of the budget
   std::vector<std::string> warnings;
 };
 
 using IdentifyResult = std::variant<Identified, Verdict>;
 
 /// Identifies from the rows `rows` of the record alone; nothing else of it is read.
-/// Requires m >= 0 inputs, p >= 1 outputs and mistakes(options).empty().
-IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options);
+/// Requires m >= 0 inputs, p >= 1 outputs and mistakes(options).empty(). With `kept`, whose shape
+/// has the record's channels and at least block_rows_needed(options) block rows, sums kept there
+/// stand for the samples that they were made of, and new ones are added.
+IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
+                        LagSums* kept = nullptr);
 
 }  // namespace reident::identification

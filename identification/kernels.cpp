@@ -1,8 +1,12 @@
 #include "identification/kernels.hpp"
 
+#include <cmath>
 #include <cstddef>
 
 // Clones need the loader's indirect functions, which sanitizers and clang 14 do not go with.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"  // Four never crosses a call: all is inlined
+#endif
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define REIDENT_CLONES __attribute__((target_clones("avx2", "default")))
@@ -12,42 +16,152 @@
 
 namespace reident::identification {
 
+namespace {
+
+// Inlined, so that each clone has its own.
+#define REIDENT_INLINE inline __attribute__((always_inline))
+
+/// Four doubles that the compiler keeps in one register where the machine has one for them, and in
+/// two where it has not.
+typedef double Four __attribute__((vector_size(32)));
+
+REIDENT_INLINE Four load(const double* from) {
+  Four value;
+  __builtin_memcpy(&value, from, sizeof value);
+  return value;
+}
+
+REIDENT_INLINE void store(double* to, Four value) {
+  __builtin_memcpy(to, &value, sizeof value);
+}
+
+/// Rows [i, i + 4 Quads) of Columns columns of S: their sums stay in registers for all k.
+template <std::size_t Quads, std::size_t Columns>
+REIDENT_INLINE void outer_product_tile(const double* a, Index a_stride, const double* b,
+                                       Index b_stride, Index count, double* S, Index rows) {
+  Four sums[Quads][Columns] = {};
+  for (Index k = 0; k < count; ++k, a += a_stride, b += b_stride)
+    for (std::size_t q = 0; q < Quads; ++q) {
+      const Four left = load(a + 4 * q);
+      for (std::size_t j = 0; j < Columns; ++j) sums[q][j] += left * b[j];
+    }
+  for (std::size_t j = 0; j < Columns; ++j)
+    for (std::size_t q = 0; q < Quads; ++q) {
+      double* to = S + Index(j) * rows + 4 * q;
+      store(to, load(to) + sums[q][j]);
+    }
+}
+
+template <std::size_t Columns>
+REIDENT_INLINE void outer_product_strip(const VectorSequence& a, const double* b, Index b_stride,
+                                        Index count, Index first_row, double* S) {
+  const Index rows = a.size;
+  Index i = first_row;
+  for (; i + 8 <= rows; i += 8)
+    outer_product_tile<2, Columns>(a.data + i, a.stride, b, b_stride, count, S + i, rows);
+  if (i + 4 <= rows) {
+    outer_product_tile<1, Columns>(a.data + i, a.stride, b, b_stride, count, S + i, rows);
+    i += 4;
+  }
+  for (; i < rows; ++i) {
+    double sums[Columns] = {};
+    for (Index k = 0; k < count; ++k)
+      for (std::size_t j = 0; j < Columns; ++j)
+        sums[j] += a.data[k * a.stride + i] * b[k * b_stride + Index(j)];
+    for (std::size_t j = 0; j < Columns; ++j) S[Index(j) * rows + i] += sums[j];
+  }
+}
+
+}  // namespace
+
 REIDENT_CLONES
 void add_outer_products(const VectorSequence& a, const VectorSequence& b, Index count,
                         Triangle triangle, double* S) {
-  const Index rows = a.size, cols = b.size;
-  Index k = 0;
-  for (; k + 4 <= count; k += 4) {  // four at a time: S is loaded and stored once for them
-    const double* a0 = a.data + k * a.stride;
-    const double* a1 = a0 + a.stride;
-    const double* a2 = a1 + a.stride;
-    const double* a3 = a2 + a.stride;
-    const double* b0 = b.data + k * b.stride;
-    const double* b1 = b0 + b.stride;
-    const double* b2 = b1 + b.stride;
-    const double* b3 = b2 + b.stride;
-    for (Index j = 0; j < cols; ++j) {
-      const double w0 = b0[j], w1 = b1[j], w2 = b2[j], w3 = b3[j];
-      double* __restrict column = S + j * rows;
-      for (Index i = triangle == Triangle::lower ? j : 0; i < rows; ++i)
-        column[i] += (a0[i] * w0 + a1[i] * w1) + (a2[i] * w2 + a3[i] * w3);
-    }
-  }
-  for (; k < count; ++k) {
-    const double* a0 = a.data + k * a.stride;
-    const double* b0 = b.data + k * b.stride;
-    for (Index j = 0; j < cols; ++j) {
-      double* __restrict column = S + j * rows;
-      for (Index i = triangle == Triangle::lower ? j : 0; i < rows; ++i) column[i] += a0[i] * b0[j];
-    }
+  const Index rows = a.size;
+  Index j = 0;
+  const auto first_row = [&] { return triangle == Triangle::lower ? j : 0; };
+  const auto column = [&] { return S + j * rows; };
+  for (; j + 6 <= b.size; j += 6)
+    outer_product_strip<6>(a, b.data + j, b.stride, count, first_row(), column());
+  switch (b.size - j) {
+    case 5:
+      return outer_product_strip<5>(a, b.data + j, b.stride, count, first_row(), column());
+    case 4:
+      return outer_product_strip<4>(a, b.data + j, b.stride, count, first_row(), column());
+    case 3:
+      return outer_product_strip<3>(a, b.data + j, b.stride, count, first_row(), column());
+    case 2:
+      return outer_product_strip<2>(a, b.data + j, b.stride, count, first_row(), column());
+    case 1:
+      return outer_product_strip<1>(a, b.data + j, b.stride, count, first_row(), column());
+    default:
+      return;
   }
 }
 
 namespace {
 
+/// Four columns of the Cholesky factor less what the columns before them explain, on rows
+/// [i, i + 4 Quads): A(i.., j..j+3) -= sum_{k<j} L(i.., k) L(j..j+3, k)'.
+template <std::size_t Quads>
+REIDENT_INLINE void cholesky_tile(double* A, Index size, Index i, Index j) {
+  Four rest[Quads][4];
+  for (std::size_t q = 0; q < Quads; ++q)
+    for (std::size_t c = 0; c < 4; ++c)
+      rest[q][c] = load(A + (j + Index(c)) * size + i + 4 * Index(q));
+  const double* column = A;
+  for (Index k = 0; k < j; ++k, column += size)
+    for (std::size_t q = 0; q < Quads; ++q) {
+      const Four left = load(column + i + 4 * Index(q));
+      for (std::size_t c = 0; c < 4; ++c) rest[q][c] -= left * column[j + Index(c)];
+    }
+  for (std::size_t q = 0; q < Quads; ++q)
+    for (std::size_t c = 0; c < 4; ++c)
+      store(A + (j + Index(c)) * size + i + 4 * Index(q), rest[q][c]);
+}
+
+/// The same for `columns` columns one entry at a time.
+REIDENT_INLINE void cholesky_entries(double* A, Index size, Index i, Index j, Index columns) {
+  for (Index c = 0; c < columns; ++c) {
+    double rest = A[(j + c) * size + i];
+    for (Index k = 0; k < j; ++k) rest -= A[k * size + i] * A[k * size + j + c];
+    A[(j + c) * size + i] = rest;
+  }
+}
+
+}  // namespace
+
+REIDENT_CLONES
+bool cholesky(double* A, Index size) {
+  for (Index j = 0; j < size; j += 4) {
+    const Index columns = size - j < 4 ? size - j : 4;
+    Index i = j;
+    if (columns == 4) {
+      for (; i + 8 <= size; i += 8) cholesky_tile<2>(A, size, i, j);
+      if (i + 4 <= size) {
+        cholesky_tile<1>(A, size, i, j);
+        i += 4;
+      }
+    }
+    for (; i < size; ++i) cholesky_entries(A, size, i, j, columns);
+    for (Index c = j; c < j + columns; ++c) {
+      double* column = A + c * size;
+      for (Index k = j; k < c; ++k) {
+        const double* before = A + k * size;
+        const double weight = before[c];
+        for (Index r = c; r < size; ++r) column[r] -= before[r] * weight;
+      }
+      if (!(column[c] > 0)) return false;
+      const double pivot = std::sqrt(column[c]);
+      for (Index r = c; r < size; ++r) column[r] /= pivot;
+    }
+  }
+  return true;
+}
+
+namespace {
+
 // Small sizes known to the compiler keep their vectors in registers; 0 stands for any size.
-// Inlined, so that each clone has its own.
-#define REIDENT_INLINE inline __attribute__((always_inline))
 #define REIDENT_SMALL_SIZES(CASE) \
   CASE(1) CASE(2) CASE(3) CASE(4) CASE(5) CASE(6) CASE(7) CASE(8) CASE(9) CASE(10) CASE(11) CASE(12)
 

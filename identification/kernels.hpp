@@ -18,9 +18,13 @@ struct VectorSequence {
 enum class Triangle { full, lower };
 
 /// S += sum over k < count of a_k b_k', with S of a.size x b.size by columns; with Triangle::lower
-/// only entries on and below the diagonal are touched.
+/// the entries above the diagonal are left without meaning.
 void add_outer_products(const VectorSequence& a, const VectorSequence& b, Index count,
                         Triangle triangle, double* S);
+
+/// The Cholesky factor L of A = L L', in place of the lower triangle of A (size x size by columns);
+/// the upper one is left without meaning. False where A is not positive definite.
+bool cholesky(double* A, Index size);
 
 /// Runs x[k+1] = M_x [x[k]; v[k]] and writes y[k] = M_y [x[k]; v[k]] for count steps, with
 /// M = [M_x; M_y] of (n + p) x (n + m) by columns. `state` (n) is carried on, `work` holds

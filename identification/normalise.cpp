@@ -5,32 +5,6 @@
 namespace reident::identification {
 namespace {
 
-struct Moments {
-  double mean = 0;
-  double deviation = 0;  // 0 for a channel that does not move
-};
-
-Moments moments_of(const Eigen::Ref<const Vector>& channel) {
-  // Two passes: the deviation of a small signal on a large offset would drown in one.
-  const double mean = channel.mean();
-  const double deviation =
-      (channel.array() - mean).matrix().stableNorm() / std::sqrt(double(channel.size()));
-  const double rounding = 1e-13 * channel.cwiseAbs().maxCoeff();
-  return {mean, deviation > rounding ? deviation : 0};
-}
-
-void measure(const Matrix& channels, RowRange rows, Vector& mean, Vector& scale,
-             std::vector<Index>& taking_part) {
-  mean.resize(channels.cols());
-  scale.resize(channels.cols());
-  for (Index c = 0; c < channels.cols(); ++c) {
-    const Moments moments = moments_of(channels.col(c).segment(rows.begin, rows.size()));
-    mean(c) = moments.mean;
-    scale(c) = moments.deviation > 0 ? moments.deviation : 1;
-    if (moments.deviation > 0) taking_part.push_back(c);
-  }
-}
-
 Matrix apply(const Matrix& channels, RowRange rows, const Vector& mean, const Vector& scale,
              const std::vector<Index>& taking_part) {
   Matrix result(rows.size(), static_cast<Index>(taking_part.size()));
@@ -44,10 +18,27 @@ Matrix apply(const Matrix& channels, RowRange rows, const Vector& mean, const Ve
 
 }  // namespace
 
-Normalisation normalisation_of(const Record& record, RowRange rows) {
+Normalisation normalisation_of(const StretchSums& sums, Index inputs) {
+  const Vector mean = sums.mean();
+  const Index width = mean.size(), rows = sums.rows();
+  Vector squares = Vector::Zero(width);
+  for (RunSums run : sums.runs) {
+    run.refer_to(mean);
+    squares += run.products().topRows(width).diagonal();
+  }
+  Vector scale = (squares / double(rows)).cwiseMax(0).cwiseSqrt();
   Normalisation result;
-  measure(record.u, rows, result.u_mean, result.u_scale, result.inputs);
-  measure(record.y, rows, result.y_mean, result.y_scale, result.outputs);
+  for (Index c = 0; c < width; ++c) {
+    constexpr double rounding = 1e-13;
+    if (scale(c) > rounding * std::abs(mean(c)))
+      (c < inputs ? result.inputs : result.outputs).push_back(c < inputs ? c : c - inputs);
+    else
+      scale(c) = 1;
+  }
+  result.u_mean = mean.head(inputs);
+  result.u_scale = scale.head(inputs);
+  result.y_mean = mean.tail(width - inputs);
+  result.y_scale = scale.tail(width - inputs);
   return result;
 }
 
@@ -61,6 +52,13 @@ Record normalised(const Record& record, RowRange rows, const Normalisation& norm
     segment.end -= rows.begin;
   }
   return result;
+}
+
+void set_operating_point(StateSpaceModel& model, const Normalisation& normalisation,
+                         const Normalisation& other) {
+  const Normalisation& s = normalisation;
+  model.u0 = ((other.u_mean - s.u_mean).array() / s.u_scale.array()).matrix()(s.inputs);
+  model.y0 = ((other.y_mean - s.y_mean).array() / s.y_scale.array()).matrix()(s.outputs);
 }
 
 StateSpaceModel in_units(const StateSpaceModel& model, const Normalisation& normalisation) {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "identification/lag_sums.hpp"
 #include "identification/record.hpp"
 #include "identification/state_space.hpp"
 
@@ -16,15 +17,19 @@ struct Normalisation {
   std::vector<Index> outputs;  // channels that take part, ascending
 };
 
-/// Mean and standard deviation of every channel over `rows`. A channel takes part when it moves by
-/// more than the rounding of its own size.
-Normalisation normalisation_of(const Record& record, RowRange rows);
+/// Mean and standard deviation of the channels, the first `inputs` of which are inputs. A channel
+/// takes part when it moves by more than the rounding of its own size.
+Normalisation normalisation_of(const StretchSums& sums, Index inputs);
 
 /// The rows `rows` of the channels that take part, normalised.
 Record normalised(const Record& record, RowRange rows, const Normalisation& normalisation);
 
-/// A model of normalised channels back in the units of the record. `y_offset` is the model's
-/// operating point in normalised outputs. Channels left out get zero columns and zero rows.
+/// Gives a model of normalised channels the operating point `other`, of the same channels.
+void set_operating_point(StateSpaceModel& model, const Normalisation& normalisation,
+                         const Normalisation& other);
+
+/// A model of normalised channels back in the units of the record. Channels left out get zero
+/// columns and zero rows.
 StateSpaceModel in_units(const StateSpaceModel& model, const Normalisation& normalisation);
 
 }  // namespace reident::identification

@@ -9,7 +9,7 @@
 namespace reident::identification {
 namespace {
 
-constexpr Index stretch = 256;
+constexpr Index stretch = 64;
 
 /// The dual system of one output: since C A^j B is linear in B, the regressors of a column of B are
 /// the states of x[k+1] = A' x[k] + c' v[k] driven by that column's input. All inputs v at once.
@@ -84,10 +84,11 @@ void walk_regression(const Columns& columns, const StateSpaceModel& model, const
     }
     for (Index q = 0; q < p; ++q) {
       filters[static_cast<std::size_t>(q)].run(driving.data(), count, values.data(), width);
-      values.block(common, 0, m, count) = driving.block(1, 0, m, count);
-      values.row(common + m).head(count).setOnes();
-      if (columns.per_output() > m + 1)
-        values.block(common + m + 1, 0, n, count) = trajectory.states;
+      const Index direct = columns.direct_inputs();
+      values.block(common, 0, direct, count) = driving.block(1, 0, direct, count);
+      values.row(common + direct).head(count).setOnes();
+      if (columns.per_output() > direct + 1)
+        values.block(common + direct + 1, 0, n, count) = trajectory.states;
       values.row(width - 1).head(count) = record.y.col(q).segment(begin, count).transpose();
       visit({q, values.leftCols(count)});
     }
@@ -126,7 +127,7 @@ void NormalEquations::end_segment() {
   segments_.push_back(std::move(elimination));
 }
 
-std::optional<RegressionSolution> NormalEquations::solve(double damping) const {
+std::optional<RegressionSolution> NormalEquations::solve(double damping, double least_pivot) const {
   const Index n = columns_.n, unknowns = columns_.target() - n;
   Vector weight = sums_.diagonal().head(unknowns);
   const auto damp = [&](Index begin, Index count) {
@@ -141,7 +142,6 @@ std::optional<RegressionSolution> NormalEquations::solve(double damping) const {
   const Vector scale = weight.unaryExpr([](double w) { return w > 0 ? 1 / std::sqrt(w) : 0.0; });
   G = (scale.asDiagonal() * G * scale.asDiagonal()).eval();
   const Eigen::LLT<Matrix> llt(G);
-  constexpr double least_pivot = 1e-5;  // its square is the share of a column that is its own
   if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least_pivot))
     return std::nullopt;
 

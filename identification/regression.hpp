@@ -13,18 +13,20 @@ namespace reident::identification {
 /// Columns of the regression, in their order:
 ///   x0 (n) | B by columns (n m) | L (n p) | for each output q: D_q (m), y0_q (1), dC_q (n) |
 ///   target
-/// L and dC move the dynamics to A + L C and C + dC: they are there with `moves`, dC with more than
-/// one output only, since L reaches every spectrum of a single output.
+/// D is there with `direct`. L and dC move the dynamics to A + L C and C + dC: they are there with
+/// `moves`, dC with more than one output only, since L reaches every spectrum of a single output.
 struct Columns {
   Index n = 0, m = 0, p = 0;
+  bool direct = true;
   bool moves = false;
 
   Index input_gain() const { return n; }                   // B
   Index dynamics() const { return input_gain() + n * m; }  // L
   Index output(Index q) const { return dynamics() + (moves ? n * p : 0) + q * per_output(); }
-  Index offset(Index q) const { return output(q) + m; }
+  Index offset(Index q) const { return output(q) + direct_inputs(); }
   Index output_map(Index q) const { return offset(q) + 1; }  // dC_q
-  Index per_output() const { return m + 1 + (moves && p > 1 ? n : 0); }
+  Index direct_inputs() const { return direct ? m : 0; }
+  Index per_output() const { return direct_inputs() + 1 + (moves && p > 1 ? n : 0); }
   Index target() const { return output(p); }
   Index count() const { return target() + 1; }
 };
@@ -59,8 +61,9 @@ class NormalEquations {
   void end_segment();
 
   /// Weights the moves of the dynamics down by `damping` times their own sums of squares. Absent
-  /// when too few digits are left.
-  std::optional<RegressionSolution> solve(double damping) const;
+  /// when too few digits are left: when the square of `least_pivot` is more than the share that a
+  /// column has for its own, the others known.
+  std::optional<RegressionSolution> solve(double damping, double least_pivot) const;
 
  private:
   struct Elimination {

@@ -20,7 +20,7 @@ Fitted from(const RegressionSolution& solution, const Columns& columns, StateSpa
   const double* theta = solution.theta.data();
   model.B = Eigen::Map<const Matrix>(theta + columns.input_gain(), n, m);
   for (Index q = 0; q < p; ++q) {
-    model.D.row(q) = solution.theta.segment(columns.output(q), m).transpose();
+    if (columns.direct) model.D.row(q) = solution.theta.segment(columns.output(q), m).transpose();
     model.y0(q) = solution.theta(columns.offset(q));
   }
   return {std::move(model), solution.x0, solution.sum_of_squares};
@@ -38,13 +38,17 @@ Accumulator accumulate(const Columns& columns, const StateSpaceModel& model, con
   return accumulator;
 }
 
-Fitted fit(const StateSpaceModel& dynamics, const Record& record,
+/// An error of 1e-16 in the sums moves the solution by that over the pivot's square.
+double least_pivot(Accuracy accuracy) {
+  return accuracy == Accuracy::fast ? 1e-5 : 1e-3;
+}
+
+Fitted fit(const StateSpaceModel& dynamics, bool direct, const Record& record,
            const std::vector<Segment>& segments, Accuracy accuracy) {
-  const Columns columns{dynamics.A.rows(), record.u.cols(), dynamics.C.rows(), false};
-  if (accuracy == Accuracy::fast) {
-    const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
-    if (const auto solution = sums.solve(0)) return from(*solution, columns, dynamics);
-  }
+  const Columns columns{dynamics.A.rows(), record.u.cols(), dynamics.C.rows(), direct, false};
+  const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
+  if (const auto solution = sums.solve(0, least_pivot(accuracy)))
+    return from(*solution, columns, dynamics);
   const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, record, segments, {});
   return from(factor.solve(), columns, dynamics);
 }
@@ -68,24 +72,25 @@ StateSpaceModel with_dynamics(const Matrix& A, const Matrix& C, const Record& re
 
 }  // namespace
 
-Response fit_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows,
-                      Accuracy accuracy) {
+Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
+                      RowRange rows, Accuracy accuracy) {
   const std::vector<Segment> segments = segments_within(record, rows);
-  return response_of(fit(with_dynamics(A, C, record), record, segments, accuracy), rows.size());
+  return response_of(fit(with_dynamics(A, C, record), direct, record, segments, accuracy),
+                     rows.size());
 }
 
-Response refine_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows,
-                         int steps) {
+Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
+                         RowRange rows, int steps) {
   const std::vector<Segment> segments = segments_within(record, rows);
-  const Columns columns{A.rows(), record.u.cols(), C.rows(), true};
-  Fitted best = fit(with_dynamics(A, C, record), record, segments, Accuracy::fast);
+  const Columns columns{A.rows(), record.u.cols(), C.rows(), direct, true};
+  Fitted best = fit(with_dynamics(A, C, record), direct, record, segments, Accuracy::fast);
   double damping = 1e-3;
   for (int step = 0; step < steps; ++step) {
     const auto sums = accumulate<NormalEquations>(columns, best.model, record, segments, best.x0);
     bool lowered = false;
     double before = best.sum_of_squares;
     for (int attempt = 0; attempt < 5 && !lowered; ++attempt, damping *= 10) {
-      const auto solution = sums.solve(damping);
+      const auto solution = sums.solve(damping, least_pivot(Accuracy::fast));
       if (!solution) continue;
       const Matrix L = Eigen::Map<const Matrix>(solution->theta.data() + columns.dynamics(),
                                                 columns.n, columns.p);
@@ -95,7 +100,7 @@ Response refine_response(const Matrix& A, const Matrix& C, const Record& record,
       const Matrix moved_A = best.model.A + L * best.model.C;
       const StateSpaceModel moved = with_dynamics(moved_A, moved_C, record);
       if (!is_well_formed(moved) || !(spectral_radius(moved) < 1)) continue;
-      Fitted trial = fit(moved, record, segments, Accuracy::fast);
+      Fitted trial = fit(moved, direct, record, segments, Accuracy::fast);
       if (!(trial.sum_of_squares < best.sum_of_squares)) continue;
       best = std::move(trial);
       lowered = true;

@@ -18,18 +18,18 @@ struct Response {
   double error = 0;       // root mean square over rows of the output error's norm
 };
 
-/// `fast` sums the normal equations and turns to `exact` where these have lost too many digits;
-/// `exact` factors the regressors themselves.
+/// What is asked of the normal equations before the regressors themselves are factored: `fast` some
+/// five digits of the solution, `exact` ten.
 enum class Accuracy { fast, exact };
 
 /// B, D, y0 and the initial states for A (stable) and C over `rows`; of least norm where the rows
-/// do not determine them.
-Response fit_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows,
-                      Accuracy accuracy);
+/// do not determine them. Without `direct` D is zero.
+Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
+                      RowRange rows, Accuracy accuracy);
 
 /// The same, with A and C moved by at most `steps` Levenberg-Marquardt steps that lower the output
 /// error. The result is stable when A is.
-Response refine_response(const Matrix& A, const Matrix& C, const Record& record, RowRange rows,
-                         int steps);
+Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
+                         RowRange rows, int steps);
 
 }  // namespace reident::identification

@@ -3,83 +3,88 @@
 #include <cmath>
 #include <vector>
 
+#include "identification/kernels.hpp"
+
 namespace reident::identification {
+
+std::string_view name(Weighting weighting) {
+  switch (weighting) {
+    case Weighting::n4sid:
+      return "n4sid";
+    case Weighting::moesp:
+      return "moesp";
+    case Weighting::cva:
+      return "cva";
+  }
+  return "unknown";
+}
+
 namespace {
 
-/// Columns of the factor that hold channels [channel, channel + count) of the block rows
-/// [begin, end).
-void append_columns(std::vector<Index>& columns, Index width, Index begin, Index end, Index channel,
-                    Index count) {
-  for (Index k = begin; k < end; ++k)
-    for (Index c = 0; c < count; ++c) columns.push_back(1 + k * width + channel + c);
+/// Lower triangular factor of M M' for M of no more rows than columns.
+Matrix lower_factor(const Matrix& M) {
+  return Matrix(M.transpose())
+      .householderQr()
+      .matrixQR()
+      .topRows(M.rows())
+      .triangularView<Eigen::Upper>()
+      .transpose();
+}
+
+/// X L = M for a lower triangular L; of least norm where L is singular to rounding.
+Matrix divided(const Matrix& M, const Matrix& L) {
+  const auto pivots = L.diagonal().cwiseAbs();
+  if (pivots.minCoeff() > 1e-13 * pivots.maxCoeff())
+    return L.triangularView<Eigen::Lower>().solve<Eigen::OnTheRight>(M);
+  return L.transpose().completeOrthogonalDecomposition().solve(M.transpose()).transpose();
 }
 
 }  // namespace
 
-Projection::Projection(const HankelFactor& factor, Index horizon)
+Projection::Projection(const HankelFactor& factor)
     : inputs_(factor.inputs),
       outputs_(factor.outputs),
-      horizon_(horizon),
+      horizon_(factor.horizon),
       columns_(factor.columns) {
-  const Index m = inputs_, p = outputs_, s = horizon, width = m + p;
-  eigen_assert(2 * s <= factor.block_rows);
-  std::vector<Index> columns{0};
-  append_columns(columns, width, s, 2 * s, 0, m);  // U_f
-  append_columns(columns, width, 0, s, 0, m);      // U_p
-  append_columns(columns, width, 0, s, m, p);      // Y_p
-  append_columns(columns, width, s, 2 * s, m, p);  // Y_f
-
-  const Index size = 1 + 2 * s * width;
-  const Matrix ordered = factor.R.topRows(size)(Eigen::all, columns);
-  const Matrix T = ordered.householderQr().matrixQR().triangularView<Eigen::Upper>();
-  const Index u = 1, w = 1 + m * s, y = w + width * s;
-  T_uu_ = T.block(u, u, m * s, m * s);
-  T_uy_ = T.block(u, y, m * s, p * s);
-  T_uw_ = T.block(u, w, m * s, width * s);
-  T_ww_ = T.block(w, w, width * s, width * s);
-  T_wy_ = T.block(w, y, width * s, p * s);
-  T_yy_ = T.block(y, y, p * s, p * s);
+  const Index mu = inputs_ * horizon_, ps = outputs_ * horizon_, past = mu + ps;
+  const Index u = 1, w = u + mu, y = w + past;
+  L_uu_ = factor.L.block(u, u, mu, mu);
+  L_wu_ = factor.L.block(w, u, past, mu);
+  L_ww_ = factor.L.block(w, w, past, past);
+  L_yu_ = factor.L.block(y, u, ps, mu);
+  L_yw_ = factor.L.block(y, w, ps, past);
+  L_yy_ = factor.L.block(y, y, ps, ps);
 }
 
 Projection::Observability Projection::observability(Weighting weighting) const {
-  // Transposed throughout, as the factor is: a row of T' is a row of the Hankel matrix.
-  Matrix weighted;  // (W1 O W2)'
-  Matrix W1_inverse_transposed;
+  Matrix weighted;  // W1 O W2
+  Matrix W1_inverse;
   switch (weighting) {
     case Weighting::moesp:  // O projected off U_f
-      weighted = T_wy_;
+      weighted = L_yw_;
       break;
     case Weighting::n4sid: {  // O = L_w W_p itself
-      const Matrix L_w = T_ww_.completeOrthogonalDecomposition().solve(T_wy_);
-      weighted.resize(T_uw_.rows() + T_ww_.rows(), T_wy_.cols());
-      weighted << T_uw_ * L_w, T_ww_ * L_w;
+      const Matrix L_w = divided(L_yw_, L_ww_);
+      weighted.resize(L_yw_.rows(), L_wu_.cols() + L_yw_.cols());
+      weighted << L_w * L_wu_, L_yw_;
       break;
     }
     case Weighting::cva: {  // W1 = (Y_f projected off U_f)^-1/2
-      Matrix stacked(T_wy_.rows() + T_yy_.rows(), T_wy_.cols());
-      stacked << T_wy_, T_yy_;
-      W1_inverse_transposed =
-          stacked.householderQr().matrixQR().topRows(stacked.cols()).triangularView<Eigen::Upper>();
-      weighted = W1_inverse_transposed.transpose()
-                     .completeOrthogonalDecomposition()
-                     .solve(T_wy_.transpose())
-                     .transpose();
+      Matrix off_inputs(L_yw_.rows(), L_yw_.cols() + L_yy_.cols());
+      off_inputs << L_yw_, L_yy_;
+      W1_inverse = lower_factor(off_inputs);
+      weighted = W1_inverse.completeOrthogonalDecomposition().solve(L_yw_);
       break;
     }
   }
-  if (weighted.rows() > weighted.cols()) {
-    const Matrix reduced =
-        weighted.householderQr().matrixQR().topRows(weighted.cols()).triangularView<Eigen::Upper>();
-    weighted = reduced;
-  }
-  const Eigen::JacobiSVD<Matrix> svd(weighted.transpose(), Eigen::ComputeThinU);
+  const Eigen::JacobiSVD<Matrix> svd(lower_factor(weighted), Eigen::ComputeThinU);
   Matrix gamma = svd.matrixU() * svd.singularValues().cwiseSqrt().asDiagonal();
-  if (weighting == Weighting::cva) gamma = W1_inverse_transposed.transpose() * gamma;
+  if (weighting == Weighting::cva) gamma = W1_inverse * gamma;
   return {gamma, svd.singularValues()};
 }
 
 Matrix Projection::input_innovations() const {
-  const Vector diagonal = T_uu_.diagonal().cwiseAbs() / std::sqrt(double(columns_));
+  const Vector diagonal = L_uu_.diagonal().cwiseAbs() / std::sqrt(double(columns_));
   return diagonal.reshaped(inputs_, horizon_).transpose();
 }
 
@@ -108,19 +113,71 @@ Matrix impulse_toeplitz(const StateSpaceModel& model, const Matrix& gamma) {
   return H;
 }
 
+/// theta with theta' X = t in the least squares sense, [X; t] = rows.
+Vector least_squares(const Matrix& rows) {
+  const Index unknowns = rows.rows() - 1;
+  Matrix sums = Matrix::Zero(rows.rows(), rows.rows());
+  const VectorSequence sequence{rows.data(), rows.rows(), rows.rows()};
+  add_outer_products(sequence, sequence, rows.cols(), Triangle::lower, sums.data());
+  const Vector scale = sums.diagonal().head(unknowns).unaryExpr(
+      [](double w) { return w > 0 ? 1 / std::sqrt(w) : 0.0; });
+  const Matrix G = scale.asDiagonal() * sums.topLeftCorner(unknowns, unknowns) * scale.asDiagonal();
+  const Eigen::LLT<Matrix> llt(G);
+  constexpr double least_pivot = 1e-5;  // its square is the share of a row that is its own
+  if (llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > least_pivot)
+    return scale.asDiagonal() *
+           llt.solve(scale.asDiagonal() * sums.row(unknowns).head(unknowns).transpose());
+  return Matrix(rows.topRows(unknowns).transpose())
+      .completeOrthogonalDecomposition()
+      .solve(rows.row(unknowns).transpose());
+}
+
 }  // namespace
+
+StateSpaceModel Projection::with_response(const Matrix& A, const Matrix& C, bool direct,
+                                          double period_s) const {
+  const Index n = A.rows(), m = inputs_, p = outputs_, s = horizon_, mu = m * s;
+  StateSpaceModel model{
+      A, Matrix::Zero(n, m), C, Matrix::Zero(p, m), {}, Vector::Zero(m), Vector::Zero(p), period_s};
+  if (mu == 0) return model;
+  const Matrix gamma = extended_observability(model, s);
+  const Matrix Q = Matrix(gamma.householderQr().householderQ() * Matrix::Identity(p * s, n));
+  // One column of the rows of U_f after the other is a short experiment: inputs v, outputs L_yu.
+  const Index unknowns = n * m + (direct ? p * m : 0);
+  Matrix rows = Matrix::Zero(unknowns + 1, mu * p * s);
+  const Matrix At = A.transpose();
+  for (Index j = 0; j < mu; ++j) {
+    const Vector v = L_uu_.col(j);
+    auto own = rows.middleCols(j * p * s, p * s);
+    for (Index q = 0; q < p; ++q) {
+      const Vector c = C.row(q).transpose();
+      Matrix states = Matrix::Zero(n, m);
+      run_dual_filters(At.data(), c.data(), n, m, v.data(), s, states.data(),
+                       own.data() + q * rows.rows(), p * rows.rows());
+      if (direct)
+        for (Index k = 0; k < s; ++k)
+          own.col(k * p + q).segment(n * m + q * m, m) = v.segment(k * m, m);
+    }
+    own.row(unknowns) = L_yu_.col(j).transpose();
+    own -= (own * Q) * Q.transpose();
+  }
+  const Vector theta = least_squares(rows);
+  model.B = theta.head(n * m).reshaped(n, m);
+  if (direct) model.D = theta.tail(p * m).reshaped(m, p).transpose();
+  return model;
+}
 
 Matrix Projection::noise_covariance(const StateSpaceModel& model) const {
   const Index m = inputs_, p = outputs_, s = horizon_, n = model.order();
   // Coordinates of the rows of the Hankel matrix along the orthonormal rows of U_f, W_p and the
   // first block row of Y_f; all of the past of step s + 1 lies in their span.
-  const Index mu = T_uu_.rows(), w = T_ww_.rows(), span = mu + w + p;
+  const Index mu = L_uu_.rows(), w = L_ww_.rows(), span = mu + w + p;
   Matrix U_f = Matrix::Zero(m * s, span), Y_f = Matrix::Zero(p * s, span);
-  U_f.leftCols(mu) = T_uu_.transpose();
-  Y_f.leftCols(mu) = T_uy_.transpose();
-  Y_f.middleCols(mu, w) = T_wy_.transpose();
+  U_f.leftCols(mu) = L_uu_;
+  Y_f.leftCols(mu) = L_yu_;
+  Y_f.middleCols(mu, w) = L_yw_;
   Matrix Z = Y_f;  // Y_f projected on U_f and W_p
-  Y_f.rightCols(p) = T_yy_.topRows(p).transpose();
+  Y_f.rightCols(p) = L_yy_.leftCols(p);
 
   const Matrix gamma = extended_observability(model, s);
   const Matrix H = impulse_toeplitz(model, gamma);

@@ -1,19 +1,23 @@
-// Observability subspaces from the compressed data, for all orders and weightings.
+// Observability subspaces and input responses from the compressed data, for all orders and
+// weightings.
 #pragma once
 
+#include <string_view>
+
 #include "identification/hankel.hpp"
-#include "identification/identify.hpp"
 #include "identification/state_space.hpp"
 
 namespace reident::identification {
 
-/// The projections of one horizon s, from the triangular factor of the rows [1, U_f, W_p, Y_f] with
-/// W_p = [U_p; Y_p]:
+/// W1 and W2 of the weighted oblique projection (METHOD.md, "Subspace").
+enum class Weighting { n4sid, moesp, cva };
+std::string_view name(Weighting weighting);
+
+/// The projections of one horizon s:
 ///   Y_f = L_u U_f + L_w W_p + (residual orthogonal to both)
 class Projection {
  public:
-  /// Requires 2 * horizon <= factor.block_rows.
-  Projection(const HankelFactor& factor, Index horizon);
+  explicit Projection(const HankelFactor& factor);
 
   Index horizon() const { return horizon_; }
 
@@ -29,6 +33,14 @@ class Projection {
   /// units): the row k column i speaks of input i against the inputs of k rows before.
   Matrix input_innovations() const;
 
+  /// B and D of the model with these A and C: least squares on
+  ///   (I - G G^+) Y_f = (I - G G^+) H(B, D) U_f,  G = [C; C A; ...],
+  /// over the part of Y_f that lies in the rows of U_f, which leaves the noise and the past out
+  /// (M. Verhaegen, Automatica 30(1), 1994). Without `direct` D is zero. Of least norm where U_f
+  /// does not determine them. The offsets of the model are zero.
+  StateSpaceModel with_response(const Matrix& A, const Matrix& C, bool direct,
+                                double period_s) const;
+
   /// Covariance [Q S; S' R] of the process and measurement noises that the model leaves, the
   /// model's x, u and y being those of the record.
   Matrix noise_covariance(const StateSpaceModel& model) const;
@@ -36,7 +48,7 @@ class Projection {
  private:
   Index inputs_, outputs_, horizon_, columns_;
   // Blocks of the triangular factor; the row of the constant is left out, which centres the rest.
-  Matrix T_uu_, T_uw_, T_uy_, T_ww_, T_wy_, T_yy_;
+  Matrix L_uu_, L_wu_, L_ww_, L_yu_, L_yw_, L_yy_;
 };
 
 /// A and C of the order n by the shift invariance of the extended observability matrix.

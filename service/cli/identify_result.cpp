@@ -50,8 +50,8 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
 
   const std::pair<const char*, ordered_json> entries[] = {
       {"order", model.order()},
-      {"horizon", outcome.identified.horizon},
-      {"weighting", name(outcome.identified.weighting)},
+      {"horizon", outcome.identified.recipe.horizon},
+      {"weighting", name(outcome.identified.recipe.weighting)},
       {"sample_period_s", model.period_s},
       {"inputs", outcome.inputs},
       {"outputs", outcome.outputs},
@@ -87,7 +87,7 @@ std::string to_report(const IdentifyOutcome& outcome) {
       "order {}, horizon {}, weighting {}, sample period {:g} s\n"
       "poles {} (spectral radius {:.6g}, {})\n"
       "free run over {} identification and {} validation rows:\n{}",
-      identified.model.order(), identified.horizon, name(identified.weighting),
+      identified.model.order(), identified.recipe.horizon, name(identified.recipe.weighting),
       identified.model.period_s, poles_text(identified.model), identified.spectral_radius,
       identified.spectral_radius < 1 ? "stable" : "unstable", outcome.identify.rows,
       outcome.validate.rows, error_table(outcome).text(0));

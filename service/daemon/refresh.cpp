@@ -140,8 +140,8 @@ EquipmentModel candidate_model(const RefreshRequest& request, const WindowData& 
   model.hold_ns = request.equipment.hold;
   model.identified_from = time_range(data.record, split.identify, period);
   model.validated_on = time_range(data.record, split.validate, period);
-  model.method = fmt::format("{}, horizon {}, order {}", name(identified.weighting),
-                             identified.horizon, identified.model.order());
+  model.method = fmt::format("{}, horizon {}, order {}", name(identified.recipe.weighting),
+                             identified.recipe.horizon, identified.model.order());
   return model;
 }
 
@@ -150,8 +150,8 @@ ordered_json evidence_json(const RefreshResult& result, const Identified& identi
   const EquipmentModel& model = *result.candidate;
   ordered_json json;
   json["order"] = model.dynamics.order();
-  json["horizon"] = identified.horizon;
-  json["weighting"] = name(identified.weighting);
+  json["horizon"] = identified.recipe.horizon;
+  json["weighting"] = name(identified.recipe.weighting);
   json["rows_identified"] = split.identify.size();
   json["rows_validated"] = split.validate.size();
   json["coverage"] = data.coverage;

@@ -36,7 +36,7 @@ TEST(Identify, WithoutNoiseTheModelIsTheSystem) {
     EXPECT_LT(testing::pole_distance(found.model, truth), 1e-5) << c.order;
     EXPECT_LT(testing::markov_distance(found.model, truth), 1e-5) << c.order;
     EXPECT_LT(found.tune.mrse(), 1e-3);
-    EXPECT_LT(found.held_out_error, 1e-5);
+    EXPECT_LT(found.held_out_error.value(), 1e-5);
     EXPECT_NEAR(found.spectral_radius, spectral_radius(truth), 1e-5);
   }
 }
@@ -157,8 +157,8 @@ TEST(Identify, HonoursWhatIsFixed) {
   options.weighting = Weighting::moesp;
   const Identified found = expect_model(record, record.all(), options);
   EXPECT_EQ(found.model.order(), 5);
-  EXPECT_EQ(found.horizon, 9);
-  EXPECT_EQ(found.weighting, Weighting::moesp);
+  EXPECT_EQ(found.recipe.horizon, 9);
+  EXPECT_EQ(found.recipe.weighting, Weighting::moesp);
 }
 
 TEST(Identify, TellsTheRangeAndThePhases) {

@@ -20,7 +20,7 @@ TEST(Response, RecoversBAndDAndTheOffsetExactly) {
     StateSpaceModel truth = testing::random_system(noise, 4, 2, 2);
     truth.y0 << 3, -1;
     const Record record = testing::with_gap(testing::excited(truth, noise, 700, 0), 300, 320);
-    const Response found = fit_response(truth.A, truth.C, record, record.all(), accuracy);
+    const Response found = fit_response(truth.A, truth.C, true, record, record.all(), accuracy);
     EXPECT_LT((found.model.B - truth.B).norm(), 1e-7);
     EXPECT_LT((found.model.D - truth.D).norm(), 1e-7);
     EXPECT_LT((found.model.y0 - truth.y0).norm(), 1e-7);
@@ -35,7 +35,7 @@ TEST(Response, AgreesWithExplicitRegressors) {
   const auto naive = testing::naive_n4sid(record, 3, 4, Weighting::moesp);
   for (const Accuracy accuracy : {Accuracy::fast, Accuracy::exact}) {
     const Response found =
-        fit_response(naive.model.A, naive.model.C, record, record.all(), accuracy);
+        fit_response(naive.model.A, naive.model.C, true, record, record.all(), accuracy);
     EXPECT_LT((found.model.B - naive.model.B).norm(), 1e-6 * naive.model.B.norm());
     EXPECT_LT((found.model.D - naive.model.D).norm(), 1e-6 * naive.model.D.norm());
     EXPECT_LT((found.model.y0 - naive.model.y0).norm(), 1e-6);
@@ -49,7 +49,7 @@ TEST(Response, FallsBackWhereTheNormalEquationsLoseTooMuch) {
   Record record = testing::excited(truth, noise, 400, 0);
   record.u.col(1) = record.u.col(0) + 1e-6 * noise.normal(400, 1);
   record.y = testing::simulated(truth, record.u, Vector::Zero(2));
-  const Response found = fit_response(truth.A, truth.C, record, record.all(), Accuracy::fast);
+  const Response found = fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::fast);
   EXPECT_LT(output_error(found, record), 1e-12);
   EXPECT_LT((found.model.B - truth.B).norm(), 1e-6);
 }
@@ -60,7 +60,8 @@ TEST(Response, OfEqualInputsSharesTheEffect) {
   Record record = testing::excited(truth, noise, 300, 0);
   record.u.col(1) = record.u.col(0);
   record.y = testing::simulated(truth, record.u, Vector::Zero(2));
-  const Response found = fit_response(truth.A, truth.C, record, record.all(), Accuracy::exact);
+  const Response found =
+      fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::exact);
   EXPECT_LT(output_error(found, record), 1e-10);
   EXPECT_LT((found.model.B.col(0) - found.model.B.col(1)).norm(), 1e-9);
 }
@@ -72,7 +73,8 @@ TEST(Response, SegmentsShorterThanTheOrderDoNoHarm) {
   record.segments = {{0, 2, 0}, {2, 3, 50}, {3, 400, 90}};  // starts anew at rows 2 and 3
   for (const Accuracy accuracy : {Accuracy::fast, Accuracy::exact})
     EXPECT_LT(
-        (fit_response(truth.A, truth.C, record, record.all(), accuracy).model.B - truth.B).norm(),
+        (fit_response(truth.A, truth.C, true, record, record.all(), accuracy).model.B - truth.B)
+            .norm(),
         1e-6);
 }
 
@@ -82,9 +84,10 @@ TEST(Refinement, LowersTheOutputErrorTowardsTheTruth) {
     const StateSpaceModel truth = testing::random_system(noise, 3, 1, outputs, 0.9);
     const Record record = testing::with_gap(testing::excited(truth, noise, 1500, 0.1), 600, 650);
     const Matrix A = truth.A * 0.97;  // a start that is off
-    const Response start = fit_response(A, truth.C, record, record.all(), Accuracy::fast);
-    const Response refined = refine_response(A, truth.C, record, record.all(), 30);
-    const Response best = fit_response(truth.A, truth.C, record, record.all(), Accuracy::fast);
+    const Response start = fit_response(A, truth.C, true, record, record.all(), Accuracy::fast);
+    const Response refined = refine_response(A, truth.C, true, record, record.all(), 30);
+    const Response best =
+        fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::fast);
     EXPECT_LT(output_error(refined, record), output_error(start, record));
     EXPECT_LT(output_error(refined, record), 1.001 * output_error(best, record));
     EXPECT_LT(testing::pole_distance(refined.model, truth), 0.02);
@@ -98,8 +101,8 @@ TEST(Refinement, OfNoStepsIsTheFit) {
   testing::Noise noise(7);
   const StateSpaceModel truth = testing::random_system(noise, 2, 1, 1);
   const Record record = testing::excited(truth, noise, 300, 0.1);
-  const Response fit = fit_response(truth.A, truth.C, record, record.all(), Accuracy::fast);
-  EXPECT_EQ(refine_response(truth.A, truth.C, record, record.all(), 0).model.B, fit.model.B);
+  const Response fit = fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::fast);
+  EXPECT_EQ(refine_response(truth.A, truth.C, true, record, record.all(), 0).model.B, fit.model.B);
 }
 
 }  // namespace

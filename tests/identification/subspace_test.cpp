@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "identification/choice.hpp"
 #include "identification/kalman.hpp"
 #include "tests/support/naive_n4sid.hpp"
 #include "tests/support/systems.hpp"
@@ -16,33 +17,24 @@ StateSpaceModel with(const Dynamics& dynamics) {
   return {dynamics.A, Matrix(n, 0), dynamics.C, Matrix(p, 0), {}, Vector(0), Vector::Zero(p), 1};
 }
 
-Dynamics identified(const Record& record, Index order, Index horizon, Weighting weighting) {
-  const HankelFactor factor = compress(record, record.all(), 2 * horizon);
-  return shift_invariant(Projection(factor, horizon).observability(weighting).gamma,
-                         record.y.cols(), order);
+/// Channels as they are.
+Normalisation no_normalisation(const Record& record) {
+  const Index m = record.u.cols(), p = record.y.cols();
+  Normalisation result{Vector::Zero(m), Vector::Ones(m), Vector::Zero(p), Vector::Ones(p), {}, {}};
+  for (Index i = 0; i < m; ++i) result.inputs.push_back(i);
+  for (Index q = 0; q < p; ++q) result.outputs.push_back(q);
+  return result;
 }
 
-TEST(Compression, KeepsEveryInnerProductOfTheHankelRows) {
-  testing::Noise noise(1);
-  const Record record =
-      testing::with_gap(contiguous_record(1, noise.normal(300, 2), noise.normal(300, 1)), 100, 104);
-  const Index L = 4, width = 3;
-  const HankelFactor factor = compress(record, record.all(), L);
-  Matrix H(1 + L * width, 0);
-  for (const Segment& segment : record.segments) {
-    for (Index t = segment.begin; t + L <= segment.end; ++t) {
-      Vector column(1 + L * width);
-      column(0) = 1;
-      for (Index k = 0; k < L; ++k)
-        column.segment(1 + k * width, width) << record.u.row(t + k).transpose(),
-            record.y.row(t + k).transpose();
-      H.conservativeResize(Eigen::NoChange, H.cols() + 1);
-      H.rightCols(1) = column;
-    }
-  }
-  EXPECT_EQ(factor.columns, H.cols());
-  const Matrix gram = H * H.transpose();
-  EXPECT_LT((factor.R.transpose() * factor.R - gram).norm(), 1e-12 * gram.norm());
+HankelFactor compressed(const Record& record, Index horizon) {
+  const TickRange all{INT64_MIN, INT64_MAX};
+  return compress(sums_of_rows(record, all, 2 * horizon), no_normalisation(record), record,
+                  record.segments, horizon);
+}
+
+Dynamics identified(const Record& record, Index order, Index horizon, Weighting weighting) {
+  return shift_invariant(Projection(compressed(record, horizon)).observability(weighting).gamma,
+                         record.y.cols(), order);
 }
 
 TEST(Compression, SegmentsShorterThanTheBlockRowsGiveNothing) {
@@ -60,8 +52,7 @@ TEST(Subspace, AgreesWithTheExplicitHankelMatrices) {
     const Record record = testing::with_gap(testing::excited(truth, noise, 400, 0.1), 150, 170);
     for (const Weighting weighting : weightings) {
       const auto naive = testing::naive_n4sid(record, c.order, c.horizon, weighting);
-      const HankelFactor factor = compress(record, record.all(), 2 * c.horizon);
-      const auto observability = Projection(factor, c.horizon).observability(weighting);
+      const auto observability = Projection(compressed(record, c.horizon)).observability(weighting);
       const Index count = observability.singular_values.size();
       EXPECT_LT((observability.singular_values - naive.singular_values.head(count)).norm(),
                 1e-7 * naive.singular_values.norm());
@@ -95,8 +86,7 @@ TEST(Subspace, FindsTheKalmanGainOfAnInnovationsForm) {
     record.y(k, 0) = (truth.C * x + truth.D * record.u.row(k).transpose())(0) + e;
     x = truth.A * x + truth.B * record.u.row(k).transpose() + truth.K * e;
   }
-  const HankelFactor factor = compress(record, record.all(), 30);
-  const Projection projection(factor, 15);
+  const Projection projection(compressed(record, 15));
   const Matrix W = projection.noise_covariance(truth);
   EXPECT_NEAR(W(2, 2), 0.25, 0.02) << "the innovation's variance";
   const auto K = kalman_gain(truth.A, truth.C, W);
@@ -110,7 +100,7 @@ TEST(Subspace, InputInnovationsShowWhereAnInputIsForetold) {
   Matrix u(rows, 2);
   for (Index k = 0; k < rows; ++k) u.row(k) << std::sin(0.3 * double(k)), noise.normal();
   const Record record = contiguous_record(1, u, noise.normal(rows, 1));
-  const Matrix innovations = Projection(compress(record, record.all(), 12), 6).input_innovations();
+  const Matrix innovations = Projection(compressed(record, 6)).input_innovations();
   EXPECT_GT(innovations(1, 0), 1e-3);
   EXPECT_LT(innovations(2, 0), 1e-10) << "a sine follows from two samples";
   EXPECT_NEAR(innovations(5, 1), 1, 0.2);
