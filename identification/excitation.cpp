@@ -26,6 +26,14 @@ std::vector<RedundantInput> redundant_inputs(const Matrix& u) {
   return found;
 }
 
+bool are_independent(const Matrix& correlation) {
+  if (correlation.rows() == 0) return true;
+  const Eigen::LLT<Matrix> llt(correlation);
+  // The square of 1e-6 is beyond what a sum of squares tells from rounding.
+  constexpr double clearly = 1e-4;
+  return llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > clearly;
+}
+
 Excitation excitation_of(const Matrix& input_innovations) {
   constexpr double least_innovation = 1e-7;
   for (Index k = 0; k < input_innovations.rows(); ++k) {

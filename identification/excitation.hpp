@@ -18,6 +18,10 @@ struct RedundantInput {
 /// inputs before them are known, ascending.
 std::vector<RedundantInput> redundant_inputs(const Matrix& u);
 
+/// Whether each input has so much of its own, given those before it, that none is redundant; from
+/// their correlations (m x m).
+bool are_independent(const Matrix& correlation);
+
 /// How many block rows the inputs excite persistently, and the input that ends it.
 struct Excitation {
   Index order = 0;

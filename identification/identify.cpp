@@ -51,6 +51,13 @@ std::optional<Verdict> non_finite_values(const Record& record, RowRange rows) {
   return look(record.y, "output");
 }
 
+/// A sample that is not finite, or too large to be squared, spoils the sums that it is in.
+bool all_finite(const StretchSums& sums) {
+  return std::all_of(sums.runs.begin(), sums.runs.end(), [](const RunSums& run) {
+    return run.sum().allFinite() && run.products().allFinite();
+  });
+}
+
 void in_sequence(std::size_t count, const std::function<void(std::size_t)>& task) {
   for (std::size_t i = 0; i < count; ++i) task(i);
 }
@@ -114,9 +121,9 @@ class Identification {
   std::optional<Verdict> useless(const std::vector<ScoredRecipe>& ranked, double constant) const;
   /// An order of n needs inputs that excite n + 1 block rows.
   std::optional<Verdict> limit_by_excitation(SearchSpace& space);
-  HankelFactor factor(int horizon) const;
+  const HankelFactor& factor(int horizon);
   /// The recipe on all rows, absent when it gives no stable model there.
-  std::optional<Identified> realise(const Recipe& recipe) const;
+  std::optional<Identified> realise(const Recipe& recipe);
   Response respond(const Recipe& recipe, const Projection& projection,
                    const Dynamics& dynamics) const;
   /// What is said of the model besides its matrices.
@@ -130,7 +137,8 @@ class Identification {
   std::array<StretchSums, 3> sums_;  // of the stretches between the folds' edges
   StretchSums all_sums_;
   Normalisation normalisation_;
-  Record work_;  // the rows, normalised, without the channels left out
+  Record work_;                         // the rows, normalised, without the channels left out
+  std::optional<HankelFactor> factor_;  // of all rows, at the horizon that was asked for last
   std::vector<std::string> warnings_;
   double work_spent_ = 0;
 };
@@ -158,8 +166,9 @@ void Identification::phase(std::string_view name) const {
 
 std::optional<Verdict> Identification::prepare() {
   if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols(), true);
-  if (auto verdict = non_finite_values(record_, rows_)) return verdict;
   sum();
+  if (!all_finite(all_sums_))
+    if (auto verdict = non_finite_values(record_, rows_)) return verdict;
   normalisation_ = normalisation_of(all_sums_, record_.u.cols());
   warn_of_constants(normalisation_.inputs, record_.u.cols(), "input");
   warn_of_constants(normalisation_.outputs, record_.y.cols(), "output");
@@ -201,6 +210,7 @@ void Identification::warn_of_constants(const std::vector<Index>& moving, Index c
 }
 
 void Identification::leave_out_redundant_inputs() {
+  if (are_independent(input_correlation(all_sums_, normalisation_))) return;
   const std::vector<RedundantInput> redundant = redundant_inputs(work_.u);
   if (redundant.empty()) return;
   std::vector<Index>& inputs = normalisation_.inputs;
@@ -294,8 +304,10 @@ Verdict Identification::too_few_samples(Index width, bool held_out) const {
               " rows without a gap are needed for a horizon of " + std::to_string(s)};
 }
 
-HankelFactor Identification::factor(int horizon) const {
-  return compress(all_sums_, normalisation_, work_, work_.segments, horizon);
+const HankelFactor& Identification::factor(int horizon) {
+  if (!factor_ || factor_->horizon != horizon)
+    factor_ = compress(all_sums_, normalisation_, work_, work_.segments, horizon);
+  return *factor_;
 }
 
 std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
@@ -333,8 +345,8 @@ Response Identification::respond(const Recipe& recipe, const Projection& project
   return response;
 }
 
-std::optional<Identified> Identification::realise(const Recipe& recipe) const {
-  const HankelFactor hankel = factor(recipe.horizon);
+std::optional<Identified> Identification::realise(const Recipe& recipe) {
+  const HankelFactor& hankel = factor(recipe.horizon);
   const Projection projection(hankel);
   auto [gamma, singular_values] = projection.observability(recipe.weighting);
   const Dynamics dynamics = shift_invariant(gamma, hankel.outputs, recipe.order, recipe.stability);

@@ -16,17 +16,24 @@ Matrix apply(const Matrix& channels, RowRange rows, const Vector& mean, const Ve
   return result;
 }
 
+/// About the mean of all (w x w).
+Matrix covariance_of(const StretchSums& sums) {
+  const Vector mean = sums.mean();
+  Matrix squares = Matrix::Zero(mean.size(), mean.size());
+  for (RunSums run : sums.runs) {
+    run.refer_to(mean);
+    squares += run.products().topRows(mean.size());
+  }
+  return squares / double(sums.rows());
+}
+
 }  // namespace
 
 Normalisation normalisation_of(const StretchSums& sums, Index inputs) {
   const Vector mean = sums.mean();
-  const Index width = mean.size(), rows = sums.rows();
-  Vector squares = Vector::Zero(width);
-  for (RunSums run : sums.runs) {
-    run.refer_to(mean);
-    squares += run.products().topRows(width).diagonal();
-  }
-  Vector scale = (squares / double(rows)).cwiseMax(0).cwiseSqrt();
+  const Index width = mean.size();
+  const Matrix covariance = covariance_of(sums);
+  Vector scale = covariance.diagonal().cwiseMax(0).cwiseSqrt();
   Normalisation result;
   for (Index c = 0; c < width; ++c) {
     constexpr double rounding = 1e-13;
@@ -40,6 +47,11 @@ Normalisation normalisation_of(const StretchSums& sums, Index inputs) {
   result.y_mean = mean.tail(width - inputs);
   result.y_scale = scale.tail(width - inputs);
   return result;
+}
+
+Matrix input_correlation(const StretchSums& sums, const Normalisation& normalisation) {
+  const auto weigh = normalisation.u_scale(normalisation.inputs).cwiseInverse().asDiagonal();
+  return weigh * covariance_of(sums)(normalisation.inputs, normalisation.inputs) * weigh;
 }
 
 Record normalised(const Record& record, RowRange rows, const Normalisation& normalisation) {

@@ -21,6 +21,9 @@ struct Normalisation {
 /// takes part when it moves by more than the rounding of its own size.
 Normalisation normalisation_of(const StretchSums& sums, Index inputs);
 
+/// Correlations of the inputs that take part.
+Matrix input_correlation(const StretchSums& sums, const Normalisation& normalisation);
+
 /// The rows `rows` of the channels that take part, normalised.
 Record normalised(const Record& record, RowRange rows, const Normalisation& normalisation);
 

@@ -1,6 +1,8 @@
 #include "identification/subspace.hpp"
 
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "identification/kernels.hpp"
@@ -113,23 +115,20 @@ Matrix impulse_toeplitz(const StateSpaceModel& model, const Matrix& gamma) {
   return H;
 }
 
-/// theta with theta' X = t in the least squares sense, [X; t] = rows.
-Vector least_squares(const Matrix& rows) {
-  const Index unknowns = rows.rows() - 1;
-  Matrix sums = Matrix::Zero(rows.rows(), rows.rows());
-  const VectorSequence sequence{rows.data(), rows.rows(), rows.rows()};
-  add_outer_products(sequence, sequence, rows.cols(), Triangle::lower, sums.data());
+/// Least squares of a target row on the rows above it, from their inner products: `sums` before and
+/// `removed` what a projection takes away of them. Absent where too few digits would be left.
+std::optional<Vector> solve_sums(const Matrix& sums, const Matrix& removed) {
+  const Index unknowns = sums.rows() - 1;
   const Vector scale = sums.diagonal().head(unknowns).unaryExpr(
       [](double w) { return w > 0 ? 1 / std::sqrt(w) : 0.0; });
-  const Matrix G = scale.asDiagonal() * sums.topLeftCorner(unknowns, unknowns) * scale.asDiagonal();
+  const Matrix left = (sums - removed).triangularView<Eigen::Lower>();
+  const Matrix G = scale.asDiagonal() * left.topLeftCorner(unknowns, unknowns) * scale.asDiagonal();
   const Eigen::LLT<Matrix> llt(G);
   constexpr double least_pivot = 1e-5;  // its square is the share of a row that is its own
-  if (llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > least_pivot)
-    return scale.asDiagonal() *
-           llt.solve(scale.asDiagonal() * sums.row(unknowns).head(unknowns).transpose());
-  return Matrix(rows.topRows(unknowns).transpose())
-      .completeOrthogonalDecomposition()
-      .solve(rows.row(unknowns).transpose());
+  if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least_pivot))
+    return std::nullopt;
+  return Vector(scale.asDiagonal() *
+                llt.solve(scale.asDiagonal() * left.row(unknowns).head(unknowns).transpose()));
 }
 
 }  // namespace
@@ -142,26 +141,47 @@ StateSpaceModel Projection::with_response(const Matrix& A, const Matrix& C, bool
   if (mu == 0) return model;
   const Matrix gamma = extended_observability(model, s);
   const Matrix Q = Matrix(gamma.householderQr().householderQ() * Matrix::Identity(p * s, n));
-  // One column of the rows of U_f after the other is a short experiment: inputs v, outputs L_yu.
-  const Index unknowns = n * m + (direct ? p * m : 0);
-  Matrix rows = Matrix::Zero(unknowns + 1, mu * p * s);
+  const Matrix Qt = Q.transpose();
+  // Each coordinate of U_f is a short experiment: inputs v, outputs L_yu. Nothing moves before the
+  // block row whose input it is.
+  const Index unknowns = n * m + (direct ? p * m : 0), height = unknowns + 1;
+  Matrix rows = Matrix::Zero(height, mu * p * s);
+  Matrix sums = Matrix::Zero(height, height), removed = sums;
+  Matrix along_gamma = Matrix::Zero(height, mu * n);
   const Matrix At = A.transpose();
   for (Index j = 0; j < mu; ++j) {
-    const Vector v = L_uu_.col(j);
-    auto own = rows.middleCols(j * p * s, p * s);
+    const Index k0 = j / m, count = s - k0;
+    const double* v = L_uu_.col(j).data() + k0 * m;
+    auto own = rows.middleCols((j * s + k0) * p, count * p);
     for (Index q = 0; q < p; ++q) {
       const Vector c = C.row(q).transpose();
       Matrix states = Matrix::Zero(n, m);
-      run_dual_filters(At.data(), c.data(), n, m, v.data(), s, states.data(),
-                       own.data() + q * rows.rows(), p * rows.rows());
-      if (direct)
-        for (Index k = 0; k < s; ++k)
-          own.col(k * p + q).segment(n * m + q * m, m) = v.segment(k * m, m);
+      run_dual_filters(At.data(), c.data(), n, m, v, count, states.data(), own.data() + q * height,
+                       p * height);
+      for (Index k = 0; direct && k < count; ++k)
+        own.col(k * p + q).segment(n * m + q * m, m) = Eigen::Map<const Vector>(v + k * m, m);
     }
-    own.row(unknowns) = L_yu_.col(j).transpose();
-    own -= (own * Q) * Q.transpose();
+    rows.row(unknowns).segment(j * p * s, p * s) = L_yu_.col(j).transpose();
+    const VectorSequence sequence{own.data(), height, height};
+    add_outer_products(sequence, sequence, count * p, Triangle::lower, sums.data());
+    add_outer_products(sequence, {Qt.data() + k0 * p * n, n, n}, count * p, Triangle::full,
+                       along_gamma.data() + j * n * height);
+    along_gamma.row(unknowns).segment(j * n, n).noalias() = Qt * L_yu_.col(j);
   }
-  const Vector theta = least_squares(rows);
+  const VectorSequence along{along_gamma.data(), height, height};
+  add_outer_products(along, along, mu * n, Triangle::lower, removed.data());
+  Vector theta;
+  if (auto solution = solve_sums(sums, removed)) {
+    theta = std::move(*solution);
+  } else {
+    for (Index j = 0; j < mu; ++j) {
+      auto own = rows.middleCols(j * p * s, p * s);
+      own -= (own * Q) * Qt;
+    }
+    theta = Matrix(rows.topRows(unknowns).transpose())
+                .completeOrthogonalDecomposition()
+                .solve(rows.row(unknowns).transpose());
+  }
   model.B = theta.head(n * m).reshaped(n, m);
   if (direct) model.D = theta.tail(p * m).reshaped(m, p).transpose();
   return model;
