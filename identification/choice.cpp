@@ -13,84 +13,50 @@
 namespace reident::identification {
 namespace {
 
-constexpr double equal_errors = 1.01;
+constexpr double equal_errors = 1.002;
 constexpr double no_error = 1e-6;  // of an output's deviation
 constexpr double worthwhile_recency = 0.95;
-constexpr double worthwhile = 0.99;
+constexpr double worthwhile_refinement = 0.99;
 constexpr int refinement_steps = 10;
-/// Recipes that the second and the third stage look at: as many as a third of the budget each
-/// allows, within these limits.
-constexpr double least_simulated = 2, most_simulated = 12, least_refined = 1, most_refined = 4;
-constexpr Index warm_up = 512;  // fitted rows that a run begins with, so that its state settles
-constexpr Index least_scored = 1000;  // rows held out, however small the budget
-
-/// Mean over outputs of the root mean square over rows.
-double rms(const Matrix& errors) {
-  return errors.colwise().norm().mean() / std::sqrt(double(errors.rows()));
-}
-
-/// Errors of one candidate on held-out rows, with both operating points; infinite where the
-/// candidate is unstable.
-struct FoldErrors {
-  double whole = std::numeric_limits<double>::infinity();
-  double recent = std::numeric_limits<double>::infinity();
-};
-
-bool is_forwards(const Fold& fold) {
-  return fold.fit.begin < fold.tune.begin;
-}
-
-/// The part of the rows held out that is nearest to the rows fitted.
-RowRange nearest(const Fold& fold, Index rows) {
-  const Index count = std::min(rows, fold.tune.size());
-  return is_forwards(fold) ? RowRange{fold.tune.begin, fold.tune.begin + count}
-                           : RowRange{fold.tune.end - count, fold.tune.end};
-}
-
-/// Errors of a free run over `scored`, a part of the rows held out, carried on from the fitted rows
-/// before it.
-Matrix held_out_errors(const StateSpaceModel& model, const Record& record, const Fold& fold,
-                       RowRange scored) {
-  const Index before =
-      is_forwards(fold) ? std::min(warm_up, scored.begin - fold.fit.begin) : Index{0};
-  const Matrix y_hat = free_run(model, record, {scored.begin - before, scored.end});
-  return record.y.middleRows(scored.begin, scored.size()) - y_hat.bottomRows(scored.size());
-}
-
-FoldErrors errors_of(const Response& response, const Record& record, const Fold& fold) {
-  const bool forwards = is_forwards(fold);
-  const RowRange run{fold.fit.begin, forwards ? fold.tune.end : fold.fit.end};
-  const Matrix y_hat = free_run(response.model, record, run, response.x0);
-  const Matrix residuals =
-      record.y.middleRows(fold.fit.begin, fold.fit.size()) - y_hat.topRows(fold.fit.size());
-  const Matrix errors = record.y.middleRows(fold.tune.begin, fold.tune.size()) -
-                        (forwards ? Matrix(y_hat.bottomRows(fold.tune.size()))
-                                  : free_run(response.model, record, fold.tune));
-  const Vector shift = recent_operating_point(residuals, forwards);
-  const FoldErrors result{rms(errors), rms(errors.rowwise() - shift.transpose())};
-  return std::isfinite(result.whole) ? result : FoldErrors{};
-}
+constexpr Index least_scored = 1000, most_scored = 2000;  // rows of a fold in the first stage
+constexpr Index least_fitted = 2000;
+constexpr double intended_recipes = 8;  // of the second stage, where rows are many
 
 /// Multiply-adds of a run of one row.
 double work_of_run(Index n, Index m, Index p) {
   return double((n + p) * (n + m));
 }
 
-/// Multiply-adds that one row of the regression on the simulated output takes.
-double work_of_fit(Index n, Index m, Index p) {
-  const double columns = double(n + n * m + m + 2);
-  return double(p) * (double(n * n * (m + 1)) + columns * columns / 2);
+/// A recipe and what became of it on each fold.
+struct Candidate {
+  std::size_t place = 0;  // of its A and C among those of the first stage
+  Recipe recipe;
+  double error = 0;
+};
+
+/// Takes the operating point that the folds speak for. False where a fold had no stable model.
+bool take_errors(Candidate& candidate, const std::vector<HeldOutErrors>& errors) {
+  HeldOutErrors mean;
+  for (const HeldOutErrors& of_fold : errors) {
+    mean.whole += of_fold.whole / double(errors.size());
+    mean.recent += of_fold.recent / double(errors.size());
+  }
+  if (!std::isfinite(mean.whole)) return false;
+  const bool recent = mean.recent < worthwhile_recency * mean.whole;
+  candidate.recipe.operating_point = recent ? OperatingPoint::recent : OperatingPoint::whole;
+  candidate.error = recent ? mean.recent : mean.whole;
+  return true;
 }
 
 /// Best first by the rule of the header.
-void rank(std::vector<ScoredRecipe>& recipes) {
+void rank(std::vector<Candidate>& candidates) {
   double best = std::numeric_limits<double>::infinity();
-  for (const ScoredRecipe& candidate : recipes) best = std::min(best, candidate.error);
-  const auto key = [best](const ScoredRecipe& candidate) {
+  for (const Candidate& candidate : candidates) best = std::min(best, candidate.error);
+  const auto key = [best](const Candidate& candidate) {
     const bool equal = candidate.error <= std::max(equal_errors * best, no_error);
     return std::tuple(!equal, equal ? candidate.recipe.order : 0, candidate.error);
   };
-  std::stable_sort(recipes.begin(), recipes.end(),
+  std::stable_sort(candidates.begin(), candidates.end(),
                    [&key](const auto& a, const auto& b) { return key(a) < key(b); });
 }
 
@@ -98,32 +64,35 @@ class Search {
  public:
   Search(const SearchData& data, const SearchSpace& space, const ForEach& for_each,
          SearchEffort& effort)
-      : data_(data), space_(space), for_each_(for_each), effort_(effort) {
-    for (std::size_t i = 0; i < folds; ++i) fold_sums_[i] = sums_of(data.folds[i].fit);
-  }
+      : data_(data),
+        space_(space),
+        for_each_(for_each),
+        effort_(effort),
+        m_(data.normalised.u.cols()),
+        p_(data.normalised.y.cols()) {}
 
   std::vector<ScoredRecipe> run();
 
  private:
-  static constexpr std::size_t folds = 2;
-  /// Extended observability matrices of one fold and horizon, one for each weighting.
-  using Gammas = std::vector<Matrix>;
-
-  StretchSums sums_of(RowRange fit) const;
-  const Gammas& gammas(std::size_t fold, int horizon) const;
-  Dynamics dynamics(const Recipe& recipe, std::size_t fold) const;
-  Index rows_of_first_stage() const;
-  /// Scores every recipe of the space with B and D from the compression.
-  std::vector<ScoredRecipe> compressed_stage();
-  void score_compressed(std::size_t fold, std::size_t horizon, std::vector<double>& errors);
-  /// The recipe of a place in the table of the first stage.
+  /// Scores every order, horizon and weighting with B and D from the compression.
+  std::vector<Candidate> compressed_stage();
+  void score_compressed(std::size_t fold, std::size_t horizon, std::vector<HeldOutErrors>& errors);
+  /// Order, horizon and weighting of a place in the table of the first stage.
   Recipe recipe_at(std::size_t place) const;
-  std::vector<ScoredRecipe> simulated_stage(const std::vector<ScoredRecipe>& found);
-  std::vector<ScoredRecipe> refined_stage(const std::vector<ScoredRecipe>& simulated);
-  std::vector<ScoredRecipe> score_regressed(std::vector<Recipe> recipes);
-  double work_of_regression(const Recipe& recipe) const;
-  std::size_t affordable(const Recipe& recipe, double least, double most) const;
+  Index rows_scored_quickly() const;
 
+  std::vector<Candidate> simulated_stage(std::vector<Candidate> compressed);
+  std::vector<Candidate> refined_stage(const std::vector<Candidate>& simulated);
+  /// Fits and scores the candidates on the folds with no more than so many fitted rows.
+  std::vector<Candidate> scored(std::vector<Candidate> candidates, Index rows_of_fold);
+  HeldOutErrors errors_on(const Candidate& candidate, std::size_t fold, Index rows_of_fold) const;
+  /// The first candidates for which a third of the budget lasts, at least one.
+  std::vector<Candidate> affordable(const std::vector<Candidate>& candidates,
+                                    Index rows_of_fold) const;
+  double work_of(const Candidate& candidate, Index rows_of_fold) const;
+  Index affordable_rows_of_fold(const Recipe& recipe, double recipes) const;
+
+  std::size_t folds() const { return data_.folds.size(); }
   std::size_t orders() const {
     return static_cast<std::size_t>(space_.max_order - space_.min_order + 1);
   }
@@ -133,33 +102,9 @@ class Search {
   const SearchSpace& space_;
   const ForEach& for_each_;
   SearchEffort& effort_;
-  std::array<StretchSums, folds> fold_sums_;
-  std::array<std::vector<Gammas>, folds> gammas_;  // by fold and horizon
+  Index m_, p_;
+  std::vector<std::vector<StateSpaceModel>> models_;  // of the first stage, by fold and place
 };
-
-StretchSums Search::sums_of(RowRange fit) const {
-  // The edges of the folds cut the rows into three stretches; a fold fits whole ones.
-  const Index rows = data_.normalised.rows();
-  const std::array<Index, 4> edges{0, std::min(data_.folds[0].fit.end, data_.folds[1].fit.begin),
-                                   std::max(data_.folds[0].fit.end, data_.folds[1].fit.begin),
-                                   rows};
-  StretchSums sums;
-  for (std::size_t i = 0; i < data_.sums.size(); ++i)
-    if (edges[i] >= fit.begin && edges[i + 1] <= fit.end) sums.append(data_.sums[i]);
-  return sums;
-}
-
-const Search::Gammas& Search::gammas(std::size_t fold, int horizon) const {
-  const auto at = std::find(space_.horizons.begin(), space_.horizons.end(), horizon);
-  return gammas_[fold][static_cast<std::size_t>(at - space_.horizons.begin())];
-}
-
-Dynamics Search::dynamics(const Recipe& recipe, std::size_t fold) const {
-  const auto at = std::find(space_.weightings.begin(), space_.weightings.end(), recipe.weighting);
-  const Matrix& gamma =
-      gammas(fold, recipe.horizon)[static_cast<std::size_t>(at - space_.weightings.begin())];
-  return shift_invariant(gamma, data_.normalised.y.cols(), recipe.order, recipe.stability);
-}
 
 Recipe Search::recipe_at(std::size_t place) const {
   const std::size_t in_horizon = place % places_of_horizon();
@@ -172,194 +117,185 @@ Recipe Search::recipe_at(std::size_t place) const {
   return recipe;
 }
 
-Index Search::rows_of_first_stage() const {
-  const Index m = data_.normalised.u.cols(), p = data_.normalised.y.cols();
+Index Search::rows_scored_quickly() const {
   double one_row = 0;
-  for (int n = space_.min_order; n <= space_.max_order; ++n) one_row += work_of_run(n, m, p);
-  one_row *= double(folds * space_.horizons.size() * space_.weightings.size());
-  // A third of the budget is this stage's.
-  return std::max(least_scored, static_cast<Index>(effort_.budget / 3 / one_row));
+  for (int n = space_.min_order; n <= space_.max_order; ++n) one_row += work_of_run(n, m_, p_);
+  one_row *= double(folds() * space_.horizons.size() * space_.weightings.size());
+  return std::clamp(static_cast<Index>(effort_.budget / 3 / one_row), least_scored, most_scored);
 }
 
 void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
-                              std::vector<double>& errors) {
-  const Fold& fold = data_.folds[fold_index];
+                              std::vector<HeldOutErrors>& errors) {
   const Record& record = data_.normalised;
-  const int horizon = space_.horizons[horizon_index];
-  const Projection projection(compress(fold_sums_[fold_index], data_.normalisation, record,
-                                       segments_within(record, fold.fit), horizon));
-  const Normalisation fitted =
-      normalisation_of(fold_sums_[fold_index], data_.normalisation.u_mean.size());
-  const RowRange scored = nearest(fold, rows_of_first_stage());
-  Gammas& own = gammas_[fold_index][horizon_index];
+  const Fold fold = data_.folds[fold_index].with_tune_of(rows_scored_quickly());
+  const StretchSums& sums = data_.sums[fold_index];
+  const Projection projection(compress(sums, data_.normalisation, record,
+                                       segments_within(record, fold.fit),
+                                       space_.horizons[horizon_index]));
+  const Normalisation fitted = normalisation_of(sums, data_.normalisation.u_mean.size());
   for (std::size_t w = 0; w < space_.weightings.size(); ++w) {
-    own.push_back(projection.observability(space_.weightings[w]).gamma);
+    const Matrix gamma = projection.observability(space_.weightings[w]).gamma;
     for (std::size_t i = 0; i < orders(); ++i) {
       const std::size_t place = horizon_index * places_of_horizon() + w * orders() + i;
       const Recipe recipe = recipe_at(place);
-      if (recipe.order > own.back().cols() - record.y.cols()) break;
-      const Dynamics found =
-          shift_invariant(own.back(), record.y.cols(), recipe.order, recipe.stability);
+      if (recipe.order > gamma.cols() - p_) break;
+      const Dynamics found = shift_invariant(gamma, p_, recipe.order, recipe.stability);
       if (!is_stable(found.A)) continue;
-      StateSpaceModel model =
-          projection.with_response(found.A, found.C, recipe.direct, record.period_s);
+      StateSpaceModel& model = models_[fold_index][place];
+      model = projection.with_response(found.A, found.C, recipe.direct, record.period_s);
       set_operating_point(model, data_.normalisation, fitted);
-      const double error = rms(held_out_errors(model, record, fold, scored));
-      if (std::isfinite(error)) errors[place] = error;
+      errors[place] = quick_held_out_errors(model, record, fold);
     }
   }
 }
 
-std::vector<ScoredRecipe> Search::compressed_stage() {
+std::vector<Candidate> Search::compressed_stage() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::size_t places = space_.horizons.size() * places_of_horizon();
-  std::array<std::vector<double>, folds> errors;
-  for (std::size_t i = 0; i < folds; ++i) {
-    errors[i].assign(places, std::numeric_limits<double>::infinity());
-    gammas_[i].assign(space_.horizons.size(), {});
-  }
-  for_each_(folds * space_.horizons.size(), [&](std::size_t task) {
-    const std::size_t fold = task % folds;
-    score_compressed(fold, task / folds, errors[fold]);
+  std::vector<std::vector<HeldOutErrors>> errors(
+      folds(), std::vector<HeldOutErrors>(places, {infinity, infinity}));
+  models_.assign(folds(), std::vector<StateSpaceModel>(places));
+  for_each_(folds() * space_.horizons.size(), [&](std::size_t task) {
+    const std::size_t fold = task % folds();
+    score_compressed(fold, task / folds(), errors[fold]);
   });
-  std::vector<ScoredRecipe> found;
+  std::vector<Candidate> found;
   for (std::size_t place = 0; place < places; ++place) {
-    const double error = (errors[0][place] + errors[1][place]) / double(folds);
-    if (!std::isfinite(error)) continue;
-    const Recipe recipe = recipe_at(place);
+    std::vector<HeldOutErrors> own;
+    for (const std::vector<HeldOutErrors>& of_fold : errors) own.push_back(of_fold[place]);
+    Candidate candidate{place, recipe_at(place), 0};
+    if (!take_errors(candidate, own)) continue;
     for (const Fold& fold : data_.folds)
-      effort_.spent +=
-          work_of_run(recipe.order, data_.normalised.u.cols(), data_.normalised.y.cols()) *
-          double(nearest(fold, rows_of_first_stage()).size());
-    found.push_back({recipe, error});
+      effort_.spent += work_of_run(candidate.recipe.order, m_, p_) *
+                       double(fold.with_tune_of(rows_scored_quickly()).tune.size());
+    found.push_back(std::move(candidate));
   }
   rank(found);
   return found;
 }
 
-std::vector<ScoredRecipe> Search::score_regressed(std::vector<Recipe> recipes) {
-  std::vector<std::array<FoldErrors, folds>> errors(recipes.size());
-  for_each_(folds * recipes.size(), [&](std::size_t task) {
-    const Recipe& recipe = recipes[task / folds];
-    const std::size_t i = task % folds;
-    const Fold& fold = data_.folds[i];
-    const Dynamics found = dynamics(recipe, i);
-    if (!is_stable(found.A)) return;
-    const Response response =
-        recipe.refinement_steps > 0
-            ? refine_response(found.A, found.C, recipe.direct, data_.normalised, fold.fit,
-                              recipe.refinement_steps)
-            : fit_response(found.A, found.C, recipe.direct, data_.normalised, fold.fit,
-                           Accuracy::fast);
-    errors[task / folds][i] = errors_of(response, data_.normalised, fold);
+HeldOutErrors Search::errors_on(const Candidate& candidate, std::size_t fold_index,
+                                Index rows_of_fold) const {
+  const Recipe& recipe = candidate.recipe;
+  const Record& record = data_.normalised;
+  const Fold fold = data_.folds[fold_index].with_fit_of(rows_of_fold);
+  const StateSpaceModel& model = models_[fold_index][candidate.place];
+  if (recipe.fit == ResponseFit::subspace) {
+    const Segment first = segments_within(record, fold.fit).front();
+    return held_out_errors(
+        {model, estimate_initial_state(model, record, first, initial_rows(model)), 0}, record,
+        fold);
+  }
+  return held_out_errors(
+      recipe.refinement_steps > 0
+          ? refine_response(model.A, model.C, recipe.direct, record, fold.fit,
+                            recipe.refinement_steps)
+          : fit_response(model.A, model.C, recipe.direct, record, fold.fit, Accuracy::fast),
+      record, fold);
+}
+
+std::vector<Candidate> Search::scored(std::vector<Candidate> candidates, Index rows_of_fold) {
+  std::vector<HeldOutErrors> errors(candidates.size() * folds());
+  for_each_(errors.size(), [&](std::size_t task) {
+    errors[task] = errors_on(candidates[task / folds()], task % folds(), rows_of_fold);
   });
-  std::vector<ScoredRecipe> scored;
-  for (std::size_t i = 0; i < recipes.size(); ++i) {
-    const double whole = (errors[i][0].whole + errors[i][1].whole) / double(folds);
-    const double recent = (errors[i][0].recent + errors[i][1].recent) / double(folds);
-    if (!std::isfinite(whole)) continue;
-    const bool shifted = recent < worthwhile_recency * whole;
-    recipes[i].operating_point = shifted ? OperatingPoint::recent : OperatingPoint::whole;
-    scored.push_back({recipes[i], shifted ? recent : whole});
-    effort_.spent += work_of_regression(recipes[i]);
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const auto first = errors.begin() + static_cast<std::ptrdiff_t>(i * folds());
+    effort_.spent += work_of(candidates[i], rows_of_fold);
+    if (take_errors(candidates[i], {first, first + static_cast<std::ptrdiff_t>(folds())}))
+      found.push_back(std::move(candidates[i]));
   }
-  rank(scored);
-  return scored;
+  rank(found);
+  return found;
 }
 
-double Search::work_of_regression(const Recipe& recipe) const {
-  const Index rows = data_.folds[0].fit.size() + data_.folds[1].fit.size();
-  // A step of the refinement walks the rows twice, once with more columns.
-  return work_of_fit(recipe.order, data_.normalised.u.cols(), data_.normalised.y.cols()) *
-         double(rows) * double(1 + 3 * recipe.refinement_steps);
+double Search::work_of(const Candidate& candidate, Index rows_of_fold) const {
+  Index rows = 0;
+  for (const Fold& fold : data_.folds) rows += fold.with_fit_of(rows_of_fold).fit.size();
+  return double(rows) * (candidate.recipe.fit == ResponseFit::subspace
+                             ? work_of_run(candidate.recipe.order, m_, p_)
+                             : work_of_regression(candidate.recipe, m_, p_));
 }
 
-std::size_t Search::affordable(const Recipe& recipe, double least, double most) const {
-  return static_cast<std::size_t>(
-      std::clamp(effort_.budget / 3 / work_of_regression(recipe), least, most));
+Index Search::affordable_rows_of_fold(const Recipe& recipe, double recipes) const {
+  return affordable_rows(recipe, m_, p_, effort_.budget / 3 / (recipes * double(folds())));
 }
 
-std::vector<ScoredRecipe> Search::simulated_stage(const std::vector<ScoredRecipe>& found) {
-  if (found.empty()) return {};
-  std::vector<Recipe> recipes;
-  const std::size_t count =
-      std::min(found.size(), affordable(found.front().recipe, least_simulated, most_simulated));
-  for (std::size_t i = 0; i < count; ++i) {
-    recipes.push_back(found[i].recipe);
-    recipes.back().fit = ResponseFit::simulation;
+std::vector<Candidate> Search::affordable(const std::vector<Candidate>& candidates,
+                                          Index rows_of_fold) const {
+  std::vector<Candidate> taken;
+  double work = 0;
+  for (const Candidate& candidate : candidates) {
+    work += work_of(candidate, rows_of_fold);
+    if (!taken.empty() && work > effort_.budget / 3) break;
+    taken.push_back(candidate);
   }
-  std::vector<ScoredRecipe> scored = score_regressed(std::move(recipes));
-  if (scored.empty() || space_.direct.size() == 1) return scored;
-  Recipe other = scored.front().recipe;
-  other.direct = !other.direct;
-  const std::vector<ScoredRecipe> without = score_regressed({other});
-  scored.insert(scored.end(), without.begin(), without.end());
-  rank(scored);
-  return scored;
+  return taken;
 }
 
-std::vector<ScoredRecipe> Search::refined_stage(const std::vector<ScoredRecipe>& simulated) {
+std::vector<Candidate> Search::simulated_stage(std::vector<Candidate> compressed) {
+  if (compressed.empty()) return {};
+  std::vector<Candidate> both_ways;
+  for (Candidate& candidate : compressed) {
+    both_ways.push_back(candidate);
+    both_ways.back().recipe.fit = ResponseFit::simulation;
+    both_ways.push_back(std::move(candidate));
+  }
+  const Index rows = affordable_rows_of_fold(both_ways.front().recipe, intended_recipes);
+  std::vector<Candidate> found = scored(affordable(both_ways, rows), rows);
+  if (found.empty() || space_.direct.size() == 1) return found;
+  Candidate other = found.front();
+  other.recipe.direct = !other.recipe.direct;
+  other.recipe.fit = ResponseFit::simulation;
+  const std::vector<Candidate> without = scored({other}, rows);
+  found.insert(found.end(), without.begin(), without.end());
+  rank(found);
+  return found;
+}
+
+std::vector<Candidate> Search::refined_stage(const std::vector<Candidate>& simulated) {
   if (simulated.empty() || simulated.front().error <= no_error) return {};
-  std::vector<Recipe> recipes;
-  Recipe refined = simulated.front().recipe;
-  refined.refinement_steps = refinement_steps;
-  const std::size_t count =
-      std::min(simulated.size(), affordable(refined, least_refined, most_refined));
-  for (std::size_t i = 0; i < count; ++i) {
-    recipes.push_back(simulated[i].recipe);
-    recipes.back().refinement_steps = refinement_steps;
+  Recipe first = simulated.front().recipe;
+  first.refinement_steps = refinement_steps;
+  const Index rows = affordable_rows_of_fold(first, 1);
+  std::vector<Candidate> refined;
+  for (const Candidate& candidate : simulated) {
+    if (candidate.recipe.fit != ResponseFit::simulation) continue;
+    refined.push_back(candidate);
+    refined.back().recipe.refinement_steps = refinement_steps;
+    refined.back().recipe.refined_rows = rows;
   }
-  return score_regressed(std::move(recipes));
+  return refined.empty() ? refined : scored(affordable(refined, rows), rows);
 }
 
 std::vector<ScoredRecipe> Search::run() {
-  const std::vector<ScoredRecipe> compressed = compressed_stage();
-  const std::vector<ScoredRecipe> simulated = simulated_stage(compressed);
-  const std::vector<ScoredRecipe> refined = refined_stage(simulated);
-  // The simulated output decides unless another stage is clearly better.
-  std::vector<ScoredRecipe> all = simulated;
-  const auto enter = [&all](const std::vector<ScoredRecipe>& stage) {
-    const bool better =
-        !stage.empty() && (all.empty() || stage.front().error < worthwhile * all.front().error);
-    all.insert(better ? all.begin() : all.end(), stage.begin(), stage.end());
-  };
-  enter(compressed);
-  enter(refined);
-  return all;
+  std::vector<Candidate> found = simulated_stage(compressed_stage());
+  const std::vector<Candidate> refined = refined_stage(found);
+  if (!refined.empty() && refined.front().error < worthwhile_refinement * found.front().error)
+    found.insert(found.begin(), refined.front());
+  std::vector<ScoredRecipe> result;
+  for (const Candidate& candidate : found) result.push_back({candidate.recipe, candidate.error});
+  return result;
 }
 
 }  // namespace
 
-std::array<Fold, 2> folds_of(Index rows, double tune_share) {
-  const Index tune = std::clamp<Index>(std::lround(double(rows) * tune_share), 1, rows - 1);
-  return {Fold{{0, rows - tune}, {rows - tune, rows}}, Fold{{tune, rows}, {0, tune}}};
+double work_of_regression(const Recipe& recipe, Index m, Index p) {
+  const Index n = recipe.order;
+  const double columns = double(n + n * m + m + 2);
+  // A step of the refinement walks the rows twice, once with more columns.
+  return double(p) * (double(n * n * (m + 1)) + columns * columns / 2) *
+         double(1 + 3 * recipe.refinement_steps);
+}
+
+Index affordable_rows(const Recipe& recipe, Index m, Index p, double work) {
+  return std::max(least_fitted, static_cast<Index>(work / work_of_regression(recipe, m, p)));
 }
 
 std::vector<ScoredRecipe> ranked_recipes(const SearchData& data, const SearchSpace& space,
                                          const ForEach& for_each, SearchEffort& effort) {
   return Search(data, space, for_each, effort).run();
-}
-
-double held_out_error_of_constant(const Record& normalised, const std::array<Fold, 2>& folds) {
-  double sum = 0;
-  for (const Fold& fold : folds) {
-    const Eigen::RowVectorXd mean =
-        normalised.y.middleRows(fold.fit.begin, fold.fit.size()).colwise().mean();
-    sum += rms(normalised.y.middleRows(fold.tune.begin, fold.tune.size()).rowwise() - mean);
-  }
-  return sum / double(folds.size());
-}
-
-Vector recent_operating_point(const Matrix& residuals, bool towards_end) {
-  const Index half = (residuals.rows() + 1) / 2;
-  const auto nearest = residuals.middleRows(towards_end ? residuals.rows() - half : 0, half);
-  return nearest.colwise().mean().transpose();
-}
-
-HankelFactor compress(const StretchSums& sums, const Normalisation& normalisation,
-                      const Record& normalised, const std::vector<Segment>& segments,
-                      Index horizon) {
-  if (auto factor = factor_of_sums(sums, normalisation, horizon)) return std::move(*factor);
-  return factor_of_rows(normalised, segments, horizon);
 }
 
 }  // namespace reident::identification

@@ -160,4 +160,11 @@ HankelFactor factor_of_rows(const Record& normalised, const std::vector<Segment>
   return factor;
 }
 
+HankelFactor compress(const StretchSums& sums, const Normalisation& normalisation,
+                      const Record& normalised, const std::vector<Segment>& segments,
+                      Index horizon) {
+  if (auto factor = factor_of_sums(sums, normalisation, horizon)) return std::move(*factor);
+  return factor_of_rows(normalised, segments, horizon);
+}
+
 }  // namespace reident::identification

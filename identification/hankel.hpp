@@ -37,4 +37,10 @@ std::optional<HankelFactor> factor_of_sums(const StretchSums& sums,
 HankelFactor factor_of_rows(const Record& normalised, const std::vector<Segment>& segments,
                             Index horizon);
 
+/// The factor of the sums where these keep their digits, and of the rows that they are of where
+/// not.
+HankelFactor compress(const StretchSums& sums, const Normalisation& normalisation,
+                      const Record& normalised, const std::vector<Segment>& segments,
+                      Index horizon);
+
 }  // namespace reident::identification

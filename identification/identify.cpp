@@ -75,15 +75,16 @@ Index usable_columns(const Record& record, RowRange rows, int horizon) {
   return columns >= 2 * Index{horizon} * width + 1 ? columns : 0;
 }
 
-/// The same of the poorer fold.
-Index usable_columns(const Record& record, const std::array<Fold, 2>& folds, int horizon) {
-  return std::min(usable_columns(record, folds[0].fit, horizon),
-                  usable_columns(record, folds[1].fit, horizon));
+/// The same of the poorest fold.
+Index usable_columns(const Record& record, const std::vector<Fold>& folds, int horizon) {
+  Index least = std::numeric_limits<Index>::max();
+  for (const Fold& fold : folds) least = std::min(least, usable_columns(record, fold.fit, horizon));
+  return least;
 }
 
 /// Horizons that the segments can feed, ascending. A longer one must leave at least half of the
 /// columns that the shortest one has, since gaps cost columns.
-std::vector<int> feasible_horizons(const Record& record, const std::array<Fold, 2>& folds,
+std::vector<int> feasible_horizons(const Record& record, const std::vector<Fold>& folds,
                                    const IdentifyOptions& options) {
   const int least = options.horizon.value_or(least_horizon(options));
   const Index columns = usable_columns(record, folds, least);
@@ -110,13 +111,13 @@ class Identification {
   void phase(std::string_view name) const;
   /// Checks the samples, sums them and leaves out the channels that say nothing.
   std::optional<Verdict> prepare();
-  void sum();
+  StretchSums sums_of(RowRange rows);
   void warn_of_constants(const std::vector<Index>& moving, Index channels, const char* kind);
   void leave_out_redundant_inputs();
   /// Ranks what can be identified, best first.
   std::optional<Verdict> choose(std::vector<ScoredRecipe>& ranked);
   /// The only recipe there is, where the options leave no choice or the rows do not allow one.
-  std::optional<Recipe> given_recipe(const std::array<Fold, 2>& folds) const;
+  std::optional<Recipe> given_recipe(const std::vector<Fold>& folds) const;
   Verdict too_few_samples(Index width, bool held_out) const;
   std::optional<Verdict> useless(const std::vector<ScoredRecipe>& ranked, double constant) const;
   /// An order of n needs inputs that excite n + 1 block rows.
@@ -134,7 +135,6 @@ class Identification {
   const IdentifyOptions& options_;
   LagSums& lag_sums_;
   bool keep_;
-  std::array<StretchSums, 3> sums_;  // of the stretches between the folds' edges
   StretchSums all_sums_;
   Normalisation normalisation_;
   Record work_;                         // the rows, normalised, without the channels left out
@@ -166,7 +166,7 @@ void Identification::phase(std::string_view name) const {
 
 std::optional<Verdict> Identification::prepare() {
   if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols(), true);
-  sum();
+  all_sums_ = sums_of(rows_);
   if (!all_finite(all_sums_))
     if (auto verdict = non_finite_values(record_, rows_)) return verdict;
   normalisation_ = normalisation_of(all_sums_, record_.u.cols());
@@ -185,18 +185,11 @@ std::optional<Verdict> Identification::prepare() {
   return std::nullopt;
 }
 
-void Identification::sum() {
-  const std::array<Fold, 2> folds = folds_of(rows_.size(), options_.tune_share);
-  const std::array<Index, 4> edges{0, std::min(folds[0].fit.end, folds[1].fit.begin),
-                                   std::max(folds[0].fit.end, folds[1].fit.begin), rows_.size()};
-  for (std::size_t i = 0; i < sums_.size(); ++i) {
-    const RowRange stretch{rows_.begin + edges[i], rows_.begin + edges[i + 1]};
-    const std::vector<Segment> parts = segments_within(record_, stretch);
-    if (parts.empty()) continue;
-    const TickRange ticks{parts.front().first_tick, parts.back().first_tick + parts.back().size()};
-    sums_[i] = keep_ ? lag_sums_.keep_over(ticks, record_) : lag_sums_.over(ticks, record_);
-    all_sums_.append(sums_[i]);
-  }
+StretchSums Identification::sums_of(RowRange rows) {
+  const std::vector<Segment> parts = segments_within(record_, rows);
+  if (parts.empty()) return {};
+  const TickRange ticks{parts.front().first_tick, parts.back().first_tick + parts.back().size()};
+  return keep_ ? lag_sums_.keep_over(ticks, record_) : lag_sums_.over(ticks, record_);
 }
 
 void Identification::warn_of_constants(const std::vector<Index>& moving, Index channels,
@@ -228,7 +221,7 @@ void Identification::leave_out_redundant_inputs() {
   work_ = normalised(record_, rows_, normalisation_);
 }
 
-std::optional<Recipe> Identification::given_recipe(const std::array<Fold, 2>& folds) const {
+std::optional<Recipe> Identification::given_recipe(const std::vector<Fold>& folds) const {
   if (!options_.order || !options_.horizon) return std::nullopt;
   const bool chosen = options_.weighting && options_.direct_feedthrough;
   if (!chosen && usable_columns(work_, folds, *options_.horizon) > 0) return std::nullopt;
@@ -243,7 +236,7 @@ std::optional<Recipe> Identification::given_recipe(const std::array<Fold, 2>& fo
 }
 
 std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked) {
-  const std::array<Fold, 2> folds = folds_of(rows_.size(), options_.tune_share);
+  const std::vector<Fold> folds = folds_of(rows_.size(), options_.tune_share);
   SearchSpace space{feasible_horizons(work_, folds, options_),
                     {Weighting::n4sid, Weighting::moesp, Weighting::cva},
                     options_.order.value_or(options_.min_order),
@@ -265,7 +258,10 @@ std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked)
     return std::nullopt;
   }
   SearchEffort effort{options_.search_budget, 0};
-  const SearchData data{work_, normalisation_, folds, sums_};
+  std::vector<StretchSums> fold_sums;
+  for (const Fold& fold : folds)
+    fold_sums.push_back(sums_of({rows_.begin + fold.fit.begin, rows_.begin + fold.fit.end}));
+  const SearchData data{work_, normalisation_, folds, fold_sums};
   const ForEach for_each = options_.for_each ? options_.for_each : in_sequence;
   ranked = ranked_recipes(data, space, for_each, effort);
   if (ranked.empty()) {
@@ -280,7 +276,8 @@ std::optional<Verdict> Identification::useless(const std::vector<ScoredRecipe>& 
                                                double constant) const {
   const bool unstable = ranked.empty() || ranked.front().recipe.stability == Stability::enforced;
   // A system that really is unstable must not pass as a stable one that follows it a little.
-  const double acceptable = unstable ? constant / 2 : constant;
+  // Of many candidates, the best beats the mean by a little even on noise.
+  const double acceptable = (unstable ? 0.5 : 0.98) * constant;
   if (!ranked.empty() && ranked.front().error < acceptable) return std::nullopt;
   if (unstable)
     return Verdict{VerdictCode::unstable,
@@ -296,7 +293,7 @@ Verdict Identification::too_few_samples(Index width, bool held_out) const {
   const Index s = options_.horizon.value_or(least_horizon(options_));
   const Index fit = 2 * s * width + 2 * s;
   Index needed = fit;
-  while (held_out && folds_of(needed, options_.tune_share)[0].fit.size() < fit) ++needed;
+  while (held_out && folds_of(needed, options_.tune_share)[2].fit.size() < fit) ++needed;
   return {VerdictCode::too_few_samples,
           std::to_string(rows_.size()) + " rows in " +
               std::to_string(segments_within(record_, rows_).size()) +
@@ -334,14 +331,29 @@ std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
 
 Response Identification::respond(const Recipe& recipe, const Projection& projection,
                                  const Dynamics& dynamics) const {
-  const auto& [A, C] = dynamics;
-  if (recipe.fit == ResponseFit::simulation)
-    return recipe.refinement_steps > 0
-               ? refine_response(A, C, recipe.direct, work_, work_.all(), recipe.refinement_steps)
-               : fit_response(A, C, recipe.direct, work_, work_.all(), Accuracy::exact);
-  Response response{projection.with_response(A, C, recipe.direct, work_.period_s), {}, 0};
-  response.x0 = estimate_initial_state(response.model, work_, work_.segments.front(),
-                                       initial_rows(response.model));
+  const Index m = work_.u.cols(), p = work_.y.cols(), rows = work_.rows();
+  const auto last = [rows](Index count) {
+    return RowRange{std::max<Index>(0, rows - count), rows};
+  };
+  auto [A, C] = dynamics;
+  if (recipe.refinement_steps > 0) {
+    StateSpaceModel refined = refine_response(A, C, recipe.direct, work_, last(recipe.refined_rows),
+                                              recipe.refinement_steps)
+                                  .model;
+    A = std::move(refined.A);
+    C = std::move(refined.C);
+  }
+  // All rows but in the longest windows.
+  Recipe unrefined = recipe;
+  unrefined.refinement_steps = 0;
+  const RowRange fitted = last(affordable_rows(unrefined, m, p, options_.search_budget / 3));
+  Response response =
+      recipe.fit == ResponseFit::simulation
+          ? fit_response(A, C, recipe.direct, work_, fitted, Accuracy::exact)
+          : Response{projection.with_response(A, C, recipe.direct, work_.period_s), {}, 0};
+  if (recipe.fit == ResponseFit::subspace || fitted.begin > 0)
+    response.x0 = estimate_initial_state(response.model, work_, work_.segments.front(),
+                                         initial_rows(response.model));
   return response;
 }
 

@@ -32,12 +32,12 @@ struct IdentifyOptions {
   std::optional<bool> direct_feedthrough;  // whether D may differ from zero; absent: chosen
   std::vector<int> input_delays;           // samples, one for each input; empty: none
   int max_input_delay = 0;  // above 0: the delays are estimated, each at most so many samples
-  /// Share of the identification rows that choices are scored on; in (0, 0.9]. The last rows are
-  /// held out, and in a second fold the first.
-  double tune_share = 0.3;
+  /// Share of the identification rows that choices are scored on, in (0, 0.9]: the last ones and
+  /// the first ones are held out in turn, a half of the share at a time.
+  double tune_share = 0.4;
   /// What the choice may spend, in multiply-adds of free runs and regressions: with it the search
   /// is as thorough as the rows allow, and the same on every machine. Positive.
-  double search_budget = 3e8;
+  double search_budget = 6e8;
   /// Runs the independent parts of the search; absent: one after the other. The result does not
   /// depend on it.
   ForEach for_each;
@@ -60,8 +60,9 @@ struct Identified {
   double hankel_condition = 0;  // least share of a Hankel row that those before it leave, squared
   Vector input_min, input_max;  // range visited by each input in the identification rows
   std::optional<double> held_out_error;  // of the choice: rms in deviations of the outputs, over
-                                         // both folds; absent where nothing was to be chosen
-  Score tune;  // of the model on the last tune_share of the rows, which it was fitted to as well
+                                         // all folds; absent where nothing was to be chosen
+  Score tune;  // of the model on the last half of tune_share of the rows, which it was fitted to as
+               // well
   double search_work = 0;  // spent of the budget
   std::vector<std::string> warnings;
 };

@@ -1,5 +1,6 @@
 #include "identification/subspace.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -22,6 +23,9 @@ std::string_view name(Weighting weighting) {
 }
 
 namespace {
+
+/// Block rows of the future that B and D are fitted to: more cost much and add little.
+constexpr Index longest_response = 20;
 
 /// Lower triangular factor of M M' for M of no more rows than columns.
 Matrix lower_factor(const Matrix& M) {
@@ -135,7 +139,8 @@ std::optional<Vector> solve_sums(const Matrix& sums, const Matrix& removed) {
 
 StateSpaceModel Projection::with_response(const Matrix& A, const Matrix& C, bool direct,
                                           double period_s) const {
-  const Index n = A.rows(), m = inputs_, p = outputs_, s = horizon_, mu = m * s;
+  const Index n = A.rows(), m = inputs_, p = outputs_,
+              s = std::min<Index>(horizon_, longest_response), mu = m * s;
   StateSpaceModel model{
       A, Matrix::Zero(n, m), C, Matrix::Zero(p, m), {}, Vector::Zero(m), Vector::Zero(p), period_s};
   if (mu == 0) return model;
@@ -161,12 +166,12 @@ StateSpaceModel Projection::with_response(const Matrix& A, const Matrix& C, bool
       for (Index k = 0; direct && k < count; ++k)
         own.col(k * p + q).segment(n * m + q * m, m) = Eigen::Map<const Vector>(v + k * m, m);
     }
-    rows.row(unknowns).segment(j * p * s, p * s) = L_yu_.col(j).transpose();
+    rows.row(unknowns).segment(j * p * s, p * s) = L_yu_.col(j).head(p * s).transpose();
     const VectorSequence sequence{own.data(), height, height};
     add_outer_products(sequence, sequence, count * p, Triangle::lower, sums.data());
     add_outer_products(sequence, {Qt.data() + k0 * p * n, n, n}, count * p, Triangle::full,
                        along_gamma.data() + j * n * height);
-    along_gamma.row(unknowns).segment(j * n, n).noalias() = Qt * L_yu_.col(j);
+    along_gamma.row(unknowns).segment(j * n, n).noalias() = Qt * L_yu_.col(j).head(p * s);
   }
   const VectorSequence along{along_gamma.data(), height, height};
   add_outer_products(along, along, mu * n, Triangle::lower, removed.data());

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <set>
 
+#include "identification/identify.hpp"
 #include <fmt/format.h>
 
 #include "service/daemon/config_document.hpp"
@@ -25,8 +26,6 @@ constexpr std::size_t max_name_bytes = 128;
 constexpr std::int64_t max_window_ticks = 50'000'000;  // 8 bytes for each channel of each
 constexpr int max_order = 100;
 constexpr int max_horizon = 500;
-// The library keeps this share of the identification rows for its own choices.
-constexpr double tune_share = 0.3;
 
 template <class Target, class Value>
 void assign(Target& target, const std::optional<Value>& value) {
@@ -174,7 +173,7 @@ std::int64_t least_window_ticks(const EquipmentConfig& equipment) {
   const auto channels = static_cast<double>(equipment.inputs.size() + equipment.outputs.size());
   const double rows = 2 * horizon * (channels + 1);
   return static_cast<std::int64_t>(
-      std::ceil(rows / ((1 - tune_share) * (1 - equipment.validation_share))));
+      std::ceil(rows / ((1 - identification::IdentifyOptions{}.tune_share) * (1 - equipment.validation_share))));
 }
 
 void check_window(TableReader& reader, const EquipmentConfig& equipment) {

@@ -32,9 +32,9 @@ TEST(Verdicts, TooFewSamplesNamesTheNumberNeeded) {
     ASSERT_TRUE(std::holds_alternative<Verdict>(result)) << rows;
     const Verdict& verdict = std::get<Verdict>(result);
     EXPECT_EQ(verdict.code, VerdictCode::too_few_samples) << rows;
-    EXPECT_THAT(verdict.reason, HasSubstr("at least 23 rows"));
+    EXPECT_THAT(verdict.reason, HasSubstr("at least 26 rows"));
   }
-  const IdentifyResult result = identify(record, {0, 23}, {});
+  const IdentifyResult result = identify(record, {0, 26}, {});
   const auto* verdict = std::get_if<Verdict>(&result);
   EXPECT_TRUE(!verdict || verdict->code != VerdictCode::too_few_samples);
 }
