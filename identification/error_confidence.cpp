@@ -8,7 +8,6 @@
 
 #include "identification/correlation.hpp"
 #include "identification/quantiles.hpp"
-#include "identification/simulate.hpp"
 
 namespace reident::identification {
 namespace {
@@ -126,11 +125,15 @@ std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat
 
 ErrorSpread error_spread(const Matrix& y, const Matrix& y_hat) {
   const Index parts = std::clamp<Index>(y.rows() / 10, 1, 10);
+  const Matrix e = y - y_hat;
   Matrix errors(y.cols(), parts);
   for (Index part = 0; part < parts; ++part) {
     const Index begin = y.rows() * part / parts, end = y.rows() * (part + 1) / parts;
-    errors.col(part) =
-        score(y.middleRows(begin, end - begin), y_hat.middleRows(begin, end - begin)).mrse_percent;
+    for (Index q = 0; q < y.cols(); ++q) {
+      const double error = e.col(q).segment(begin, end - begin).norm();
+      const double share = std::sqrt(double(y.rows()) / double(end - begin));
+      errors(q, part) = error == 0 ? 0 : 100 * share * error / y.col(q).norm();
+    }
   }
   ErrorSpread result{parts, Vector(y.cols()), Vector(y.cols()), Vector(y.cols())};
   for (Index q = 0; q < y.cols(); ++q) {

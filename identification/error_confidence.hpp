@@ -49,13 +49,15 @@ struct ErrorInterval {
 std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat,
                                             const std::vector<RowRange>& stretches);
 
-/// The MRSE in percent over equal parts of the rows, one entry an output.
+/// The error of equal parts of the rows, one entry an output: the root mean square error of a part
+/// in percent of the root mean square of the output over all rows, so that a part in which the
+/// output rests at zero has one too. The mean square of the parts is the square of the MRSE.
 struct ErrorSpread {
   Index parts = 0;
   Vector smallest, median, largest;
 };
 
-/// Ten parts, fewer where one would have less than 10 rows. N >= 1.
+/// Ten parts, fewer where one would have less than 10 rows; N >= 1. +inf for an output of zeros.
 ErrorSpread error_spread(const Matrix& y, const Matrix& y_hat);
 
 }  // namespace reident::identification

@@ -126,6 +126,19 @@ TEST(ErrorSpread, IsTheErrorOfTenthsOfTheRows) {
   EXPECT_NEAR(spread.largest(0), 50, 1e-9);
 }
 
+TEST(ErrorSpread, OfAPartInWhichTheOutputRestsAtZeroIsFinite) {
+  testing::Noise noise(7);
+  Matrix y = noise.normal(1003, 2), y_hat = y + 0.1 * noise.normal(1003, 2);
+  y.topRows(200).setZero();
+  const ErrorSpread spread = error_spread(y, y_hat);
+  EXPECT_TRUE(spread.largest.allFinite());
+  const Score whole = score(y, y_hat);
+  for (Index q = 0; q < 2; ++q) {
+    EXPECT_LT(spread.smallest(q), whole.mrse_percent(q));
+    EXPECT_GT(spread.largest(q), whole.mrse_percent(q));
+  }
+}
+
 TEST(ErrorSpread, OfFewRowsHasFewerParts) {
   const Matrix y = Matrix::Ones(35, 1);
   EXPECT_EQ(error_spread(y, 2 * y).parts, 3);
