@@ -28,11 +28,15 @@ double normalised(double product, double energy) {
   return energy == 0 ? 0 : product / energy;
 }
 
+/// The largest lag up to `lags` that the rows can say something of.
+Index reach_within(const Series& series, Index lags) {
+  return std::max<Index>(0, std::min({lags, series.rows() / 4, series.longest_stretch() - 1}));
+}
+
 /// 1 + 2 sum term(k) over the window, at least 1.
 template <typename Term>
 double windowed_sum(const Series& series, Term term) {
-  const Index last =
-      std::min({Series::longest_sum, series.rows() / 10, series.longest_stretch() - 1});
+  const Index last = reach_within(series, Series::longest_sum);
   double sum = 1;
   for (Index lag = 1; lag <= last; ++lag) {
     sum += 2 * term(lag);
@@ -75,7 +79,7 @@ double Series::autocorrelation(Index lag) {
 }
 
 Correlogram autocorrelogram(Series& series, Index lags) {
-  const Index count = std::max<Index>(0, std::min(lags, series.longest_stretch() - 1));
+  const Index count = reach_within(series, lags);
   Correlogram result{1, Vector(count), Vector(count)};
   for (Index i = 0; i < count; ++i) {
     result.r(i) = series.autocorrelation(i + 1);
@@ -86,8 +90,8 @@ Correlogram autocorrelogram(Series& series, Index lags) {
 
 Correlogram cross_correlogram(Series& input, Series& residual, Index lags) {
   eigen_assert(input.rows() == residual.rows());
-  const Index reach = std::min(lags, input.longest_stretch() - 1);
-  if (reach < 0) return {};
+  const Index reach = reach_within(input, lags);
+  if (reach == 0) return {};
   const Vector &u = input.centred(), &e = residual.centred();
   const double energy = u.norm() * e.norm();
   const double deviation = std::sqrt(bartlett_factor(input, residual)) / double(input.rows());
@@ -118,7 +122,10 @@ CorrelationSummary summary(const Correlogram& correlogram) {
   correlogram.r.cwiseAbs().maxCoeff(&at);
   const double each = std::pow(confidence, 1 / double(lags));
   const Index outside = (correlogram.r.array().abs() > correlogram.bound.array()).count();
-  return {correlogram.r(at), correlogram.first_lag + at, correlogram.bound(at),
+  return {lags,
+          correlogram.r(at),
+          correlogram.first_lag + at,
+          correlogram.bound(at),
           correlogram.bound(at) * normal_quantile((1 + each) / 2) / two_sided,
           double(outside) / double(lags)};
 }

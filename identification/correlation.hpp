@@ -53,10 +53,11 @@ struct Correlogram {
   Vector bound;
 };
 
-/// At the lags 1 to `lags`, or one below the longest stretch; bounds for a white signal.
+/// At the lags 1 to `lags`, but at most a quarter of the rows and within the longest stretch;
+/// bounds for a white signal.
 Correlogram autocorrelogram(Series& series, Index lags);
 
-/// At the lags -lags to lags. At a positive one the residual follows the input.
+/// At the lags -lags to lags, as far as above. At a positive one the residual follows the input.
 Correlogram cross_correlogram(Series& input, Series& residual, Index lags);
 
 /// P of two series of the same rows: 1 + 2 sum r_aa(k) r_bb(k), at least 1.
@@ -67,6 +68,7 @@ double correlated_rows(Series& series);
 
 /// A correlogram in a few figures.
 struct CorrelationSummary {
+  Index lags = 0;            // looked at; with 0 of them there is nothing to say
   double largest = 0;        // r where |r| is largest
   Index lag = 0;             // there
   double bound = 0;          // 95 % for this lag alone
@@ -76,7 +78,6 @@ struct CorrelationSummary {
   bool significant() const { return !(largest <= joint_bound && -largest <= joint_bound); }
 };
 
-/// All 0 for a correlogram of no lags.
 CorrelationSummary summary(const Correlogram& correlogram);
 
 /// Whether a series is white, by one figure for all lags:

@@ -26,21 +26,24 @@ std::string rows_text(Index count) {
 
 std::string confidence_table(const Diagnostics& diagnostics, const Names& outputs) {
   const identification::ErrorSpread& spread = diagnostics.spread;
-  Table table({{"output"},
-               {"MRSE % (95 % interval)"},
-               {fmt::format("in {} parts of the rows: best", spread.parts), Table::Align::right},
-               {"median", Table::Align::right},
-               {"worst", Table::Align::right}});
+  const auto& interval = diagnostics.interval;
+  std::vector<Table::Column> columns = {{"output"}, {"MRSE % (95 % interval)"}};
+  if (spread.parts > 1) {
+    columns.push_back({fmt::format("in {} parts: best", spread.parts), Table::Align::right});
+    columns.push_back({"median", Table::Align::right});
+    columns.push_back({"worst", Table::Align::right});
+  }
+  Table table(columns);
   for (std::size_t q = 0; q < outputs.size(); ++q) {
     const auto at = static_cast<Index>(q);
-    const auto& interval = diagnostics.interval;
-    table.add(
-        {outputs[q],
-         fmt::format("{:.4g}", diagnostics.free_run.mrse_percent(at)) +
-             (interval ? fmt::format(" ({:.4g} to {:.4g})", interval->low(at), interval->high(at))
-                       : ""),
-         fmt::format("{:.4g}", spread.smallest(at)), fmt::format("{:.4g}", spread.median(at)),
-         fmt::format("{:.4g}", spread.largest(at))});
+    std::string error = fmt::format("{:.4g}", diagnostics.free_run.mrse_percent(at));
+    if (interval)
+      error += fmt::format(" ({:.4g} to {:.4g})", interval->low(at), interval->high(at));
+    std::vector<std::string> cells = {outputs[q], error};
+    if (spread.parts > 1)
+      for (const double value : {spread.smallest(at), spread.median(at), spread.largest(at)})
+        cells.push_back(fmt::format("{:.4g}", value));
+    table.add(std::move(cells));
   }
   return table.text(0);
 }
@@ -64,6 +67,7 @@ std::string prediction_table(const Diagnostics& diagnostics, const Names& output
 
 std::string whiteness_text(const Whiteness& whiteness) {
   const CorrelationSummary& found = whiteness.correlation;
+  if (found.lags == 0) return "too few rows to tell";
   if (whiteness.portmanteau.white()) return "white, nothing left but chance";
   return fmt::format("{} (r = {:.2g} with itself {} before; chance: {:.2g})",
                      std::abs(found.largest) < worth_a_word ? "nearly white" : "not white",
@@ -91,7 +95,8 @@ std::string residuals_text(const Diagnostics& diagnostics, const Names& inputs,
     for (const InputCorrelation& pair :
          diagnostics.predicted ? diagnostics.prediction_inputs : diagnostics.free_run_inputs)
       if (pair.output == static_cast<Index>(q)) explained += input_text(pair, inputs);
-    if (explained.empty() && !inputs.empty()) explained = "; no input would explain more of it";
+    if (explained.empty() && !inputs.empty() && diagnostics.whiteness[q].correlation.lags > 0)
+      explained = "; no input would explain more of it";
     text += fmt::format("  {}: {}{}\n", outputs[q], whiteness_text(diagnostics.whiteness[q]),
                         explained);
   }
@@ -102,7 +107,7 @@ std::string residuals_text(const Diagnostics& diagnostics, const Names& inputs,
 
 std::string diagnostics_text(const Diagnostics& diagnostics, const Names& inputs,
                              const Names& outputs) {
-  std::string text = fmt::format("how sure the error on the {} validation rows is:\n{}",
+  std::string text = fmt::format("how sure the error on the validation rows ({}) is:\n{}",
                                  diagnostics.rows, confidence_table(diagnostics, outputs));
   if (diagnostics.interval && diagnostics.interval->too_few_rows)
     text +=

@@ -16,6 +16,7 @@ const std::string& name_at(const Names& names, identification::Index at) {
 }
 
 void put(Json& json, const CorrelationSummary& summary) {
+  json["lags"] = summary.lags;
   json["largest"] = summary.largest;
   json["lag"] = summary.lag;
   json["bound"] = summary.bound;

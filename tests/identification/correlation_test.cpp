@@ -55,16 +55,30 @@ TEST(Series, AConstantHasNoCorrelation) {
   EXPECT_EQ(constant.autocorrelation(5), 0);
 }
 
-TEST(Correlogram, HasAsManyLagsAsTheLongestStretchAllows) {
+TEST(Correlogram, HasAsManyLagsAsTheRowsAllow) {
   testing::Noise noise(2);
-  Series series(noise.normal(30, 1), {{0, 10}, {10, 30}});
-  EXPECT_EQ(autocorrelogram(series, 25).r.size(), 19);
-  EXPECT_EQ(cross_correlogram(series, series, 25).r.size(), 39);
-  EXPECT_EQ(cross_correlogram(series, series, 25).first_lag, -19);
+  const auto lags = [&noise](std::vector<RowRange> stretches) {
+    const Vector values = noise.normal(stretches.back().end, 1);
+    Series series(values, std::move(stretches));
+    const Correlogram both = cross_correlogram(series, series, 25);
+    const Index count = autocorrelogram(series, 25).r.size();
+    EXPECT_EQ(both.r.size(), count == 0 ? 0 : 2 * count + 1);
+    EXPECT_EQ(both.first_lag, -count);
+    return count;
+  };
+  EXPECT_EQ(lags({{0, 200}}), 25);
+  EXPECT_EQ(lags({{0, 40}}), 10);  // a quarter
+  EXPECT_EQ(lags({{0, 10}, {10, 30}, {30, 50}, {50, 100}, {100, 200}, {200, 220}}), 25);
+  EXPECT_EQ(lags({{0, 10}, {10, 25}, {25, 40}, {40, 60}, {60, 80}}), 19);
+  EXPECT_EQ(lags({{0, 1}}), 0);
+}
+
+TEST(Correlogram, OfNoLagsSaysNothing) {
   Series single = whole(Vector::Ones(1));
-  EXPECT_EQ(autocorrelogram(single, 25).r.size(), 0);
-  EXPECT_EQ(summary(autocorrelogram(single, 25)).share_outside, 0);
-  EXPECT_TRUE(portmanteau(single, autocorrelogram(single, 25)).white());
+  const Correlogram correlogram = autocorrelogram(single, 25);
+  EXPECT_EQ(summary(correlogram).lags, 0);
+  EXPECT_FALSE(summary(correlogram).significant());
+  EXPECT_TRUE(portmanteau(single, correlogram).white());
 }
 
 TEST(Correlogram, OfAWhiteSeriesStaysWithinItsBoundAtNineteenOfTwentyLags) {
@@ -87,6 +101,7 @@ TEST(Correlogram, OfACorrelatedSeriesShowsThePowersOfItsCoefficient) {
   const Correlogram correlogram = autocorrelogram(series, 25);
   for (Index i = 0; i < 5; ++i) EXPECT_NEAR(correlogram.r(i), std::pow(0.7, double(i + 1)), 0.03);
   const CorrelationSummary found = summary(correlogram);
+  EXPECT_EQ(found.lags, 25);
   EXPECT_EQ(found.lag, 1);
   EXPECT_TRUE(found.significant());
   EXPECT_FALSE(portmanteau(series, correlogram).white());

@@ -19,10 +19,11 @@ Diagnostics example_diagnostics() {
   Diagnostics diagnostics;
   diagnostics.rows = 500;
   diagnostics.predicted = true;
-  diagnostics.whiteness = {{{-0.3, 4, 0.09, 0.13, 0.2}, {48, 37.6}}};
-  diagnostics.prediction_inputs = {{0, 0, {0.02, -3, 0.09, 0.14, 0}},
-                                   {1, 0, {0.5, 7, 0.1, 0.2, 1}}};
-  diagnostics.free_run_inputs = {{0, 0, {0.1, 1, 0.2, 0.3, 0}}, {1, 0, {0.1, 1, 0.2, 0.3, 0}}};
+  diagnostics.whiteness = {{{25, -0.3, 4, 0.09, 0.13, 0.2}, {48, 37.6}}};
+  diagnostics.prediction_inputs = {{0, 0, {51, 0.02, -3, 0.09, 0.14, 0}},
+                                   {1, 0, {51, 0.5, 7, 0.1, 0.2, 1}}};
+  diagnostics.free_run_inputs = {{0, 0, {51, 0.1, 1, 0.2, 0.3, 0}},
+                                 {1, 0, {51, 0.1, 1, 0.2, 0.3, 0}}};
   const identification::Score score{Vector::Constant(1, 6.5), Vector::Constant(1, -infinity), 500};
   diagnostics.predictions = {{1, score}, {5, score}};
   diagnostics.free_run = score;
@@ -40,6 +41,7 @@ TEST(DiagnosticsJson, names_inputs_and_outputs_beside_their_figures) {
   EXPECT_EQ(whiteness["output"], "V");
   EXPECT_EQ(whiteness["white"], false);
   EXPECT_EQ(whiteness["largest"], -0.3);
+  EXPECT_EQ(whiteness["lags"], 25);
   EXPECT_EQ(whiteness["lag"], 4);
   EXPECT_EQ(whiteness["ljung_box"], 48);
   const ordered_json& pairs = json["input_correlation"]["prediction"];
