@@ -18,6 +18,8 @@ std::string_view name(VerdictCode code) {
       return "unstable";
     case VerdictCode::no_better_than_mean:
       return "no_better_than_mean";
+    case VerdictCode::no_continuous_time:
+      return "no_continuous_time";
   }
   return "unknown";
 }

@@ -14,6 +14,7 @@ enum class VerdictCode {
   insufficient_excitation,
   unstable,
   no_better_than_mean,
+  no_continuous_time,
 };
 
 /// The code as it is stored and printed, such as "too_few_samples".

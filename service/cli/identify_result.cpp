@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "service/cli/diagnostics_text.hpp"
 #include "service/cli/model_text.hpp"
 #include "service/cli/table.hpp"
+#include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
 
 namespace reident::cli {
@@ -30,9 +32,9 @@ Table error_table(const IdentifyOutcome& outcome) {
   for (std::size_t q = 0; q < outcome.outputs.size(); ++q) {
     const auto at = static_cast<Eigen::Index>(q);
     table.add({outcome.outputs[q], fmt::format("{:.4g}", outcome.identify.mrse_percent(at)),
-               fmt::format("{:.4g}", outcome.validate.mrse_percent(at)),
+               fmt::format("{:.4g}", outcome.diagnostics.free_run.mrse_percent(at)),
                fmt::format("{:.4g}", outcome.identify.fit_percent(at)),
-               fmt::format("{:.4g}", outcome.validate.fit_percent(at))});
+               fmt::format("{:.4g}", outcome.diagnostics.free_run.fit_percent(at))});
   }
   return table;
 }
@@ -42,7 +44,7 @@ Table error_table(const IdentifyOutcome& outcome) {
 std::string to_json_text(const IdentifyOutcome& outcome) {
   const StateSpaceModel& model = outcome.identified.model;
   ordered_json warnings = outcome.warnings;
-  if (!all_finite(outcome.identify) || !all_finite(outcome.validate))
+  if (!all_finite(outcome.identify) || !all_finite(outcome.diagnostics.free_run))
     warnings.push_back(
         "an error or a fit is not finite, since an output is zero or does not move; it is null");
   ordered_json timing = ordered_json::object();
@@ -67,10 +69,12 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"spectral_radius", outcome.identified.spectral_radius},
       {"mrse_percent",
        {{"identify", to_json(outcome.identify.mrse_percent)},
-        {"validate", to_json(outcome.validate.mrse_percent)}}},
+        {"validate", to_json(outcome.diagnostics.free_run.mrse_percent)}}},
       {"fit_percent",
        {{"identify", to_json(outcome.identify.fit_percent)},
-        {"validate", to_json(outcome.validate.fit_percent)}}},
+        {"validate", to_json(outcome.diagnostics.free_run.fit_percent)}}},
+      {"diagnostics", to_json(outcome.diagnostics, outcome.inputs, outcome.outputs)},
+      {"continuous", to_json(outcome.continuous)},
       {"timing_ms", timing},
       {"warnings", warnings}};
   std::string text;
@@ -90,7 +94,9 @@ std::string to_report(const IdentifyOutcome& outcome) {
       identified.model.order(), identified.recipe.horizon, name(identified.recipe.weighting),
       identified.model.period_s, poles_text(identified.model), identified.spectral_radius,
       identified.spectral_radius < 1 ? "stable" : "unstable", outcome.identify.rows,
-      outcome.validate.rows, error_table(outcome).text(0));
+      outcome.diagnostics.free_run.rows, error_table(outcome).text(0));
+  text += diagnostics_text(outcome.diagnostics, outcome.inputs, outcome.outputs);
+  text += continuous_text(outcome.continuous);
   for (const std::string& warning : outcome.warnings) text += fmt::format("warning: {}\n", warning);
   return text + fmt::format("{:.0f} ms; --json prints the matrices\n", total);
 }

@@ -3,16 +3,20 @@
 
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "identification/continuous.hpp"
+#include "identification/diagnostics.hpp"
 #include "identification/identify.hpp"
 
 namespace reident::cli {
 
 struct IdentifyOutcome {
   identification::Identified identified;
-  identification::Score identify;  // on the rows that it was identified from
-  identification::Score validate;
+  identification::Score identify;           // on the rows that it was identified from
+  identification::Diagnostics diagnostics;  // on the validation rows, with the score there
+  std::variant<identification::ContinuousModel, identification::Verdict> continuous;
   std::vector<std::string> inputs, outputs;  // column names
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::string> warnings;

@@ -15,18 +15,33 @@ std::string pole_text(const std::complex<double>& pole) {
   return fmt::format("{:.6g} \u00b1 {:.6g}j", pole.real(), pole.imag());
 }
 
-}  // namespace
-
-std::string poles_text(const identification::StateSpaceModel& model) {
-  const Eigen::VectorXcd eigenvalues = model.A.eigenvalues();
+/// A complex pair once, the one first whose `slowness` is largest.
+template <typename Slowness>
+std::string sorted_poles_text(const identification::Matrix& A, Slowness slowness) {
+  const Eigen::VectorXcd eigenvalues = A.eigenvalues();
   std::vector<std::complex<double>> poles;
   for (const std::complex<double>& pole : eigenvalues)
     if (pole.imag() >= 0) poles.push_back(pole);
   std::sort(poles.begin(), poles.end(),
-            [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
+            [slowness](const auto& a, const auto& b) { return slowness(a) > slowness(b); });
   std::string text;
   for (const auto& pole : poles) text += (text.empty() ? "" : ", ") + pole_text(pole);
   return text;
+}
+
+}  // namespace
+
+std::string poles_text(const identification::StateSpaceModel& model) {
+  return sorted_poles_text(model.A, [](const auto& pole) { return std::abs(pole); });
+}
+
+std::string continuous_text(
+    const std::variant<identification::ContinuousModel, identification::Verdict>& continuous) {
+  if (const auto* verdict = std::get_if<identification::Verdict>(&continuous))
+    return fmt::format("continuous time: none; {}\n", verdict->reason);
+  const auto& model = std::get<identification::ContinuousModel>(continuous);
+  return fmt::format("continuous time: poles {} 1/s\n",
+                     sorted_poles_text(model.A, [](const auto& pole) { return pole.real(); }));
 }
 
 std::string matrix_text(std::string_view symbol, const identification::Matrix& matrix) {

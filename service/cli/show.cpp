@@ -6,6 +6,7 @@
 #include "service/cli/model_text.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/table.hpp"
+#include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/time_text.hpp"
 
@@ -108,6 +109,12 @@ ordered_json range_json(const storage::TimeRange& range) {
   return {{"begin", time_text(range.begin)}, {"end", time_text(range.end)}};
 }
 
+/// null for a damaged model, which has no logarithm to look for.
+ordered_json continuous_json(const identification::StateSpaceModel& dynamics) {
+  if (!is_well_formed(dynamics)) return nullptr;
+  return to_json(to_continuous(dynamics));
+}
+
 void print_json(const Story& story) {
   ordered_json decisions = ordered_json::array();
   for (const Decision& decision : story.decisions)
@@ -130,7 +137,8 @@ void print_json(const Story& story) {
                                {"decisions", decisions},
                                {"configuration_digest", story.attempt.configuration_digest},
                                {"program_version", story.attempt.program_version},
-                               {"model", to_json(story.model)}};
+                               {"model", to_json(story.model)},
+                               {"continuous", continuous_json(story.model.dynamics)}};
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
@@ -179,6 +187,14 @@ std::string decisions_text(const std::vector<Decision>& decisions) {
   return table.text(terminal_width());
 }
 
+void print_continuous(
+    const std::variant<identification::ContinuousModel, identification::Verdict>& continuous) {
+  fmt::print("{}", continuous_text(continuous));
+  if (const auto* model = std::get_if<identification::ContinuousModel>(&continuous))
+    fmt::print("dx/dt = A x + B (u - u0), C, D, u0 and y0 as above\n{}{}",
+               matrix_text("A", model->A), matrix_text("B", model->B));
+}
+
 void print_story(const Story& story) {
   const EquipmentModel& model = story.model;
   const identification::StateSpaceModel& dynamics = model.dynamics;
@@ -204,6 +220,7 @@ void print_story(const Story& story) {
              matrix_text("C", dynamics.C), matrix_text("D", dynamics.D),
              matrix_text("K", dynamics.K), matrix_text("u0", dynamics.u0.transpose()),
              matrix_text("y0", dynamics.y0.transpose()));
+  if (is_well_formed(dynamics)) print_continuous(to_continuous(dynamics));
 }
 
 int run(const Arguments& arguments) {

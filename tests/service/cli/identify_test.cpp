@@ -129,9 +129,26 @@ TEST_F(Identify, PrintsEveryKeyOfTheContract) {
   const json printed = json_of(command({"--order", "3", "--horizon", "8"}));
   EXPECT_EQ(printed["order"], 3);
   EXPECT_EQ(printed["horizon"], 8);
-  for (const char* key : {"order", "horizon", "weighting", "sample_period_s", "A", "B", "C", "D",
-                          "K", "x0", "input_offset", "output_offset", "stable", "spectral_radius",
-                          "mrse_percent", "fit_percent", "timing_ms", "warnings"})
+  for (const char* key : {"order",
+                          "horizon",
+                          "weighting",
+                          "sample_period_s",
+                          "A",
+                          "B",
+                          "C",
+                          "D",
+                          "K",
+                          "x0",
+                          "input_offset",
+                          "output_offset",
+                          "stable",
+                          "spectral_radius",
+                          "mrse_percent",
+                          "fit_percent",
+                          "diagnostics",
+                          "continuous",
+                          "timing_ms",
+                          "warnings"})
     EXPECT_TRUE(printed.contains(key)) << key;
   EXPECT_THAT(printed["A"], SizeIs(3));
   EXPECT_THAT(printed["A"], Each(SizeIs(3)));
@@ -241,6 +258,40 @@ TEST_F(Identify, ReportsInWordsWithoutJson) {
   EXPECT_THAT(ran.out, HasSubstr("poles 0.8"));
   EXPECT_THAT(ran.out, HasSubstr("MRSE validate %"));
   EXPECT_THAT(ran.out, HasSubstr("\ny2 "));
+  EXPECT_THAT(ran.out, HasSubstr("MRSE % (95 % interval)"));
+  EXPECT_THAT(ran.out, HasSubstr("1 ahead"));
+  EXPECT_THAT(ran.out, HasSubstr("  y2: "));
+  EXPECT_THAT(ran.out, HasSubstr("continuous time: "));
+}
+
+TEST_F(Identify, DiagnosesTheModelOnTheValidationRows) {
+  write("plant.csv", csv_of(plant(900)));
+  const json printed = json_of(command({"--order", "2"}));
+  const json& diagnostics = printed["diagnostics"];
+  EXPECT_EQ(diagnostics["rows"], 300);
+  EXPECT_EQ(diagnostics["free_run"]["mrse_percent"], printed["mrse_percent"]["validate"]);
+  EXPECT_EQ(diagnostics["whiteness"][1]["output"], "y2");
+  EXPECT_THAT(diagnostics["input_correlation"]["free_run"], SizeIs(4));
+  for (const std::size_t q : {0u, 1u}) {
+    const double error = printed["mrse_percent"]["validate"][q];
+    EXPECT_LT(diagnostics["mrse_interval_percent"]["low"][q], error);
+    EXPECT_GT(diagnostics["mrse_interval_percent"]["high"][q], error);
+  }
+}
+
+TEST_F(Identify, PrintsTheContinuousTimeModelOfTheSamePeriod) {
+  write("plant.csv", csv_of(plant(900)));
+  const json printed = json_of(command({"--order", "2", "--period", "0.5"}));
+  const MatrixXd A = matrix(printed["continuous"]["A"]);
+  // The determinant of exp(A T) is exp(trace(A) T).
+  EXPECT_NEAR(std::exp(0.5 * A.trace()), matrix(printed["A"]).determinant(), 1e-9);
+  EXPECT_EQ(matrix(printed["continuous"]["B"]).cols(), 2);
+}
+
+TEST_F(Identify, TakesDAsItIsTold) {
+  write("plant.csv", csv_of(plant(600)));
+  EXPECT_EQ(matrix(json_of(command({"--no-direct"}))["D"]).norm(), 0);
+  EXPECT_GT(matrix(json_of(command({"--direct"}))["D"]).norm(), 0);
 }
 
 TEST_F(Identify, GivesTheReasonWhenTheDataGiveNoModel) {
@@ -321,6 +372,19 @@ const Impossible requests[] = {
      "neither auto nor a whole number"},
     {"short_horizon", "plant.csv --input u1 --output y1 --order 5 --horizon 3",
      "make it at least 6"},
+    {"short_horizon_of_outputs_in_commas",
+     "plant.csv --input u1 --output y1,y2 --order 7 --horizon 4", "make it at least 5"},
+    {"direct_and_not", "plant.csv --input u1 --output y1 --direct --no-direct", "excludes"},
+    {"delay_without_samples", "plant.csv --input u1 --output y1 --delay u1", "INPUT=SAMPLES"},
+    {"delay_of_words", "plant.csv --input u1 --output y1 --delay u1=some", "INPUT=SAMPLES"},
+    {"delay_too_long", "plant.csv --input u1 --output y1 --delay u1=1001", "0 to 1000"},
+    {"delay_of_an_output", "plant.csv --input u1 u2 --output y1 --delay y1=2",
+     "names y1, which is no input; inputs: u1, u2"},
+    {"delay_twice", "plant.csv --input u1 --output y1 --delay u1=1 u1=2", "names u1 twice"},
+    {"delay_and_largest_delay", "plant.csv --input u1 --output y1 --delay u1=1 --max-delay 5",
+     "excludes"},
+    {"largest_delay_of_words", "plant.csv --input u1 --output y1 --max-delay far",
+     "no whole number of rows from 0 to 1000"},
     {"negative_period", "plant.csv --input u1 --output y1 --period -1", "--period -1"},
     {"period_is_nan", "plant.csv --input u1 --output y1 --period nan", "--period nan"},
     {"period_too_short_for_the_times", "plant.csv --input u1 --output y1 --time row --period 0.1",

@@ -151,14 +151,16 @@ TEST_F(Stored, ShowTellsTheWholeStoryOfTheChampion) {
   fill();
   const testing::Ran ran = reident(command({"show", "CBERS-4/BDR"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_THAT(ran.out, AllOf(HasSubstr("CBERS-4/BDR version 3: approved"),
-                             HasSubstr("2023-11-14T23:43:20Z to 2023-11-15T01:23:20Z (100min)"),
-                             HasSubstr("n4sid, horizon 12, order 2"), HasSubstr("0.9 ± 0.1j"),
-                             HasSubstr("I_BDRIN2  input   A       0.25        8"),
-                             HasSubstr("I_BDROUT     2.5  91.25"),
-                             HasSubstr("version 1, on the same rows: MRSE 3.75 %"),
-                             HasSubstr("approve  gate  The reason of the gate."),
-                             HasSubstr(model_digest(model_of("BDR"))), HasSubstr("K = (none)")));
+  EXPECT_THAT(ran.out,
+              AllOf(HasSubstr("CBERS-4/BDR version 3: approved"),
+                    HasSubstr("2023-11-14T23:43:20Z to 2023-11-15T01:23:20Z (100min)"),
+                    HasSubstr("n4sid, horizon 12, order 2"), HasSubstr("0.9 ± 0.1j"),
+                    HasSubstr("I_BDRIN2  input   A       0.25        8"),
+                    HasSubstr("I_BDROUT     2.5  91.25"),
+                    HasSubstr("version 1, on the same rows: MRSE 3.75 %"),
+                    HasSubstr("approve  gate  The reason of the gate."),
+                    HasSubstr(model_digest(model_of("BDR"))), HasSubstr("K = (none)"),
+                    HasSubstr("continuous time: poles -0.0992"), HasSubstr("dx/dt = A x")));
   EXPECT_THAT(ran.out, Not(HasSubstr("DOES NOT MATCH")));
 }
 
@@ -171,6 +173,7 @@ TEST_F(Stored, ShowInJsonHasTheModelAndTheDecisions) {
   EXPECT_EQ(shown["digest_matches"], true);
   EXPECT_EQ(shown["decisions"][0]["kind"], "reject");
   EXPECT_EQ(shown["model"]["A"][1][0], -0.1);
+  EXPECT_EQ(shown["continuous"]["A"].size(), 2u);
   EXPECT_EQ(shown["model"]["inputs"][0]["name"], "I_BDRIN1");
 }
 
