@@ -1,0 +1,19 @@
+// The modes of reident_identification_bench, each a subcommand that prints one JSON object.
+#pragma once
+
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+
+#include "identification/record.hpp"
+
+namespace reident::bench {
+
+void add_generate(CLI::App& app);
+void add_identify(CLI::App& app);  // one-shot and automatic
+void add_score(CLI::App& app);
+
+/// The file of samples as one segment with a period of 1 s. Throws std::runtime_error.
+identification::Record read_record(const std::filesystem::path& file);
+
+}  // namespace reident::bench
