@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   reident::bench::add_generate(app);
   reident::bench::add_identify(app);
   reident::bench::add_score(app);
+  reident::bench::add_subspace(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

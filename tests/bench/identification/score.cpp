@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
+#include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
 #include "identification/simulate.hpp"
@@ -68,11 +72,18 @@ void run(const std::filesystem::path& file, const std::filesystem::path& model_f
   const identification::Score result = score_free_run(model, record, record.all(), scored);
   const nlohmann::ordered_json text = {{"mrse_percent", result.mrse()},
                                        {"fit_percent", result.fit()},
-                                       {"spectral_radius", spectral_radius(model)}};
+                                       {"pole_moduli", pole_moduli(model.A)}};
   std::printf("%s\n", text.dump().c_str());
 }
 
 }  // namespace
+
+std::vector<double> pole_moduli(const Matrix& A) {
+  const Vector moduli = A.eigenvalues().cwiseAbs();
+  std::vector<double> result(moduli.begin(), moduli.end());
+  std::sort(result.begin(), result.end(), std::greater<>());
+  return result;
+}
 
 identification::Record read_record(const std::filesystem::path& file) {
   const Samples samples = read_samples(file);
