@@ -165,7 +165,7 @@ PUBLISHED = [
 
 
 def check_published(tools, data, folder):
-    """Prints the published figures, reident's and SLICOT's; the largest difference of each."""
+    """Prints what is found beside what is published; the largest differences."""
     results, lines = {}, []
     for case in PUBLISHED:
         file = data / f"daisy_{case['name']}.csv"
@@ -175,17 +175,18 @@ def check_published(tools, data, folder):
         samples = folder / "published.samples"
         write_samples(samples, *read_columns(file))
         size = ["--order", case["order"], "--horizon", case["horizon"]]
-        found = {"reident": tools.identify("subspace", samples, *size)}
+        found = {f"reident, from {way}": values for way, values in
+                 tools.identify("subspace", samples, *size).items()}
         if tools.slicot:
             model = tools.slicot_identify(samples, *size, "--method", "moesp")
-            found["slicot"] = {**model, **tools.score(samples, model, folder)}
+            found["SLICOT"] = {**model, **tools.score(samples, model, folder)}
         for what in ("singular_values", "pole_moduli"):
             published = case.get(what, [])
             for tool, values in found.items():
                 if not published:
                     continue
                 differ = max(abs(a - b) for a, b in zip(values[what], published))
-                results[f"{case['name']}_{what}_{tool}_differ_by"] = differ
+                results.setdefault(case["name"], {}).setdefault(what, {})[tool] = differ
                 lines.append([case["name"], what.replace("_", " "), tool,
                               " ".join(f"{v:.7g}" for v in values[what][:len(published)]),
                               " ".join(f"{v:.7g}" for v in published), f"{differ:.1e}"])

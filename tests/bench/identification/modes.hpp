@@ -11,7 +11,7 @@
 namespace reident::bench {
 
 void add_generate(CLI::App& app);
-void add_identify(CLI::App& app);  // one-shot and automatic
+void add_identify(CLI::App& app);  // one-shot, slide and automatic
 void add_score(CLI::App& app);
 void add_subspace(CLI::App& app);
 

@@ -3,7 +3,6 @@
 import array
 import json
 import os
-import re
 import shutil
 import struct
 import subprocess
@@ -51,9 +50,6 @@ class Tools:
             yield "SLICOT is left out: libslicot-dev is not installed; " + REMEDY
         if not self.octave:
             yield "Octave is left out: octave-control is not installed; " + REMEDY
-
-    def has_mode(self, name):
-        return re.search(rf"^\s+{name}\b", run([self.bench, "--help"]), re.MULTILINE) is not None
 
     def identify(self, *arguments):
         """A mode of reident's program; its JSON."""
