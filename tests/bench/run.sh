@@ -4,7 +4,7 @@
 #                                         they take it: what was archived, tried and approved
 #   tests/bench/run.sh identification [DATA_FOLDER]
 #                                         time, memory and free-run error beside SLICOT, each on one
-#                                         core; with DATA_FOLDER, which holds DaISy data sets as
+#                                         thread; with DATA_FOLDER, which holds DaISy data sets as
 #                                         daisy_NAME.csv (columns u1.. y1..), accuracy beside SLICOT
 #                                         and Octave and SLICOT's published figures as well. The last
 #                                         line is one JSON object. Without SLICOT or Octave it says

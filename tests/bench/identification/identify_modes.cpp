@@ -93,6 +93,9 @@ CLI::App* add_fixed(CLI::App& app, const std::string& mode, const std::string& d
   CLI::App* added = app.add_subcommand(mode, description);
   added->add_option("--order", *given.options.order)->required()->check(CLI::PositiveNumber);
   added->add_option("--horizon", *given.options.horizon)->required()->check(CLI::Range(2, 500));
+  added->add_option("--weighting", *given.options.weighting)
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Weighting>{
+          {"n4sid", Weighting::n4sid}, {"moesp", Weighting::moesp}, {"cva", Weighting::cva}}));
   return added;
 }
 
@@ -105,8 +108,8 @@ void add_common(CLI::App& mode, Arguments& given) {
 
 void add_identify(CLI::App& app) {
   const auto one_shot = std::make_shared<Arguments>();
-  CLI::App* mode = add_fixed(
-      app, "one-shot", "One identification of fixed order, horizon and N4SID weighting", *one_shot);
+  CLI::App* mode = add_fixed(app, "one-shot",
+                             "One identification of fixed order, horizon and weighting", *one_shot);
   add_common(*mode, *one_shot);
   mode->callback([one_shot] { run(*one_shot); });
 

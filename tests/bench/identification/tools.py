@@ -15,13 +15,11 @@ class ToolFailed(Exception):
     """A program gave no model; the text is what it said."""
 
 
-def run(command, cwd=None):
-    """Standard output of a program on one core, with one thread of BLAS."""
+def run(command):
+    """Standard output of a program; its BLAS has one thread."""
     one_thread = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
-    core = max(os.sched_getaffinity(0))
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True,
-                          env=one_thread, cwd=cwd,
-                          preexec_fn=lambda: os.sched_setaffinity(0, {core}))
+                          env=one_thread)
     if done.returncode != 0:
         said = (done.stderr.strip() or done.stdout.strip() or f"exit status {done.returncode}")
         raise ToolFailed(said.splitlines()[-1])
