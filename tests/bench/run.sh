@@ -3,12 +3,12 @@
 #   tests/bench/run.sh loop FILE.csv...   BUPT-1 telemetry through the real processes, as fast as
 #                                         they take it: what was archived, tried and approved
 #   tests/bench/run.sh identification [DATA_FOLDER]
-#                                         time, memory and free-run error beside SLICOT, each on one
-#                                         thread; with DATA_FOLDER, which holds DaISy data sets as
-#                                         daisy_NAME.csv (columns u1.. y1..), accuracy beside SLICOT
-#                                         and Octave and SLICOT's published figures as well. The last
-#                                         line is one JSON object. Without SLICOT or Octave it says
-#                                         what it leaves out
+#                                         time, memory and free-run error beside SLICOT, on one
+#                                         thread each. With DATA_FOLDER, which holds DaISy data
+#                                         sets as daisy_NAME.csv (columns u1.. y1..), also accuracy
+#                                         beside SLICOT and Octave and SLICOT's published figures.
+#                                         The last line is one JSON object. Without SLICOT or
+#                                         Octave it says what it leaves out
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 usage() {

@@ -1,9 +1,10 @@
 """Free-run errors on DaISy data sets beside Octave and SLICOT, and SLICOT's published figures.
 
 Preprocessing, rows, block rows and orders are those of P. Van Overschee and B. De Moor, Subspace
-Identification for Linear Systems, Kluwer 1996, chapter 6. reident is given the rows alone and chooses
-the rest. An error is 100 ||y - yhat|| / ||y|| over the validation rows, the mean over the outputs, of
-one simulation over the whole record.
+Identification for Linear Systems, Kluwer 1996, chapter 6. reident is given the rows alone and
+chooses the rest. An error is 100 ||y - yhat|| / ||y|| over the validation rows, the mean over the
+outputs, of one simulation over the whole record. It starts from the initial state of the model for
+reident and from one that is estimated from the first rows, three times the order, for the others.
 """
 
 import csv

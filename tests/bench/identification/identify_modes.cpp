@@ -53,7 +53,8 @@ void print(const Identified& result, const Measurement& measured) {
                                        {"input_offset", to_json(model.u0)},
                                        {"output_offset", to_json(model.y0)},
                                        {"singular_values", to_json(result.singular_values)},
-                                       {"ms", measured.ms},
+                                       {"cpu_ms", measured.cpu_ms},
+                                       {"wall_ms", measured.wall_ms},
                                        {"peak_extra_mib", measured.peak_extra_mib}};
   std::printf("%s\n", text.dump().c_str());
 }

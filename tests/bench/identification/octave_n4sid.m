@@ -1,5 +1,6 @@
-% octave_n4sid.m SAMPLES.csv INPUTS ORDER BLOCK_ROWS: one identification by octave-control's n4sid of
-% the columns u1.. y1.. (no header). Prints each matrix in a line: name, rows, columns, values by rows.
+% octave_n4sid.m SAMPLES.csv INPUTS ORDER BLOCK_ROWS
+% One identification by octave-control's n4sid of the columns u1.. y1.. (no header). Prints each
+% matrix in a line: name, rows, columns, values by rows.
 pkg load control
 arguments = argv ();
 samples = csvread (arguments{1});

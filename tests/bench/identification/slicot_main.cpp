@@ -52,7 +52,8 @@ int run(const std::filesystem::path& file, const SlicotOptions& options, int rep
       {"K", rows_of(model.K, model.K.empty() ? 0 : model.order, model.outputs)},
       {"x0", model.x0},
       {"singular_values", model.singular_values},
-      {"ms", measured.ms},
+      {"cpu_ms", measured.cpu_ms},
+      {"wall_ms", measured.wall_ms},
       {"peak_extra_mib", measured.peak_extra_mib},
       {"blas", blas()}};
   std::printf("%s\n", result.dump().c_str());
