@@ -79,9 +79,12 @@ def reident_result(tools, protocol, inputs, outputs, folder):
     names = [f"u{i + 1}" for i in range(len(inputs))], [f"y{i + 1}" for i in range(len(outputs))]
     file = folder / f"{protocol.name}.csv"
     write_csv(file, names[0] + names[1], inputs + outputs)
-    found = json.loads(run([tools.reident, "identify", file, "--input", *names[0], "--output",
-                            *names[1], "--identify", "{}:{}".format(*protocol.identify),
-                            "--validate", "{}:{}".format(*protocol.validate), "--json"]))
+    try:
+        found = json.loads(run([tools.reident, "identify", file, "--input", *names[0], "--output",
+                                *names[1], "--identify", "{}:{}".format(*protocol.identify),
+                                "--validate", "{}:{}".format(*protocol.validate), "--json"]))
+    except ToolFailed as failure:
+        return {"reident": None, "failure": str(failure)}
     errors = found["mrse_percent"]["validate"]
     return {"reident": sum(errors) / len(errors), "order": found["order"],
             "horizon": found["horizon"], "weighting": found["weighting"],
@@ -141,7 +144,9 @@ def compare(tools, data, folder):
         results[protocol.name] = result
         lines.append([protocol.name, "{}:{}, {}:{}".format(*protocol.identify, *protocol.validate),
                       number(result["reident"]),
-                      f"{result['order']}, {result['horizon']}, {result['weighting']}",
+                      result.get("failure") or
+                      f"{result['order']}, {result['horizon']}, {result['weighting']}" +
+                      ("" if result["stable"] else ", UNSTABLE"),
                       f"{protocol.order}, {protocol.horizon}", number(result["octave_n4sid"]),
                       number(result["slicot"]), number(result["slicot_b_d_by_simulation"]),
                       protocol.others])

@@ -45,9 +45,9 @@ class Tools:
     def left_out(self):
         """What the comparison lacks, a sentence each."""
         if not self.slicot:
-            yield "SLICOT is left out: libslicot-dev is not installed; " + REMEDY
+            yield "SLICOT is left out: slicot_n4sid is not built, which needs libslicot-dev; " + REMEDY
         if not self.octave:
-            yield "Octave is left out: octave-control is not installed; " + REMEDY
+            yield "Octave is left out: it does not load octave-control; " + REMEDY
 
     def identify(self, *arguments):
         """A mode of reident's program; its JSON."""
