@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and running reident needs, where they are
 # missing. Needs root (or sudo) only when something is missing.
+#   deploy/install_packages.sh [--with-tests] [--with-bench]
 set -euo pipefail
 
 packages=(
@@ -8,10 +9,21 @@ packages=(
   libeigen3-dev cyclonedds-dev cyclonedds-tools libsqlite3-dev libssl-dev
   libcli11-dev libfmt-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev
 )
-if [ "${1:-}" = --with-tests ]; then
-  packages+=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
-             clang clang-format clang-tidy python3 sqlite3 git)
-fi
+for option in "$@"; do
+  case $option in
+    --with-tests)
+      packages+=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
+                 clang clang-format clang-tidy python3 sqlite3 git)
+      ;;
+    --with-bench)  # what identification is compared with
+      packages+=(libslicot-dev libopenblas0 octave-control)
+      ;;
+    *)
+      echo "usage: deploy/install_packages.sh [--with-tests] [--with-bench]" >&2
+      exit 2
+      ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do

@@ -2,20 +2,44 @@
 # Benchmarks and measurements, apart from the tests. Builds the release preset first.
 #   tests/bench/run.sh loop FILE.csv...   BUPT-1 telemetry through the real processes, as fast as
 #                                         they take it: what was archived, tried and approved
+#   tests/bench/run.sh identification [DATA_FOLDER]
+#                                         time, memory and free-run error beside SLICOT, on one
+#                                         thread each. With DATA_FOLDER, which holds DaISy data
+#                                         sets as daisy_NAME.csv (columns u1.. y1..), also accuracy
+#                                         beside SLICOT and Octave and SLICOT's published figures.
+#                                         The last line is one JSON object. Without SLICOT or
+#                                         Octave it says what it leaves out
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+usage() {
+  sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//p}' "$0" >&2
+  exit 2
+}
 what=${1:-}
 [ $# -gt 0 ] && shift
+targets=(all)
 case $what in
   loop)
-    [ $# -gt 0 ] || { echo "usage: tests/bench/run.sh loop FILE.csv..." >&2; exit 2; }
+    [ $# -gt 0 ] || usage
+    arguments=(build/release/service deploy "$@")
+    ;;
+  identification)
+    [ $# -le 1 ] || usage
+    [ $# -eq 0 ] || [ -d "$1" ] || { echo "$1 is no folder of data sets" >&2; exit 2; }
+    arguments=(build/release "$@")
+    deploy/install_packages.sh --with-bench || echo "going on without the tools that are missing"
     ;;
   *)
-    sed -n '2,5s/^# \{0,1\}//p' "$0" >&2
-    exit 2
+    usage
     ;;
 esac
 deploy/install_packages.sh --with-tests
 cmake --preset release >/dev/null
-cmake --build --preset release >/dev/null
-exec python3 "tests/bench/$what.py" build/release/service deploy "$@"
+if [ "$what" = identification ]; then
+  targets=(reident reident_identification_bench)
+  if cmake --build --preset release --target help | grep '^slicot_n4sid:' >/dev/null; then
+    targets+=(slicot_n4sid)
+  fi
+fi
+cmake --build --preset release --target "${targets[@]}" >/dev/null
+exec python3 "tests/bench/$what.py" "${arguments[@]}"
