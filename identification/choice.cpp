@@ -237,17 +237,18 @@ std::vector<Candidate> Search::affordable(const std::vector<Candidate>& candidat
 std::vector<Candidate> Search::simulated_stage(std::vector<Candidate> compressed) {
   if (compressed.empty()) return {};
   std::vector<Candidate> both_ways;
-  for (Candidate& candidate : compressed) {
-    both_ways.push_back(candidate);
-    both_ways.back().recipe.fit = ResponseFit::simulation;
-    both_ways.push_back(std::move(candidate));
-  }
+  for (const Candidate& candidate : compressed)
+    for (const ResponseFit fit : space_.fits) {
+      both_ways.push_back(candidate);
+      both_ways.back().recipe.fit = fit;
+    }
   const Index rows = affordable_rows_of_fold(both_ways.front().recipe, intended_recipes);
   std::vector<Candidate> found = scored(affordable(both_ways, rows), rows);
-  if (found.empty() || space_.direct.size() == 1) return found;
+  if (found.empty() || space_.direct.size() == 1 ||
+      found.front().recipe.fit == ResponseFit::subspace)
+    return found;
   Candidate other = found.front();
   other.recipe.direct = !other.recipe.direct;
-  other.recipe.fit = ResponseFit::simulation;
   const std::vector<Candidate> without = scored({other}, rows);
   found.insert(found.end(), without.begin(), without.end());
   rank(found);

@@ -45,7 +45,8 @@ struct SearchSpace {
   std::vector<Weighting> weightings;
   int min_order = 1;
   int max_order = 1;
-  std::vector<bool> direct;  // D free, D zero, or both
+  std::vector<bool> direct;       // D free, D zero, or both
+  std::vector<ResponseFit> fits;  // either or both
   Stability stability = Stability::as_found;
 };
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "identification/choice.hpp"
+#include "identification/delays.hpp"
 #include "identification/excitation.hpp"
 #include "identification/hankel.hpp"
 #include "identification/kalman.hpp"
@@ -19,6 +20,7 @@ namespace reident::identification {
 namespace {
 
 constexpr double largest_square_root = 1e150;
+constexpr Index state_rows = 500;  // that the first state is estimated from
 constexpr int preferred_horizons[] = {6, 10, 15, 20, 30};
 
 std::string text(double value) {
@@ -67,33 +69,47 @@ int least_horizon(const IdentifyOptions& options) {
   return std::max(2, options.order.value_or(options.min_order) + 1);
 }
 
-/// Columns of the Hankel matrix of 2 * horizon block rows, 0 where they do not determine its
-/// factor.
-Index usable_columns(const Record& record, RowRange rows, int horizon) {
-  const Index width = record.u.cols() + record.y.cols();
-  const Index columns = hankel_columns(segments_within(record, rows), 2 * Index{horizon});
-  return columns >= 2 * Index{horizon} * width + 1 ? columns : 0;
+/// Those parts of the segments that lie in `rows`.
+std::vector<Segment> clipped(const std::vector<Segment>& segments, RowRange rows) {
+  std::vector<Segment> parts;
+  for (const Segment& segment : segments) {
+    const Index begin = std::max(segment.begin, rows.begin);
+    const Index end = std::min(segment.end, rows.end);
+    if (begin < end) parts.push_back({begin, end, segment.first_tick + (begin - segment.begin)});
+  }
+  return parts;
 }
 
-/// The same of the poorest fold.
-Index usable_columns(const Record& record, const std::vector<Fold>& folds, int horizon) {
-  Index least = std::numeric_limits<Index>::max();
-  for (const Fold& fold : folds) least = std::min(least, usable_columns(record, fold.fit, horizon));
-  return least;
-}
+/// What the rows have to feed: segments of `width` channels.
+struct Supply {
+  const std::vector<Segment>& segments;
+  Index width;
+  const std::vector<Fold>& folds;
+
+  /// Columns of the Hankel matrix of 2 * horizon block rows over the rows, 0 where they do not
+  /// determine its factor.
+  Index columns(RowRange rows, int horizon) const {
+    const Index found = hankel_columns(clipped(segments, rows), 2 * Index{horizon});
+    return found >= 2 * Index{horizon} * width + 1 ? found : 0;
+  }
+  /// Of the poorest fold.
+  Index columns(int horizon) const {
+    Index least = std::numeric_limits<Index>::max();
+    for (const Fold& fold : folds) least = std::min(least, columns(fold.fit, horizon));
+    return least;
+  }
+};
 
 /// Horizons that the segments can feed, ascending. A longer one must leave at least half of the
 /// columns that the shortest one has, since gaps cost columns.
-std::vector<int> feasible_horizons(const Record& record, const std::vector<Fold>& folds,
-                                   const IdentifyOptions& options) {
+std::vector<int> feasible_horizons(const Supply& supply, const IdentifyOptions& options) {
   const int least = options.horizon.value_or(least_horizon(options));
-  const Index columns = usable_columns(record, folds, least);
+  const Index columns = supply.columns(least);
   if (columns == 0) return {};
   if (options.horizon) return {least};
   std::vector<int> horizons;
   for (const int horizon : preferred_horizons)
-    if (horizon >= least && 2 * usable_columns(record, folds, horizon) >= columns)
-      horizons.push_back(horizon);
+    if (horizon >= least && 2 * supply.columns(horizon) >= columns) horizons.push_back(horizon);
   if (horizons.empty()) horizons.push_back(least);
   return horizons;
 }
@@ -117,16 +133,21 @@ class Identification {
   /// Ranks what can be identified, best first.
   std::optional<Verdict> choose(std::vector<ScoredRecipe>& ranked);
   /// The only recipe there is, where the options leave no choice or the rows do not allow one.
-  std::optional<Recipe> given_recipe(const std::vector<Fold>& folds) const;
+  std::optional<Recipe> given_recipe(const Supply& supply) const;
   Verdict too_few_samples(Index width, bool held_out) const;
   std::optional<Verdict> useless(const std::vector<ScoredRecipe>& ranked, double constant) const;
   /// An order of n needs inputs that excite n + 1 block rows.
   std::optional<Verdict> limit_by_excitation(SearchSpace& space);
+  /// Made when first asked for: a model that follows from the sums alone needs no rows.
+  const Record& work();
+  Index inputs() const { return static_cast<Index>(normalisation_.inputs.size()); }
+  Index outputs() const { return static_cast<Index>(normalisation_.outputs.size()); }
   const HankelFactor& factor(int horizon);
   /// The recipe on all rows, absent when it gives no stable model there.
   std::optional<Identified> realise(const Recipe& recipe);
-  Response respond(const Recipe& recipe, const Projection& projection,
-                   const Dynamics& dynamics) const;
+  /// B, D and y0 on the way that the recipe says, and the refinement.
+  StateSpaceModel respond(const Recipe& recipe, const Projection& projection,
+                          const Dynamics& dynamics);
   /// What is said of the model besides its matrices.
   void describe(Identified& result) const;
 
@@ -137,7 +158,8 @@ class Identification {
   bool keep_;
   StretchSums all_sums_;
   Normalisation normalisation_;
-  Record work_;                         // the rows, normalised, without the channels left out
+  std::vector<Segment> segments_;  // of the rows, counted from the first
+  std::optional<Record> work_;     // the rows, normalised, without the channels left out
   std::optional<HankelFactor> factor_;  // of all rows, at the horizon that was asked for last
   std::vector<std::string> warnings_;
   double work_spent_ = 0;
@@ -166,6 +188,11 @@ void Identification::phase(std::string_view name) const {
 
 std::optional<Verdict> Identification::prepare() {
   if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols(), true);
+  segments_ = segments_within(record_, rows_);
+  for (Segment& segment : segments_) {
+    segment.begin -= rows_.begin;
+    segment.end -= rows_.begin;
+  }
   all_sums_ = sums_of(rows_);
   if (!all_finite(all_sums_))
     if (auto verdict = non_finite_values(record_, rows_)) return verdict;
@@ -180,7 +207,6 @@ std::optional<Verdict> Identification::prepare() {
     return Verdict{VerdictCode::constant_inputs,
                    "no input moves in the rows to identify from; choose a window in which the "
                    "equipment is driven"};
-  work_ = normalised(record_, rows_, normalisation_);
   leave_out_redundant_inputs();
   return std::nullopt;
 }
@@ -204,7 +230,7 @@ void Identification::warn_of_constants(const std::vector<Index>& moving, Index c
 
 void Identification::leave_out_redundant_inputs() {
   if (are_independent(input_correlation(all_sums_, normalisation_))) return;
-  const std::vector<RedundantInput> redundant = redundant_inputs(work_.u);
+  const std::vector<RedundantInput> redundant = redundant_inputs(work().u);
   if (redundant.empty()) return;
   std::vector<Index>& inputs = normalisation_.inputs;
   const std::vector<Index> before = inputs;
@@ -218,36 +244,39 @@ void Identification::leave_out_redundant_inputs() {
                         " at every row and is left out of the model");
     inputs.erase(inputs.begin() + found->input);
   }
-  work_ = normalised(record_, rows_, normalisation_);
+  work_.reset();
 }
 
-std::optional<Recipe> Identification::given_recipe(const std::vector<Fold>& folds) const {
+std::optional<Recipe> Identification::given_recipe(const Supply& supply) const {
   if (!options_.order || !options_.horizon) return std::nullopt;
-  const bool chosen = options_.weighting && options_.direct_feedthrough;
-  if (!chosen && usable_columns(work_, folds, *options_.horizon) > 0) return std::nullopt;
-  if (usable_columns(work_, work_.all(), *options_.horizon) == 0) return std::nullopt;
+  const bool chosen = options_.weighting && options_.direct_feedthrough && options_.response_fit;
+  if (!chosen && supply.columns(*options_.horizon) > 0) return std::nullopt;
+  if (supply.columns({0, rows_.size()}, *options_.horizon) == 0) return std::nullopt;
   Recipe recipe;
   recipe.order = *options_.order;
   recipe.horizon = *options_.horizon;
   recipe.weighting = options_.weighting.value_or(Weighting::n4sid);
   recipe.direct = options_.direct_feedthrough.value_or(true);
-  recipe.fit = ResponseFit::simulation;
+  recipe.fit = options_.response_fit.value_or(ResponseFit::simulation);
   return recipe;
 }
 
 std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked) {
   const std::vector<Fold> folds = folds_of(rows_.size(), options_.tune_share);
-  SearchSpace space{feasible_horizons(work_, folds, options_),
+  const Supply supply{segments_, inputs() + outputs(), folds};
+  SearchSpace space{feasible_horizons(supply, options_),
                     {Weighting::n4sid, Weighting::moesp, Weighting::cva},
                     options_.order.value_or(options_.min_order),
                     options_.order.value_or(options_.max_order),
-                    {true, false}};
+                    {true, false},
+                    {ResponseFit::simulation, ResponseFit::subspace}};
   if (options_.weighting) space.weightings = {*options_.weighting};
   if (options_.direct_feedthrough) space.direct = {*options_.direct_feedthrough};
-  if (work_.u.cols() == 0) space.direct = {false};
-  const std::optional<Recipe> given = given_recipe(folds);
+  if (options_.response_fit) space.fits = {*options_.response_fit};
+  if (inputs() == 0) space.direct = {false};
+  const std::optional<Recipe> given = given_recipe(supply);
   if (given) space.horizons = {given->horizon};
-  if (space.horizons.empty()) return too_few_samples(work_.u.cols() + work_.y.cols(), true);
+  if (space.horizons.empty()) return too_few_samples(inputs() + outputs(), true);
   if (auto verdict = limit_by_excitation(space)) return verdict;
   if (given) {
     if (!options_.weighting)
@@ -261,7 +290,7 @@ std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked)
   std::vector<StretchSums> fold_sums;
   for (const Fold& fold : folds)
     fold_sums.push_back(sums_of({rows_.begin + fold.fit.begin, rows_.begin + fold.fit.end}));
-  const SearchData data{work_, normalisation_, folds, fold_sums};
+  const SearchData data{work(), normalisation_, folds, fold_sums};
   const ForEach for_each = options_.for_each ? options_.for_each : in_sequence;
   ranked = ranked_recipes(data, space, for_each, effort);
   if (ranked.empty()) {
@@ -269,7 +298,7 @@ std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked)
     ranked = ranked_recipes(data, space, for_each, effort);
   }
   work_spent_ = effort.spent;
-  return useless(ranked, held_out_error_of_constant(work_, folds));
+  return useless(ranked, held_out_error_of_constant(work(), folds));
 }
 
 std::optional<Verdict> Identification::useless(const std::vector<ScoredRecipe>& ranked,
@@ -301,14 +330,20 @@ Verdict Identification::too_few_samples(Index width, bool held_out) const {
               " rows without a gap are needed for a horizon of " + std::to_string(s)};
 }
 
+const Record& Identification::work() {
+  if (!work_) work_ = normalised(record_, rows_, normalisation_);
+  return *work_;
+}
+
 const HankelFactor& Identification::factor(int horizon) {
-  if (!factor_ || factor_->horizon != horizon)
-    factor_ = compress(all_sums_, normalisation_, work_, work_.segments, horizon);
+  if (factor_ && factor_->horizon == horizon) return *factor_;
+  factor_ = factor_of_sums(all_sums_, normalisation_, horizon);
+  if (!factor_) factor_ = factor_of_rows(work(), segments_, horizon);
   return *factor_;
 }
 
 std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
-  if (work_.u.cols() == 0) return std::nullopt;
+  if (inputs() == 0) return std::nullopt;
   const int horizon = space.horizons.back();
   const Excitation excitation = excitation_of(Projection(factor(horizon)).input_innovations());
   if (excitation.order >= horizon) return std::nullopt;
@@ -329,32 +364,28 @@ std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
   return std::nullopt;
 }
 
-Response Identification::respond(const Recipe& recipe, const Projection& projection,
-                                 const Dynamics& dynamics) const {
-  const Index m = work_.u.cols(), p = work_.y.cols(), rows = work_.rows();
+StateSpaceModel Identification::respond(const Recipe& recipe, const Projection& projection,
+                                        const Dynamics& dynamics) {
+  auto [A, C] = dynamics;
+  const Index rows = rows_.size();
   const auto last = [rows](Index count) {
     return RowRange{std::max<Index>(0, rows - count), rows};
   };
-  auto [A, C] = dynamics;
   if (recipe.refinement_steps > 0) {
-    StateSpaceModel refined = refine_response(A, C, recipe.direct, work_, last(recipe.refined_rows),
-                                              recipe.refinement_steps)
+    StateSpaceModel refined = refine_response(A, C, recipe.direct, work(),
+                                              last(recipe.refined_rows), recipe.refinement_steps)
                                   .model;
     A = std::move(refined.A);
     C = std::move(refined.C);
   }
+  if (recipe.fit == ResponseFit::subspace)
+    return projection.with_response(A, C, recipe.direct, record_.period_s);
   // All rows but in the longest windows.
   Recipe unrefined = recipe;
   unrefined.refinement_steps = 0;
-  const RowRange fitted = last(affordable_rows(unrefined, m, p, options_.search_budget / 3));
-  Response response =
-      recipe.fit == ResponseFit::simulation
-          ? fit_response(A, C, recipe.direct, work_, fitted, Accuracy::exact)
-          : Response{projection.with_response(A, C, recipe.direct, work_.period_s), {}, 0};
-  if (recipe.fit == ResponseFit::subspace || fitted.begin > 0)
-    response.x0 = estimate_initial_state(response.model, work_, work_.segments.front(),
-                                         initial_rows(response.model));
-  return response;
+  const Index affordable =
+      affordable_rows(unrefined, inputs(), outputs(), options_.search_budget / 3);
+  return fit_response(A, C, recipe.direct, work(), last(affordable), Accuracy::exact).model;
 }
 
 std::optional<Identified> Identification::realise(const Recipe& recipe) {
@@ -363,40 +394,39 @@ std::optional<Identified> Identification::realise(const Recipe& recipe) {
   auto [gamma, singular_values] = projection.observability(recipe.weighting);
   const Dynamics dynamics = shift_invariant(gamma, hankel.outputs, recipe.order, recipe.stability);
   if (!is_stable(dynamics.A)) return std::nullopt;
-  Response response = respond(recipe, projection, dynamics);
+  StateSpaceModel model = respond(recipe, projection, dynamics);
   Identified result;
   result.warnings = warnings_;
   if (recipe.stability == Stability::enforced)
     result.warnings.push_back(
         "every model asked for was unstable; A was taken so that it is stable, at some bias");
-  if (const auto K = kalman_gain(response.model.A, response.model.C,
-                                 projection.noise_covariance(response.model)))
-    response.model.K = *K;
+  if (const auto K = kalman_gain(model.A, model.C, projection.noise_covariance(model)))
+    model.K = *K;
   else
     result.warnings.push_back(
         "the model has no Kalman gain: its Riccati equation has no checked solution");
   if (recipe.operating_point == OperatingPoint::recent)
-    response.model.y0 += recent_operating_point(
-        work_.y - free_run(response.model, work_, work_.all(), response.x0), true);
-  result.model = in_units(response.model, normalisation_);
-  if (!is_well_formed(result.model) || !response.x0.allFinite()) return std::nullopt;
-  result.x0 = response.x0;
+    model.y0 += recent_operating_point(work().y - free_run(model, work(), work().all()), true);
+  result.model = in_units(model, normalisation_);
+  if (!is_well_formed(result.model)) return std::nullopt;
   result.recipe = recipe;
   result.spectral_radius = spectral_radius(result.model);
   result.singular_values = std::move(singular_values);
   result.hankel_condition = hankel.least_share;
   result.search_work = work_spent_;
   describe(result);
+  if (!result.x0.allFinite()) return std::nullopt;
   return result;
 }
 
 void Identification::describe(Identified& result) const {
-  const auto u = record_.u.middleRows(rows_.begin, rows_.size());
-  result.input_min = u.colwise().minCoeff().transpose();
-  result.input_max = u.colwise().maxCoeff().transpose();
-  const RowRange tune = folds_of(rows_.size(), options_.tune_share)[0].tune;
-  result.tune = score_free_run(result.model, record_, rows_,
-                               {rows_.begin + tune.begin, rows_.begin + tune.end}, result.x0);
+  const Index m = record_.u.cols();
+  result.input_min = all_sums_.least().head(m);
+  result.input_max = all_sums_.greatest().head(m);
+  Segment first = segments_.front();
+  first.begin += rows_.begin;
+  first.end += rows_.begin;
+  result.x0 = estimate_initial_state(result.model, record_, first, state_rows);
 }
 
 }  // namespace
@@ -410,6 +440,11 @@ std::vector<std::string> mistakes(const IdentifyOptions& options) {
   if (options.horizon && *options.horizon < 2) found.push_back("the horizon must be at least 2");
   if (!(options.tune_share > 0 && options.tune_share <= 0.9))
     found.push_back("the tuning share must be above 0 and at most 0.9");
+  for (const int delay : options.input_delays)
+    if (delay < 0) found.push_back("an input delay must not be negative");
+  if (options.max_input_delay < 0) found.push_back("the largest input delay must not be negative");
+  if (options.max_input_delay > 0 && !options.input_delays.empty())
+    found.push_back("the input delays are either given or chosen, not both");
   if (!(options.search_budget > 0)) found.push_back("the search budget must be positive");
   return found;
 }
@@ -419,14 +454,82 @@ Index block_rows_needed(const IdentifyOptions& options) {
                  std::max(*std::rbegin(preferred_horizons), least_horizon(options)))};
 }
 
-IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
-                        LagSums* kept) {
-  eigen_assert(mistakes(options).empty() && record.y.cols() >= 1);
-  eigen_assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
+namespace {
+
+IdentifyResult identify_undelayed(const Record& record, RowRange rows,
+                                  const IdentifyOptions& options, LagSums* kept) {
   if (kept) return Identification(record, rows, options, *kept, true).run();
   constexpr Index chunk_ticks = 1024;
   LagSums own({record.u.cols() + record.y.cols(), block_rows_needed(options), chunk_ticks});
   return Identification(record, rows, options, own, false).run();
+}
+
+/// Tries each input's delay in turn, the structure being that of the model without any; one is kept
+/// where it lowers the error on rows held out by more than 1 %.
+std::vector<int> chosen_delays(const Record& record, RowRange rows,
+                               const IdentifyOptions& options) {
+  constexpr double worthwhile = 0.99;
+  const int most = options.max_input_delay;
+  std::vector<int> delays(static_cast<std::size_t>(record.u.cols()), 0);
+  IdentifyOptions fixed = options;
+  const auto error_with = [&](const std::vector<int>& tried) {
+    const Record shifted = delayed(record, rows, tried, most);
+    const IdentifyResult result = identify_undelayed(shifted, shifted.all(), fixed, nullptr);
+    const auto* found = std::get_if<Identified>(&result);
+    if (found && !fixed.weighting) {
+      fixed.order = found->recipe.order;
+      fixed.horizon = found->recipe.horizon;
+      fixed.weighting = found->recipe.weighting;
+    }
+    return found && found->held_out_error ? *found->held_out_error
+                                          : std::numeric_limits<double>::infinity();
+  };
+  double least = error_with(delays);
+  for (int& delay : delays) {
+    int best = 0;
+    double best_error = least;
+    for (delay = 1; delay <= most; ++delay)
+      if (const double error = error_with(delays); error < best_error) {
+        best_error = error;
+        best = delay;
+      }
+    delay = best_error < worthwhile * least ? best : 0;
+    if (delay > 0) least = best_error;
+  }
+  return delays;
+}
+
+IdentifyResult identify_delayed(const Record& record, RowRange rows,
+                                const IdentifyOptions& options) {
+  if (auto verdict = non_finite_values(record, rows)) return *verdict;
+  const std::vector<int> delays =
+      options.input_delays.empty() ? chosen_delays(record, rows, options) : options.input_delays;
+  const int longest = *std::max_element(delays.begin(), delays.end());
+  const Record shifted = delayed(record, rows, delays, longest);
+  IdentifyResult result = identify_undelayed(shifted, shifted.all(), options, nullptr);
+  auto* found = std::get_if<Identified>(&result);
+  if (!found || longest == 0) return result;
+  found->model = with_delay_states(found->model, delays);
+  found->input_delays = delays;
+  for (std::size_t i = 0; i < delays.size(); ++i)
+    if (delays[i] > 0)
+      found->warnings.push_back(ordinal("input", static_cast<Index>(i)) + " acts after " +
+                                std::to_string(delays[i]) +
+                                " samples, which the model holds as as many states");
+  found->x0 = estimate_initial_state(found->model, record, segments_within(record, rows).front(),
+                                     state_rows);
+  return result;
+}
+
+}  // namespace
+
+IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
+                        LagSums* kept) {
+  eigen_assert(mistakes(options).empty() && record.y.cols() >= 1);
+  eigen_assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
+  const bool may_delay = options.max_input_delay > 0 || !options.input_delays.empty();
+  if (may_delay && record.u.cols() > 0) return identify_delayed(record, rows, options);
+  return identify_undelayed(record, rows, options, kept);
 }
 
 }  // namespace reident::identification

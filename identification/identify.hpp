@@ -27,10 +27,11 @@ struct IdentifyOptions {
   std::optional<int> order;  // absent: chosen in [min_order, max_order]
   int min_order = 1;
   int max_order = 10;
-  std::optional<int> horizon;              // block rows s; absent: chosen
-  std::optional<Weighting> weighting;      // absent: chosen
-  std::optional<bool> direct_feedthrough;  // whether D may differ from zero; absent: chosen
-  std::vector<int> input_delays;           // samples, one for each input; empty: none
+  std::optional<int> horizon;               // block rows s; absent: chosen
+  std::optional<Weighting> weighting;       // absent: chosen
+  std::optional<ResponseFit> response_fit;  // the way of B and D; absent: chosen
+  std::optional<bool> direct_feedthrough;   // whether D may differ from zero; absent: chosen
+  std::vector<int> input_delays;            // samples, one for each input; empty: none
   int max_input_delay = 0;  // above 0: the delays are estimated, each at most so many samples
   /// Share of the identification rows that choices are scored on, in (0, 0.9]: the last ones and
   /// the first ones are held out in turn, a half of the share at a time.
@@ -55,15 +56,15 @@ struct Identified {
   StateSpaceModel model;
   Vector x0;  // state at the first identification row
   Recipe recipe;
+  std::vector<int>
+      input_delays;  // samples; empty: none. Their states come after those of the order
   double spectral_radius = 0;
   Vector singular_values;       // of the weighted oblique projection, descending
   double hankel_condition = 0;  // least share of a Hankel row that those before it leave, squared
   Vector input_min, input_max;  // range visited by each input in the identification rows
   std::optional<double> held_out_error;  // of the choice: rms in deviations of the outputs, over
                                          // all folds; absent where nothing was to be chosen
-  Score tune;  // of the model on the last half of tune_share of the rows, which it was fitted to as
-               // well
-  double search_work = 0;  // spent of the budget
+  double search_work = 0;                // spent of the budget
   std::vector<std::string> warnings;
 };
 
@@ -72,7 +73,7 @@ using IdentifyResult = std::variant<Identified, Verdict>;
 /// Identifies from the rows `rows` of the record alone; nothing else of it is read.
 /// Requires m >= 0 inputs, p >= 1 outputs and mistakes(options).empty(). With `kept`, whose shape
 /// has the record's channels and at least block_rows_needed(options) block rows, sums kept there
-/// stand for the samples that they were made of, and new ones are added.
+/// stand for the samples that they were made of, and new ones are added; not with input delays.
 IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
                         LagSums* kept = nullptr);
 

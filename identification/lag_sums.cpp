@@ -35,6 +35,8 @@ RunSums::RunSums(const Matrix& z, std::int64_t first_tick, Index block_rows)
       first_tick_(first_tick),
       count_(z.cols()),
       reference_(z.rowwise().mean()),
+      least_(z.rowwise().minCoeff()),
+      greatest_(z.rowwise().maxCoeff()),
       F_(Matrix::Zero(block_rows * z.rows(), z.rows())) {
   eigen_assert(count_ >= 1 && block_rows >= 1);
   const Matrix centred = z.colwise() - reference_;
@@ -84,6 +86,8 @@ void RunSums::append(RunSums next) {
   else
     last_ = std::move(next.last_);
   sum_ += next.sum_;
+  least_ = least_.cwiseMin(next.least_);
+  greatest_ = greatest_.cwiseMax(next.greatest_);
   count_ += next.count_;
 }
 
@@ -109,6 +113,18 @@ Vector StretchSums::mean() const {
   for (const RunSums& run : runs)
     sum += run.sum() + double(run.count()) * (run.reference() - reference);
   return reference + sum / double(rows());
+}
+
+Vector StretchSums::least() const {
+  Vector least = runs.front().least();
+  for (const RunSums& run : runs) least = least.cwiseMin(run.least());
+  return least;
+}
+
+Vector StretchSums::greatest() const {
+  Vector greatest = runs.front().greatest();
+  for (const RunSums& run : runs) greatest = greatest.cwiseMax(run.greatest());
+  return greatest;
 }
 
 StretchSums sums_of_rows(const Record& record, TickRange ticks, Index block_rows) {

@@ -41,6 +41,8 @@ class RunSums {
   const Vector& reference() const { return reference_; }
   const Vector& sum() const { return sum_; }      // of z - reference
   const Matrix& products() const { return F_; }   // L w x w: F(0) on top of F(1) ...
+  const Vector& least() const { return least_; }  // of z (w)
+  const Vector& greatest() const { return greatest_; }
   const Matrix& first() const { return first_; }  // w x min(N, L - 1): z - reference
   const Matrix& last() const { return last_; }    // the same of the last samples
 
@@ -48,7 +50,7 @@ class RunSums {
   Index block_rows_;
   std::int64_t first_tick_;
   Index count_;
-  Vector reference_, sum_;
+  Vector reference_, sum_, least_, greatest_;
   Matrix F_, first_, last_;
 };
 
@@ -59,8 +61,10 @@ struct StretchSums {
   /// Takes in a later stretch; a run that continues the last one is joined to it.
   void append(StretchSums later);
   Index rows() const;
-  /// Mean of every channel (w); at least one run is there.
+  /// Mean and range of every channel (w); at least one run is there.
   Vector mean() const;
+  Vector least() const;
+  Vector greatest() const;
 };
 
 /// Statistics of the record's rows at `ticks`, summed as one stretch.
