@@ -158,8 +158,8 @@ class Identification {
   bool keep_;
   StretchSums all_sums_;
   Normalisation normalisation_;
-  std::vector<Segment> segments_;  // of the rows, counted from the first
-  std::optional<Record> work_;     // the rows, normalised, without the channels left out
+  std::vector<Segment> segments_;       // of the rows, counted from the first
+  std::optional<Record> work_;          // the rows, normalised, without the channels left out
   std::optional<HankelFactor> factor_;  // of all rows, at the horizon that was asked for last
   std::vector<std::string> warnings_;
   double work_spent_ = 0;

@@ -17,13 +17,6 @@
 
 namespace reident::identification {
 
-/// Half-open range of ticks [begin, end).
-struct TickRange {
-  std::int64_t begin = 0;
-  std::int64_t end = 0;
-  bool operator==(const TickRange&) const = default;
-};
-
 /// The statistics of one run.
 class RunSums {
  public:

@@ -22,6 +22,39 @@ std::vector<Segment> segments_within(const Record& record, RowRange rows) {
   return parts;
 }
 
+Record rows_at(const Record& record, TickRange ticks) {
+  const RowRange rows{first_row_at(record, ticks.begin), first_row_at(record, ticks.end)};
+  Record result{record.period_s, record.u.middleRows(rows.begin, rows.size()),
+                record.y.middleRows(rows.begin, rows.size()), segments_within(record, rows)};
+  for (Segment& segment : result.segments) {
+    segment.begin -= rows.begin;
+    segment.end -= rows.begin;
+  }
+  return result;
+}
+
+Record joined(const std::vector<const Record*>& parts) {
+  eigen_assert(!parts.empty());
+  Index rows = 0;
+  for (const Record* part : parts) rows += part->rows();
+  const Record& first = *parts.front();
+  Record result{first.period_s, Matrix(rows, first.u.cols()), Matrix(rows, first.y.cols()), {}};
+  Index at = 0;
+  for (const Record* part : parts) {
+    result.u.middleRows(at, part->rows()) = part->u;
+    result.y.middleRows(at, part->rows()) = part->y;
+    for (const Segment& segment : part->segments) {
+      if (!result.segments.empty() &&
+          result.segments.back().first_tick + result.segments.back().size() == segment.first_tick)
+        result.segments.back().end += segment.size();
+      else
+        result.segments.push_back({at + segment.begin, at + segment.end, segment.first_tick});
+    }
+    at += part->rows();
+  }
+  return result;
+}
+
 Index first_row_at(const Record& record, std::int64_t tick) {
   const auto segment =
       std::partition_point(record.segments.begin(), record.segments.end(),

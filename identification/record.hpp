@@ -21,6 +21,13 @@ struct RowRange {
   bool operator==(const RowRange&) const = default;
 };
 
+/// Half-open range of ticks [begin, end).
+struct TickRange {
+  std::int64_t begin = 0;
+  std::int64_t end = 0;
+  bool operator==(const TickRange&) const = default;
+};
+
 /// Rows [begin, end) stand at the ticks first_tick, first_tick + 1, ...
 struct Segment {
   Index begin = 0;
@@ -45,6 +52,13 @@ Record contiguous_record(double period_s, Matrix u, Matrix y);
 
 /// The parts of the record's segments that lie in `rows`, ascending.
 std::vector<Segment> segments_within(const Record& record, RowRange rows);
+
+/// The rows at `ticks`, as a record of their own.
+Record rows_at(const Record& record, TickRange ticks);
+
+/// One record of the rows of all, which are ascending in time and of the same channels; stretches
+/// that follow each other without a hole become one segment.
+Record joined(const std::vector<const Record*>& parts);
 
 /// First row whose tick is not before `tick` (rows() when there is none).
 Index first_row_at(const Record& record, std::int64_t tick);

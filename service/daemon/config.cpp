@@ -5,9 +5,9 @@
 #include <fstream>
 #include <set>
 
-#include "identification/identify.hpp"
 #include <fmt/format.h>
 
+#include "identification/identify.hpp"
 #include "service/daemon/config_document.hpp"
 #include "service/support/sha256.hpp"
 #include "service/support/time_text.hpp"
@@ -173,7 +173,8 @@ std::int64_t least_window_ticks(const EquipmentConfig& equipment) {
   const auto channels = static_cast<double>(equipment.inputs.size() + equipment.outputs.size());
   const double rows = 2 * horizon * (channels + 1);
   return static_cast<std::int64_t>(
-      std::ceil(rows / ((1 - identification::IdentifyOptions{}.tune_share) * (1 - equipment.validation_share))));
+      std::ceil(rows / ((1 - identification::IdentifyOptions{}.tune_share) *
+                        (1 - equipment.validation_share))));
 }
 
 void check_window(TableReader& reader, const EquipmentConfig& equipment) {

@@ -57,6 +57,9 @@ Daemon::Daemon(const Config& config, Clock clock)
       participant_(dds::Endpoint{config.domain, config.partition}),
       publisher_(participant_),
       ingest_(std::in_place, participant_, config, queue_) {
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      kept_.push_back(kept_window_of(spacecraft.name, equipment));
   storage::Database database(config.database, storage::Database::Mode::read_only);
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
@@ -116,6 +119,8 @@ void Daemon::identify_windows() {
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
                       const storage::Registry& registry) {
   const storage::TimeRange window = job.window.window;
+  KeptWindow& kept = kept_[job.window.equipment];
+  for (const storage::TimeRange& changed : job.changed) kept.forget(changed);
   try {
     // From here on the archive marks what still falls into the window.
     writer_
@@ -125,7 +130,7 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
         .get();
     RefreshRequest request{*job.spacecraft, *job.equipment, window,
                            job.window.again ? "late telemetry" : "slide", config_.digest};
-    return conclude(refresh(archive, registry, request, [this] { return stopping_.load(); }));
+    return conclude(refresh(archive, registry, request, kept, [this] { return stopping_.load(); }));
   } catch (const Stopped&) {
     return false;
   } catch (const std::future_error&) {  // the writer has ended

@@ -59,6 +59,8 @@ class Daemon {
   dds::Participant participant_;
   Publisher publisher_;
   std::optional<Ingest> ingest_;  // ends before the middleware hears again
+  /// By equipment, which has one job at a time: the job's thread owns its entry.
+  std::vector<KeptWindow> kept_;
 
   std::thread ingest_thread_, writer_thread_;
   std::vector<std::thread> identification_threads_;

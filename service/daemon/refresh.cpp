@@ -8,6 +8,7 @@
 
 #include "identification/identify.hpp"
 #include "service/daemon/window_data.hpp"
+#include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/support/phase_timer.hpp"
@@ -164,6 +165,13 @@ ordered_json evidence_json(const RefreshResult& result, const Identified& identi
   if (result.evidence.champion)
     json["champion"] = {{"version", result.evidence.champion->version},
                         {"mrse_percent", result.evidence.champion->mrse_percent}};
+  json["held_out_error"] = identified.held_out_error.value_or(0);
+  json["hankel_condition"] = identified.hankel_condition;
+  json["singular_values"] = to_json(identified.singular_values);
+  json["search_work"] = identified.search_work;
+  json["diagnostics"] = to_json(
+      diagnose(identified.model, data.record, data.record.all(), split.validate, identified.x0),
+      names(model.inputs), names(model.outputs));
   json["warnings"] = identified.warnings;
   return json;
 }
@@ -205,26 +213,13 @@ void refuse(RefreshResult& result, std::string_view outcome, std::string reason)
   result.attempt.reason = std::move(reason);
 }
 
-identification::IdentifyOptions options_of(const EquipmentConfig& equipment,
-                                           const std::function<bool()>& stop, PhaseTimer& timer) {
-  identification::IdentifyOptions options;
-  options.min_order = equipment.min_order;
-  options.max_order = equipment.max_order;
-  options.horizon = equipment.horizon;
-  options.on_phase = [&stop, &timer](std::string_view phase) {
-    if (stop()) throw Stopped();
-    timer.begin(phase);
-  };
-  return options;
-}
-
 /// Fills in all but the timings.
 ordered_json attempt_window(const storage::Archive& archive, const storage::Registry& registry,
-                            const RefreshRequest& request, const std::function<bool()>& stop,
-                            PhaseTimer& timer, RefreshResult& result) {
-  const WindowRequest loaded = request_of(request.spacecraft, request.equipment);
+                            const RefreshRequest& request, KeptWindow& kept,
+                            const std::function<bool()>& stop, PhaseTimer& timer,
+                            RefreshResult& result) {
   timer.begin("load");
-  auto outcome = load_window(archive, loaded, request.window);
+  auto outcome = kept.load(archive, request.window);
   if (const auto* unknown = std::get_if<UnknownParameter>(&outcome)) {
     refuse(result, name(Outcome::unknown_parameter),
            fmt::format("Parameter {} has not been described by telemetry yet; check its name in "
@@ -243,22 +238,39 @@ ordered_json attempt_window(const storage::Archive& archive, const storage::Regi
                        100 * data.coverage, 100 * request.equipment.min_coverage));
     return evidence;
   }
-  const auto identified =
-      identify(data.record, split.identify, options_of(request.equipment, stop, timer));
+  identification::IdentifyOptions options = options_of(request.equipment);
+  options.on_phase = [&stop, &timer](std::string_view phase) {
+    if (stop()) throw Stopped();
+    timer.begin(phase);
+  };
+  const auto identified = identify(data.record, split.identify, options, &kept.sums());
   if (const auto* verdict = std::get_if<identification::Verdict>(&identified)) {
     refuse(result, name(verdict->code), verdict->reason);
     return evidence;
   }
   timer.begin("judge");
   const Identified& model = std::get<Identified>(identified);
-  judge(archive, registry, request, loaded, data, model, split, result);
+  judge(archive, registry, request, kept.request(), data, model, split, result);
   return evidence_json(result, model, data, split);
 }
 
 }  // namespace
 
+identification::IdentifyOptions options_of(const EquipmentConfig& equipment) {
+  identification::IdentifyOptions options;
+  options.min_order = equipment.min_order;
+  options.max_order = equipment.max_order;
+  options.horizon = equipment.horizon;
+  return options;
+}
+
+KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
+  return {request_of(spacecraft, equipment), block_rows_needed(options_of(equipment))};
+}
+
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,
-                      const RefreshRequest& request, const std::function<bool()>& stop) {
+                      const RefreshRequest& request, KeptWindow& kept,
+                      const std::function<bool()>& stop) {
   RefreshResult result;
   result.attempt.spacecraft = request.spacecraft;
   result.attempt.equipment = request.equipment.name;
@@ -268,7 +280,7 @@ RefreshResult refresh(const storage::Archive& archive, const storage::Registry& 
   result.attempt.program_version = program_version();
 
   PhaseTimer timer;
-  ordered_json evidence = attempt_window(archive, registry, request, stop, timer, result);
+  ordered_json evidence = attempt_window(archive, registry, request, kept, stop, timer, result);
   timer.end();
   for (const auto& [phase, milliseconds] : timer.phases())
     evidence["timing_ms"][phase] = milliseconds;

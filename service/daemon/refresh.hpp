@@ -1,7 +1,7 @@
 // One attempt at a window: load, identify, score beside the champion, decide.
 //
 // Reads the archive and the registry; writes nothing. The same archive, configuration and window
-// give the same result to the last bit, timings aside.
+// give the same result to the last bit, timings aside, whatever was kept of earlier windows.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,10 @@
 #include <string>
 #include <string_view>
 
+#include "identification/identify.hpp"
 #include "service/daemon/config.hpp"
 #include "service/daemon/gate.hpp"
+#include "service/daemon/kept_window.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/archive.hpp"
 #include "storage/registry.hpp"
@@ -35,7 +37,15 @@ struct RefreshResult {
 /// Thrown by refresh when `stop` answered true; nothing was decided.
 class Stopped : public std::exception {};
 
+/// The options that an equipment's configuration stands for.
+identification::IdentifyOptions options_of(const EquipmentConfig& equipment);
+
+/// What is kept of the equipment's windows.
+KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment);
+
+/// `kept` is of the same spacecraft and equipment.
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,
-                      const RefreshRequest& request, const std::function<bool()>& stop);
+                      const RefreshRequest& request, KeptWindow& kept,
+                      const std::function<bool()>& stop);
 
 }  // namespace reident

@@ -29,31 +29,46 @@ std::vector<identification::ChannelSamples> views(const std::vector<Channel>& ch
 
 }  // namespace
 
-std::variant<WindowData, UnknownParameter> load_window(const storage::Archive& archive,
-                                                       const WindowRequest& request,
-                                                       storage::TimeRange window) {
+std::variant<WindowData, UnknownParameter> describe_window(const storage::Archive& archive,
+                                                           const WindowRequest& request) {
   WindowData data;
-  const storage::TimeRange read{window.begin - request.hold, window.end};
-  std::vector<Channel> inputs, outputs;
-  const auto load = [&](const std::vector<std::string>& names, auto& descriptors,
-                        auto& channels) -> const std::string* {
+  const auto describe = [&](const std::vector<std::string>& names,
+                            std::vector<storage::ParameterDescriptor>& descriptors) {
     for (const std::string& name : names) {
       const auto descriptor = archive.parameter(request.spacecraft, name);
       if (!descriptor) return &name;
-      channels.emplace_back(archive.read(request.spacecraft, request.origin, descriptor->id, read));
       descriptors.push_back(*descriptor);
     }
-    return nullptr;
+    return static_cast<const std::string*>(nullptr);
   };
-  if (const auto* name = load(request.inputs, data.inputs, inputs)) return UnknownParameter{*name};
-  if (const auto* name = load(request.outputs, data.outputs, outputs))
-    return UnknownParameter{*name};
+  if (const auto* name = describe(request.inputs, data.inputs)) return UnknownParameter{*name};
+  if (const auto* name = describe(request.outputs, data.outputs)) return UnknownParameter{*name};
+  return data;
+}
 
+double coverage_of(const identification::Record& record, storage::TimeRange window,
+                   Duration period) {
+  const double ticks = static_cast<double>(window.end - window.begin) / static_cast<double>(period);
+  return std::min(1.0, static_cast<double>(record.rows()) / ticks);
+}
+
+std::variant<WindowData, UnknownParameter> load_window(const storage::Archive& archive,
+                                                       const WindowRequest& request,
+                                                       storage::TimeRange window) {
+  auto described = describe_window(archive, request);
+  if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
+  WindowData data = std::get<WindowData>(std::move(described));
+  const storage::TimeRange read{window.begin - request.hold, window.end};
+  const auto channels = [&](const std::vector<storage::ParameterDescriptor>& descriptors) {
+    std::vector<Channel> result;
+    for (const storage::ParameterDescriptor& descriptor : descriptors)
+      result.emplace_back(archive.read(request.spacecraft, request.origin, descriptor.id, read));
+    return result;
+  };
+  const std::vector<Channel> inputs = channels(data.inputs), outputs = channels(data.outputs);
   data.record = identification::make_record(views(inputs), views(outputs), window.begin, window.end,
                                             {.period_ns = request.period, .hold_ns = request.hold});
-  const double ticks =
-      static_cast<double>(window.end - window.begin) / static_cast<double>(request.period);
-  data.coverage = std::min(1.0, static_cast<double>(data.record.rows()) / ticks);
+  data.coverage = coverage_of(data.record, window, request.period);
   return data;
 }
 

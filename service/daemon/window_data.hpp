@@ -35,6 +35,14 @@ struct UnknownParameter {
   std::string name;
 };
 
+/// The descriptors of the request's parameters, and no rows.
+std::variant<WindowData, UnknownParameter> describe_window(const storage::Archive& archive,
+                                                           const WindowRequest& request);
+
+/// Share of the window's ticks that are rows of the record.
+double coverage_of(const identification::Record& record, storage::TimeRange window,
+                   Duration period);
+
 /// Samples of quality good or out of limits count; suspect and invalid ones are holes.
 std::variant<WindowData, UnknownParameter> load_window(const storage::Archive& archive,
                                                        const WindowRequest& request,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <set>
+#include <utility>
 
 #include "service/support/floor_divide.hpp"
 
@@ -31,6 +32,7 @@ WindowFeed::WindowFeed(const Config& config, Clock clock)
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       equipment_.push_back({spacecraft.name, &equipment});
+  altered_.resize(equipment_.size());
 }
 
 void WindowFeed::join(const storage::ParameterDescriptor& descriptor,
@@ -131,7 +133,10 @@ void WindowFeed::stored(const std::vector<storage::TelemetryFrame>& frames,
   for (const storage::AppendReport::Touched& touched : report.touched)
     if (touched.origin == storage::Origin::real)
       if (const EquipmentIds* ids = members(touched.spacecraft, touched.parameter))
-        for (const std::size_t i : *ids) news[i].push_back(touched.range);
+        for (const std::size_t i : *ids) {
+          news[i].push_back(touched.range);
+          remember(altered_[i], touched.range);
+        }
 
   std::set<std::size_t> equipment;
   for (const storage::TelemetryFrame& frame : frames) {
@@ -159,13 +164,34 @@ void WindowFeed::stored(const std::vector<storage::TelemetryFrame>& frames,
   changed_.notify_all();
 }
 
+void WindowFeed::remember(std::vector<storage::TimeRange>& changed, storage::TimeRange range) {
+  constexpr std::size_t most_ranges = 64;
+  constexpr std::uint64_t nearby = 600'000'000'000;  // a chunk of ticks is some minutes at least
+  // The distance of two times can be twice as large as a Time holds.
+  const auto is_apart = [](storage::Time end, storage::Time begin) {
+    return begin > end &&
+           static_cast<std::uint64_t>(begin) - static_cast<std::uint64_t>(end) > nearby;
+  };
+  const auto touches = [&](const storage::TimeRange& other) {
+    return !is_apart(other.end, range.begin) && !is_apart(range.end, other.begin);
+  };
+  auto found = std::find_if(changed.rbegin(), changed.rend(), touches);
+  if (found == changed.rend() && changed.size() < most_ranges) {
+    changed.push_back(range);
+    return;
+  }
+  storage::TimeRange& joined = found == changed.rend() ? changed.back() : *found;
+  joined = {std::min(joined.begin, range.begin), std::max(joined.end, range.end)};
+}
+
 std::optional<WindowFeed::Job> WindowFeed::next() {
   MutexLock lock(mutex_);
   while (!stopped_) {
     const storage::Time now = clock_();
     if (const auto job = scheduler_.next(now)) {
       const Equipment& equipment = equipment_[job->equipment];
-      return Job{*job, &equipment.spacecraft, equipment.config};
+      return Job{*job, &equipment.spacecraft, equipment.config,
+                 std::exchange(altered_[job->equipment], {})};
     }
     if (const auto due = scheduler_.next_due())
       changed_.wait_for(mutex_, std::chrono::nanoseconds(std::max<Duration>(*due - now, 1)));

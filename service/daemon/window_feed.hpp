@@ -28,6 +28,8 @@ class WindowFeed : public ArchiveListener {
     WindowScheduler::Job window;
     const std::string* spacecraft = nullptr;
     const EquipmentConfig* equipment = nullptr;
+    /// Where samples of the equipment were stored since its last job: what is kept of them is old.
+    std::vector<storage::TimeRange> changed;
   };
 
   /// The configuration must outlive the feed.
@@ -76,6 +78,8 @@ class WindowFeed : public ArchiveListener {
   void touch_stored(std::size_t equipment, const std::string& spacecraft, std::uint32_t parameter,
                     storage::TimeRange range, const storage::Archive& archive)
       REIDENT_REQUIRES(mutex_);
+  /// Remembers in few ranges, which may cover more than was stored.
+  static void remember(std::vector<storage::TimeRange>& changed, storage::TimeRange range);
   bool is_jump(storage::Time time, storage::Time now) const {
     return time > now && time - now > max_clock_lead_;
   }
@@ -88,6 +92,8 @@ class WindowFeed : public ArchiveListener {
   mutable Mutex mutex_;
   CondVar changed_;
   WindowScheduler scheduler_ REIDENT_GUARDED_BY(mutex_);
+  /// By equipment: where samples were stored since its last job.
+  std::vector<std::vector<storage::TimeRange>> altered_ REIDENT_GUARDED_BY(mutex_);
   Membership membership_ REIDENT_GUARDED_BY(mutex_);
   storage::Time newest_ REIDENT_GUARDED_BY(mutex_) = 0;
   bool stopped_ REIDENT_GUARDED_BY(mutex_) = false;

@@ -16,6 +16,7 @@ using identification::IdentifyOptions;
 using identification::Index;
 using identification::LagSums;
 using identification::Record;
+using identification::ResponseFit;
 using identification::RowRange;
 using identification::StateSpaceModel;
 using identification::Verdict;
@@ -85,18 +86,23 @@ void run_slide(const SlideArguments& given) {
   print(result, measured);
 }
 
-/// What is fixed in order, horizon and weighting.
+/// What is fixed: nothing is left to choose.
 CLI::App* add_fixed(CLI::App& app, const std::string& mode, const std::string& description,
                     Arguments& given) {
   given.options.order = 0;
   given.options.horizon = 0;
   given.options.weighting = Weighting::n4sid;
+  given.options.direct_feedthrough = true;
+  given.options.response_fit = ResponseFit::simulation;
   CLI::App* added = app.add_subcommand(mode, description);
   added->add_option("--order", *given.options.order)->required()->check(CLI::PositiveNumber);
   added->add_option("--horizon", *given.options.horizon)->required()->check(CLI::Range(2, 500));
   added->add_option("--weighting", *given.options.weighting)
       ->transform(CLI::CheckedTransformer(std::map<std::string, Weighting>{
           {"n4sid", Weighting::n4sid}, {"moesp", Weighting::moesp}, {"cva", Weighting::cva}}));
+  added->add_option("--response", *given.options.response_fit, "what B and D are fitted to")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, ResponseFit>{
+          {"simulation", ResponseFit::simulation}, {"subspace", ResponseFit::subspace}}));
   return added;
 }
 

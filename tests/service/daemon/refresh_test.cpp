@@ -16,8 +16,14 @@ class Refresh : public DaemonTest {
   Refresh() { archive.describe(descriptors()); }
 
   RefreshResult run(storage::Time end, const EquipmentConfig& equipment = plant()) {
+    KeptWindow nothing = kept_window_of("SAT", equipment);
+    return run(end, nothing, equipment);
+  }
+  RefreshResult run(storage::Time end, KeptWindow& kept,
+                    const EquipmentConfig& equipment = plant()) {
     return refresh(archive, registry,
-                   {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, never);
+                   {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, kept,
+                   never);
   }
   void record(const RefreshResult& result) {
     registry.record(result.attempt,
@@ -103,8 +109,10 @@ TEST_F(Refresh, IdentifiesFromWhatLiesBeforeTheValidationAlone) {
   other.describe(descriptors());
   other.append(telemetry(day, 420));
   other.append(telemetry(day + 420 * second, 181, 5.0, 0.5));
-  const auto two = refresh(other, other_registry,
-                           {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"}, never);
+  KeptWindow kept = kept_window_of("SAT", plant());
+  const auto two =
+      refresh(other, other_registry, {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"},
+              kept, never);
   ASSERT_TRUE(one.candidate && two.candidate);
   EXPECT_EQ(one.candidate->dynamics.A, two.candidate->dynamics.A);
   EXPECT_EQ(one.candidate->dynamics.B, two.candidate->dynamics.B);
@@ -155,11 +163,43 @@ TEST_F(Refresh, LeavesSamplesOfBadQualityOut) {
   EXPECT_LT(result.candidate->outputs[0].high, 20);
 }
 
+TEST_F(Refresh, GivesTheSameBitsWhateverWasKeptOfEarlierWindows) {
+  EquipmentConfig equipment = plant();
+  equipment.window = 40 * minute;
+  archive.append(telemetry(day, 3601));
+  KeptWindow kept = kept_window_of("SAT", equipment);
+  const auto same_as_from_scratch = [&](storage::Time end) {
+    const auto slid = run(end, kept, equipment), fresh = run(end, equipment);
+    ASSERT_TRUE(slid.candidate && fresh.candidate) << slid.attempt.reason;
+    EXPECT_EQ(slid.candidate->dynamics.A, fresh.candidate->dynamics.A);
+    EXPECT_EQ(slid.candidate->dynamics.B, fresh.candidate->dynamics.B);
+    EXPECT_EQ(slid.candidate->dynamics.y0, fresh.candidate->dynamics.y0);
+    EXPECT_EQ(slid.evidence.mrse_percent, fresh.evidence.mrse_percent);
+  };
+  for (int minutes = 40; minutes <= 58; minutes += 9) same_as_from_scratch(day + minutes * minute);
+  // A stretch that was played back late with other values than those it had without it.
+  archive.append(telemetry(day + 25 * minute + second / 2, 120, 1.5));
+  kept.forget({day + 25 * minute, day + 27 * minute});
+  same_as_from_scratch(day + 59 * minute);
+}
+
+TEST_F(Refresh, OfASlidWindowReadsOnlyWhatIsNew) {
+  EquipmentConfig equipment = plant();
+  equipment.window = 40 * minute;
+  archive.append(telemetry(day, 3601));
+  KeptWindow kept = kept_window_of("SAT", equipment);
+  run(day + 40 * minute, kept, equipment);
+  EXPECT_EQ(kept.ticks_read(), 2400);
+  run(day + 50 * minute, kept, equipment);
+  EXPECT_LE(kept.ticks_read(), 2400 + 600 + 2 * 512) << "the new minutes and a chunk at each end";
+}
+
 TEST_F(Refresh, StopsWhenItIsAskedTo) {
   archive.append(telemetry(day, 601));
+  KeptWindow kept = kept_window_of("SAT", plant());
   EXPECT_THROW(
       refresh(archive, registry, {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"},
-              [] { return true; }),
+              kept, [] { return true; }),
       Stopped);
 }
 
