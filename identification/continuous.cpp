@@ -1,6 +1,5 @@
 #include "identification/continuous.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <complex>
 #include <optional>
@@ -13,13 +12,6 @@ namespace {
 
 constexpr double smallest_pole = 1e-8;
 constexpr double accepted_error = 1e-9;
-
-std::string text(double value) {
-  char buffer[32];
-  const auto end =
-      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 4).ptr;
-  return {buffer, end};
-}
 
 /// The state and input matrices of one kind of time.
 struct Dynamics {
@@ -79,13 +71,13 @@ std::optional<Verdict> pole_without_logarithm(const Matrix& A) {
   for (const std::complex<double>& pole : poles)
     if (std::abs(pole) < smallest_pole)
       return Verdict{VerdictCode::no_continuous_time,
-                     "the pole at " + text(std::abs(pole)) +
+                     "the pole at " + four_digits(std::abs(pole)) +
                          " is gone within one sample, as nothing is in continuous time; use the "
                          "discrete-time model, or identify with a lower order or an input delay"};
   for (const std::complex<double>& pole : poles)
     if (pole.imag() == 0 && pole.real() < 0)
       return Verdict{VerdictCode::no_continuous_time,
-                     "the pole at " + text(pole.real()) +
+                     "the pole at " + four_digits(pole.real()) +
                          " turns its sign with every sample, as nothing of the same order does in "
                          "continuous time; use the discrete-time model, or identify with another "
                          "order or a shorter sample period"};
@@ -104,7 +96,8 @@ std::variant<ContinuousModel, Verdict> to_continuous(const StateSpaceModel& mode
   const double error = relative_error(exponential(continuous, model.period_s), discrete);
   if (!(error < accepted_error))
     return Verdict{VerdictCode::no_continuous_time,
-                   "the continuous-time matrices, sampled again, miss the model by " + text(error) +
+                   "the continuous-time matrices, sampled again, miss the model by " +
+                       four_digits(error) +
                        " of its size, since poles lie too near zero or the negative axis; use the "
                        "discrete-time model, or identify with another order or a shorter sample "
                        "period"};

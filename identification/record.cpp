@@ -12,14 +12,18 @@ Record contiguous_record(double period_s, Matrix u, Matrix y) {
   return record;
 }
 
-std::vector<Segment> segments_within(const Record& record, RowRange rows) {
+std::vector<Segment> segments_within(const std::vector<Segment>& segments, RowRange rows) {
   std::vector<Segment> parts;
-  for (const Segment& segment : record.segments) {
+  for (const Segment& segment : segments) {
     const Index begin = std::max(segment.begin, rows.begin);
     const Index end = std::min(segment.end, rows.end);
     if (begin < end) parts.push_back({begin, end, segment.first_tick + (begin - segment.begin)});
   }
   return parts;
+}
+
+std::vector<Segment> segments_within(const Record& record, RowRange rows) {
+  return segments_within(record.segments, rows);
 }
 
 Record rows_at(const Record& record, TickRange ticks) {

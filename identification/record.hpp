@@ -50,7 +50,8 @@ struct Record {
 /// A record of one segment that starts at tick 0.
 Record contiguous_record(double period_s, Matrix u, Matrix y);
 
-/// The parts of the record's segments that lie in `rows`, ascending.
+/// The parts of the segments that lie in `rows`, ascending.
+std::vector<Segment> segments_within(const std::vector<Segment>& segments, RowRange rows);
 std::vector<Segment> segments_within(const Record& record, RowRange rows);
 
 /// The rows at `ticks`, as a record of their own.

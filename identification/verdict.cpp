@@ -1,5 +1,7 @@
 #include "identification/verdict.hpp"
 
+#include <charconv>
+
 namespace reident::identification {
 
 std::string_view name(VerdictCode code) {
@@ -22,6 +24,17 @@ std::string_view name(VerdictCode code) {
       return "no_continuous_time";
   }
   return "unknown";
+}
+
+std::string ordinal(std::string_view kind, std::ptrdiff_t channel) {
+  return std::string(kind) + " " + std::to_string(channel + 1);
+}
+
+std::string four_digits(double value) {
+  char buffer[32];
+  const auto end =
+      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 4).ptr;
+  return {buffer, end};
 }
 
 }  // namespace reident::identification

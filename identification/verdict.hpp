@@ -1,6 +1,7 @@
 // Why a stretch of telemetry gives no model: a code for programs and a sentence for an operator.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -24,5 +25,11 @@ struct Verdict {
   VerdictCode code;
   std::string reason;  // one sentence: what, where, and what would mend it
 };
+
+/// "input 3" for the channel 2: people count from one.
+std::string ordinal(std::string_view kind, std::ptrdiff_t channel);
+
+/// A number to four digits, as sentences hold it.
+std::string four_digits(double value);
 
 }  // namespace reident::identification

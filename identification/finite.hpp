@@ -1,0 +1,18 @@
+// Samples that no sum of squares can hold.
+#pragma once
+
+#include <optional>
+
+#include "identification/lag_sums.hpp"
+#include "identification/record.hpp"
+#include "identification/verdict.hpp"
+
+namespace reident::identification {
+
+/// A sample that is not finite, or too large to be squared, spoils the sums that it is in.
+bool all_finite(const StretchSums& sums);
+
+/// The first such sample in the rows, by channel and row.
+std::optional<Verdict> non_finite_values(const Record& record, RowRange rows);
+
+}  // namespace reident::identification

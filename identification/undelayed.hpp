@@ -1,0 +1,15 @@
+// One identification of inputs that act without delay.
+#pragma once
+
+#include "identification/identify.hpp"
+
+namespace reident::identification {
+
+/// identify() without what its options say of delays.
+IdentifyResult identify_undelayed(const Record& record, RowRange rows,
+                                  const IdentifyOptions& options, LagSums* kept);
+
+/// Rows that the first state of a model is estimated from; more would say little of it.
+constexpr Index state_rows = 500;
+
+}  // namespace reident::identification
