@@ -17,7 +17,7 @@ constexpr double equal_errors = 1.002;
 constexpr double no_error = 1e-6;  // of an output's deviation
 constexpr double worthwhile_recency = 0.95;
 constexpr double worthwhile_refinement = 0.99;
-constexpr int refinement_steps = 10;
+constexpr int refinement_steps = 25;
 constexpr Index least_scored = 1000, most_scored = 2000;  // rows of a fold in the first stage
 constexpr Index least_fitted = 2000;
 constexpr double intended_recipes = 8;  // of the second stage, where rows are many
