@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,7 @@
 #include "service/cli/identify_data.hpp"
 #include "service/cli/identify_options.hpp"
 #include "service/cli/identify_result.hpp"
+#include "service/support/parallel.hpp"
 #include "service/support/phase_timer.hpp"
 
 namespace reident::cli {
@@ -21,11 +24,23 @@ using identification::Index;
 using identification::RowRange;
 using identification::Verdict;
 
+constexpr std::size_t max_threads = 256;
+
 struct Arguments {
   DataRequest data;
   ModelRequest model;
+  std::optional<std::string> threads;
   bool json = false;
 };
+
+/// Absent where the request is impossible.
+std::optional<std::size_t> threads_of(const Arguments& arguments) {
+  if (!arguments.threads) return std::min(usable_cores(), max_threads);
+  const auto asked = whole_number(*arguments.threads);
+  if (!asked || *asked < 1) return std::nullopt;
+  const auto threads = static_cast<std::size_t>(*asked);
+  return threads <= max_threads ? std::optional(threads) : std::nullopt;
+}
 
 /// What can be said before the file is read.
 std::optional<Refusal> refuse_arguments(const Arguments& arguments) {
@@ -35,6 +50,9 @@ std::optional<Refusal> refuse_arguments(const Arguments& arguments) {
   const auto& period = arguments.data.period_s;
   if (period && !(*period >= 1e-9 && *period <= 1e9))
     return Refusal{fmt::format("--period {} must be seconds from 1e-9 to 1e9", *period)};
+  if (!threads_of(arguments))
+    return Refusal{fmt::format("--threads {} is no whole number from 1 to {}", *arguments.threads,
+                               max_threads)};
   return std::nullopt;
 }
 
@@ -94,6 +112,10 @@ int run(const Arguments& arguments) {
   if (const auto refusal = parse_model_request(arguments.model, data.inputs, data.outputs, options))
     return refuse(*refusal);
 
+  WorkerPool workers(*threads_of(arguments));
+  options.for_each = [&workers](std::size_t count, const std::function<void(std::size_t)>& task) {
+    workers.for_each(count, task);
+  };
   options.on_phase = [&timer](std::string_view phase) { timer.begin(phase); };
   auto result = identification::identify(data.record, data.identify, options);
   if (const auto* verdict = std::get_if<Verdict>(&result))
@@ -135,6 +157,9 @@ void add_identify(CLI::App& app, int& exit_code) {
   command->add_option("--validate", arguments->data.validate,
                       "rows C:D to score on (those after the identification rows)");
   add_model_options(*command, arguments->model);
+  command->add_option("--threads", arguments->threads,
+                      "threads of the search, which finds the same with any number of them (one "
+                      "for each core)");
   command->add_flag("--json", arguments->json, "one JSON object with matrices, x0 and errors");
   command->footer(
       "Example:\n"

@@ -75,6 +75,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
         {"validate", to_json(outcome.diagnostics.free_run.fit_percent)}}},
       {"diagnostics", to_json(outcome.diagnostics, outcome.inputs, outcome.outputs)},
       {"continuous", to_json(outcome.continuous)},
+      {"search_work", outcome.identified.search_work},
       {"timing_ms", timing},
       {"warnings", warnings}};
   std::string text;

@@ -67,9 +67,11 @@ DomainUse::~DomainUse() {
 }
 
 Participant::Impl::Impl(const Endpoint& endpoint)
-    : domain(endpoint.domain), participant(create_participant(endpoint.domain)) {
-  const std::string about = "partition \"" + endpoint.partition + "\"";
-  const Qos qos = partition_qos(endpoint.partition);
+    : domain(endpoint.domain),
+      partition(endpoint.partition),
+      participant(create_participant(endpoint.domain)) {
+  const std::string about = "partition \"" + partition + "\"";
+  const Qos qos = partition_qos(partition);
   publisher = {dds_create_publisher(participant.get(), qos.get(), nullptr), "dds_create_publisher",
                about};
   subscriber = {dds_create_subscriber(participant.get(), qos.get(), nullptr),

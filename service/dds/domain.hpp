@@ -43,6 +43,7 @@ struct Participant::Impl {
   explicit Impl(const Endpoint& endpoint);
 
   DomainUse domain;
+  std::string partition;
   Entity participant;
   Entity publisher;
   Entity subscriber;

@@ -5,10 +5,12 @@
 #include <optional>
 #include <set>
 
+#include "service/dds/loan.hpp"
+#include "service/support/log.hpp"
+
 namespace reident::dds {
 namespace {
 
-constexpr std::size_t loan_samples = 128;
 // The middleware's thread hands on what it has acknowledged as soon as there is room; it looks
 // every 10 ms at the latest. A reader that stays empty for longer has all of it.
 constexpr dds_duration_t handed_on_quiet = DDS_MSECS(25);
@@ -28,29 +30,12 @@ std::vector<dds_instance_handle_t> matched(dds_entity_t reader, const char* topi
 
 }  // namespace
 
-struct ReaderCore::Loan {
-  Loan(dds_entity_t from, std::size_t max, const char* topic) : reader(from) {
-    const auto size = static_cast<std::uint32_t>(std::min(max, loan_samples));
-    count = static_cast<std::size_t>(
-        check(dds_take(reader, samples.data(), infos.data(), size, size), "dds_take", topic));
-  }
-  ~Loan() {
-    if (count > 0) dds_return_loan(reader, samples.data(), static_cast<std::int32_t>(count));
-  }
-  Loan(const Loan&) = delete;
-  Loan& operator=(const Loan&) = delete;
-
-  dds_entity_t reader;
-  std::array<void*, loan_samples> samples{};  // null: the middleware lends its own
-  std::array<dds_sample_info_t, loan_samples> infos;
-  std::size_t count = 0;
-};
-
 ReaderCore::ReaderCore(Participant& participant, const Profile& profile,
                        const dds_topic_descriptor_t& descriptor, const ReaderOptions& options)
     : participant_(participant),
       profile_(profile),
       options_(options),
+      publications_(participant, profile.topic),
       topic_(dds_create_topic(participant.impl().participant.get(), &descriptor, profile.topic,
                               nullptr, nullptr),
              "dds_create_topic", profile.topic),
@@ -64,31 +49,33 @@ ReaderCore::Ear ReaderCore::make_ear(bool transient_local) const {
       "dds_create_reader", profile_.topic};
   ear.has_samples = {dds_create_readcondition(ear.reader.get(), DDS_ANY_STATE),
                      "dds_create_readcondition", profile_.topic};
-  check(dds_set_status_mask(ear.reader.get(), DDS_REQUESTED_INCOMPATIBLE_QOS_STATUS),
-        "dds_set_status_mask", profile_.topic);
   return ear;
 }
 
-void ReaderCore::hear_volatile_writers() {
-  if (second_.reader) return;
-  dds_requested_incompatible_qos_status_t status{};
-  check(dds_get_requested_incompatible_qos_status(first_.reader.get(), &status),
-        "dds_get_requested_incompatible_qos_status", profile_.topic);
-  if (status.total_count == 0) return;
-  second_ = make_ear(false);
-  for (const dds_entity_t wait_set : wait_sets_) {
-    check(dds_waitset_attach(wait_set, second_.has_samples.get(), 0), "dds_waitset_attach",
-          profile_.topic);
+void ReaderCore::meet_writers() {
+  const PublicationWatch::Unmatched unmatched = publications_.take();
+  if (unmatched.best_effort && !warned_of_best_effort_) {
+    log::warning("dds",
+                 "a writer of the topic offers BEST_EFFORT and is not heard; make it RELIABLE",
+                 {{"topic", profile_.topic}});
+    warned_of_best_effort_ = true;
   }
+  if (!unmatched.reliable_volatile || second_.reader) return;
+  second_ = make_ear(false);
+  for (const dds_entity_t wait_set : wait_sets_) attach(wait_set, second_);
 }
 
 void ReaderCore::attach_to(dds_entity_t wait_set) {
   wait_sets_.push_back(wait_set);
-  for (const dds_entity_t entity :
-       {first_.reader.get(), first_.has_samples.get(), second_.has_samples.get()}) {
-    if (entity == 0) continue;
-    check(dds_waitset_attach(wait_set, entity, 0), "dds_waitset_attach", profile_.topic);
-  }
+  check(dds_waitset_attach(wait_set, publications_.has_publications(), 0), "dds_waitset_attach",
+        profile_.topic);
+  for (const Ear* ear : {&first_, &second_}) attach(wait_set, *ear);
+}
+
+void ReaderCore::attach(dds_entity_t wait_set, const Ear& ear) const {
+  if (!ear.reader) return;
+  check(dds_waitset_attach(wait_set, ear.has_samples.get(), 0), "dds_waitset_attach",
+        profile_.topic);
 }
 
 bool ReaderCore::is_heard_by_first(dds_instance_handle_t writer) {
@@ -117,7 +104,7 @@ std::size_t ReaderCore::take_some(const Ear& ear, std::size_t max, const Visit& 
 }
 
 std::size_t ReaderCore::take(std::size_t max, const Visit& visit) {
-  hear_volatile_writers();
+  meet_writers();
   std::size_t taken = 0;
   for (const Ear* ear : {&first_, &second_}) {
     while (ear->reader && taken < max) {
@@ -133,11 +120,7 @@ std::size_t ReaderCore::take_until_quiet(dds_duration_t quiet, dds_duration_t li
                                          const Visit& visit) {
   const Entity wait_set(dds_create_waitset(participant_.impl().participant.get()),
                         "dds_create_waitset", profile_.topic);
-  for (const Ear* ear : {&first_, &second_}) {
-    if (!ear->reader) continue;
-    check(dds_waitset_attach(wait_set.get(), ear->has_samples.get(), 0), "dds_waitset_attach",
-          profile_.topic);
-  }
+  for (const Ear* ear : {&first_, &second_}) attach(wait_set.get(), *ear);
   const dds_time_t deadline = dds_time() + limit;
   std::size_t visited = 0;
   do {
@@ -167,7 +150,7 @@ ReaderCore::~ReaderCore() {
 }
 
 std::uint32_t ReaderCore::matched_writers() {
-  hear_volatile_writers();
+  meet_writers();
   std::set<dds_instance_handle_t> writers;
   for (const Ear* ear : {&first_, &second_}) {
     if (!ear->reader) continue;

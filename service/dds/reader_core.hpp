@@ -1,20 +1,20 @@
 // What a reader does whatever its message is: entities, loans, and which writers it hears.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <map>
 #include <vector>
 
 #include "service/dds/domain.hpp"
+#include "service/dds/publication_watch.hpp"
 #include "service/dds/qos.hpp"
 
 namespace reident::dds {
 
 /// A TRANSIENT_LOCAL reader gets the kept history of writers that keep some, and does not match
 /// volatile writers at all; a volatile reader matches both and gets no history. So the first reader
-/// asks for history, and when the middleware reports that a writer does not offer what it asks for,
-/// a second, volatile one joins it, whose samples of history-keeping writers are skipped.
+/// asks for history, and when a writer without any is discovered, a second, volatile one joins it,
+/// whose samples of history-keeping writers are skipped.
 class ReaderCore {
  public:
   using Visit = std::function<void(const void* wire)>;
@@ -33,18 +33,18 @@ class ReaderCore {
 
   /// Lets the wait set wake for this reader: for samples, and for writers that it cannot hear yet.
   void attach_to(dds_entity_t wait_set);
-  /// Creates the second reader where it is needed and was not created yet.
-  void hear_volatile_writers();
+  /// Looks at the writers that were discovered since the last call: creates the second reader where
+  /// it is needed and was not created yet, and warns, once, of a writer that neither can hear.
+  void meet_writers();
 
  private:
   struct Ear {
     Entity reader;
     Entity has_samples;  // read condition
   };
-  /// Samples and their information, borrowed from the middleware for a moment.
-  struct Loan;
 
   Ear make_ear(bool transient_local) const;
+  void attach(dds_entity_t wait_set, const Ear& ear) const;
   std::size_t take_some(const Ear& ear, std::size_t max, const Visit& visit);
   bool is_heard_by_first(dds_instance_handle_t writer);
   /// Takes until nothing came for `quiet`, or until `limit` has passed.
@@ -55,6 +55,8 @@ class ReaderCore {
   Participant& participant_;
   const Profile& profile_;
   ReaderOptions options_;
+  PublicationWatch publications_;
+  bool warned_of_best_effort_ = false;
   Entity topic_;
   Ear first_;
   Ear second_;

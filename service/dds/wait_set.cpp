@@ -35,7 +35,7 @@ bool WaitSet::wait(std::chrono::nanoseconds timeout) {
   check(dds_take_guardcondition(impl_->guard.get(), &woken), "dds_take_guardcondition",
         "the wait set");
   for (const std::weak_ptr<ReaderCore>& reader : impl_->readers) {
-    if (const auto core = reader.lock()) core->hear_volatile_writers();
+    if (const auto core = reader.lock()) core->meet_writers();
   }
   return ready > 0;
 }

@@ -147,6 +147,7 @@ TEST_F(Identify, PrintsEveryKeyOfTheContract) {
                           "fit_percent",
                           "diagnostics",
                           "continuous",
+                          "search_work",
                           "timing_ms",
                           "warnings"})
     EXPECT_TRUE(printed.contains(key)) << key;
@@ -167,6 +168,16 @@ TEST_F(Identify, UsesTwoThirdsToIdentifyAndTheRestToValidate) {
   given.erase("timing_ms");
   by_default.erase("timing_ms");
   EXPECT_EQ(by_default, given);
+}
+
+TEST_F(Identify, PrintsTheSameWithAnyNumberOfThreads) {
+  write("plant.csv", csv_of(plant(900)));
+  json one = json_of(command({"--threads", "1"}));
+  json four = json_of(command({"--threads", "4"}));
+  EXPECT_GT(one["search_work"], 0);
+  one.erase("timing_ms");
+  four.erase("timing_ms");
+  EXPECT_EQ(four, one);
 }
 
 TEST_F(Identify, TakesNamesInCommasAndInRepeatedFlags) {
@@ -389,6 +400,10 @@ const Impossible requests[] = {
     {"period_is_nan", "plant.csv --input u1 --output y1 --period nan", "--period nan"},
     {"period_too_short_for_the_times", "plant.csv --input u1 --output y1 --time row --period 0.1",
      "make it at least 333333334ns"},
+    {"no_thread", "plant.csv --input u1 --output y1 --threads 0",
+     "--threads 0 is no whole number from 1 to 256"},
+    {"too_many_threads", "plant.csv --input u1 --output y1 --threads 257", "--threads 257"},
+    {"threads_of_words", "plant.csv --input u1 --output y1 --threads all", "--threads all"},
     {"no_rows", "header.csv --input u1 --output y1", "no row of data"},
     {"empty_file", "empty.csv --input u1 --output y1", "empty.csv"},
     {"one_row", "one.csv --input u1 --output y1", "1 row"},

@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 
+#include "service/dds/codec.hpp"
+#include "service/dds/domain.hpp"
+#include "service/dds/qos.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 
 namespace reident::test {
@@ -73,6 +76,89 @@ TEST(Telemetry, a_wait_set_wakes_for_a_writer_without_history) {
     taken = reader.take(10, [](TelemetryFrame&&) {});
   }
   EXPECT_EQ(taken, 1U);
+}
+
+TEST(Telemetry, a_wait_set_sleeps_again_after_each_writer_without_history) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  dds::Reader<TelemetryFrame> reader(service);
+  dds::WaitSet wait_set(service);
+  wait_set.attach(reader);
+  for (int i = 0; i < 2; ++i) {
+    const dds::Writer<TelemetryFrame> writer(ground, {.history = 0});
+    while (writer.matched_readers() == 0) ASSERT_TRUE(wait_set.wait(10s));
+    EXPECT_TRUE(eventually([&] { return !wait_set.wait(20ms); })) << "writer " << i;
+  }
+}
+
+TEST(Telemetry, a_writer_without_history_is_heard_where_partitions_are_patterns) {
+  struct Case {
+    const char* writer;
+    const char* reader;
+  };
+  for (const Case& tested : {Case{"ops-*", "ops-1"}, {"ops-2", "ops-?"}, {"ops[3]", "ops[3]"}}) {
+    dds::Participant ground({own_endpoint().domain, tested.writer});
+    dds::Participant service({own_endpoint().domain, tested.reader});
+    dds::Reader<TelemetryFrame> reader(service);
+    dds::Writer<TelemetryFrame> writer(ground, {.history = 0});
+    EXPECT_TRUE(eventually([&] { return reader.matched_writers() == 1; })) << tested.writer;
+  }
+}
+
+/// A writer of telemetry that offers BEST_EFFORT.
+class CarelessWriter {
+ public:
+  explicit CarelessWriter(dds::Participant& participant)
+      : topic_(dds_create_topic(participant.impl().participant.get(),
+                                &dds::Codec<TelemetryFrame>::descriptor, dds::telemetry_frame.topic,
+                                nullptr, nullptr)) {
+    const dds::Qos qos(dds_create_qos());
+    dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
+    writer_ = dds::Entity(
+        dds_create_writer(participant.impl().publisher.get(), topic_.get(), qos.get(), nullptr));
+  }
+
+ private:
+  dds::Entity topic_;
+  dds::Entity writer_;
+};
+
+std::size_t occurrences(const std::string& text, const std::string& word) {
+  std::size_t count = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+/// What is logged while the reader meets the writers, up to a reliable one that comes last.
+std::string logged_until_reliable_writer(dds::Reader<TelemetryFrame>& reader,
+                                         dds::Participant& ground) {
+  testing::internal::CaptureStderr();
+  const dds::Writer<TelemetryFrame> last(ground);
+  EXPECT_TRUE(eventually([&] { return reader.matched_writers() == 1; }));
+  reader.take(1, [](TelemetryFrame&&) {});
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Telemetry, best_effort_writers_are_warned_of_once) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant service(own_endpoint());
+  const CarelessWriter early(ground);
+  dds::Reader<TelemetryFrame> reader(service);
+  const CarelessWriter late(ground);
+  const std::string log = logged_until_reliable_writer(reader, ground);
+  EXPECT_EQ(occurrences(log, "BEST_EFFORT"), 1U) << log;
+  EXPECT_THAT(log, testing::HasSubstr("make it RELIABLE topic=satcs/TelemetryFrame"));
+}
+
+TEST(Telemetry, a_best_effort_writer_of_another_partition_is_none_of_the_readers_business) {
+  dds::Endpoint training = own_endpoint();
+  training.partition += "-training";
+  dds::Participant ground(own_endpoint());
+  dds::Participant school(training);
+  dds::Participant service(own_endpoint());
+  const CarelessWriter careless(school);
+  dds::Reader<TelemetryFrame> reader(service);
+  EXPECT_EQ(logged_until_reliable_writer(reader, ground), "");
 }
 
 TEST(Telemetry, partitions_do_not_hear_each_other) {

@@ -1,0 +1,39 @@
+// What kinds of writers of a topic there are in a partition, whether a reader matches them or not.
+#pragma once
+
+#include <string>
+
+#include "service/dds/domain.hpp"
+#include "service/dds/entity.hpp"
+
+namespace reident::dds {
+
+/// Follows the middleware's own topic of publications, which has every writer of the domain. The
+/// status of incompatible QoS that a reader can be asked for would not do: it keeps the policy of
+/// the last writer alone, and does not tell writers of other partitions from those of its own.
+class PublicationWatch {
+ public:
+  PublicationWatch(Participant& participant, std::string topic);
+
+  /// Writers that a RELIABLE, TRANSIENT_LOCAL reader of the partition does not match.
+  struct Unmatched {
+    bool best_effort = false;        // some offer BEST_EFFORT
+    bool reliable_volatile = false;  // some are RELIABLE and VOLATILE
+  };
+  /// Of the writers that were discovered since the last call.
+  Unmatched take();
+
+  /// A condition that is true while take() has something to look at, for wait sets.
+  dds_entity_t has_publications() const { return has_publications_.get(); }
+
+ private:
+  void look_at(const dds_builtintopic_endpoint_t& writer, Unmatched& unmatched) const;
+  bool is_in_partition(const dds_qos_t* qos) const;
+
+  std::string topic_;
+  std::string partition_;
+  Entity publications_;
+  Entity has_publications_;
+};
+
+}  // namespace reident::dds
