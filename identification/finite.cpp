@@ -12,23 +12,27 @@ bool all_finite(const StretchSums& sums) {
   });
 }
 
-std::optional<Verdict> non_finite_values(const Record& record, RowRange rows) {
+std::optional<Verdict> non_finite_values(const Record& record, RowRange rows,
+                                         const IdentifyOptions& options) {
   constexpr double largest_square_root = 1e150;
-  const auto look = [rows](const Matrix& channels, const char* kind) -> std::optional<Verdict> {
+  const auto look = [rows](const Matrix& channels, const char* kind,
+                           const std::vector<std::string>& names) -> std::optional<Verdict> {
     for (Index c = 0; c < channels.cols(); ++c)
       for (Index r = rows.begin; r < rows.end; ++r)
         if (!std::isfinite(channels(r, c)))
           return Verdict{VerdictCode::non_finite,
-                         ordinal(kind, c) + " is not a finite number in row " + std::to_string(r) +
+                         channel_name(kind, c, names) + " is not a finite number in row " +
+                             std::to_string(r) +
                              "; mark such samples as invalid or leave the row out"};
         else if (std::abs(channels(r, c)) > largest_square_root)
           return Verdict{VerdictCode::non_finite,
-                         ordinal(kind, c) + " is beyond 1e150 in row " + std::to_string(r) +
+                         channel_name(kind, c, names) + " is beyond 1e150 in row " +
+                             std::to_string(r) +
                              ", which no sum of squares can hold; give it in another unit"};
     return std::nullopt;
   };
-  if (auto verdict = look(record.u, "input")) return verdict;
-  return look(record.y, "output");
+  if (auto verdict = look(record.u, "input", options.input_names)) return verdict;
+  return look(record.y, "output", options.output_names);
 }
 
 }  // namespace reident::identification

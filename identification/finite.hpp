@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "identification/identify.hpp"
 #include "identification/lag_sums.hpp"
 #include "identification/record.hpp"
 #include "identification/verdict.hpp"
@@ -13,6 +14,7 @@ namespace reident::identification {
 bool all_finite(const StretchSums& sums);
 
 /// The first such sample in the rows, by channel and row.
-std::optional<Verdict> non_finite_values(const Record& record, RowRange rows);
+std::optional<Verdict> non_finite_values(const Record& record, RowRange rows,
+                                         const IdentifyOptions& options);
 
 }  // namespace reident::identification

@@ -72,7 +72,7 @@ std::vector<int> chosen_delays(const Record& record, RowRange rows,
 
 IdentifyResult identify_delayed(const Record& record, RowRange rows,
                                 const IdentifyOptions& options) {
-  if (auto verdict = non_finite_values(record, rows)) return *verdict;
+  if (auto verdict = non_finite_values(record, rows, options)) return *verdict;
   const std::vector<int> delays =
       options.input_delays.empty() ? chosen_delays(record, rows, options) : options.input_delays;
   const int longest = *std::max_element(delays.begin(), delays.end());
@@ -84,8 +84,8 @@ IdentifyResult identify_delayed(const Record& record, RowRange rows,
   found->input_delays = delays;
   for (std::size_t i = 0; i < delays.size(); ++i)
     if (delays[i] > 0)
-      found->warnings.push_back(ordinal("input", static_cast<Index>(i)) + " acts after " +
-                                std::to_string(delays[i]) +
+      found->warnings.push_back(channel_name("input", static_cast<Index>(i), options.input_names) +
+                                " acts after " + std::to_string(delays[i]) +
                                 " samples, which the model holds as as many states");
   found->x0 = estimate_initial_state(found->model, record, segments_within(record, rows).front(),
                                      state_rows);

@@ -24,6 +24,8 @@
 namespace reident::identification {
 
 struct IdentifyOptions {
+  /// What verdicts and warnings call the channels; empty: "input 1" and so on.
+  std::vector<std::string> input_names, output_names;
   std::optional<int> order;  // absent: chosen in [min_order, max_order]
   int min_order = 1;
   int max_order = 10;

@@ -37,6 +37,9 @@ class Identification {
   StretchSums sums_of(RowRange rows);
   void warn_of_constants(const std::vector<Index>& moving, Index channels, const char* kind);
   void leave_out_redundant_inputs();
+  std::string input_name(Index input) const {
+    return channel_name("input", input, options_.input_names);
+  }
   /// Ranks what can be identified, best first.
   std::optional<Verdict> choose(std::vector<ScoredRecipe>& ranked);
   /// The only recipe there is, where the options leave no choice or the rows do not allow one.
@@ -102,7 +105,7 @@ std::optional<Verdict> Identification::prepare() {
   }
   all_sums_ = sums_of(rows_);
   if (!all_finite(all_sums_))
-    if (auto verdict = non_finite_values(record_, rows_)) return verdict;
+    if (auto verdict = non_finite_values(record_, rows_, options_)) return verdict;
   normalisation_ = normalisation_of(all_sums_, record_.u.cols());
   warn_of_constants(normalisation_.inputs, record_.u.cols(), "input");
   warn_of_constants(normalisation_.outputs, record_.y.cols(), "output");
@@ -129,10 +132,11 @@ void Identification::warn_of_constants(const std::vector<Index>& moving, Index c
                                        const char* kind) {
   for (Index c = 0; c < channels; ++c)
     if (!std::binary_search(moving.begin(), moving.end(), c))
-      warnings_.push_back(ordinal(kind, c) +
-                          " is constant in the rows to identify from: the "
-                          "model does not say how " +
-                          (kind[0] == 'i' ? "it acts" : "it moves"));
+      warnings_.push_back(
+          channel_name(kind, c, kind[0] == 'i' ? options_.input_names : options_.output_names) +
+          " is constant in the rows to identify from: the "
+          "model does not say how " +
+          (kind[0] == 'i' ? "it acts" : "it moves"));
 }
 
 void Identification::leave_out_redundant_inputs() {
@@ -144,9 +148,8 @@ void Identification::leave_out_redundant_inputs() {
   for (auto found = redundant.rbegin(); found != redundant.rend(); ++found) {
     std::string others;
     for (const Index other : found->explained_by)
-      others +=
-          (others.empty() ? "" : ", ") + ordinal("input", before[static_cast<std::size_t>(other)]);
-    warnings_.push_back(ordinal("input", before[static_cast<std::size_t>(found->input)]) +
+      others += (others.empty() ? "" : ", ") + input_name(before[static_cast<std::size_t>(other)]);
+    warnings_.push_back(input_name(before[static_cast<std::size_t>(found->input)]) +
                         " is a linear combination of " + others +
                         " at every row and is left out of the model");
     inputs.erase(inputs.begin() + found->input);
@@ -255,7 +258,7 @@ std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
   const Excitation excitation = excitation_of(Projection(factor(horizon)).input_innovations());
   if (excitation.order >= horizon) return std::nullopt;
   const std::string weakest =
-      ordinal("input", normalisation_.inputs[static_cast<std::size_t>(excitation.weakest_input)]);
+      input_name(normalisation_.inputs[static_cast<std::size_t>(excitation.weakest_input)]);
   const int highest = static_cast<int>(excitation.order) - 1;
   if (highest < space.min_order)
     return Verdict{VerdictCode::insufficient_excitation,

@@ -26,7 +26,10 @@ std::string_view name(VerdictCode code) {
   return "unknown";
 }
 
-std::string ordinal(std::string_view kind, std::ptrdiff_t channel) {
+std::string channel_name(std::string_view kind, std::ptrdiff_t channel,
+                         const std::vector<std::string>& names) {
+  if (static_cast<std::size_t>(channel) < names.size())
+    return names[static_cast<std::size_t>(channel)];
   return std::string(kind) + " " + std::to_string(channel + 1);
 }
 

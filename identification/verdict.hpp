@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace reident::identification {
 
@@ -26,8 +27,9 @@ struct Verdict {
   std::string reason;  // one sentence: what, where, and what would mend it
 };
 
-/// "input 3" for the channel 2: people count from one.
-std::string ordinal(std::string_view kind, std::ptrdiff_t channel);
+/// The channel's name, or "input 3" for the channel 2 where it has none: people count from one.
+std::string channel_name(std::string_view kind, std::ptrdiff_t channel,
+                         const std::vector<std::string>& names);
 
 /// A number to four digits, as sentences hold it.
 std::string four_digits(double value);

@@ -56,6 +56,15 @@ std::optional<Refusal> refuse_arguments(const Arguments& arguments) {
   return std::nullopt;
 }
 
+/// A model may explain the rows that it was chosen on and not the ones behind them.
+void warn_of_useless_outputs(IdentifyOutcome& outcome) {
+  for (std::size_t q = 0; q < outcome.outputs.size(); ++q)
+    if (outcome.diagnostics.free_run.fit_percent(static_cast<Index>(q)) < 0)
+      outcome.warnings.push_back(fmt::format(
+          "on the validation rows the model is worse than the mean of {}: do not use it as it is",
+          outcome.outputs[q]));
+}
+
 /// What happens to the state in a simulation of `rows`.
 void warn_of_states(const Identified& identified, const IdentifyData& data, RowRange rows,
                     bool from_x0, std::vector<std::string>& warnings) {
@@ -117,6 +126,8 @@ int run(const Arguments& arguments) {
     workers.for_each(count, task);
   };
   options.on_phase = [&timer](std::string_view phase) { timer.begin(phase); };
+  options.input_names = data.inputs;
+  options.output_names = data.outputs;
   auto result = identification::identify(data.record, data.identify, options);
   if (const auto* verdict = std::get_if<Verdict>(&result))
     return print_rejection(*verdict, arguments.json);
@@ -130,6 +141,7 @@ int run(const Arguments& arguments) {
   const auto& own = outcome.identified.warnings;
   outcome.warnings.insert(outcome.warnings.end(), own.begin(), own.end());
   score_outcome(data, outcome);
+  warn_of_useless_outputs(outcome);
   outcome.continuous = to_continuous(outcome.identified.model);
   timer.end();
   outcome.timing_ms = timer.phases();

@@ -39,6 +39,25 @@ Table error_table(const IdentifyOutcome& outcome) {
   return table;
 }
 
+/// What was chosen besides order, horizon and weighting, and on what grounds.
+ordered_json recipe_json(const identification::Identified& identified) {
+  const identification::Recipe& recipe = identified.recipe;
+  const bool of_subspace = recipe.fit == identification::ResponseFit::subspace;
+  const bool enforced = recipe.stability == identification::Stability::enforced;
+  const bool recent = recipe.operating_point == identification::OperatingPoint::recent;
+  ordered_json json = {{"response", of_subspace ? "subspace" : "simulation"},
+                       {"direct", recipe.direct},
+                       {"operating_point", recent ? "recent" : "whole"},
+                       {"refinement_steps", recipe.refinement_steps},
+                       {"stability", enforced ? "enforced" : "as_found"},
+                       {"input_delays", identified.input_delays},
+                       {"held_out_error", nullptr},
+                       {"singular_values", to_json(identified.singular_values)},
+                       {"hankel_condition", identified.hankel_condition}};
+  if (identified.held_out_error) json["held_out_error"] = *identified.held_out_error;
+  return json;
+}
+
 }  // namespace
 
 std::string to_json_text(const IdentifyOutcome& outcome) {
@@ -54,6 +73,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"order", model.order()},
       {"horizon", outcome.identified.recipe.horizon},
       {"weighting", name(outcome.identified.recipe.weighting)},
+      {"recipe", recipe_json(outcome.identified)},
       {"sample_period_s", model.period_s},
       {"inputs", outcome.inputs},
       {"outputs", outcome.outputs},

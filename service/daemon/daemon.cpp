@@ -52,6 +52,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       clock_(std::move(clock)),
       started_(clock_()),
       queue_(config.queue_frames),
+      search_(usable_cores()),
       feed_(config, clock_),
       writer_(open_for_writing(config), queue_, config.batch_frames, config.batch_delay, feed_),
       participant_(dds::Endpoint{config.domain, config.partition}),
@@ -130,7 +131,12 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
         .get();
     RefreshRequest request{*job.spacecraft, *job.equipment, window,
                            job.window.again ? "late telemetry" : "slide", config_.digest};
-    return conclude(refresh(archive, registry, request, kept, [this] { return stopping_.load(); }));
+    const auto on_all_cores = [this](std::size_t count,
+                                     const std::function<void(std::size_t)>& task) {
+      search_.for_each(count, task);
+    };
+    return conclude(refresh(archive, registry, request, kept, on_all_cores,
+                            [this] { return stopping_.load(); }));
   } catch (const Stopped&) {
     return false;
   } catch (const std::future_error&) {  // the writer has ended

@@ -20,6 +20,7 @@
 #include "service/daemon/refresh.hpp"
 #include "service/daemon/window_feed.hpp"
 #include "service/dds/dds.hpp"
+#include "service/support/parallel.hpp"
 
 namespace reident {
 
@@ -54,6 +55,7 @@ class Daemon {
   const Clock clock_;
   const storage::Time started_;
   BoundedQueue<TelemetryEvent> queue_;
+  WorkerPool search_;  // shared by the identification threads
   WindowFeed feed_;
   ArchiveWriter writer_;
   dds::Participant participant_;

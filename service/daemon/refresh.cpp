@@ -216,6 +216,7 @@ void refuse(RefreshResult& result, std::string_view outcome, std::string reason)
 /// Fills in all but the timings.
 ordered_json attempt_window(const storage::Archive& archive, const storage::Registry& registry,
                             const RefreshRequest& request, KeptWindow& kept,
+                            const identification::ForEach& for_each,
                             const std::function<bool()>& stop, PhaseTimer& timer,
                             RefreshResult& result) {
   timer.begin("load");
@@ -239,6 +240,7 @@ ordered_json attempt_window(const storage::Archive& archive, const storage::Regi
     return evidence;
   }
   identification::IdentifyOptions options = options_of(request.equipment);
+  options.for_each = for_each;
   options.on_phase = [&stop, &timer](std::string_view phase) {
     if (stop()) throw Stopped();
     timer.begin(phase);
@@ -258,6 +260,8 @@ ordered_json attempt_window(const storage::Archive& archive, const storage::Regi
 
 identification::IdentifyOptions options_of(const EquipmentConfig& equipment) {
   identification::IdentifyOptions options;
+  options.input_names = equipment.inputs;
+  options.output_names = equipment.outputs;
   options.min_order = equipment.min_order;
   options.max_order = equipment.max_order;
   options.horizon = equipment.horizon;
@@ -270,7 +274,7 @@ KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& 
 
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,
                       const RefreshRequest& request, KeptWindow& kept,
-                      const std::function<bool()>& stop) {
+                      const identification::ForEach& for_each, const std::function<bool()>& stop) {
   RefreshResult result;
   result.attempt.spacecraft = request.spacecraft;
   result.attempt.equipment = request.equipment.name;
@@ -280,7 +284,8 @@ RefreshResult refresh(const storage::Archive& archive, const storage::Registry& 
   result.attempt.program_version = program_version();
 
   PhaseTimer timer;
-  ordered_json evidence = attempt_window(archive, registry, request, kept, stop, timer, result);
+  ordered_json evidence =
+      attempt_window(archive, registry, request, kept, for_each, stop, timer, result);
   timer.end();
   for (const auto& [phase, milliseconds] : timer.phases())
     evidence["timing_ms"][phase] = milliseconds;

@@ -43,9 +43,10 @@ identification::IdentifyOptions options_of(const EquipmentConfig& equipment);
 /// What is kept of the equipment's windows.
 KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment);
 
-/// `kept` is of the same spacecraft and equipment.
+/// `kept` is of the same spacecraft and equipment. The search runs on `for_each`, or on the calling
+/// thread where it is empty.
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,
                       const RefreshRequest& request, KeptWindow& kept,
-                      const std::function<bool()>& stop);
+                      const identification::ForEach& for_each, const std::function<bool()>& stop);
 
 }  // namespace reident

@@ -22,7 +22,7 @@ class Refresh : public DaemonTest {
   RefreshResult run(storage::Time end, KeptWindow& kept,
                     const EquipmentConfig& equipment = plant()) {
     return refresh(archive, registry,
-                   {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, kept,
+                   {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, kept, {},
                    never);
   }
   void record(const RefreshResult& result) {
@@ -112,7 +112,7 @@ TEST_F(Refresh, IdentifiesFromWhatLiesBeforeTheValidationAlone) {
   KeptWindow kept = kept_window_of("SAT", plant());
   const auto two =
       refresh(other, other_registry, {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"},
-              kept, never);
+              kept, {}, never);
   ASSERT_TRUE(one.candidate && two.candidate);
   EXPECT_EQ(one.candidate->dynamics.A, two.candidate->dynamics.A);
   EXPECT_EQ(one.candidate->dynamics.B, two.candidate->dynamics.B);
@@ -199,7 +199,7 @@ TEST_F(Refresh, StopsWhenItIsAskedTo) {
   KeptWindow kept = kept_window_of("SAT", plant());
   EXPECT_THROW(
       refresh(archive, registry, {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"},
-              kept, [] { return true; }),
+              kept, {}, [] { return true; }),
       Stopped);
 }
 
