@@ -130,15 +130,12 @@ Vector StretchSums::greatest() const {
 StretchSums sums_of_rows(const Record& record, TickRange ticks, Index block_rows) {
   StretchSums sums;
   const Index m = record.u.cols(), p = record.y.cols();
-  for (const Segment& segment : record.segments) {
-    const std::int64_t begin = std::max(segment.first_tick, ticks.begin);
-    const std::int64_t end = std::min(segment.first_tick + segment.size(), ticks.end);
-    if (begin >= end) continue;
-    const Index row = segment.begin + (begin - segment.first_tick), count = end - begin;
-    Matrix z(m + p, count);
-    z.topRows(m) = record.u.middleRows(row, count).transpose();
-    z.bottomRows(p) = record.y.middleRows(row, count).transpose();
-    sums.runs.emplace_back(z, begin, block_rows);
+  const RowRange rows{first_row_at(record, ticks.begin), first_row_at(record, ticks.end)};
+  for (const Segment& part : segments_within(record, rows)) {
+    Matrix z(m + p, part.size());
+    z.topRows(m) = record.u.middleRows(part.begin, part.size()).transpose();
+    z.bottomRows(p) = record.y.middleRows(part.begin, part.size()).transpose();
+    sums.runs.emplace_back(z, part.first_tick, block_rows);
   }
   return sums;
 }
@@ -167,12 +164,20 @@ StretchSums LagSums::sum_node(Node node, const Record& record, Nodes* keep) cons
   StretchSums sums;
   if (node.level == 0) {
     sums = sums_of_rows(record, ticks_of(node), shape_.block_rows);
-  } else {
+  } else if (!is_empty(node, record)) {
     sums = sum_node({node.level - 1, 2 * node.index}, record, keep);
     sums.append(sum_node({node.level - 1, 2 * node.index + 1}, record, keep));
   }
   if (keep) keep->emplace(node, sums);
   return sums;
+}
+
+bool LagSums::is_empty(Node node, const Record& record) const {
+  const TickRange ticks = ticks_of(node);
+  if (first_row_at(record, ticks.begin) < first_row_at(record, ticks.end)) return false;
+  // Every kept node that holds samples has its chunks kept as well.
+  const auto chunk = nodes_.lower_bound({0, node.index << node.level});
+  return chunk == nodes_.end() || chunk->first >= Node{0, (node.index + 1) << node.level};
 }
 
 StretchSums LagSums::sum(TickRange ticks, const Record& record, Nodes* keep) const {

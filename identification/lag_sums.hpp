@@ -108,6 +108,9 @@ class LagSums {
   /// The largest nodes that make up the chunks within `ticks`, ascending.
   std::vector<Node> nodes_of(TickRange ticks) const;
   StretchSums sum_node(Node node, const Record& record, Nodes* keep) const;
+  /// Neither the record nor what is kept has samples in the node: then its parts need no look,
+  /// so that cost and memory follow the samples, not the length of the gaps.
+  bool is_empty(Node node, const Record& record) const;
   StretchSums sum(TickRange ticks, const Record& record, Nodes* keep) const;
   void add_missing(Node node, std::vector<TickRange>& found) const;
 

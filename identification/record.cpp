@@ -14,10 +14,12 @@ Record contiguous_record(double period_s, Matrix u, Matrix y) {
 
 std::vector<Segment> segments_within(const std::vector<Segment>& segments, RowRange rows) {
   std::vector<Segment> parts;
-  for (const Segment& segment : segments) {
-    const Index begin = std::max(segment.begin, rows.begin);
-    const Index end = std::min(segment.end, rows.end);
-    if (begin < end) parts.push_back({begin, end, segment.first_tick + (begin - segment.begin)});
+  auto segment = std::partition_point(segments.begin(), segments.end(),
+                                      [rows](const Segment& s) { return s.end <= rows.begin; });
+  for (; segment != segments.end() && segment->begin < rows.end; ++segment) {
+    const Index begin = std::max(segment->begin, rows.begin);
+    const Index end = std::min(segment->end, rows.end);
+    if (begin < end) parts.push_back({begin, end, segment->first_tick + (begin - segment->begin)});
   }
   return parts;
 }
@@ -64,7 +66,8 @@ Index first_row_at(const Record& record, std::int64_t tick) {
       std::partition_point(record.segments.begin(), record.segments.end(),
                            [tick](const Segment& s) { return s.first_tick + s.size() <= tick; });
   if (segment == record.segments.end()) return record.rows();
-  return segment->begin + std::max<Index>(0, tick - segment->first_tick);
+  return tick <= segment->first_tick ? segment->begin
+                                     : segment->begin + (tick - segment->first_tick);
 }
 
 }  // namespace reident::identification

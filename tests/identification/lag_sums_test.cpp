@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/support/same_bits.hpp"
 #include "tests/support/systems.hpp"
 
 namespace reident::identification {
@@ -40,16 +41,6 @@ double distance(RunSums a, const Matrix& z) {
   return (a.products() - lag_products(z)).norm() / double(z.cols());
 }
 
-bool same_bits(const StretchSums& a, const StretchSums& b) {
-  if (a.runs.size() != b.runs.size()) return false;
-  for (std::size_t i = 0; i < a.runs.size(); ++i)
-    if (a.runs[i].ticks() != b.runs[i].ticks() || a.runs[i].products() != b.runs[i].products() ||
-        a.runs[i].sum() != b.runs[i].sum() || a.runs[i].reference() != b.runs[i].reference() ||
-        a.runs[i].first() != b.runs[i].first() || a.runs[i].last() != b.runs[i].last())
-      return false;
-  return true;
-}
-
 TEST(RunSums, AreTheLagProductsOfTheCentredSamples) {
   for (const Index rows : {1, 3, 5, 6, 7, 100}) {
     const Matrix z = channels(noise_record(rows));
@@ -85,9 +76,10 @@ TEST(LagSums, AWindowIsTheSameToTheLastBitHoweverItsSumsCameAbout) {
   LagSums kept(shape);
   const TickRange window{117, 861};
   for (std::int64_t end = 200; end < 900; end += 50) kept.keep_over({end - 200, end}, record);
-  EXPECT_TRUE(same_bits(kept.keep_over(window, record), LagSums(shape).over(window, record)));
+  EXPECT_TRUE(
+      testing::same_bits(kept.keep_over(window, record), LagSums(shape).over(window, record)));
   kept.forget({400, 401});
-  EXPECT_TRUE(same_bits(kept.over(window, record), LagSums(shape).over(window, record)));
+  EXPECT_TRUE(testing::same_bits(kept.over(window, record), LagSums(shape).over(window, record)));
 }
 
 TEST(LagSums, AgreeWithOneSumOverTheWindow) {
@@ -115,6 +107,18 @@ TEST(LagSums, SayWhichSamplesTheyStillNeed) {
   EXPECT_THAT(kept.missing({40, 310}), ElementsAre(TickRange{40, 50}, TickRange{200, 310}));
   kept.forget({120, 121});
   EXPECT_THAT(kept.missing({50, 200}), ElementsAre(TickRange{100, 150}));
+}
+
+TEST(LagSums, CostWhatTheSamplesCostHoweverLongTheGaps) {
+  Record record = noise_record(400);
+  constexpr std::int64_t far = 1'000'000'000'000;
+  record.segments = {{0, 200, 0}, {200, 400, far}};
+  LagSums kept({3, L, 50});
+  const StretchSums sums = kept.keep_over({0, far + 200}, record);
+  ASSERT_EQ(sums.runs.size(), 2u);
+  EXPECT_EQ(sums.rows(), 400);
+  EXPECT_LT(kept.kept_nodes(), 200u);
+  EXPECT_TRUE(testing::same_bits(kept.keep_over({0, far + 200}, record), sums));
 }
 
 TEST(LagSums, WindowsBeforeTheEpochAreCutLikeOthers) {

@@ -1,0 +1,14 @@
+// Whether two results are the same to the last bit, which == does not tell: it takes -0 for 0.
+#pragma once
+
+#include "identification/identify.hpp"
+#include "identification/lag_sums.hpp"
+
+namespace reident::testing {
+
+bool same_bits(const identification::StretchSums& a, const identification::StretchSums& b);
+
+/// Models with all that is said of them, or the same verdict in the same words.
+bool same_bits(const identification::IdentifyResult& a, const identification::IdentifyResult& b);
+
+}  // namespace reident::testing
