@@ -265,7 +265,7 @@ std::vector<Candidate> Search::refined_stage(const std::vector<Candidate>& simul
     if (candidate.recipe.fit != ResponseFit::simulation) continue;
     refined.push_back(candidate);
     refined.back().recipe.refinement_steps = refinement_steps;
-    refined.back().recipe.refined_rows = rows;
+    refined.back().recipe.refined_rows = rows * static_cast<Index>(folds());
   }
   return refined.empty() ? refined : scored(affordable(refined, rows), rows);
 }

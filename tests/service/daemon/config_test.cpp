@@ -236,10 +236,10 @@ const Mistake values[] = {
     {"no_window", with(8, ""), "3: equipment BDR: window is missing"},
     {"short_window", with(8, "window = \"10s\""),
      "8: equipment BDR: window 10s holds 10 samples of 1s; orders up to 10 with 2 inputs and 1 "
-     "outputs need 180: make it at least 3min or lower the order"},
+     "outputs need 210: make it at least 210s or lower the order"},
     {"short_window_for_the_horizon", with(8, "window = \"3min\"\nhorizon = 50"),
      "8: equipment BDR: window 3min holds 180 samples of 1s; orders up to 10 with 2 inputs and 1 "
-     "outputs need 817: make it at least 817s"},
+     "outputs need 953: make it at least 953s"},
     {"window_below_period", with(8, "window = \"1s\"\nhold = \"1min\"") + "",
      "8: equipment BDR: window 1s holds 1 samples"},
     {"huge_window", with(8, "window = \"3650d\"\nslide = \"1d\""),
@@ -342,8 +342,8 @@ TEST(Config, AllMistakesAreReportedAtOnceByLine) {
 }
 
 TEST(Config, AWindowThatJustHoldsEnoughIsAccepted) {
-  EXPECT_THAT(mistakes_of(with(8, "window = \"180s\"")), IsEmpty());
-  EXPECT_THAT(mistakes_of(with(8, "window = \"179s\"")), SizeIs(1));
+  EXPECT_THAT(mistakes_of(with(8, "window = \"210s\"")), IsEmpty());
+  EXPECT_THAT(mistakes_of(with(8, "window = \"209s\"")), SizeIs(1));
 }
 
 TEST(Config, TheDigestIsTheSha256OfTheBytes) {
