@@ -33,8 +33,10 @@ struct IdentifyOptions {
   std::optional<Weighting> weighting;       // absent: chosen
   std::optional<ResponseFit> response_fit;  // the way of B and D; absent: chosen
   std::optional<bool> direct_feedthrough;   // whether D may differ from zero; absent: chosen
-  std::vector<int> input_delays;            // samples, one for each input; empty: none
-  int max_input_delay = 0;  // above 0: the delays are estimated, each at most so many samples
+  /// Whether A may be made stable where every model is unstable; the recipe then says so.
+  bool may_enforce_stability = true;
+  std::vector<int> input_delays;  // samples, one for each input; empty: none
+  int max_input_delay = 0;        // above 0: the delays are estimated, each at most so many samples
   /// Share of the identification rows that choices are scored on, in (0, 0.9]: the last ones and
   /// the first ones are held out in turn, a half of the share at a time.
   double tune_share = 0.4;

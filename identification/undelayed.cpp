@@ -192,6 +192,7 @@ std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked)
     if (!options_.weighting)
       warnings_.push_back("too few rows to choose on rows held out; the weighting n4sid was taken");
     ranked = {{*given, std::numeric_limits<double>::infinity()}};
+    if (!options_.may_enforce_stability) return std::nullopt;
     ranked.push_back(ranked.front());
     ranked.back().recipe.stability = Stability::enforced;
     return std::nullopt;
@@ -203,7 +204,7 @@ std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked)
   const SearchData data{work(), normalisation_, folds, fold_sums};
   const ForEach for_each = options_.for_each ? options_.for_each : in_sequence;
   ranked = ranked_recipes(data, space, for_each, effort);
-  if (ranked.empty()) {
+  if (ranked.empty() && options_.may_enforce_stability) {
     space.stability = Stability::enforced;
     ranked = ranked_recipes(data, space, for_each, effort);
   }
@@ -218,6 +219,11 @@ std::optional<Verdict> Identification::useless(const std::vector<ScoredRecipe>& 
   // Of many candidates, the best beats the mean by a little even on noise.
   const double acceptable = (unstable ? 0.5 : 0.98) * constant;
   if (!ranked.empty() && ranked.front().error < acceptable) return std::nullopt;
+  if (unstable && !options_.may_enforce_stability)
+    return Verdict{
+        VerdictCode::unstable,
+        "every model asked for is unstable; choose a window in which the equipment stays "
+        "in its range, or let A be made stable"};
   if (unstable)
     return Verdict{VerdictCode::unstable,
                    "every model asked for is unstable, and made stable errs more than half as much "

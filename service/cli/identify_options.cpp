@@ -63,6 +63,8 @@ void add_model_options(CLI::App& command, ModelRequest& request) {
       command.add_flag("--direct", request.direct, "inputs act on outputs of the same row (D)");
   command.add_flag("--no-direct", request.no_direct, "D is zero; without either the data decide")
       ->excludes(direct);
+  command.add_flag("--as-found", request.as_found,
+                   "refuse unstable models instead of making A stable, which costs some bias");
   CLI::Option* delays = command.add_option(
       "--delay", request.delays, "INPUT=SAMPLES...: rows after which an input begins to act");
   command
@@ -84,6 +86,7 @@ std::optional<Refusal> parse_model_request(const ModelRequest& request,
     return Refusal{fmt::format("--horizon {} is too short for --order {}; make it at least {}",
                                *options.horizon, *options.order, (*options.order + p - 1) / p + 1)};
   if (request.direct || request.no_direct) options.direct_feedthrough = request.direct;
+  options.may_enforce_stability = !request.as_found;
   if (request.max_delay) {
     const std::optional<std::int64_t> value = whole_number(*request.max_delay);
     if (!value || *value > max_delay)

@@ -16,6 +16,7 @@ struct ModelRequest {
   std::string horizon = "auto";
   bool direct = false;              // D as the data say
   bool no_direct = false;           // D = 0
+  bool as_found = false;            // A is never made stable
   std::vector<std::string> delays;  // "INPUT=SAMPLES"
   std::optional<std::string> max_delay;
 };

@@ -126,6 +126,15 @@ std::optional<Evidence::Champion> champion_evidence(const storage::Archive& arch
   return champion;
 }
 
+std::string method_text(const identification::Recipe& recipe) {
+  std::string text =
+      fmt::format("{}, horizon {}, order {}", name(recipe.weighting), recipe.horizon, recipe.order);
+  if (recipe.fit == identification::ResponseFit::subspace) text += ", B and D of the compression";
+  if (recipe.refinement_steps > 0) text += ", refined";
+  if (recipe.stability == identification::Stability::enforced) text += ", A made stable";
+  return text;
+}
+
 EquipmentModel candidate_model(const RefreshRequest& request, const WindowData& data,
                                const Identified& identified, const Split& split) {
   const Duration period = request.equipment.sample_period;
@@ -141,8 +150,7 @@ EquipmentModel candidate_model(const RefreshRequest& request, const WindowData& 
   model.hold_ns = request.equipment.hold;
   model.identified_from = time_range(data.record, split.identify, period);
   model.validated_on = time_range(data.record, split.validate, period);
-  model.method = fmt::format("{}, horizon {}, order {}", name(identified.recipe.weighting),
-                             identified.recipe.horizon, identified.model.order());
+  model.method = method_text(identified.recipe);
   return model;
 }
 

@@ -99,8 +99,12 @@ TEST(Verdicts, AnUnstableSystemIsToldAsUnstable) {
   truth.A(0, 0) = 1.02;
   IdentifyOptions options;
   options.order = 1;
-  const Verdict verdict = verdict_of(testing::excited(truth, noise, 900, 0), options);
+  const Record record = testing::excited(truth, noise, 900, 0);
+  EXPECT_EQ(verdict_of(record, options).code, VerdictCode::unstable);
+  options.may_enforce_stability = false;
+  const Verdict verdict = verdict_of(record, options);
   EXPECT_EQ(verdict.code, VerdictCode::unstable);
+  EXPECT_THAT(verdict.reason, HasSubstr("or let A be made stable"));
 }
 
 TEST(Options, EveryMistakeIsNamed) {

@@ -1,0 +1,63 @@
+#include "service/daemon/kept_window.hpp"
+
+#include "service/daemon/refresh.hpp"
+#include "tests/service/daemon/daemon_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+class KeptWindows : public DaemonTest {
+ protected:
+  KeptWindows() { archive.describe(descriptors()); }
+
+  /// Whether the kept window and a fresh read of the archive give the same rows.
+  void expect_as_read_afresh(storage::TimeRange window) {
+    const auto kept_result = kept.load(archive, window);
+    const auto fresh_result = load_window(archive, kept.request(), window);
+    const auto& a = std::get<WindowData>(kept_result);
+    const auto& b = std::get<WindowData>(fresh_result);
+    EXPECT_EQ(a.record.u, b.record.u);
+    EXPECT_EQ(a.record.y, b.record.y);
+    EXPECT_EQ(a.record.segments, b.record.segments);
+    EXPECT_EQ(a.coverage, b.coverage);
+  }
+
+  storage::Database database = open();
+  storage::Archive archive{database};
+  KeptWindow kept = kept_window_of("SAT", plant());
+};
+
+TEST_F(KeptWindows, GiveWhatTheArchiveHoldsWhereverTheyBegin) {
+  archive.append(telemetry(day, 1500));
+  archive.append(telemetry(day + 1700 * second, 2000));  // behind a gap
+  for (const int begin : {0, 100, 511, 512, 600, 1400, 1600, 2100})
+    expect_as_read_afresh({day + begin * second, day + (begin + 1500) * second});
+}
+
+TEST_F(KeptWindows, ReadAChunkAgainOnceItIsForgotten) {
+  archive.append(telemetry(day, 2000));
+  const storage::TimeRange window{day, day + 2000 * second};
+  kept.load(archive, window);
+  archive.append(telemetry(day + 700 * second + second / 2, 30, 2.0));
+  kept.forget({day + 700 * second, day + 731 * second});
+  const std::int64_t before = kept.ticks_read();
+  expect_as_read_afresh(window);
+  EXPECT_LE(kept.ticks_read() - before, 4 * 512);
+}
+
+TEST_F(KeptWindows, WithoutSamplesHaveNoRows) {
+  const auto result = kept.load(archive, {day, day + 10 * minute});
+  EXPECT_EQ(std::get<WindowData>(result).record.rows(), 0);
+  EXPECT_EQ(std::get<WindowData>(result).coverage, 0);
+}
+
+TEST_F(KeptWindows, NameAParameterThatNobodyDescribed) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs.push_back("w");
+  KeptWindow unknown = kept_window_of("SAT", equipment);
+  const auto result = unknown.load(archive, {day, day + 10 * minute});
+  EXPECT_EQ(std::get<UnknownParameter>(result).name, "w");
+}
+
+}  // namespace
+}  // namespace reident::test
