@@ -13,6 +13,7 @@
 #include "service/daemon/config.hpp"
 #include "service/daemon/daemon.hpp"
 #include "service/daemon/service_manager.hpp"
+#include "service/support/allocator.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/support/version.hpp"
@@ -55,6 +56,7 @@ int serve(const reident::Config& config, const reident::StopSignal& signal) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  reident::keep_freed_memory();
   const reident::StopSignal signal;
   CLI::App app(
       "Identifies the equipment models of a satellite simulator again and again from telemetry,\n"
