@@ -132,7 +132,7 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
   const Projection projection(compress(sums, data_.normalisation, record,
                                        segments_within(record, fold.fit),
                                        space_.horizons[horizon_index]));
-  const Normalisation fitted = normalisation_of(sums, data_.normalisation.u_mean.size());
+  const Vector mean = sums.mean();
   for (std::size_t w = 0; w < space_.weightings.size(); ++w) {
     const Matrix gamma = projection.observability(space_.weightings[w]).gamma;
     for (std::size_t i = 0; i < orders(); ++i) {
@@ -143,7 +143,7 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
       if (!is_stable(found.A)) continue;
       StateSpaceModel& model = models_[fold_index][place];
       model = projection.with_response(found.A, found.C, recipe.direct, record.period_s);
-      set_operating_point(model, data_.normalisation, fitted);
+      set_operating_point(model, data_.normalisation, mean);
       errors[place] = quick_held_out_errors(model, record, fold);
     }
   }

@@ -56,21 +56,16 @@ Matrix input_correlation(const StretchSums& sums, const Normalisation& normalisa
 
 Record normalised(const Record& record, RowRange rows, const Normalisation& normalisation) {
   const Normalisation& s = normalisation;
-  Record result{record.period_s, apply(record.u, rows, s.u_mean, s.u_scale, s.inputs),
-                apply(record.y, rows, s.y_mean, s.y_scale, s.outputs),
-                segments_within(record, rows)};
-  for (Segment& segment : result.segments) {
-    segment.begin -= rows.begin;
-    segment.end -= rows.begin;
-  }
-  return result;
+  return {record.period_s, apply(record.u, rows, s.u_mean, s.u_scale, s.inputs),
+          apply(record.y, rows, s.y_mean, s.y_scale, s.outputs), segments_from(record, rows)};
 }
 
 void set_operating_point(StateSpaceModel& model, const Normalisation& normalisation,
-                         const Normalisation& other) {
+                         const Vector& mean) {
   const Normalisation& s = normalisation;
-  model.u0 = ((other.u_mean - s.u_mean).array() / s.u_scale.array()).matrix()(s.inputs);
-  model.y0 = ((other.y_mean - s.y_mean).array() / s.y_scale.array()).matrix()(s.outputs);
+  const auto u_mean = mean.head(s.u_mean.size()), y_mean = mean.tail(s.y_mean.size());
+  model.u0 = ((u_mean - s.u_mean).array() / s.u_scale.array()).matrix()(s.inputs);
+  model.y0 = ((y_mean - s.y_mean).array() / s.y_scale.array()).matrix()(s.outputs);
 }
 
 StateSpaceModel in_units(const StateSpaceModel& model, const Normalisation& normalisation) {

@@ -27,9 +27,10 @@ Matrix input_correlation(const StretchSums& sums, const Normalisation& normalisa
 /// The rows `rows` of the channels that take part, normalised.
 Record normalised(const Record& record, RowRange rows, const Normalisation& normalisation);
 
-/// Gives a model of normalised channels the operating point `other`, of the same channels.
+/// Gives a model of normalised channels the operating point `mean` of all channels, [u; y] in
+/// units.
 void set_operating_point(StateSpaceModel& model, const Normalisation& normalisation,
-                         const Normalisation& other);
+                         const Vector& mean);
 
 /// A model of normalised channels back in the units of the record. Channels left out get zero
 /// columns and zero rows.

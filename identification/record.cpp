@@ -28,15 +28,19 @@ std::vector<Segment> segments_within(const Record& record, RowRange rows) {
   return segments_within(record.segments, rows);
 }
 
+std::vector<Segment> segments_from(const Record& record, RowRange rows) {
+  std::vector<Segment> parts = segments_within(record, rows);
+  for (Segment& part : parts) {
+    part.begin -= rows.begin;
+    part.end -= rows.begin;
+  }
+  return parts;
+}
+
 Record rows_at(const Record& record, TickRange ticks) {
   const RowRange rows{first_row_at(record, ticks.begin), first_row_at(record, ticks.end)};
-  Record result{record.period_s, record.u.middleRows(rows.begin, rows.size()),
-                record.y.middleRows(rows.begin, rows.size()), segments_within(record, rows)};
-  for (Segment& segment : result.segments) {
-    segment.begin -= rows.begin;
-    segment.end -= rows.begin;
-  }
-  return result;
+  return {record.period_s, record.u.middleRows(rows.begin, rows.size()),
+          record.y.middleRows(rows.begin, rows.size()), segments_from(record, rows)};
 }
 
 Record joined(const std::vector<const Record*>& parts) {

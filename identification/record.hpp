@@ -54,6 +54,9 @@ Record contiguous_record(double period_s, Matrix u, Matrix y);
 std::vector<Segment> segments_within(const std::vector<Segment>& segments, RowRange rows);
 std::vector<Segment> segments_within(const Record& record, RowRange rows);
 
+/// The same, their rows counted from rows.begin.
+std::vector<Segment> segments_from(const Record& record, RowRange rows);
+
 /// The rows at `ticks`, as a record of their own.
 Record rows_at(const Record& record, TickRange ticks);
 

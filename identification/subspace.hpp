@@ -58,7 +58,7 @@ struct Dynamics {
 enum class Stability {
   as_found,
   enforced,  // a zero block row below makes A stable (J. Maciejowski, Systems & Control Letters
-             // 26(3), 1995), at the price of a bias where the last block row is not small
+             // 26(2), 1995), at the price of a bias where the last block row is not small
 };
 Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order,
                          Stability stability = Stability::as_found);

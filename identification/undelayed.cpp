@@ -98,11 +98,7 @@ void Identification::phase(std::string_view name) const {
 
 std::optional<Verdict> Identification::prepare() {
   if (rows_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols(), true);
-  segments_ = segments_within(record_, rows_);
-  for (Segment& segment : segments_) {
-    segment.begin -= rows_.begin;
-    segment.end -= rows_.begin;
-  }
+  segments_ = segments_from(record_, rows_);
   all_sums_ = sums_of(rows_);
   if (!all_finite(all_sums_))
     if (auto verdict = non_finite_values(record_, rows_, options_)) return verdict;

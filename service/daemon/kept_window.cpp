@@ -54,7 +54,7 @@ std::variant<WindowData, UnknownParameter> KeptWindow::load(const storage::Archi
   chunks_.erase(chunks_.begin(), chunks_.lower_bound(first_chunk));
   sums_.forget({std::numeric_limits<std::int64_t>::min(), first_chunk * chunk_ticks});
 
-  std::map<std::int64_t, Record> edges;  // by first tick: what was read and holds no whole chunk
+  std::map<std::int64_t, Record> fresh;  // by first tick: what was read now
   std::int64_t tick = ticks.begin;
   const auto kept_at = [this, &ticks](std::int64_t at) {
     return at % chunk_ticks == 0 && at + chunk_ticks <= ticks.end &&
@@ -72,14 +72,14 @@ std::variant<WindowData, UnknownParameter> KeptWindow::load(const storage::Archi
     }
     tick = next;
   }
-  for (const TickRange& stretch : missing) edges[stretch.begin] = read(archive, stretch);
+  for (const TickRange& stretch : missing) fresh[stretch.begin] = read(archive, stretch);
 
   std::vector<const Record*> parts;
   for (tick = ticks.begin; tick < ticks.end;) {
-    if (const auto fresh = edges.find(tick); fresh != edges.end()) {
-      parts.push_back(&fresh->second);
-      tick = std::find_if(missing.begin(), missing.end(), [tick](const TickRange& stretch) {
-               return stretch.begin == tick;
+    if (const auto stretch = fresh.find(tick); stretch != fresh.end()) {
+      parts.push_back(&stretch->second);
+      tick = std::find_if(missing.begin(), missing.end(), [tick](const TickRange& ticks_read) {
+               return ticks_read.begin == tick;
              })->end;
     } else {
       parts.push_back(&chunks_.at(floor_divide(tick, chunk_ticks)));
