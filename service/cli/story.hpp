@@ -1,0 +1,37 @@
+// One version of a model as an operator names it, and all that is stored about it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "service/cli/command.hpp"
+#include "service/model/model_version.hpp"
+#include "storage/registry.hpp"
+
+namespace reident::cli {
+
+/// SPACECRAFT/EQUIPMENT@VERSION taken apart; the spacecraft and the version may be left out.
+struct Subject {
+  std::string spacecraft;
+  std::string equipment;
+  std::optional<std::int64_t> version;
+};
+
+std::variant<Subject, Refusal> parse_subject(const std::string& text);
+
+/// All that is stored about one version.
+struct Story {
+  storage::Version version;
+  storage::Attempt attempt;
+  std::vector<storage::Decision> decisions;
+  EquipmentModel model;
+  bool digest_matches = false;
+};
+
+/// The version that the subject names, or the champion of its equipment. A spacecraft that is left
+/// out is found by the equipment's name.
+std::variant<Story, Refusal> find_story(const storage::Registry& registry, const Subject& subject);
+
+}  // namespace reident::cli
