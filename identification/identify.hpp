@@ -40,6 +40,9 @@ struct IdentifyOptions {
   /// Share of the identification rows that choices are scored on, in (0, 0.9]: the last ones and
   /// the first ones are held out in turn, a half of the share at a time.
   double tune_share = 0.4;
+  /// Above 0: the last so many of the identification rows are for the choices alone. Nothing is
+  /// fitted to them and every candidate is scored on them once, in place of what tune_share says.
+  Index tune_rows = 0;
   /// What the choice may spend, in multiply-adds of free runs and regressions: with it the search
   /// is as thorough as the rows allow, and the same on every machine. Positive.
   double search_budget = 6e8;

@@ -26,7 +26,12 @@ class Identification {
  public:
   Identification(const Record& record, RowRange rows, const IdentifyOptions& options, LagSums& sums,
                  bool keep)
-      : record_(record), rows_(rows), options_(options), lag_sums_(sums), keep_(keep) {}
+      : record_(record),
+        rows_{rows.begin, rows.end - options.tune_rows},
+        tune_{rows.end - options.tune_rows, rows.end},
+        options_(options),
+        lag_sums_(sums),
+        keep_(keep) {}
 
   IdentifyResult run();
 
@@ -61,15 +66,18 @@ class Identification {
   /// What is said of the model besides its matrices.
   void describe(Identified& result) const;
 
+  std::vector<Fold> folds() const;
+
   const Record& record_;
-  RowRange rows_;
+  RowRange rows_;  // that are fitted
+  RowRange tune_;  // behind them; empty: some of the fitted rows are held out in turn
   const IdentifyOptions& options_;
   LagSums& lag_sums_;
   bool keep_;
   StretchSums all_sums_;
   Normalisation normalisation_;
   std::vector<Segment> segments_;       // of the rows, counted from the first
-  std::optional<Record> work_;          // the rows, normalised, without the channels left out
+  std::optional<Record> work_;          // both rows, normalised, without the channels left out
   std::optional<HankelFactor> factor_;  // of all rows, at the horizon that was asked for last
   std::vector<std::string> warnings_;
   double work_spent_ = 0;
@@ -137,7 +145,7 @@ void Identification::warn_of_constants(const std::vector<Index>& moving, Index c
 
 void Identification::leave_out_redundant_inputs() {
   if (are_independent(input_correlation(all_sums_, normalisation_))) return;
-  const std::vector<RedundantInput> redundant = redundant_inputs(work().u);
+  const std::vector<RedundantInput> redundant = redundant_inputs(work().u.topRows(rows_.size()));
   if (redundant.empty()) return;
   std::vector<Index>& inputs = normalisation_.inputs;
   const std::vector<Index> before = inputs;
@@ -167,8 +175,14 @@ std::optional<Recipe> Identification::given_recipe(const HankelSupply& supply) c
   return recipe;
 }
 
+std::vector<Fold> Identification::folds() const {
+  const Index fitted = rows_.size();
+  if (tune_.size() == 0) return folds_of(fitted, options_.tune_share);
+  return {{{0, fitted}, {fitted, fitted + tune_.size()}}};
+}
+
 std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked) {
-  const std::vector<Fold> folds = folds_of(rows_.size(), options_.tune_share);
+  const std::vector<Fold> folds = this->folds();
   const HankelSupply supply{segments_, inputs() + outputs(), folds};
   SearchSpace space{feasible_horizons(supply, options_),
                     {Weighting::n4sid, Weighting::moesp, Weighting::cva},
@@ -243,7 +257,7 @@ Verdict Identification::too_few_samples(Index width, bool held_out) const {
 }
 
 const Record& Identification::work() {
-  if (!work_) work_ = normalised(record_, rows_, normalisation_);
+  if (!work_) work_ = normalised(record_, {rows_.begin, tune_.end}, normalisation_);
   return *work_;
 }
 
@@ -318,7 +332,9 @@ std::optional<Identified> Identification::realise(const Recipe& recipe) {
     result.warnings.push_back(
         "the model has no Kalman gain: its Riccati equation has no checked solution");
   if (recipe.operating_point == OperatingPoint::recent)
-    model.y0 += recent_operating_point(work().y - free_run(model, work(), work().all()), true);
+    model.y0 += recent_operating_point(work().y.topRows(rows_.size()) -
+                                           free_run(model, work(), {0, rows_.size()}),
+                                       true);
   result.model = in_units(model, normalisation_);
   if (!is_well_formed(result.model)) return std::nullopt;
   result.recipe = recipe;

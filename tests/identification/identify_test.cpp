@@ -77,6 +77,37 @@ TEST(Identify, ReadsNothingOutsideTheRowsAsked) {
   EXPECT_EQ(before.x0, after.x0);
 }
 
+TEST(Identify, FitsNothingToTheRowsThatItChoosesBy) {
+  testing::Noise noise(31);
+  const StateSpaceModel truth = testing::random_system(noise, 3, 2, 1, 0.9);
+  Record record = testing::excited(truth, noise, 1600, 0.1);
+  IdentifyOptions options;
+  options.tune_rows = 600;
+  const Identified chosen = expect_model(record, record.all(), options);
+  // The same choices, given, on the rows before the last 600 alone.
+  IdentifyOptions given;
+  given.order = chosen.recipe.order;
+  given.horizon = chosen.recipe.horizon;
+  given.weighting = chosen.recipe.weighting;
+  given.direct_feedthrough = chosen.recipe.direct;
+  given.response_fit = chosen.recipe.fit;
+  ASSERT_EQ(chosen.recipe.refinement_steps, 0);
+  const Identified fitted = expect_model(record, {0, 1000}, given);
+  EXPECT_EQ(chosen.model.A, fitted.model.A);
+  EXPECT_EQ(chosen.model.B, fitted.model.B);
+  EXPECT_EQ(chosen.model.D, fitted.model.D);
+  EXPECT_EQ(chosen.input_max, fitted.input_max);
+
+  // Other telemetry in the last rows changes the choice at most.
+  record.y.bottomRows(600).setZero();
+  options.order = given.order;
+  options.horizon = given.horizon;
+  options.weighting = given.weighting;
+  options.direct_feedthrough = given.direct_feedthrough;
+  options.response_fit = given.response_fit;
+  EXPECT_EQ(expect_model(record, record.all(), options).model.A, fitted.model.A);
+}
+
 TEST(Identify, GivesTheSameBitsEveryTime) {
   testing::Noise noise(14);
   const StateSpaceModel truth = testing::random_system(noise, 3, 2, 2);
