@@ -86,15 +86,33 @@ bool is_empty(Connection& connection) {
 
 void refuse_what_is_not_ours(Connection& connection, const fs::path& path) {
   const std::string what = "database " + path.string();
-  if (pragma(connection, "application_id") != schema::application_id)
+  const std::int64_t version = pragma(connection, "user_version");
+  if (pragma(connection, "application_id") != schema::application_id || version < 1)
     throw Error(Error::Kind::cannot_open,
                 what + " was not made by reident: name another file, it is left as it is");
-  const std::int64_t version = pragma(connection, "user_version");
   if (version > schema::version)
     throw Error(Error::Kind::newer_schema, what + " has schema version " + std::to_string(version) +
                                                ", this program knows versions up to " +
                                                std::to_string(schema::version) +
                                                ": use a newer reident, the file is left as it is");
+}
+
+void refuse_older_schema(Connection& connection, const fs::path& path) {
+  const std::int64_t version = pragma(connection, "user_version");
+  if (version == schema::version) return;
+  throw Error(Error::Kind::older_schema,
+              "database " + path.string() + " has schema version " + std::to_string(version) +
+                  ", this program reads version " + std::to_string(schema::version) +
+                  ": start this reidentd on it once, which brings it up to date");
+}
+
+void bring_up_to_date(Connection& connection) {
+  sqlite::Transaction transaction(connection);
+  if (is_empty(connection))
+    connection.execute(schema::creation());
+  else if (pragma(connection, "user_version") == 1)
+    connection.execute(schema::migration_from_1());
+  transaction.commit();
 }
 
 Connection open_writer(const fs::path& path) {
@@ -103,12 +121,8 @@ Connection open_writer(const fs::path& path) {
   if (connection.is_read_only())
     throw Error(Error::Kind::read_only,
                 "database " + path.string() + " cannot be written: check its permissions");
-  if (is_empty(connection)) {
-    sqlite::Transaction transaction(connection);
-    connection.execute(schema::creation());
-    transaction.commit();
-  }
-  refuse_what_is_not_ours(connection, path);
+  if (!is_empty(connection)) refuse_what_is_not_ours(connection, path);
+  if (pragma(connection, "user_version") != schema::version) bring_up_to_date(connection);
   // FULL: the log is on the disk before a commit returns. SCHEMA.md, "What survives".
   connection.execute(
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
@@ -147,6 +161,7 @@ Connection open_sealed(const fs::path& path) {
 Connection open_reader(const fs::path& path) {
   const auto checked = [&](Connection connection) {
     refuse_what_is_not_ours(connection, path);
+    refuse_older_schema(connection, path);
     return connection;
   };
   try {

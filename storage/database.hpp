@@ -22,6 +22,7 @@ class Error : public std::runtime_error {
     cannot_open,   // no such file, a folder, not ours, no permission
     locked,        // another process writes
     newer_schema,  // made by a newer program
+    older_schema,  // made by an older program and opened to be read alone
     corrupt,       // damaged or cut short
     full,          // no room on the disk, in the quota or in the file size limit
     read_only,     // the file, its folder or the connection cannot be written
@@ -38,7 +39,8 @@ class Database {
  public:
   enum class Mode { read_only, read_write };
 
-  /// read_write creates the file and its tables where they do not exist.
+  /// read_write creates the file and its tables where they do not exist, and brings the tables of
+  /// an older schema up to date, in one transaction.
   Database(const std::filesystem::path& path, Mode mode);
   ~Database();
   Database(Database&&) noexcept;

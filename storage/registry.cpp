@@ -18,6 +18,7 @@ constexpr std::array kinds{
     std::pair{DecisionKind::reject, std::string_view("reject")},
     std::pair{DecisionKind::wait, std::string_view("wait")},
     std::pair{DecisionKind::roll_back, std::string_view("roll_back")},
+    std::pair{DecisionKind::withdraw, std::string_view("withdraw")},
 };
 
 DecisionKind decision_kind(std::string_view text) {
@@ -63,7 +64,7 @@ std::int64_t next_number(sqlite::Connection& connection, const NewAttempt& attem
 
 std::string version_sql(std::string_view rest) {
   return "SELECT spacecraft, equipment, version, attempt, window_begin, window_end, created, "
-         "model_json, digest, status FROM model_version " +
+         "model_json, digest, status, parent, provenance_json, samples_digest FROM model_version " +
          std::string(rest);
 }
 
@@ -76,7 +77,15 @@ Version read_version(const sqlite::Query& row) {
           .created = row.integer(6),
           .model_json = row.text(7),
           .digest = row.text(8),
-          .status = row.text(9)};
+          .status = row.text(9),
+          .parent = row.is_null(10) ? std::nullopt : std::optional(row.integer(10)),
+          .provenance_json = row.text(11),
+          .samples_digest = row.text(12)};
+}
+
+std::string decision_sql(std::string_view rest) {
+  return "SELECT id, spacecraft, equipment, version, kind, actor, reason, time FROM decision " +
+         std::string(rest);
 }
 
 Decision read_decision(const sqlite::Query& row) {
@@ -109,6 +118,64 @@ Attempt read_attempt(const sqlite::Query& row) {
   return attempt;
 }
 
+bool follows(DecisionKind kind, std::string_view status) {
+  switch (kind) {
+    case DecisionKind::approve:
+    case DecisionKind::reject:
+      return status == "waiting";
+    case DecisionKind::roll_back:
+      return status == "superseded";
+    case DecisionKind::withdraw:
+      return status == "approved" || status == "superseded";
+    case DecisionKind::wait:
+      break;
+  }
+  return false;  // a version waits from its first decision on, or never
+}
+
+void add_hold(sqlite::Connection& connection, const std::string& spacecraft,
+              const std::string& equipment, std::string_view kind, const Hold& hold) {
+  connection
+      .query(
+          "INSERT INTO hold (spacecraft, equipment, kind, actor, reason, time) "
+          "VALUES (?, ?, ?, ?, ?, ?)")
+      .run(spacecraft, equipment, kind, hold.actor, hold.reason, hold.since);
+}
+
+// The table keeps a request's number with the same bits as a signed one.
+struct KeptCommand {
+  NewCommand command;
+  CommandOutcome outcome;
+};
+
+std::optional<KeptCommand> kept_command(sqlite::Connection& connection, const NewCommand& asked) {
+  sqlite::Query row = connection.query(
+      "SELECT action, spacecraft, equipment, version, actor, reason, ok, reply FROM command "
+      "WHERE requester = ? AND request = ?",
+      asked.requester, asked.request);
+  if (!row.step()) return std::nullopt;
+  return KeptCommand{{.requester = asked.requester,
+                      .request = asked.request,
+                      .action = row.text(0),
+                      .spacecraft = row.text(1),
+                      .equipment = row.text(2),
+                      .version = row.integer(3),
+                      .actor = row.text(4),
+                      .reason = row.text(5)},
+                     {.ok = row.integer(6) != 0, .reply = row.text(7)}};
+}
+
+void keep_command(sqlite::Connection& connection, const NewCommand& command,
+                  const CommandOutcome& outcome, Time time) {
+  connection
+      .query(
+          "INSERT INTO command (requester, request, action, spacecraft, equipment, version, actor, "
+          "reason, time, ok, reply) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      .run(command.requester, command.request, command.action, command.spacecraft,
+           command.equipment, command.version, command.actor, command.reason, time, outcome.ok,
+           outcome.reply);
+}
+
 }  // namespace
 
 std::string_view name(DecisionKind kind) {
@@ -128,21 +195,86 @@ std::int64_t Registry::record(const NewAttempt& attempt, const NewVersion& versi
   const std::int64_t id = add_attempt(db, attempt);
   const std::int64_t number = next_number(db, attempt);
   db.query(
-        "INSERT INTO version (spacecraft, equipment, number, attempt, model_json, digest) "
-        "VALUES (?, ?, ?, ?, ?, ?)")
-      .run(attempt.spacecraft, attempt.equipment, number, id, version.model_json, version.digest);
+        "INSERT INTO version (spacecraft, equipment, number, attempt, model_json, digest, "
+        "provenance_json, samples_digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+      .run(attempt.spacecraft, attempt.equipment, number, id, version.model_json, version.digest,
+           version.provenance_json, version.samples_digest);
   add_decision(db, attempt.spacecraft, attempt.equipment, number, decision, attempt.time);
+  transaction.commit();
+  return number;
+}
+
+std::optional<std::int64_t> Registry::record_if(const Standing& standing, const NewAttempt& attempt,
+                                                const NewVersion& version,
+                                                const NewDecision& decision) {
+  sqlite::Transaction transaction(connection(database_));
+  if (this->standing(attempt.spacecraft, attempt.equipment) != standing) return std::nullopt;
+  const std::int64_t number = record(attempt, version, decision);
   transaction.commit();
   return number;
 }
 
 std::int64_t Registry::decide(const std::string& spacecraft, const std::string& equipment,
                               std::int64_t version, const NewDecision& decision, Time time) {
-  if (!this->version(spacecraft, equipment, version))
+  sqlite::Connection& db = connection(database_);
+  sqlite::Transaction transaction(db);
+  const std::optional<Version> found = this->version(spacecraft, equipment, version);
+  if (!found)
     throw Error(Error::Kind::failed, equipment + " of " + spacecraft + " has no version " +
                                          std::to_string(version) +
                                          ": 'reident history' lists those that exist");
-  return add_decision(connection(database_), spacecraft, equipment, version, decision, time);
+  if (!follows(decision.kind, found->status))
+    throw Error(Error::Kind::failed, "version " + std::to_string(version) + " of " + equipment +
+                                         " of " + spacecraft + " is " + found->status +
+                                         ": it cannot get a decision of kind '" +
+                                         std::string(name(decision.kind)) + "'");
+  std::optional<Version> previous;
+  if (decision.kind == DecisionKind::withdraw && found->status == "approved")
+    previous = previous_champion(spacecraft, equipment);
+  const std::int64_t id = add_decision(db, spacecraft, equipment, version, decision, time);
+  if (previous)
+    add_decision(
+        db, spacecraft, equipment, previous->number,
+        {.kind = DecisionKind::roll_back,
+         .actor = decision.actor,
+         .reason = "version " + std::to_string(version) + " was withdrawn: " + decision.reason},
+        time);
+  transaction.commit();
+  return id;
+}
+
+void Registry::put_on_hold(const std::string& spacecraft, const std::string& equipment,
+                           const Hold& hold) {
+  sqlite::Transaction transaction(connection(database_));
+  if (this->hold(spacecraft, equipment))
+    throw Error(Error::Kind::failed, equipment + " of " + spacecraft + " is held already");
+  add_hold(connection(database_), spacecraft, equipment, "hold", hold);
+  transaction.commit();
+}
+
+void Registry::release(const std::string& spacecraft, const std::string& equipment,
+                       const Hold& release) {
+  sqlite::Transaction transaction(connection(database_));
+  if (!hold(spacecraft, equipment))
+    throw Error(Error::Kind::failed, equipment + " of " + spacecraft + " is not held");
+  add_hold(connection(database_), spacecraft, equipment, "release", release);
+  transaction.commit();
+}
+
+CommandOutcome Registry::execute(const NewCommand& command, Time time,
+                                 const std::function<CommandOutcome()>& effect) {
+  sqlite::Connection& db = connection(database_);
+  sqlite::Transaction transaction(db);
+  if (const auto kept = kept_command(db, command)) {
+    if (kept->command == command) return kept->outcome;
+    return {false, "request " + std::to_string(command.request) + " of " + command.requester +
+                       " was another command (" + kept->command.action +
+                       "): give each command a number of its own"};
+  }
+  const CommandOutcome outcome = effect();
+  keep_command(db, command, outcome, time);
+  transaction.commit();
+  return outcome;
 }
 
 std::optional<Version> Registry::version(const std::string& spacecraft,
@@ -153,15 +285,38 @@ std::optional<Version> Registry::version(const std::string& spacecraft,
   return row.step() ? std::optional(read_version(row)) : std::nullopt;
 }
 
+// One statement, so that a reader beside the writer sees one state.
+std::optional<Decision> Registry::champion_decision(const std::string& spacecraft,
+                                                    const std::string& equipment,
+                                                    std::optional<Time> time) const {
+  sqlite::Query row = connection(database_).query(
+      decision_sql("AS made WHERE id = "
+                   "(SELECT id FROM decision WHERE spacecraft = ?1 AND equipment = ?2 "
+                   " AND kind IN ('approve', 'roll_back') AND (?3 IS NULL OR time <= ?3) "
+                   " ORDER BY id DESC LIMIT 1) "
+                   "AND NOT EXISTS "
+                   "(SELECT 1 FROM decision WHERE spacecraft = ?1 AND equipment = ?2 "
+                   " AND version = made.version AND kind = 'withdraw' "
+                   " AND (?3 IS NULL OR time <= ?3))"),
+      spacecraft, equipment, time);
+  return row.step() ? std::optional(read_decision(row)) : std::nullopt;
+}
+
 std::optional<Version> Registry::champion(const std::string& spacecraft,
                                           const std::string& equipment,
                                           std::optional<Time> time) const {
-  sqlite::Query row = connection(database_).query(
-      "SELECT version FROM decision WHERE spacecraft = ?1 AND equipment = ?2 "
-      "AND kind IN ('approve', 'roll_back') AND (?3 IS NULL OR time <= ?3) "
-      "ORDER BY id DESC LIMIT 1",
-      spacecraft, equipment, time);
-  return row.step() ? version(spacecraft, equipment, row.integer(0)) : std::nullopt;
+  const auto made = champion_decision(spacecraft, equipment, time);
+  return made ? version(spacecraft, equipment, made->version) : std::nullopt;
+}
+
+std::optional<Version> Registry::previous_champion(const std::string& spacecraft,
+                                                   const std::string& equipment) const {
+  std::optional<Version> found = champion(spacecraft, equipment);
+  do {
+    if (!found || !found->parent) return std::nullopt;
+    found = version(spacecraft, equipment, *found->parent);
+  } while (found && found->status == "withdrawn");
+  return found;
 }
 
 std::vector<Version> Registry::champions() const {
@@ -177,11 +332,30 @@ std::vector<Decision> Registry::decisions(const std::string& spacecraft,
                                           std::optional<std::int64_t> version) const {
   std::vector<Decision> decisions;
   sqlite::Query row = connection(database_).query(
-      "SELECT id, spacecraft, equipment, version, kind, actor, reason, time FROM decision "
-      "WHERE spacecraft = ?1 AND equipment = ?2 AND (?3 IS NULL OR version = ?3) ORDER BY id",
+      decision_sql("WHERE spacecraft = ?1 AND equipment = ?2 AND (?3 IS NULL OR version = ?3) "
+                   "ORDER BY id"),
       spacecraft, equipment, version);
   while (row.step()) decisions.push_back(read_decision(row));
   return decisions;
+}
+
+std::optional<Hold> Registry::hold(const std::string& spacecraft,
+                                   const std::string& equipment) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT actor, reason, since FROM hold_now WHERE spacecraft = ? AND equipment = ?",
+      spacecraft, equipment);
+  if (!row.step()) return std::nullopt;
+  return Hold{row.text(0), row.text(1), row.integer(2)};
+}
+
+Standing Registry::standing(const std::string& spacecraft, const std::string& equipment) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT (SELECT coalesce(max(id), 0) FROM decision "
+      "        WHERE spacecraft = ?1 AND equipment = ?2), "
+      "       (SELECT coalesce(max(id), 0) FROM hold WHERE spacecraft = ?1 AND equipment = ?2)",
+      spacecraft, equipment);
+  row.step();
+  return {row.integer(0), row.integer(1)};
 }
 
 std::vector<Attempt> Registry::attempts(const HistoryFilter& filter) const {

@@ -3,11 +3,16 @@
 // Rows are only ever added. Every attempt at a window is recorded. An attempt that gave a model has
 // a version; its number counts the versions of one equipment from 1. Every version has at least one
 // decision. The champion of an equipment at a time is the version named by the last decision of
-// kind `approve` or `roll_back` not later than it; the last one is the one with the highest id,
-// which also holds when the clock was set back.
+// kind `approve` or `roll_back` not later than it, unless that version was withdrawn by then; the
+// last one is the one with the highest id, which also holds when the clock was set back. A
+// version's parent is the champion at its approval.
+//
+// What changes a decision's ground (another decision, a hold) and the decision itself never cross:
+// everything that decides checks its ground in the transaction that records it.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,9 +39,13 @@ struct NewAttempt {
 struct NewVersion {
   std::string model_json;  // complete and exact: the version can be rebuilt from it alone
   std::string digest;      // SHA-256 of the model, hexadecimal
+  // What it was identified from, so that it can be identified again; empty in versions from before
+  // schema 2.
+  std::string provenance_json{};  // window, parts, options
+  std::string samples_digest{};   // SHA-256 of the samples, hexadecimal
 };
 
-enum class DecisionKind { approve, reject, wait, roll_back };
+enum class DecisionKind { approve, reject, wait, roll_back, withdraw };
 std::string_view name(DecisionKind kind);
 
 struct NewDecision {
@@ -59,7 +68,11 @@ struct Version {
   Time created = 0;
   std::string model_json;
   std::string digest;
-  std::string status;  // "approved" (champion now), "superseded", "rejected", "waiting"
+  // "approved" (champion now), "superseded", "rejected", "waiting", "withdrawn" (for ever)
+  std::string status;
+  std::optional<std::int64_t> parent;  // absent too where it was never champion
+  std::string provenance_json;
+  std::string samples_digest;
 };
 
 struct Decision : NewDecision {
@@ -68,6 +81,38 @@ struct Decision : NewDecision {
   std::string equipment;
   std::int64_t version = 0;
   Time time = 0;
+};
+
+/// An operator's word that the champion of an equipment stays, until it is released.
+struct Hold {
+  std::string actor;
+  std::string reason;
+  Time since = 0;
+};
+
+/// What a decision about an equipment stands on: it changes with every decision and hold.
+struct Standing {
+  std::int64_t last_decision = 0;  // id, 0 before the first
+  std::int64_t last_hold = 0;
+  bool operator==(const Standing&) const = default;
+};
+
+/// An operator's command, identified by who asks and that one's count.
+struct NewCommand {
+  std::string requester;  // unique name of the asking program
+  std::uint64_t request = 0;
+  std::string action;
+  std::string spacecraft;
+  std::string equipment;
+  std::int64_t version = 0;  // 0 where the action names none
+  std::string actor;         // the operator's name
+  std::string reason;
+  bool operator==(const NewCommand&) const = default;
+};
+
+struct CommandOutcome {
+  bool ok = false;
+  std::string reply;  // what was done, or why not
 };
 
 /// Empty fields select everything.
@@ -90,19 +135,46 @@ class Registry {
   /// Returns the version's number.
   std::int64_t record(const NewAttempt& attempt, const NewVersion& version,
                       const NewDecision& decision);
-  /// One more decision about a version that exists. Returns the decision's id.
+  /// The same, unless the equipment's standing is not the given one any more: then nothing is
+  /// recorded and nothing returned.
+  std::optional<std::int64_t> record_if(const Standing& standing, const NewAttempt& attempt,
+                                        const NewVersion& version, const NewDecision& decision);
+  /// One more decision about a version that exists. Throws Error where it does not follow from what
+  /// was decided before: a waiting version is approved or rejected, a superseded one rolled back
+  /// to, an approved or superseded one withdrawn. In the transaction that withdraws the champion,
+  /// the previous champion, where there is one, is rolled back to. Returns the decision's id.
   std::int64_t decide(const std::string& spacecraft, const std::string& equipment,
                       std::int64_t version, const NewDecision& decision, Time time);
+
+  /// Holds the equipment's champion, or releases it. Throws Error where it is held, or not held,
+  /// already.
+  void put_on_hold(const std::string& spacecraft, const std::string& equipment, const Hold& hold);
+  void release(const std::string& spacecraft, const std::string& equipment, const Hold& release);
+
+  /// Runs `effect`, which decides on this registry, and keeps the command with its outcome, in one
+  /// transaction. A command whose outcome is kept already gets that, and its effect does not run
+  /// again. Throws Error where the request's number was used for another command.
+  CommandOutcome execute(const NewCommand& command, Time time,
+                         const std::function<CommandOutcome()>& effect);
 
   std::optional<Version> version(const std::string& spacecraft, const std::string& equipment,
                                  std::int64_t number) const;
   /// The champion now, or at `time`.
   std::optional<Version> champion(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<Time> time = std::nullopt) const;
+  /// The decision that made that champion; absent where there is none.
+  std::optional<Decision> champion_decision(const std::string& spacecraft,
+                                            const std::string& equipment,
+                                            std::optional<Time> time = std::nullopt) const;
+  /// The next one up the champion's line of parents that was not withdrawn.
+  std::optional<Version> previous_champion(const std::string& spacecraft,
+                                           const std::string& equipment) const;
   std::vector<Version> champions() const;
   /// Ascending by id.
   std::vector<Decision> decisions(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<std::int64_t> version = std::nullopt) const;
+  std::optional<Hold> hold(const std::string& spacecraft, const std::string& equipment) const;
+  Standing standing(const std::string& spacecraft, const std::string& equipment) const;
   /// Ascending by id.
   std::vector<Attempt> attempts(const HistoryFilter& filter = {}) const;
   /// End of the latest window that was tried for an equipment.

@@ -1,5 +1,6 @@
 #include "storage/schema.hpp"
 
+#include <initializer_list>
 #include <string_view>
 
 namespace reident::storage::schema {
@@ -67,17 +68,37 @@ CREATE TABLE version (
   spacecraft TEXT NOT NULL, equipment TEXT NOT NULL, number INTEGER NOT NULL,
   attempt INTEGER NOT NULL UNIQUE REFERENCES attempt,
   model_json TEXT NOT NULL, digest TEXT NOT NULL,
+  provenance_json TEXT NOT NULL DEFAULT '', samples_digest TEXT NOT NULL DEFAULT '',
   PRIMARY KEY (spacecraft, equipment, number));
+)sql";
 
+constexpr std::string_view decision_table = R"sql(
 CREATE TABLE decision (
   id INTEGER PRIMARY KEY,
   spacecraft TEXT NOT NULL, equipment TEXT NOT NULL, version INTEGER NOT NULL,
-  kind TEXT NOT NULL CHECK (kind IN ('approve', 'reject', 'wait', 'roll_back')),
+  kind TEXT NOT NULL CHECK (kind IN ('approve', 'reject', 'wait', 'roll_back', 'withdraw')),
   actor TEXT NOT NULL, reason TEXT NOT NULL, time INTEGER NOT NULL,
   FOREIGN KEY (spacecraft, equipment, version) REFERENCES version (spacecraft, equipment, number));
 CREATE INDEX decision_by_version ON decision (spacecraft, equipment, version);
 CREATE INDEX decision_for_champion ON decision (spacecraft, equipment)
   WHERE kind IN ('approve', 'roll_back');
+)sql";
+
+constexpr std::string_view operator_tables = R"sql(
+CREATE TABLE hold (
+  id INTEGER PRIMARY KEY,
+  spacecraft TEXT NOT NULL, equipment TEXT NOT NULL,
+  kind TEXT NOT NULL CHECK (kind IN ('hold', 'release')),
+  actor TEXT NOT NULL, reason TEXT NOT NULL, time INTEGER NOT NULL);
+CREATE INDEX hold_by_equipment ON hold (spacecraft, equipment);
+
+CREATE TABLE command (
+  id INTEGER PRIMARY KEY,
+  requester TEXT NOT NULL, request INTEGER NOT NULL,
+  action TEXT NOT NULL, spacecraft TEXT NOT NULL, equipment TEXT NOT NULL,
+  version INTEGER NOT NULL, actor TEXT NOT NULL, reason TEXT NOT NULL, time INTEGER NOT NULL,
+  ok INTEGER NOT NULL CHECK (ok IN (0, 1)), reply TEXT NOT NULL,
+  UNIQUE (requester, request));
 )sql";
 
 // CROSS JOIN keeps SQLite from reading all samples first: a question about one parameter finds its
@@ -136,10 +157,31 @@ CREATE VIEW telemetry_late AS
 )sql";
 
 constexpr std::string_view registry_views = R"sql(
+-- Each version that was ever champion, with the champion that it followed.
+CREATE VIEW lineage AS
+  SELECT spacecraft, equipment, version, time AS approved,
+         (SELECT before.version FROM decision AS before
+          WHERE before.id = (SELECT max(id) FROM decision AS earlier
+                             WHERE earlier.spacecraft = own.spacecraft
+                               AND earlier.equipment = own.equipment
+                               AND earlier.kind IN ('approve', 'roll_back')
+                               AND earlier.id < own.id)
+            AND NOT EXISTS (SELECT 1 FROM decision AS withdrawal
+                            WHERE withdrawal.spacecraft = own.spacecraft
+                              AND withdrawal.equipment = own.equipment
+                              AND withdrawal.version = before.version
+                              AND withdrawal.kind = 'withdraw'
+                              AND withdrawal.id < own.id)) AS parent
+  FROM decision AS own WHERE kind = 'approve';
+
 CREATE VIEW model_version AS
   SELECT version.spacecraft, version.equipment, number AS version, attempt, window_begin,
          window_end, attempt.time AS created,
-         CASE WHEN number = (SELECT other.version FROM decision AS other
+         CASE WHEN EXISTS (SELECT 1 FROM decision AS other
+                           WHERE other.spacecraft = version.spacecraft
+                             AND other.equipment = version.equipment AND other.version = number
+                             AND kind = 'withdraw') THEN 'withdrawn'
+              WHEN number = (SELECT other.version FROM decision AS other
                              WHERE other.spacecraft = version.spacecraft
                                AND other.equipment = version.equipment
                                AND kind IN ('approve', 'roll_back')
@@ -150,7 +192,10 @@ CREATE VIEW model_version AS
                     WHERE other.spacecraft = version.spacecraft
                       AND other.equipment = version.equipment AND other.version = number
                     ORDER BY id DESC LIMIT 1) END AS status,
-         digest, model_json
+         (SELECT parent FROM lineage
+          WHERE lineage.spacecraft = version.spacecraft AND lineage.equipment = version.equipment
+            AND lineage.version = number) AS parent,
+         digest, model_json, samples_digest, provenance_json
   FROM version JOIN attempt ON attempt.id = version.attempt;
 
 CREATE VIEW champion AS
@@ -172,6 +217,13 @@ CREATE VIEW history AS
             AND decision.equipment = attempt.equipment AND decision.version = version.number
           ORDER BY id DESC LIMIT 1) AS last_decision
   FROM attempt LEFT JOIN version ON version.attempt = attempt.id;
+
+CREATE VIEW hold_now AS
+  SELECT spacecraft, equipment, actor, reason, time AS since
+  FROM hold AS last
+  WHERE kind = 'hold'
+    AND id = (SELECT max(id) FROM hold AS other WHERE other.spacecraft = last.spacecraft
+                                                  AND other.equipment = last.equipment);
 )sql";
 
 // The insert trigger stops INSERT OR REPLACE, which deletes without asking the delete trigger.
@@ -185,20 +237,56 @@ std::string append_only(const std::string& table, const std::string& same_row) {
          trigger("insert", "WHEN EXISTS (SELECT 1 FROM " + table + " WHERE " + same_row + ")");
 }
 
+std::string append_only_decisions() {
+  return append_only("decision", "id = NEW.id") + append_only("hold", "id = NEW.id") +
+         append_only("command",
+                     "id = NEW.id OR (requester = NEW.requester AND request = NEW.request)");
+}
+
+std::string joined(std::initializer_list<std::string_view> parts) {
+  std::string sql;
+  for (const std::string_view part : parts) sql += part;
+  return sql;
+}
+
+std::string user_version() {
+  return "PRAGMA user_version = " + std::to_string(version) + ";";
+}
+
 }  // namespace
 
 std::string creation() {
-  std::string sql;
-  for (const std::string_view part :
-       {telemetry_tables, registry_tables, telemetry_views, registry_views})
-    sql += part;
-  sql += append_only("attempt", "id = NEW.id");
-  sql += append_only("version",
+  return joined({telemetry_tables, registry_tables, decision_table, operator_tables,
+                 telemetry_views, registry_views}) +
+         append_only("attempt", "id = NEW.id") +
+         append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
-                     "equipment = NEW.equipment AND number = NEW.number)");
-  sql += append_only("decision", "id = NEW.id");
-  return sql + "PRAGMA application_id = " + std::to_string(application_id) +
-         "; PRAGMA user_version = " + std::to_string(version) + ";";
+                     "equipment = NEW.equipment AND number = NEW.number)") +
+         append_only_decisions() + "PRAGMA application_id = " + std::to_string(application_id) +
+         ";" + user_version();
+}
+
+// A CHECK cannot be altered, so the decisions move to a new table. Dropping the old one drops its
+// triggers; indexes go first because their names are taken again.
+std::string migration_from_1() {
+  constexpr std::string_view before = R"sql(
+DROP VIEW model_version;
+DROP VIEW champion;
+DROP VIEW history;
+ALTER TABLE version ADD COLUMN provenance_json TEXT NOT NULL DEFAULT '';
+ALTER TABLE version ADD COLUMN samples_digest TEXT NOT NULL DEFAULT '';
+DROP INDEX decision_by_version;
+DROP INDEX decision_for_champion;
+ALTER TABLE decision RENAME TO decision_of_1;
+)sql";
+  constexpr std::string_view move = R"sql(
+INSERT INTO decision (id, spacecraft, equipment, version, kind, actor, reason, time)
+  SELECT id, spacecraft, equipment, version, kind, actor, reason, time FROM decision_of_1
+  ORDER BY id;
+DROP TABLE decision_of_1;
+)sql";
+  return joined({before, decision_table, move, operator_tables, registry_views}) +
+         append_only_decisions() + user_version();
 }
 
 }  // namespace reident::storage::schema

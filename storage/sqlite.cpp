@@ -155,13 +155,14 @@ sqlite3_stmt* Connection::prepared(std::string_view sql) {
   return kept.get();
 }
 
-Transaction::Transaction(Connection& connection) : connection_(connection) {
-  connection_.query("BEGIN IMMEDIATE").run();
+Transaction::Transaction(Connection& connection)
+    : connection_(connection), is_part_(connection.in_transaction()) {
+  if (!is_part_) connection_.query("BEGIN IMMEDIATE").run();
 }
 
 Transaction::~Transaction() {
   // A failure such as a full disk may have rolled back already.
-  if (!connection_.in_transaction()) return;
+  if (is_part_ || !connection_.in_transaction()) return;
   try {
     connection_.query("ROLLBACK").run();
   } catch (const Error&) {
@@ -170,7 +171,7 @@ Transaction::~Transaction() {
 }
 
 void Transaction::commit() {
-  connection_.query("COMMIT").run();
+  if (!is_part_) connection_.query("COMMIT").run();
 }
 
 }  // namespace reident::storage::sqlite

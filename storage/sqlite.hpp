@@ -110,7 +110,8 @@ class Connection {
   std::unordered_map<std::string, Statement> statements_;
 };
 
-/// Rolls back unless it was committed.
+/// Rolls back unless it was committed. Within another one on the same connection it is a part of
+/// that one, which commits or rolls back all.
 class Transaction {
  public:
   explicit Transaction(Connection& connection);
@@ -121,6 +122,7 @@ class Transaction {
 
  private:
   Connection& connection_;
+  const bool is_part_;
 };
 
 }  // namespace reident::storage::sqlite

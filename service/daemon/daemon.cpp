@@ -135,8 +135,11 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
                                      const std::function<void(std::size_t)>& task) {
       search_.for_each(count, task);
     };
+    // Read before the refresh looks at the champion and the hold.
+    const storage::Standing standing = registry.standing(*job.spacecraft, job.equipment->name);
     return conclude(refresh(archive, registry, request, kept, on_all_cores,
-                            [this] { return stopping_.load(); }));
+                            [this] { return stopping_.load(); }),
+                    standing);
   } catch (const Stopped&) {
     return false;
   } catch (const std::future_error&) {  // the writer has ended
@@ -144,30 +147,31 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
   }
 }
 
-bool Daemon::conclude(RefreshResult&& result) {
+bool Daemon::conclude(RefreshResult&& result, const storage::Standing& standing) {
   std::optional<storage::Version> approved;
-  storage::Decision decision;
-  std::int64_t number = 0;
+  std::optional<storage::Decision> decision;
+  std::optional<std::int64_t> number;
   writer_
       .post([&](storage::Registry& registry, auto&) {
         result.attempt.time = clock_();
         if (!result.candidate) {
           registry.record(result.attempt);
+          number = 0;
           return;
         }
-        number = registry.record(
-            result.attempt, {to_json(*result.candidate).dump(), model_digest(*result.candidate)},
-            *result.decision);
-        if (result.decision->kind != storage::DecisionKind::approve) return;
-        approved = registry.version(result.attempt.spacecraft, result.attempt.equipment, number);
-        decision =
-            registry.decisions(result.attempt.spacecraft, result.attempt.equipment, number).back();
+        number = registry.record_if(
+            standing, result.attempt,
+            {to_json(*result.candidate).dump(), model_digest(*result.candidate)}, *result.decision);
+        if (!number || result.decision->kind != storage::DecisionKind::approve) return;
+        approved = registry.champion(result.attempt.spacecraft, result.attempt.equipment);
+        decision = registry.champion_decision(result.attempt.spacecraft, result.attempt.equipment);
       })
       .get();
+  if (!number) return false;
   ++attempts_;
-  if (approved && publisher_.publish(*approved, decision)) ++approvals_;
+  if (approved && publisher_.publish(*approved, *decision)) ++approvals_;
   IdentificationReport report = report_of(result);
-  report.version = number;
+  report.version = *number;
   publisher_.report(report);
   log_attempt(report);
   return true;

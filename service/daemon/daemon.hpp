@@ -48,8 +48,9 @@ class Daemon {
   /// False when the service stops before the window is decided.
   bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
                 const storage::Registry& registry);
-  /// Commits the attempt, then publishes what follows from it. False when the service stops.
-  bool conclude(RefreshResult&& result);
+  /// Commits the attempt, then publishes what follows from it. False when the equipment's standing
+  /// is not the one that the attempt saw any more.
+  bool conclude(RefreshResult&& result, const storage::Standing& standing);
 
   const Config& config_;
   const Clock clock_;

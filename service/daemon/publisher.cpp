@@ -1,7 +1,5 @@
 #include "service/daemon/publisher.hpp"
 
-#include <algorithm>
-
 #include "service/model/model_json.hpp"
 #include "service/support/log.hpp"
 #include "service/support/version.hpp"
@@ -41,13 +39,8 @@ bool Publisher::publish(const storage::Version& version, const storage::Decision
 std::size_t Publisher::publish_champions(const storage::Registry& registry) {
   std::size_t published = 0;
   for (const storage::Version& champion : registry.champions()) {
-    const auto decisions =
-        registry.decisions(champion.spacecraft, champion.equipment, champion.number);
-    const auto last = std::find_if(decisions.rbegin(), decisions.rend(), [](const auto& decision) {
-      return decision.kind == storage::DecisionKind::approve ||
-             decision.kind == storage::DecisionKind::roll_back;
-    });
-    if (last != decisions.rend() && publish(champion, *last)) ++published;
+    const auto decision = registry.champion_decision(champion.spacecraft, champion.equipment);
+    if (decision && publish(champion, *decision)) ++published;
   }
   return published;
 }

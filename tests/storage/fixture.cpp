@@ -22,6 +22,8 @@ std::string name(Error::Kind kind) {
       return "locked";
     case Error::Kind::newer_schema:
       return "newer_schema";
+    case Error::Kind::older_schema:
+      return "older_schema";
     case Error::Kind::corrupt:
       return "corrupt";
     case Error::Kind::full:

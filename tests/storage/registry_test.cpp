@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "fixture.hpp"
+#include "registry_fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {
@@ -13,52 +13,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using ::testing::StartsWith;
-using Mode = Database::Mode;
-
-class RegistryTest : public ::testing::Test {
- protected:
-  TemporaryFolder folder;
-  std::filesystem::path path = folder / "registry.db";
-  Database database{path, Mode::read_write};
-  Registry registry{database};
-
-  static NewAttempt attempt(Time time, TimeRange window = {0, 100},
-                            const std::string& equipment = "BDR") {
-    return {.spacecraft = "CB4",
-            .equipment = equipment,
-            .window = window,
-            .trigger = "slide",
-            .time = time,
-            .outcome = "error_above_limit",
-            .reason = "MRSE 31 % is above the limit of 20 %",
-            .evidence_json = R"({"mrse":31})",
-            .configuration_digest = "c0ffee",
-            .program_version = "0.1.0"};
-  }
-  static NewDecision decision(DecisionKind kind, const std::string& actor = "gate") {
-    return {.kind = kind, .actor = actor, .reason = "because"};
-  }
-  std::int64_t version(Time time, DecisionKind kind, const std::string& equipment = "BDR") {
-    return registry.record(attempt(time, {0, 100}, equipment),
-                           {.model_json = "{\"time\":" + std::to_string(time) + "}",
-                            .digest = "d" + std::to_string(time)},
-                           decision(kind));
-  }
-  std::int64_t decide(std::int64_t version, DecisionKind kind, Time time) {
-    return registry.decide("CB4", "BDR", version, decision(kind, "Ana"), time);
-  }
-  std::vector<std::string> statuses() const {
-    std::vector<std::string> statuses;
-    for (std::int64_t number = 1; registry.version("CB4", "BDR", number); ++number)
-      statuses.push_back(registry.version("CB4", "BDR", number)->status);
-    return statuses;
-  }
-  /// The champion's number at a time, or 0.
-  std::int64_t champion_at(std::optional<Time> time) const {
-    const auto champion = registry.champion("CB4", "BDR", time);
-    return champion ? champion->number : 0;
-  }
-};
 
 TEST_F(RegistryTest, StartsEmpty) {
   EXPECT_THAT(registry.champions(), IsEmpty());
@@ -92,9 +46,12 @@ TEST_F(RegistryTest, GivesAnAttemptWithoutAModelBack) {
 
 TEST_F(RegistryTest, GivesAVersionBack) {
   registry.record(attempt(1));
-  const std::int64_t number =
-      registry.record(attempt(5, {10, 20}), {.model_json = R"({"A":[[0.5]]})", .digest = "abc"},
-                      decision(DecisionKind::approve));
+  const std::int64_t number = registry.record(attempt(5, {10, 20}),
+                                              {.model_json = R"({"A":[[0.5]]})",
+                                               .digest = "abc",
+                                               .provenance_json = R"({"rows":20})",
+                                               .samples_digest = "def"},
+                                              decision(DecisionKind::approve));
   EXPECT_EQ(number, 1);
   const std::optional<Version> found = registry.version("CB4", "BDR", 1);
   ASSERT_TRUE(found);
@@ -107,6 +64,8 @@ TEST_F(RegistryTest, GivesAVersionBack) {
   EXPECT_EQ(found->created, 5);
   EXPECT_EQ(found->model_json, R"({"A":[[0.5]]})");
   EXPECT_EQ(found->digest, "abc");
+  EXPECT_EQ(found->provenance_json, R"({"rows":20})");
+  EXPECT_EQ(found->samples_digest, "def");
   EXPECT_EQ(found->status, "approved");
 }
 
@@ -134,6 +93,8 @@ TEST_F(RegistryTest, DerivesTheStatusFromTheDecisions) {
   version(50, DecisionKind::wait);
   decide(4, DecisionKind::reject, 55);
   EXPECT_THAT(statuses(), ElementsAre("approved", "rejected", "superseded", "rejected"));
+  decide(3, DecisionKind::withdraw, 60);
+  EXPECT_THAT(statuses(), ElementsAre("approved", "rejected", "withdrawn", "rejected"));
 }
 
 TEST_F(RegistryTest, KnowsTheChampionAtEveryTime) {
@@ -232,6 +193,10 @@ TEST_F(RegistryTest, KnowsTheEndOfTheLatestWindowTried) {
 
 TEST_F(RegistryTest, NothingRecordedCanBeChangedOrRemoved) {
   version(10, DecisionKind::approve);
+  registry.put_on_hold("CB4", "BDR", {"Ana", "because", 11});
+  registry.execute({"console", 1, "approve", "CB4", "BDR", 1, "Ana", "because"}, 12, [] {
+    return CommandOutcome{true, "done"};
+  });
   const char* table[] = {
       "UPDATE attempt SET outcome = 'approved'",
       "DELETE FROM attempt",
@@ -239,17 +204,26 @@ TEST_F(RegistryTest, NothingRecordedCanBeChangedOrRemoved) {
       "cause, time, 'x', reason, evidence_json, configuration_digest, program_version FROM attempt",
       "UPDATE version SET model_json = '{}'",
       "DELETE FROM version",
-      "INSERT OR REPLACE INTO version SELECT spacecraft, equipment, number, attempt, 'x', 'x' "
-      "FROM version",
+      "INSERT OR REPLACE INTO version SELECT spacecraft, equipment, number, attempt, 'x', 'x', "
+      "'x', 'x' FROM version",
       "UPDATE decision SET kind = 'reject'",
       "DELETE FROM decision",
       "INSERT OR REPLACE INTO decision SELECT id, spacecraft, equipment, version, 'reject', actor, "
       "reason, time FROM decision",
+      "UPDATE hold SET kind = 'release'",
+      "DELETE FROM hold",
+      "INSERT OR REPLACE INTO hold SELECT id, spacecraft, equipment, 'release', actor, reason, "
+      "time FROM hold",
+      "UPDATE command SET ok = 0",
+      "DELETE FROM command",
+      "INSERT OR REPLACE INTO command SELECT id + 1, requester, request, action, spacecraft, "
+      "equipment, version, actor, reason, time, 0, reply FROM command",
   };
   for (const char* statement : table)
     EXPECT_THAT(rows(path, statement), ElementsAre(HasSubstr(" are never "))) << statement;
   EXPECT_EQ(registry.version("CB4", "BDR", 1)->status, "approved");
   EXPECT_EQ(registry.version("CB4", "BDR", 1)->digest, "d10");
+  EXPECT_TRUE(registry.hold("CB4", "BDR"));
 }
 
 TEST_F(RegistryTest, AVersionIsRecordedWholeOrNotAtAll) {

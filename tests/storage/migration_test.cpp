@@ -1,0 +1,115 @@
+// A file that a program of schema version 1 made becomes one of this version, with all that is in
+// it.
+#include "registry_fixture.hpp"
+#include "schema_1.hpp"
+
+namespace reident::storage::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+// Two versions of BDR with a rollback to the first, a waiting one of MEA, an attempt without a
+// model, a sample.
+constexpr const char* contents = R"sql(
+PRAGMA journal_mode = WAL;
+INSERT INTO series VALUES (1, 'CB4', 0, 7, 1, 10, 10);
+INSERT INTO sample VALUES (1, 10, 28.5, 0, 1);
+INSERT INTO attempt VALUES
+  (1, 'CB4', 'BDR', 0, 100, 'slide', 110, 'approved', 'good', '{}', 'c', '0.1'),
+  (2, 'CB4', 'BDR', 50, 150, 'slide', 160, 'approved', 'better', '{}', 'c', '0.1'),
+  (3, 'CB4', 'BDR', 100, 200, 'slide', 210, 'low_coverage', 'gaps', '{}', 'c', '0.1'),
+  (4, 'CB4', 'MEA', 100, 200, 'slide', 220, 'waiting', 'good', '{}', 'c', '0.1');
+INSERT INTO version VALUES
+  ('CB4', 'BDR', 1, 1, '{"a":1}', 'd1'), ('CB4', 'BDR', 2, 2, '{"a":2}', 'd2'),
+  ('CB4', 'MEA', 1, 4, '{"a":3}', 'd3');
+INSERT INTO decision VALUES
+  (1, 'CB4', 'BDR', 1, 'approve', 'gate', 'good', 110),
+  (2, 'CB4', 'BDR', 2, 'approve', 'gate', 'better', 160),
+  (4, 'CB4', 'BDR', 1, 'roll_back', 'Ana', 'odd in eclipse', 170),
+  (5, 'CB4', 'MEA', 1, 'wait', 'gate', 'good', 220);
+)sql";
+
+class Migration : public ::testing::Test {
+ protected:
+  TemporaryFolder folder;
+  std::filesystem::path path = folder / "old.db";
+  void SetUp() override {
+    rows(path, schema_1);
+    rows(path, contents);
+  }
+};
+
+TEST_F(Migration, KeepsEveryRowAndItsMeaning) {
+  const char* tables[] = {"attempt", "decision", "series", "sample"};
+  std::vector<std::vector<std::string>> before;
+  for (const std::string table : tables) before.push_back(rows(path, "SELECT * FROM " + table));
+  Database database(path, Mode::read_write);
+  for (std::size_t i = 0; i < std::size(tables); ++i)
+    EXPECT_THAT(rows(path, "SELECT * FROM " + std::string(tables[i])), ElementsAreArray(before[i]))
+        << tables[i];
+  EXPECT_THAT(rows(path,
+                   "SELECT equipment, version, status, parent, digest, model_json, "
+                   "samples_digest, provenance_json FROM model_version"),
+              ElementsAre("BDR|1|approved|NULL|d1|{\"a\":1}||", "BDR|2|superseded|1|d2|{\"a\":2}||",
+                          "MEA|1|waiting|NULL|d3|{\"a\":3}||"));
+  EXPECT_THAT(rows(path, "PRAGMA user_version; PRAGMA integrity_check; PRAGMA foreign_key_check"),
+              ElementsAre("2", "ok"));
+}
+
+TEST_F(Migration, GoesOnWhereTheOldProgramStopped) {
+  Database database(path, Mode::read_write);
+  Registry registry(database);
+  EXPECT_EQ(registry.champion("CB4", "BDR", 165)->number, 2);
+  EXPECT_EQ(registry.champion_decision("CB4", "BDR")->actor, "Ana");
+  EXPECT_EQ(registry.decide("CB4", "BDR", 2, {DecisionKind::withdraw, "Ana", "bad"}, 230), 6);
+  EXPECT_EQ(registry.decide("CB4", "MEA", 1, {DecisionKind::approve, "Ana", "fine"}, 240), 7);
+  EXPECT_EQ(registry.champion("CB4", "MEA")->number, 1);
+  registry.put_on_hold("CB4", "MEA", {"Ana", "training", 250});
+  EXPECT_THAT(rows(path, "DELETE FROM decision"), ElementsAre(HasSubstr(" are never ")));
+  EXPECT_THAT(rows(path, "DELETE FROM version"), ElementsAre(HasSubstr(" are never ")));
+}
+
+TEST_F(Migration, GivesTheSameSchemaAsANewFile) {
+  { const Database migrated(path, Mode::read_write); }
+  { const Database made(folder / "new.db", Mode::read_write); }
+  // A column that was added stands behind the others, in words of its own.
+  const char* same =
+      "SELECT type, name, sql FROM sqlite_master WHERE name != 'version' "
+      "ORDER BY type, name";
+  EXPECT_THAT(rows(path, same), ElementsAreArray(rows(folder / "new.db", same)));
+  const char* columns =
+      "SELECT name, type, \"notnull\", dflt_value, pk FROM "
+      "pragma_table_info('version') ORDER BY name";
+  EXPECT_THAT(rows(path, columns), ElementsAreArray(rows(folder / "new.db", columns)));
+}
+
+TEST_F(Migration, IsWholeOrNotAtAll) {
+  rows(path, "CREATE TABLE command (theirs)");  // makes the last tables impossible
+  const auto opening = [&] { const Database database(path, Mode::read_write); };
+  EXPECT_THAT(error_of(opening), HasSubstr("command already exists"));
+  EXPECT_THAT(rows(path,
+                   "PRAGMA user_version; SELECT count(*) FROM decision; "
+                   "SELECT version FROM champion"),
+              ElementsAre("1", "4", "1"));
+  rows(path, "DROP TABLE command");
+  EXPECT_EQ(error_of(opening), "no error");
+  EXPECT_THAT(rows(path, "SELECT count(*) FROM decision"), ElementsAre("4"));
+}
+
+TEST_F(Migration, IsLeftToAWriterAndAReaderSaysSo) {
+  const auto reading = [&] { const Database database(path, Mode::read_only); };
+  EXPECT_THAT(error_of(reading), AllOf(StartsWith("older_schema: "), HasSubstr("schema version 1"),
+                                       HasSubstr("start this reidentd on it once")));
+  EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre("1"));
+  { const Database writer(path, Mode::read_write); }
+  EXPECT_EQ(error_of(reading), "no error");
+}
+
+}  // namespace
+}  // namespace reident::storage::testing
