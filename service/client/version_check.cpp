@@ -12,11 +12,23 @@ bool sizes_agree(const EquipmentModel& model) {
          dynamics.outputs() == static_cast<identification::Index>(model.outputs.size());
 }
 
+bool is_sound(const identification::TrackingGain& gain,
+              const identification::StateSpaceModel& dynamics) {
+  return gain.state.rows() == dynamics.inputs() && gain.state.cols() == dynamics.order() &&
+         gain.integral.rows() == dynamics.inputs() &&
+         gain.integral.cols() == 2 * dynamics.outputs() &&
+         gain.error_limit.size() == dynamics.outputs() && gain.state.allFinite() &&
+         gain.integral.allFinite() && gain.error_limit.allFinite();
+}
+
 }  // namespace
 
 std::optional<std::string> damage(const ModelVersion& version) {
   if (!sizes_agree(version.model)) {
     return "its matrices, signals and period do not fit together, or are not finite";
+  }
+  if (version.model.tracking && !is_sound(version.model.tracking->gain, version.model.dynamics)) {
+    return "its tracking gain does not fit its matrices, or is not finite";
   }
   if (const std::string digest = model_digest(version.model); digest != version.digest) {
     return "its content has the digest " + digest + " and it says " + version.digest +

@@ -69,9 +69,13 @@ struct Codec<ModelVersion> {
     const Wire& operator()(const ModelVersion& version);
 
    private:
+    void put_tracking(const EquipmentModel::Tracking& tracking);
+
     Wire wire_{};
     std::vector<reident_Signal> inputs_, outputs_;
     std::vector<double> a_, b_, c_, d_, k_, u0_, y0_, mrse_, fit_;
+    std::vector<double> tracking_state_, tracking_integral_, tracking_limit_, tracking_mrse_,
+        tracking_fit_;
   };
   static Fault decode(const Wire& wire, const ReaderOptions& options, ModelVersion& version);
 };

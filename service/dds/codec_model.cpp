@@ -22,7 +22,8 @@ template <class Sequence>
 Sequence borrow_signals(const std::vector<Signal>& signals, std::vector<reident_Signal>& buffer) {
   buffer.clear();
   for (const Signal& signal : signals) {
-    buffer.push_back({borrow(signal.name), borrow(signal.unit), signal.low, signal.high});
+    buffer.push_back({borrow(signal.name), borrow(signal.unit), signal.low, signal.high,
+                      borrow(signal.expression)});
   }
   return borrow<Sequence>(buffer);
 }
@@ -70,7 +71,8 @@ std::vector<Signal> read_signals(const Sequence& wire, TextReader& texts) {
   signals.reserve(wire._length);
   for (const reident_Signal& signal : std::span(wire._buffer, wire._length)) {
     signals.push_back({texts.name(signal.name, "a signal's name"),
-                       texts.text(signal.unit, "a signal's unit"), signal.low, signal.high});
+                       texts.text(signal.unit, "a signal's unit"), signal.low, signal.high,
+                       texts.text(signal.expression, "a signal's expression")});
   }
   return signals;
 }
@@ -102,6 +104,29 @@ Fault read_dynamics(const reident_ModelVersion& wire, EquipmentModel& model) {
   return numbers.fault();
 }
 
+bool has_tracking(const reident_ModelVersion& wire) {
+  return std::max({wire.tracking_state._length, wire.tracking_integral._length,
+                   wire.tracking_error_limit._length}) > 0;
+}
+
+Fault read_tracking(const reident_ModelVersion& wire, EquipmentModel& model) {
+  const std::uint64_t m = model.inputs.size();
+  const std::uint64_t p = model.outputs.size();
+  EquipmentModel::Tracking tracking;
+  NumberReader numbers;
+  tracking.gain.state = numbers.matrix(wire.tracking_state, m, wire.order, "tracking_state");
+  tracking.gain.integral = numbers.matrix(wire.tracking_integral, m, 2 * p, "tracking_integral");
+  tracking.gain.error_limit = numbers.vector(wire.tracking_error_limit, p, "tracking_error_limit");
+  tracking.validation = {numbers.score(wire.tracking_mrse_percent, p, "tracking_mrse_percent"),
+                         numbers.score(wire.tracking_fit_percent, p, "tracking_fit_percent"),
+                         wire.tracking_validation_rows};
+  if (!numbers.fault() && tracking.validation.rows < 0) {
+    return "the number of validation rows of tracking is negative";
+  }
+  model.tracking = std::move(tracking);
+  return numbers.fault();
+}
+
 Fault fault_in_scalars(const ModelVersion& version) {
   const EquipmentModel& model = version.model;
   if (version.number < 1) return "the version's number is below 1";
@@ -125,7 +150,8 @@ const reident_ModelVersion& Codec<ModelVersion>::Encoder::operator()(const Model
   const identification::StateSpaceModel& dynamics = model.dynamics;
   wire_.spacecraft = borrow(model.spacecraft);
   wire_.equipment = borrow(model.equipment);
-  wire_.format = reident_MODEL_FORMAT;
+  // Older programs know neither expressions nor the gain, and their digest covers neither.
+  wire_.format = has_expressions(model.inputs) || model.tracking ? 2 : 1;
   wire_.number = version.number;
   wire_.digest = borrow(version.digest);
   wire_.decided_ns = version.decided;
@@ -152,7 +178,17 @@ const reident_ModelVersion& Codec<ModelVersion>::Encoder::operator()(const Model
   wire_.fit_percent = borrow_matrix(model.validation.fit_percent, fit_);
   wire_.validation_rows = model.validation.rows;
   wire_.method = borrow(model.method);
+  put_tracking(model.tracking.value_or(EquipmentModel::Tracking{}));
   return wire_;
+}
+
+void Codec<ModelVersion>::Encoder::put_tracking(const EquipmentModel::Tracking& tracking) {
+  wire_.tracking_state = borrow_matrix(tracking.gain.state, tracking_state_);
+  wire_.tracking_integral = borrow_matrix(tracking.gain.integral, tracking_integral_);
+  wire_.tracking_error_limit = borrow_matrix(tracking.gain.error_limit, tracking_limit_);
+  wire_.tracking_mrse_percent = borrow_matrix(tracking.validation.mrse_percent, tracking_mrse_);
+  wire_.tracking_fit_percent = borrow_matrix(tracking.validation.fit_percent, tracking_fit_);
+  wire_.tracking_validation_rows = tracking.validation.rows;
 }
 
 Fault Codec<ModelVersion>::decode(const reident_ModelVersion& wire,
@@ -183,7 +219,9 @@ Fault Codec<ModelVersion>::decode(const reident_ModelVersion& wire,
   if (Fault fault = fault_in_scalars(version)) return fault;
   if (Fault fault = fault_in_signals(model.inputs)) return fault;
   if (Fault fault = fault_in_signals(model.outputs)) return fault;
-  return read_dynamics(wire, model);
+  if (has_expressions(model.outputs)) return "an output has an expression; it must be measured";
+  if (Fault fault = read_dynamics(wire, model)) return fault;
+  return has_tracking(wire) ? read_tracking(wire, model) : std::nullopt;
 }
 
 }  // namespace reident::dds

@@ -48,6 +48,21 @@ class CanonicalEncoder {
   std::string bytes_;
 };
 
+// What older programs do not know comes last, under a tag, and only where there is any: the digests
+// of models without it stay as they are.
+void put_expressions(const std::vector<Signal>& inputs, CanonicalEncoder& encoder) {
+  if (!has_expressions(inputs)) return;
+  encoder.put(std::string_view("expressions"));
+  for (const Signal& input : inputs) encoder.put(std::string_view(input.expression));
+}
+
+void put_tracking(const identification::TrackingGain& gain, CanonicalEncoder& encoder) {
+  encoder.put(std::string_view("tracking"));
+  encoder.put(gain.state);
+  encoder.put(gain.integral);
+  encoder.put(gain.error_limit);
+}
+
 }  // namespace
 
 std::string model_digest(const EquipmentModel& model) {
@@ -69,6 +84,8 @@ std::string model_digest(const EquipmentModel& model) {
   encoder.put(dynamics.K);
   encoder.put(dynamics.u0);
   encoder.put(dynamics.y0);
+  put_expressions(model.inputs, encoder);
+  if (model.tracking) put_tracking(model.tracking->gain, encoder);
   return sha256_hex(encoder.bytes());
 }
 

@@ -19,12 +19,27 @@ Json number_to_json(double value) {
 Json to_json(const std::vector<Signal>& signals) {
   Json array = Json::array();
   for (const Signal& signal : signals) {
-    array.push_back({{"name", signal.name},
-                     {"unit", signal.unit},
-                     {"low", number_to_json(signal.low)},
-                     {"high", number_to_json(signal.high)}});
+    Json entry = {{"name", signal.name},
+                  {"unit", signal.unit},
+                  {"low", number_to_json(signal.low)},
+                  {"high", number_to_json(signal.high)}};
+    if (!signal.expression.empty()) entry["expression"] = signal.expression;
+    array.push_back(std::move(entry));
   }
   return array;
+}
+
+Json to_json(const identification::Score& score) {
+  return {{"mrse_percent", reident::to_json(score.mrse_percent)},
+          {"fit_percent", reident::to_json(score.fit_percent)},
+          {"rows", score.rows}};
+}
+
+Json to_json(const EquipmentModel::Tracking& tracking) {
+  return {{"state", reident::to_json(tracking.gain.state)},
+          {"integral", reident::to_json(tracking.gain.integral)},
+          {"error_limit", reident::to_json(tracking.gain.error_limit)},
+          {"validation", to_json(tracking.validation)}};
 }
 
 Json to_json(const storage::TimeRange& range) {
@@ -47,6 +62,7 @@ class Field {
     if (found == value_.end()) refuse(path, "is missing");
     return {*found, path};
   }
+  bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
   Field operator[](std::size_t index) const {
     return {value_[index], path_ + "[" + std::to_string(index) + "]"};
   }
@@ -105,13 +121,30 @@ std::vector<Signal> signals_from(const Field& field) {
   for (std::size_t i = 0; i < field.array_size(); ++i) {
     const Field entry = field[i];
     signals.push_back({entry["name"].text(), entry["unit"].text(), entry["low"].number(),
-                       entry["high"].number()});
+                       entry["high"].number(),
+                       entry.has("expression") ? entry["expression"].text() : ""});
   }
   return signals;
 }
 
 storage::TimeRange range_from(const Field& field) {
   return {field["begin_ns"].integer(), field["end_ns"].integer()};
+}
+
+identification::Score score_from(const Field& field, Index outputs) {
+  return {vector_from(field["mrse_percent"], outputs), vector_from(field["fit_percent"], outputs),
+          field["rows"].integer()};
+}
+
+EquipmentModel::Tracking tracking_from(const Field& field,
+                                       const identification::StateSpaceModel& dynamics) {
+  const Index inputs = dynamics.inputs(), outputs = dynamics.outputs();
+  EquipmentModel::Tracking tracking;
+  tracking.gain.state = matrix_from(field["state"], inputs, dynamics.order());
+  tracking.gain.integral = matrix_from(field["integral"], inputs, 2 * outputs);
+  tracking.gain.error_limit = vector_from(field["error_limit"], outputs);
+  tracking.validation = score_from(field["validation"], outputs);
+  return tracking;
 }
 
 identification::StateSpaceModel dynamics_from(const Field& model, Index inputs, Index outputs) {
@@ -153,7 +186,7 @@ Json to_json(const Vector& vector) {
 
 Json to_json(const EquipmentModel& model) {
   const identification::StateSpaceModel& dynamics = model.dynamics;
-  return {
+  Json json = {
       {"spacecraft", model.spacecraft},
       {"equipment", model.equipment},
       {"inputs", to_json(model.inputs)},
@@ -170,12 +203,11 @@ Json to_json(const EquipmentModel& model) {
       {"output_offset", to_json(dynamics.y0)},
       {"identified_from", to_json(model.identified_from)},
       {"validated_on", to_json(model.validated_on)},
-      {"validation",
-       {{"mrse_percent", to_json(model.validation.mrse_percent)},
-        {"fit_percent", to_json(model.validation.fit_percent)},
-        {"rows", model.validation.rows}}},
+      {"validation", to_json(model.validation)},
       {"method", model.method},
   };
+  if (model.tracking) json["tracking"] = to_json(*model.tracking);
+  return json;
 }
 
 EquipmentModel equipment_model_from_json(const std::string& text) {
@@ -196,11 +228,9 @@ EquipmentModel equipment_model_from_json(const std::string& text) {
   model.hold_ns = field["hold_ns"].integer();
   model.identified_from = range_from(field["identified_from"]);
   model.validated_on = range_from(field["validated_on"]);
-  const Field validation = field["validation"];
-  model.validation.mrse_percent = vector_from(validation["mrse_percent"], outputs);
-  model.validation.fit_percent = vector_from(validation["fit_percent"], outputs);
-  model.validation.rows = validation["rows"].integer();
+  model.validation = score_from(field["validation"], outputs);
   model.method = field["method"].text();
+  if (field.has("tracking")) model.tracking = tracking_from(field["tracking"], model.dynamics);
   return model;
 }
 

@@ -1,24 +1,35 @@
 // A published model: the state-space model with all that a simulator or an operator asks of it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "identification/simulate.hpp"
 #include "identification/state_space.hpp"
+#include "identification/tracking.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident {
 
 /// One input or output of a model, in the model's order.
 struct Signal {
-  std::string name;  // SATCS parameter
+  std::string name;  // SATCS parameter, or what `expression` computes
   std::string unit;
   double low = 0;  // range visited in the identification window
   double high = 0;
+  /// Of an input, over SATCS parameters; empty where the input is the parameter `name` itself.
+  std::string expression = {};
   bool operator==(const Signal&) const = default;
 };
+
+/// Whether any of them follows from parameters by an expression.
+inline bool has_expressions(const std::vector<Signal>& signals) {
+  return std::any_of(signals.begin(), signals.end(),
+                     [](const Signal& signal) { return !signal.expression.empty(); });
+}
 
 /// What is identified, stored as JSON and digested; it says nothing about when it was approved.
 struct EquipmentModel {
@@ -31,7 +42,12 @@ struct EquipmentModel {
   storage::TimeRange identified_from;
   storage::TimeRange validated_on;
   identification::Score validation;  // free run on samples that the identification did not use
-  std::string method;                // such as "N4SID, horizon 12, order 3"
+  struct Tracking {
+    identification::TrackingGain gain;
+    identification::Score validation;  // corrected by the gain, on the same samples
+  };
+  std::optional<Tracking> tracking;
+  std::string method;  // such as "N4SID, horizon 12, order 3"
 };
 
 /// A version as simulators receive it.

@@ -20,6 +20,11 @@ void PrintTo(const Case& one, std::ostream* out) {
   *out << one.name;
 }
 
+identification::TrackingGain& gain(ModelVersion& version) {
+  version.model.tracking = full_example_model().tracking;
+  return version.model.tracking->gain;
+}
+
 class DamagedVersion : public testing::TestWithParam<Case> {};
 
 TEST_P(DamagedVersion, is_told_with_the_reason) {
@@ -46,6 +51,15 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"missing column", [](auto& v) { v.model.dynamics.B.conservativeResize(2, 1); }, true,
              "fit together"},
         Case{"missing input", [](auto& v) { v.model.inputs.pop_back(); }, true, "fit together"},
+        Case{"tracking", [](auto& v) { gain(v); }, true, "sound"},
+        Case{"tracking changed", [](auto& v) { gain(v); }, false, "digest"},
+        Case{"state gain", [](auto& v) { gain(v).state.resize(2, 1); }, true, "tracking gain"},
+        Case{"integral gain", [](auto& v) { gain(v).integral.resize(2, 1); }, true,
+             "tracking gain"},
+        Case{"error limit", [](auto& v) { gain(v).error_limit.resize(0); }, true, "tracking gain"},
+        Case{"gain not finite",
+             [](auto& v) { gain(v).integral(0, 0) = std::numeric_limits<double>::infinity(); },
+             true, "tracking gain"},
         Case{"no period", [](auto& v) { v.model.dynamics.period_s = 0; }, true, "fit together"}));
 
 TEST(Succession, follows_the_number_and_lets_a_rollback_go_back) {

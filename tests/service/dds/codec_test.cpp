@@ -152,8 +152,52 @@ INSTANTIATE_TEST_SUITE_P(
         ModelSpoil{"hold", [](auto& v) { v.hold_ns = -1; }, "hold"},
         ModelSpoil{"number", [](auto& v) { v.number = 0; }, "number is below 1"},
         ModelSpoil{"window", [](auto& v) { v.identified_end_ns = 0; }, "ends before it begins"},
-        ModelSpoil{"format", [](auto& v) { v.format = 2; }, "format 2 and this program knows 1"},
+        ModelSpoil{"format", [](auto& v) { v.format = 3; }, "format 3 and this program knows 2"},
         ModelSpoil{"digest", [](auto& v) { v.digest = text(""); }, "digest is empty"}));
+
+class FullModelCodec : public testing::TestWithParam<ModelSpoil> {};
+TEST_P(FullModelCodec, takes_what_keeps_the_contract_and_names_what_breaks_it) {
+  ModelVersion version = example_version(1);
+  version.model = full_example_model();
+  expect(version, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    table, FullModelCodec,
+    testing::Values(
+        ModelSpoil{"nothing", [](auto&) {}, ""},
+        ModelSpoil{"undefined score", [](auto& v) { v.tracking_fit_percent._buffer[0] = nan; }, ""},
+        ModelSpoil{"no gain",
+                   [](auto& v) {
+                     v.tracking_state._length = v.tracking_integral._length = 0;
+                     v.tracking_error_limit._length = 0;
+                   },
+                   ""},
+        ModelSpoil{"null expression", [](auto& v) { v.inputs._buffer[0].expression = null_text; },
+                   "a signal's expression is null"},
+        ModelSpoil{"computed output", [](auto& v) { v.outputs._buffer[0].expression = text("a"); },
+                   "an output has an expression"},
+        ModelSpoil{"state", [](auto& v) { v.tracking_state._length = 0; }, "tracking_state has 0"},
+        ModelSpoil{"integral", [](auto& v) { v.tracking_integral._length = 3; },
+                   "tracking_integral has 3 numbers; 2 x 2"},
+        ModelSpoil{"limit", [](auto& v) { v.tracking_error_limit._length = 0; },
+                   "tracking_error_limit has 0"},
+        ModelSpoil{"undefined", [](auto& v) { v.tracking_integral._buffer[0] = nan; },
+                   "tracking_integral has a number that"},
+        ModelSpoil{"score", [](auto& v) { v.tracking_mrse_percent._length = 0; },
+                   "tracking_mrse_percent"},
+        ModelSpoil{"rows", [](auto& v) { v.tracking_validation_rows = -1; }, "negative"}));
+
+TEST(ModelCodec, states_the_lowest_format_that_describes_the_version) {
+  Codec<ModelVersion>::Encoder encode;
+  ModelVersion version = example_version(1);
+  EXPECT_EQ(encode(version).format, 1U);
+  version.model.tracking = full_example_model().tracking;
+  EXPECT_EQ(encode(version).format, 2U);
+  version.model = full_example_model();
+  version.model.tracking.reset();
+  EXPECT_EQ(encode(version).format, 2U);
+}
 
 TEST(ModelCodec, keeps_every_number_to_the_last_bit) {
   Codec<ModelVersion>::Encoder encode;

@@ -46,6 +46,8 @@ TEST_F(OlderProgram, is_read_with_what_it_does_not_say_left_empty) {
   EXPECT_EQ(versions[0].number, 4);
   EXPECT_EQ(versions[0].model.method, "");
   EXPECT_EQ(versions[0].model.validation.rows, 0);
+  EXPECT_EQ(versions[0].model.inputs[0].expression, "");
+  EXPECT_FALSE(versions[0].model.tracking);
   EXPECT_EQ(versions[0].model.inputs[0].low, -1);
   EXPECT_EQ(versions[0].model.inputs[0].high, 0);
   EXPECT_EQ(versions[0].model.dynamics.A(0, 0), 0.5);

@@ -48,6 +48,17 @@ TEST(Digest, is_the_sha256_of_the_documented_encoding) {
   EXPECT_EQ(model_digest(model), sha256_hex(encoding));
 }
 
+void expect_different_digests(const EquipmentModel& base,
+                              const std::vector<std::function<void(EquipmentModel&)>>& changes) {
+  std::set<std::string> digests;
+  for (const auto& change : changes) {
+    EquipmentModel model = base;
+    change(model);
+    digests.insert(model_digest(model));
+  }
+  EXPECT_EQ(digests.size(), changes.size());
+}
+
 TEST(Digest, changes_with_everything_that_a_simulator_computes_with) {
   const std::vector<std::function<void(EquipmentModel&)>> changes = {
       [](EquipmentModel&) {},
@@ -71,13 +82,55 @@ TEST(Digest, changes_with_everything_that_a_simulator_computes_with) {
       [](EquipmentModel& m) { m.dynamics.u0(1) = 1; },
       [](EquipmentModel& m) { m.dynamics.y0(0) = 1; },
   };
-  std::set<std::string> digests;
-  for (const auto& change : changes) {
-    EquipmentModel model = example_model();
-    change(model);
-    digests.insert(model_digest(model));
-  }
-  EXPECT_EQ(digests.size(), changes.size());
+  expect_different_digests(example_model(), changes);
+}
+
+TEST(Digest, changes_with_the_expressions_and_the_tracking_gain) {
+  expect_different_digests(
+      full_example_model(),
+      {
+          [](EquipmentModel&) {},
+          [](EquipmentModel& m) { m = example_model(); },
+          [](EquipmentModel& m) { m.inputs[1].expression += "*1"; },
+          [](EquipmentModel& m) { m.inputs[1].expression.clear(); },
+          [](EquipmentModel& m) { std::swap(m.inputs[0].expression, m.inputs[1].expression); },
+          [](EquipmentModel& m) { m.tracking.reset(); },
+          [](EquipmentModel& m) { m.tracking->gain.state(1, 0) = 0; },
+          [](EquipmentModel& m) { m.tracking->gain.state.transposeInPlace(); },
+          [](EquipmentModel& m) { m.tracking->gain.integral(0, 1) += 1e-16; },
+          [](EquipmentModel& m) { m.tracking->gain.error_limit(0) = 2; },
+      });
+}
+
+TEST(Digest, of_a_model_without_expressions_and_tracking_is_the_one_it_had_before_there_were_any) {
+  EXPECT_EQ(model_digest(example_model()),
+            "17910f60ef1713b1804a8bb1ac83963863c0cef758d0f6d27535e0d025323a45");
+}
+
+TEST(Digest, ends_with_what_not_every_model_has) {
+  const auto number = [](double value) {
+    return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  EquipmentModel model;
+  model.inputs = {{"u"s, "A"s, 0, 0, "a+b"s}};
+  model.outputs = {{"y"s, "A"s, 0, 0}};
+  model.dynamics.A = model.dynamics.B = model.dynamics.C = model.dynamics.D =
+      identification::Matrix::Zero(1, 1);
+  model.dynamics.u0 = model.dynamics.y0 = identification::Vector::Zero(1);
+  const identification::TrackingGain gain{identification::Matrix::Constant(1, 1, 3),
+                                          (identification::Matrix(1, 2) << 4, 5).finished(),
+                                          identification::Vector::Constant(1, 6)};
+  model.tracking = EquipmentModel::Tracking{gain, {}};
+
+  const std::string u = "\x01\0\0\0u\x01\0\0\0A"s + number(0) + number(0);
+  const std::string y = "\x01\0\0\0y\x01\0\0\0A"s + number(0) + number(0);
+  const std::string one = "\x01\0\0\0"s;
+  std::string encoding = "\x0f\0\0\0reident model 1\0\0\0\0\0\0\0\0"s + one + u + one + y;
+  encoding += number(0) + std::string(8, '\0') + one;  // period, hold, order
+  encoding += std::string(4 * 8, '\0') + "\0\0\0\0"s + std::string(2 * 8, '\0');
+  encoding += "\x0b\0\0\0expressions\x03\0\0\0a+b\x08\0\0\0tracking"s;
+  encoding += number(3) + number(4) + number(5) + number(6);
+  EXPECT_EQ(model_digest(model), sha256_hex(encoding));
 }
 
 TEST(Digest, does_not_depend_on_when_and_how_the_model_was_found) {

@@ -30,6 +30,20 @@ inline EquipmentModel example_model() {
   return model;
 }
 
+/// The same with all that not every model has: an input that is computed, and a tracking gain.
+inline EquipmentModel full_example_model() {
+  EquipmentModel model = example_model();
+  model.inputs[1] = {"P_IN", "W", -0.25, 4, "V_BUS * I_BDRIN2"};
+  EquipmentModel::Tracking& tracking = model.tracking.emplace();
+  tracking.gain.state = (identification::Matrix(2, 2) << 0.5, -1, 1.0 / 3, 0).finished();
+  tracking.gain.integral = (identification::Matrix(2, 2) << 0.1, 0.2, -0.3, 0.7).finished();
+  tracking.gain.error_limit = identification::Vector::Constant(1, 2.5);
+  tracking.validation.mrse_percent = identification::Vector::Constant(1, 0.5);
+  tracking.validation.fit_percent = identification::Vector::Constant(1, 99);
+  tracking.validation.rows = 2000;
+  return model;
+}
+
 inline ModelVersion example_version(std::int64_t number) {
   ModelVersion version;
   version.model = example_model();

@@ -88,6 +88,25 @@ TEST(ModelJson, writes_a_figure_that_does_not_exist_as_null_and_reads_it_as_nan)
   EXPECT_TRUE(std::isnan(equipment_model_from_json(json.dump()).validation.fit_percent(0)));
 }
 
+TEST(ModelJson, has_no_key_for_what_a_model_does_not_have) {
+  const auto json = to_json(example_model());
+  EXPECT_FALSE(json.contains("tracking"));
+  EXPECT_FALSE(json["inputs"][0].contains("expression"));
+}
+
+TEST(ModelJson, keeps_expressions_and_the_tracking_gain) {
+  const EquipmentModel model = full_example_model();
+  const EquipmentModel back = equipment_model_from_json(to_json(model).dump());
+  EXPECT_EQ(back.inputs, model.inputs);
+  ASSERT_TRUE(back.tracking);
+  EXPECT_TRUE(same_bits(back.tracking->gain.state, model.tracking->gain.state));
+  EXPECT_TRUE(same_bits(back.tracking->gain.integral, model.tracking->gain.integral));
+  EXPECT_TRUE(same_bits(back.tracking->gain.error_limit, model.tracking->gain.error_limit));
+  EXPECT_EQ(back.tracking->validation.mrse(), 0.5);
+  EXPECT_EQ(back.tracking->validation.fit(), 99);
+  EXPECT_EQ(back.tracking->validation.rows, 2000);
+}
+
 struct Damage {
   const char* pointer;  // JSON pointer to what is replaced; by null in `value`: removed
   const char* value;
@@ -97,7 +116,7 @@ struct Damage {
 class DamagedModelJson : public testing::TestWithParam<Damage> {};
 
 TEST_P(DamagedModelJson, is_refused_with_the_name_of_the_field) {
-  auto json = to_json(example_model());
+  auto json = to_json(full_example_model());
   const nlohmann::ordered_json::json_pointer pointer(GetParam().pointer);
   if (GetParam().value == nullptr) {
     json.at(pointer.parent_pointer()).erase(pointer.back());
@@ -126,6 +145,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Damage{"/hold_ns", "9223372036854775808", "\"hold_ns\" is above"},
                     Damage{"/inputs/1/name", "7", "\"inputs[1].name\" must be a string"},
                     Damage{"/validated_on", "[]", "\"validated_on\" must be an object"},
+                    Damage{"/inputs/1/expression", "1", "\"inputs[1].expression\" must be a str"},
+                    Damage{"/tracking/state", "[[1,2]]", "\"tracking.state\" must have 2 entr"},
+                    Damage{"/tracking/integral/0", "[1]", "\"tracking.integral[0]\" must have 2"},
+                    Damage{"/tracking/error_limit", "[]", "\"tracking.error_limit\" must have 1"},
+                    Damage{"/tracking/validation", nullptr, "\"tracking.validation\" is missing"},
                     Damage{"/validation/rows", nullptr, "\"validation.rows\" is missing"}));
 
 TEST(ModelJson, refuses_text_that_is_not_json) {

@@ -1,0 +1,163 @@
+// A model stays the same to the last bit wherever it is written and read, and its digest tells it
+// from every other.
+#include <bit>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "service/dds/codec.hpp"
+#include "service/model/model_json.hpp"
+#include "tests/properties/any_record.hpp"
+
+namespace reident {
+namespace {
+
+using identification::Index;
+using identification::Matrix;
+using identification::Vector;
+using testing::any_of;
+
+/// Finite, of every magnitude, denormals and both zeros among them.
+double any_number() {
+  const double value = std::bit_cast<double>(*rc::gen::arbitrary<std::uint64_t>());
+  return std::isfinite(value) ? value : -0.0;
+}
+
+Matrix any_matrix(Index rows, Index columns) {
+  Matrix matrix(rows, columns);
+  for (double& value : matrix.reshaped()) value = any_number();
+  return matrix;
+}
+
+Vector any_vector(Index size) {
+  return any_matrix(size, 1);
+}
+
+std::string any_text() {
+  return *rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::inRange('!', '~')));
+}
+
+std::vector<Signal> any_signals(Index count) {
+  std::vector<Signal> signals;
+  for (Index i = 0; i < count; ++i) {
+    const double a = any_number(), b = any_number();
+    signals.push_back({any_text(), any_text(), std::min(a, b), std::max(a, b)});
+  }
+  return signals;
+}
+
+EquipmentModel any_model() {
+  const Index n = any_of(0, 5), m = any_of(0, 4), p = any_of(1, 3);
+  EquipmentModel model;
+  model.spacecraft = any_text();
+  model.equipment = any_text();
+  model.inputs = any_signals(m);
+  for (Signal& input : model.inputs)
+    if (any_of(0, 2) == 0) input.expression = any_text();
+  model.outputs = any_signals(p);
+  model.dynamics = {any_matrix(n, n), any_matrix(n, m), any_matrix(p, n),  any_matrix(p, m), {},
+                    any_vector(m),    any_vector(p),    any_of(1, 9) / 8.0};
+  if (n > 0 && any_of(0, 2) == 0) model.dynamics.K = any_matrix(n, p);
+  model.hold_ns = any_of<std::int64_t>(1, std::int64_t{1} << 60);
+  model.validation = {any_vector(p), any_vector(p), any_of(0, 1000)};
+  if (any_of(0, 2) == 0)
+    model.tracking = EquipmentModel::Tracking{
+        {any_matrix(m, n), any_matrix(m, 2 * p), any_vector(p)}, {any_vector(p), any_vector(p), 3}};
+  return model;
+}
+
+bool same_bits(const Matrix& a, const Matrix& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         std::equal(a.reshaped().begin(), a.reshaped().end(), b.reshaped().begin(),
+                    [](double x, double y) {
+                      return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+                    });
+}
+
+bool same_bits(const identification::Score& a, const identification::Score& b) {
+  return same_bits(a.mrse_percent, b.mrse_percent) && same_bits(a.fit_percent, b.fit_percent) &&
+         a.rows == b.rows;
+}
+
+bool same_bits(const std::optional<EquipmentModel::Tracking>& a,
+               const std::optional<EquipmentModel::Tracking>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return same_bits(a->gain.state, b->gain.state) && same_bits(a->gain.integral, b->gain.integral) &&
+         same_bits(a->gain.error_limit, b->gain.error_limit) &&
+         same_bits(a->validation, b->validation);
+}
+
+/// All that the digest covers is judged by the digest.
+bool same_model(const EquipmentModel& a, const EquipmentModel& b) {
+  return model_digest(a) == model_digest(b) && a.inputs == b.inputs && a.outputs == b.outputs &&
+         same_bits(a.dynamics.A, b.dynamics.A) && same_bits(a.dynamics.B, b.dynamics.B) &&
+         same_bits(a.dynamics.C, b.dynamics.C) && same_bits(a.dynamics.D, b.dynamics.D) &&
+         same_bits(a.dynamics.K, b.dynamics.K) && same_bits(a.validation, b.validation) &&
+         same_bits(a.tracking, b.tracking);
+}
+
+RC_GTEST_PROP(Model, KeepsEveryBitInJson, ()) {
+  const EquipmentModel model = any_model();
+  RC_ASSERT(same_model(equipment_model_from_json(to_json(model).dump()), model));
+}
+
+RC_GTEST_PROP(Model, KeepsEveryBitOnTheWire, ()) {
+  ModelVersion version;
+  version.model = any_model();
+  version.number = 1;
+  version.digest = model_digest(version.model);
+  dds::Codec<ModelVersion>::Encoder encode;
+  ModelVersion back;
+  const dds::Fault fault = dds::Codec<ModelVersion>::decode(encode(version), {}, back);
+  if (fault) RC_FAIL(*fault);
+  RC_ASSERT(same_model(back.model, version.model));
+  RC_ASSERT(back.digest == version.digest);
+}
+
+/// Every number that a simulator computes with.
+std::vector<double*> numbers(EquipmentModel& model) {
+  std::vector<double*> all = {&model.dynamics.period_s};
+  for (auto* signals : {&model.inputs, &model.outputs})
+    for (Signal& signal : *signals) all.insert(all.end(), {&signal.low, &signal.high});
+  const auto add = [&all](auto& matrix) {
+    for (double& value : matrix.reshaped()) all.push_back(&value);
+  };
+  identification::StateSpaceModel& dynamics = model.dynamics;
+  for (Matrix* matrix : {&dynamics.A, &dynamics.B, &dynamics.C, &dynamics.D, &dynamics.K})
+    add(*matrix);
+  add(dynamics.u0);
+  add(dynamics.y0);
+  if (!model.tracking) return all;
+  add(model.tracking->gain.state);
+  add(model.tracking->gain.integral);
+  add(model.tracking->gain.error_limit);
+  return all;
+}
+
+std::vector<std::string*> texts(EquipmentModel& model) {
+  std::vector<std::string*> all = {&model.spacecraft, &model.equipment};
+  for (auto* signals : {&model.inputs, &model.outputs})
+    for (Signal& signal : *signals) all.insert(all.end(), {&signal.name, &signal.unit});
+  for (Signal& input : model.inputs) all.push_back(&input.expression);
+  return all;
+}
+
+RC_GTEST_PROP(Model, HasAnotherDigestWhenAnyBitIsAnother, ()) {
+  EquipmentModel model = any_model();
+  const std::string digest = model_digest(model);
+  const std::vector<double*> places = numbers(model);
+  double& number = *places[any_of<std::size_t>(0, places.size())];
+  const double before = number;
+  number = std::bit_cast<double>(std::bit_cast<std::uint64_t>(before) ^
+                                 (std::uint64_t{1} << any_of(0, 64)));
+  RC_ASSERT(model_digest(model) != digest);
+  number = before;
+  const std::vector<std::string*> words = texts(model);
+  *words[any_of<std::size_t>(0, words.size())] += any_text();
+  RC_ASSERT(model_digest(model) != digest);
+}
+
+}  // namespace
+}  // namespace reident
