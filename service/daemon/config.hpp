@@ -16,9 +16,18 @@ using Duration = std::int64_t;
 
 enum class ApprovalPolicy { automatic, by_hand };
 
+/// An input that follows from SATCS parameters by an expression.
+struct DerivedInput {
+  std::string name;
+  std::string expression;
+  std::string unit;
+  bool operator==(const DerivedInput&) const = default;
+};
+
 struct EquipmentConfig {
   std::string name;
-  std::vector<std::string> inputs;  // SATCS parameters
+  std::vector<std::string> inputs;  // SATCS parameters, or names of derived inputs
+  std::vector<DerivedInput> derived;
   std::vector<std::string> outputs;
   Duration sample_period = 0;
   Duration hold = 0;  // default: three sample periods

@@ -22,22 +22,6 @@ using identification::Matrix;
 using identification::RowRange;
 using nlohmann::ordered_json;
 
-WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
-  return {spacecraft, equipment.inputs, equipment.outputs, equipment.sample_period, equipment.hold};
-}
-
-std::vector<std::string> names(const std::vector<Signal>& signals) {
-  std::vector<std::string> result;
-  result.reserve(signals.size());
-  for (const Signal& signal : signals) result.push_back(signal.name);
-  return result;
-}
-
-WindowRequest request_of(const EquipmentModel& model) {
-  return {model.spacecraft, names(model.inputs), names(model.outputs),
-          static_cast<Duration>(std::llround(model.dynamics.period_s * 1e9)), model.hold_ns};
-}
-
 std::vector<Signal> signals(const std::vector<storage::ParameterDescriptor>& descriptors,
                             const Matrix& samples) {
   std::vector<Signal> result;
@@ -118,7 +102,7 @@ std::optional<Evidence::Champion> champion_evidence(const storage::Archive& arch
                               version->window.end};
   try {
     const EquipmentModel model = equipment_model_from_json(version->model_json);
-    if (names(model.outputs) != request.equipment.outputs) return std::nullopt;
+    if (signal_names(model.outputs) != request.equipment.outputs) return std::nullopt;
     champion.mrse_percent = champion_mrse(archive, model, loaded, data, request.window, validation);
   } catch (const std::invalid_argument&) {
     // Damaged in the registry: it cannot be published either, and any good candidate replaces it.
@@ -179,7 +163,7 @@ ordered_json evidence_json(const RefreshResult& result, const Identified& identi
   json["search_work"] = identified.search_work;
   json["diagnostics"] = to_json(
       diagnose(identified.model, data.record, data.record.all(), split.validate, identified.x0),
-      names(model.inputs), names(model.outputs));
+      signal_names(model.inputs), signal_names(model.outputs));
   json["warnings"] = identified.warnings;
   return json;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "identification/grid.hpp"
 
@@ -28,6 +29,15 @@ std::vector<identification::ChannelSamples> views(const std::vector<Channel>& ch
 }
 
 }  // namespace
+
+WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
+  return {spacecraft, equipment.inputs, equipment.outputs, equipment.sample_period, equipment.hold};
+}
+
+WindowRequest request_of(const EquipmentModel& model) {
+  return {model.spacecraft, signal_names(model.inputs), signal_names(model.outputs),
+          static_cast<Duration>(std::llround(model.dynamics.period_s * 1e9)), model.hold_ns};
+}
 
 std::variant<WindowData, UnknownParameter> describe_window(const storage::Archive& archive,
                                                            const WindowRequest& request) {

@@ -7,6 +7,7 @@
 
 #include "identification/record.hpp"
 #include "service/daemon/config.hpp"
+#include "service/model/model_version.hpp"
 #include "storage/archive.hpp"
 
 namespace reident {
@@ -22,6 +23,9 @@ struct WindowRequest {
   storage::Origin origin = storage::Origin::real;
   bool operator==(const WindowRequest&) const = default;
 };
+
+WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment);
+WindowRequest request_of(const EquipmentModel& model);
 
 struct WindowData {
   identification::Record record;

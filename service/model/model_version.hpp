@@ -25,6 +25,13 @@ struct Signal {
   bool operator==(const Signal&) const = default;
 };
 
+inline std::vector<std::string> signal_names(const std::vector<Signal>& signals) {
+  std::vector<std::string> names;
+  names.reserve(signals.size());
+  for (const Signal& signal : signals) names.push_back(signal.name);
+  return names;
+}
+
 /// Whether any of them follows from parameters by an expression.
 inline bool has_expressions(const std::vector<Signal>& signals) {
   return std::any_of(signals.begin(), signals.end(),
