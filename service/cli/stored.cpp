@@ -33,20 +33,26 @@ void add_database_options(CLI::App& command, DatabaseOptions& options) {
       ->excludes(database);
 }
 
-int with_registry(const DatabaseOptions& options,
-                  const std::function<int(const storage::Registry&)>& work) {
+int with_database(const DatabaseOptions& options,
+                  const std::function<int(storage::Database&)>& work) {
   const auto path = database_path(options);
   if (const auto* refusal = std::get_if<Refusal>(&path)) return refuse(*refusal);
   try {
     storage::Database database(std::get<std::filesystem::path>(path),
                                storage::Database::Mode::read_only);
-    return work(storage::Registry(database));
+    return work(database);
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::cannot_open &&
         error.kind() != storage::Error::Kind::newer_schema)
       throw;
     return refuse({error.what()});
   }
+}
+
+int with_registry(const DatabaseOptions& options,
+                  const std::function<int(const storage::Registry&)>& work) {
+  return with_database(
+      options, [&work](storage::Database& database) { return work(storage::Registry(database)); });
 }
 
 std::string full_name(const std::string& spacecraft, const std::string& equipment) {

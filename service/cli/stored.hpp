@@ -21,8 +21,11 @@ struct DatabaseOptions {
 
 void add_database_options(CLI::App& command, DatabaseOptions& options);
 
-/// Calls `work` with the registry of a database opened for reading. A database that cannot be used
-/// is refused.
+/// Calls `work` with a database opened for reading. A database that cannot be used is refused.
+int with_database(const DatabaseOptions& options,
+                  const std::function<int(storage::Database&)>& work);
+
+/// The same with its registry.
 int with_registry(const DatabaseOptions& options,
                   const std::function<int(const storage::Registry&)>& work);
 

@@ -173,8 +173,7 @@ std::int64_t least_window_ticks(const EquipmentConfig& equipment) {
   const auto channels = static_cast<double>(equipment.inputs.size() + equipment.outputs.size());
   const double rows = 2 * horizon * (channels + 1);
   return static_cast<std::int64_t>(
-      std::ceil(rows / ((1 - identification::IdentifyOptions{}.tune_share) *
-                        (1 - equipment.validation_share))));
+      std::ceil(rows / (1 - equipment.tune_share - equipment.validation_share)));
 }
 
 void check_window(TableReader& reader, const EquipmentConfig& equipment) {
@@ -239,6 +238,7 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
   const auto share_ticks =
       static_cast<std::int64_t>(equipment.validation_share * static_cast<double>(ticks));
   equipment.slide = slide.value_or(std::max<std::int64_t>(1, share_ticks) * *period);
+  equipment.min_interval = reader.duration("min_interval", 0, 3650 * day).value_or(equipment.slide);
   if (slide || !reader.has("slide")) check_slide(reader, equipment);
 }
 
@@ -265,12 +265,20 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
                                "least {}, or \"auto\"",
                                *equipment.horizon, equipment.max_order, least_horizon(equipment)));
   assign(equipment.validation_share, reader.number("validation_share", 0.05, 0.8));
+  assign(equipment.tune_share, reader.number("tune_share", 0.05, 0.8));
+  if (equipment.tune_share + equipment.validation_share > 0.9)
+    reader.mistake("tune_share",
+                   fmt::format("tune_share {:g} and validation_share {:g} leave less than a tenth "
+                               "of the window to identify from; make their sum at most 0.9",
+                               equipment.tune_share, equipment.validation_share));
   assign(equipment.min_coverage, reader.number("min_coverage", 0, 1));
   const bool right = document.mistakes.size() == before && !equipment.outputs.empty();
   read_timing(reader, right, equipment);
   assign(equipment.max_mrse_percent, reader.number("max_mrse", 0, 1e6));
   assign(equipment.min_fit_percent, reader.number("min_fit", 0, 100));
   assign(equipment.margin_percent, reader.number("margin", 0, 100));
+  assign(equipment.confidence_percent, reader.number("confidence", 50, 99.99));
+  assign(equipment.max_disagreement_percent, reader.number("max_disagreement", 0, 1e6));
   assign(equipment.baseline_mrse_percent, reader.number("baseline_mrse", 0, 1e6));
   read_choice(reader, "approval", equipment.approval,
               {{"automatic", ApprovalPolicy::automatic}, {"by_hand", ApprovalPolicy::by_hand}});

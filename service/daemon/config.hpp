@@ -34,14 +34,21 @@ struct EquipmentConfig {
   Duration window = 0;
   Duration slide = 0;
   double validation_share = 0.3;  // last part of the window, for scores alone
+  double tune_share = 0.2;        // the part before it, for choices alone
   double min_coverage = 0.5;      // least share of the window's ticks with every channel valid
   int min_order = 1;
   int max_order = 10;
   std::optional<int> horizon;    // absent: chosen
   double max_mrse_percent = 20;  // limit of the gate
   double min_fit_percent = 0;    // limit of the gate, at least 0
-  double margin_percent = 2;     // relative reduction of the champion's error that a swap needs
-  std::optional<double> baseline_mrse_percent;  // error of the simulator's own model
+  double margin_percent =
+      2;  // relative reduction of the champion's error that a swap surely brings
+  double confidence_percent = 99;        // how sure: of the lower bound of the reduction
+  double max_disagreement_percent = 10;  // from the champion where the window was not, of the
+                                         // output's range
+  Duration min_interval = 0;             // between the windows of two versions; default: the slide
+  std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where its
+                                                // telemetry does not tell it
   ApprovalPolicy approval = ApprovalPolicy::automatic;
 };
 

@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "service/model/model_json.hpp"
 #include "service/support/log.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/version.hpp"
@@ -29,7 +28,9 @@ IdentificationReport report_of(const RefreshResult& result) {
   report.order = result.candidate ? static_cast<int>(result.candidate->dynamics.order()) : 0;
   report.mrse_percent = result.candidate ? evidence.mrse_percent : absent;
   report.fit_percent = result.candidate ? evidence.fit_percent : absent;
-  report.champion_mrse_percent = evidence.champion ? evidence.champion->mrse_percent : absent;
+  report.champion_mrse_percent = evidence.champion && evidence.champion->comparison
+                                     ? evidence.champion->comparison->rival_mrse_percent
+                                     : absent;
   return report;
 }
 
@@ -129,8 +130,8 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
           stored.seal(*job.spacecraft, window.end);
         })
         .get();
-    RefreshRequest request{*job.spacecraft, *job.equipment, window,
-                           job.window.again ? "late telemetry" : "slide", config_.digest};
+    RefreshRequest request{*job.spacecraft, *job.equipment, window, job.window.cause,
+                           config_.digest};
     const auto on_all_cores = [this](std::size_t count,
                                      const std::function<void(std::size_t)>& task) {
       search_.for_each(count, task);
@@ -159,9 +160,7 @@ bool Daemon::conclude(RefreshResult&& result, const storage::Standing& standing)
           number = 0;
           return;
         }
-        number = registry.record_if(
-            standing, result.attempt,
-            {to_json(*result.candidate).dump(), model_digest(*result.candidate)}, *result.decision);
+        number = registry.record_if(standing, result.attempt, result.version, *result.decision);
         if (!number || result.decision->kind != storage::DecisionKind::approve) return;
         approved = registry.champion(result.attempt.spacecraft, result.attempt.equipment);
         decision = registry.champion_decision(result.attempt.spacecraft, result.attempt.equipment);

@@ -1,8 +1,12 @@
 #include "service/daemon/gate.hpp"
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "service/support/time_text.hpp"
 
 namespace reident {
 namespace {
@@ -11,7 +15,33 @@ namespace {
 /// where the mean error still looks fair.
 constexpr double residual_limit = 1.0;
 
-std::optional<GateDecision> against_candidate(const Evidence& e, const EquipmentConfig& limits) {
+/// Where the inputs are elsewhere on most rows, the scores say nothing of what was identified.
+constexpr double outside_limit = 0.5;
+
+constexpr std::array names{
+    std::pair{Outcome::approved, std::string_view("approved")},
+    std::pair{Outcome::waiting, std::string_view("waiting")},
+    std::pair{Outcome::held, std::string_view("held")},
+    std::pair{Outcome::unknown_parameter, std::string_view("unknown_parameter")},
+    std::pair{Outcome::low_coverage, std::string_view("low_coverage")},
+    std::pair{Outcome::validation_says_nothing, std::string_view("validation_says_nothing")},
+    std::pair{Outcome::not_finite, std::string_view("not_finite")},
+    std::pair{Outcome::unstable, std::string_view("unstable")},
+    std::pair{Outcome::error_above_limit, std::string_view("error_above_limit")},
+    std::pair{Outcome::fit_below_limit, std::string_view("fit_below_limit")},
+    std::pair{Outcome::residual_out_of_range, std::string_view("residual_out_of_range")},
+    std::pair{Outcome::inputs_out_of_range, std::string_view("inputs_out_of_range")},
+    std::pair{Outcome::not_better_than_baseline, std::string_view("not_better_than_baseline")},
+    std::pair{Outcome::older_than_champion, std::string_view("older_than_champion")},
+    std::pair{Outcome::comparison_says_nothing, std::string_view("comparison_says_nothing")},
+    std::pair{Outcome::not_better_than_champion, std::string_view("not_better_than_champion")},
+    std::pair{Outcome::disagrees_with_champion, std::string_view("disagrees_with_champion")},
+    std::pair{Outcome::too_soon, std::string_view("too_soon")},
+};
+
+using Refusal = std::optional<GateDecision>;
+
+Refusal against_model(const Evidence& e) {
   if (!e.validation_moves)
     return GateDecision{Outcome::validation_says_nothing,
                         "An output does not move in the validation part, so that no score there "
@@ -23,6 +53,10 @@ std::optional<GateDecision> against_candidate(const Evidence& e, const Equipment
     return GateDecision{
         Outcome::unstable,
         fmt::format("The model is unstable: its spectral radius is {:.6f}.", e.spectral_radius)};
+  return std::nullopt;
+}
+
+Refusal against_scores(const Evidence& e, const EquipmentConfig& limits) {
   if (e.mrse_percent > limits.max_mrse_percent)
     return GateDecision{Outcome::error_above_limit,
                         fmt::format("MRSE {:.3f} % on unseen data is above the limit of {:g} %.",
@@ -32,34 +66,94 @@ std::optional<GateDecision> against_candidate(const Evidence& e, const Equipment
                         fmt::format("Fit {:.2f} % on unseen data is below the limit of {:g} % "
                                     "(0 % is a constant at the mean).",
                                     e.fit_percent, limits.min_fit_percent)};
+  if (!e.mean.sure_percent || !(*e.mean.sure_percent > 0))
+    return GateDecision{
+        Outcome::fit_below_limit,
+        fmt::format("Fit {:.2f} % on unseen data may be chance: with a confidence of {:g} % it is "
+                    "not above 0 % (a constant at the mean).",
+                    e.fit_percent, limits.confidence_percent)};
   if (!(e.residual_over_span <= residual_limit))
     return GateDecision{
         Outcome::residual_out_of_range,
         fmt::format("The largest error is {:.2f} times the output's range.", e.residual_over_span)};
+  if (!(e.outside_share <= outside_limit))
+    return GateDecision{
+        Outcome::inputs_out_of_range,
+        fmt::format("On {:.0f} % of the validation part an input is outside the range that the "
+                    "model was identified in: the score there is of an extrapolation.",
+                    100 * e.outside_share)};
   return std::nullopt;
 }
 
-std::optional<GateDecision> against_incumbent(const Evidence& e, const EquipmentConfig& limits) {
-  if (!e.champion) {
-    if (limits.baseline_mrse_percent && e.mrse_percent >= *limits.baseline_mrse_percent)
-      return GateDecision{Outcome::not_better_than_baseline,
-                          fmt::format("MRSE {:.3f} % is not below the baseline's {:.3f} %.",
-                                      e.mrse_percent, *limits.baseline_mrse_percent)};
+Refusal against_baseline(const Evidence& e, const EquipmentConfig& limits) {
+  if (e.baseline) {
+    if (!e.baseline->sure_percent || !(*e.baseline->sure_percent > 0))
+      return GateDecision{
+          Outcome::not_better_than_baseline,
+          fmt::format("MRSE {:.3f} % is not surely below that of the simulator's own telemetry, "
+                      "{:.3f} % on the same samples.",
+                      e.baseline->mrse_percent, e.baseline->rival_mrse_percent)};
     return std::nullopt;
   }
+  if (limits.baseline_mrse_percent && e.mrse_percent >= *limits.baseline_mrse_percent)
+    return GateDecision{Outcome::not_better_than_baseline,
+                        fmt::format("MRSE {:.3f} % is not below the baseline's {:.3f} %.",
+                                    e.mrse_percent, *limits.baseline_mrse_percent)};
+  return std::nullopt;
+}
+
+Refusal against_comparison(const Evidence::Champion& champion, const EquipmentConfig& limits) {
+  // One that cannot run here, or runs astray, loses to any candidate that holds the rest.
+  if (!champion.comparison || !std::isfinite(champion.comparison->rival_mrse_percent))
+    return std::nullopt;
+  const Evidence::Comparison& comparison = *champion.comparison;
+  if (!comparison.sure_percent)
+    return GateDecision{
+        Outcome::comparison_says_nothing,
+        fmt::format("Only {} samples compare the candidate with champion {}: too few to tell.",
+                    comparison.rows, champion.version)};
+  if (!(*comparison.sure_percent > limits.margin_percent))
+    return GateDecision{
+        Outcome::not_better_than_champion,
+        fmt::format("MRSE {:.3f} % does not surely undercut champion {} ({:.3f} % on the same "
+                    "samples) by {:g} %: the reduction is {:.2f} %, and {:.2f} % with a "
+                    "confidence of {:g} %.",
+                    comparison.mrse_percent, champion.version, comparison.rival_mrse_percent,
+                    limits.margin_percent, comparison.reduction_percent, *comparison.sure_percent,
+                    limits.confidence_percent)};
+  return std::nullopt;
+}
+
+Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentConfig& limits) {
+  if (!champion.elsewhere) return std::nullopt;
+  const Evidence::Champion::Elsewhere& elsewhere = *champion.elsewhere;
+  if (elsewhere.disagreement_percent <= limits.max_disagreement_percent ||
+      elsewhere.mrse_percent < elsewhere.champion_mrse_percent)
+    return std::nullopt;
+  return GateDecision{
+      Outcome::disagrees_with_champion,
+      fmt::format("Where champion {} was validated and this window was not ({} samples), the two "
+                  "differ by {:.1f} % of the output's range, above the limit of {:g} %, and the "
+                  "champion is nearer to the telemetry of that time.",
+                  champion.version, elsewhere.rows, elsewhere.disagreement_percent,
+                  limits.max_disagreement_percent)};
+}
+
+Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
   const Evidence::Champion& champion = *e.champion;
   if (e.window_end < champion.window_end)
     return GateDecision{
         Outcome::older_than_champion,
         fmt::format("Champion {} was identified from newer telemetry.", champion.version)};
-  const double needed = champion.mrse_percent * (1 - limits.margin_percent / 100);
-  if (std::isfinite(champion.mrse_percent) && !(e.mrse_percent < needed))
+  if (auto refusal = against_comparison(champion, limits)) return refusal;
+  if (auto refusal = against_elsewhere(champion, limits)) return refusal;
+  const Duration since = e.window_end - champion.window_end;
+  if (since < limits.min_interval)
     return GateDecision{
-        Outcome::not_better_than_champion,
-        fmt::format("MRSE {:.3f} % does not undercut champion {} ({:.3f} % on the same samples) "
-                    "by {:g} %.",
-                    e.mrse_percent, champion.version, champion.mrse_percent,
-                    limits.margin_percent)};
+        Outcome::too_soon,
+        fmt::format("The window ends {} after that of champion {}; versions are at "
+                    "least {} apart.",
+                    duration_text(since), champion.version, duration_text(limits.min_interval))};
   return std::nullopt;
 }
 
@@ -67,47 +161,30 @@ std::string praise(const Evidence& e) {
   if (!e.champion)
     return fmt::format("First version: MRSE {:.3f} %, fit {:.1f} % on unseen data.", e.mrse_percent,
                        e.fit_percent);
+  if (!e.champion->comparison)
+    return fmt::format("MRSE {:.3f} % on unseen data, on which champion {} cannot run.",
+                       e.mrse_percent, e.champion->version);
   return fmt::format("MRSE {:.3f} % on unseen data; champion {} has {:.3f} % on the same samples.",
-                     e.mrse_percent, e.champion->version, e.champion->mrse_percent);
+                     e.champion->comparison->mrse_percent, e.champion->version,
+                     e.champion->comparison->rival_mrse_percent);
 }
 
 }  // namespace
 
 std::string_view name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::approved:
-      return "approved";
-    case Outcome::waiting:
-      return "waiting";
-    case Outcome::unknown_parameter:
-      return "unknown_parameter";
-    case Outcome::low_coverage:
-      return "low_coverage";
-    case Outcome::validation_says_nothing:
-      return "validation_says_nothing";
-    case Outcome::not_finite:
-      return "not_finite";
-    case Outcome::unstable:
-      return "unstable";
-    case Outcome::error_above_limit:
-      return "error_above_limit";
-    case Outcome::fit_below_limit:
-      return "fit_below_limit";
-    case Outcome::residual_out_of_range:
-      return "residual_out_of_range";
-    case Outcome::not_better_than_baseline:
-      return "not_better_than_baseline";
-    case Outcome::not_better_than_champion:
-      return "not_better_than_champion";
-    case Outcome::older_than_champion:
-      return "older_than_champion";
-  }
-  return "unknown";
+  return names[static_cast<std::size_t>(outcome)].second;
 }
 
 GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {
-  if (auto refusal = against_candidate(evidence, limits)) return *refusal;
-  if (auto refusal = against_incumbent(evidence, limits)) return *refusal;
+  if (auto refusal = against_model(evidence)) return *refusal;
+  if (auto refusal = against_scores(evidence, limits)) return *refusal;
+  if (auto refusal = evidence.champion ? against_champion(evidence, limits)
+                                       : against_baseline(evidence, limits))
+    return *refusal;
+  if (evidence.hold)
+    return {Outcome::held,
+            praise(evidence) + fmt::format(" Waits: {} holds the equipment ({}).",
+                                           evidence.hold->actor, evidence.hold->reason)};
   if (limits.approval == ApprovalPolicy::by_hand)
     return {Outcome::waiting, praise(evidence) + " Waits for an operator's approval."};
   return {Outcome::approved, praise(evidence)};

@@ -3,6 +3,7 @@
 // service/DESIGN.md has the table of reasons.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@ namespace reident {
 enum class Outcome {
   approved,
   waiting,            // good enough; the policy leaves the decision to an operator
+  held,               // good enough; an operator holds the equipment's version
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   low_coverage,
   validation_says_nothing,
@@ -25,13 +27,17 @@ enum class Outcome {
   error_above_limit,
   fit_below_limit,
   residual_out_of_range,
+  inputs_out_of_range,
   not_better_than_baseline,
-  not_better_than_champion,
   older_than_champion,
+  comparison_says_nothing,
+  not_better_than_champion,
+  disagrees_with_champion,
+  too_soon,
 };
 std::string_view name(Outcome outcome);
 
-/// Scores are free runs on the validation part, which the identification did not use.
+/// Scores are free runs on the validation part, which nothing was chosen or fitted by.
 struct Evidence {
   bool well_formed = false;  // sizes agree, all numbers finite
   double spectral_radius = 0;
@@ -39,14 +45,43 @@ struct Evidence {
   double mrse_percent = 0;
   double fit_percent = 0;         // the worst output's
   double residual_over_span = 0;  // largest |error| of any output over its range in the window
+  double outside_share = 0;       // of the validation rows: an input is outside what identified
   storage::Time window_end = 0;
+
+  /// The candidate against another run, on the rows at which both have an output.
+  struct Comparison {
+    std::int64_t rows = 0;
+    double mrse_percent = 0;             // the candidate's there
+    double rival_mrse_percent = 0;       // not finite where the rival's run went astray
+    double reduction_percent = 0;        // by which the candidate's MRSE is lower
+    std::optional<double> sure_percent;  // lower bound of it; absent: the rows are too few
+  };
+  /// Against the mean of each output over the same rows.
+  Comparison mean;
+
+  /// Of the simulator's own model, from its telemetry.
+  std::optional<Comparison> baseline;
 
   struct Champion {
     std::int64_t version = 0;
-    double mrse_percent = 0;  // on the same samples; NaN or infinite where its run went astray
     storage::Time window_end = 0;
+    std::optional<Comparison> comparison;  // absent: it cannot run on these samples
+    /// Where the champion was validated and the candidate's window was not.
+    struct Elsewhere {
+      std::int64_t rows = 0;
+      double disagreement_percent = 0;  // rms between the two, of the output's range
+      double mrse_percent = 0;          // the candidate's there
+      double champion_mrse_percent = 0;
+    };
+    std::optional<Elsewhere> elsewhere;  // absent: there is no such place
   };
   std::optional<Champion> champion;
+
+  struct Hold {
+    std::string actor;
+    std::string reason;
+  };
+  std::optional<Hold> hold;
 };
 
 struct GateDecision {

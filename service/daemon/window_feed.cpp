@@ -161,6 +161,7 @@ void WindowFeed::stored(const std::vector<storage::TelemetryFrame>& frames,
         }
     }
   }
+  ++batches_;
   changed_.notify_all();
 }
 
@@ -182,6 +183,33 @@ void WindowFeed::remember(std::vector<storage::TimeRange>& changed, storage::Tim
   }
   storage::TimeRange& joined = found == changed.rend() ? changed.back() : *found;
   joined = {std::min(joined.begin, range.begin), std::max(joined.end, range.end)};
+}
+
+std::optional<storage::Time> WindowFeed::ask(const std::string& spacecraft,
+                                             const std::string& equipment, const std::string& cause,
+                                             std::optional<storage::Time> end) {
+  MutexLock lock(mutex_);
+  for (std::size_t i = 0; i < equipment_.size(); ++i) {
+    if (equipment_[i].spacecraft != spacecraft || equipment_[i].config->name != equipment) continue;
+    const storage::Time reached = scheduler_.reached(i);
+    if (reached == INT64_MIN) return std::nullopt;
+    scheduler_.ask(i, end.value_or(reached), cause, clock_());
+    changed_.notify_all();
+    return end.value_or(reached);
+  }
+  return std::nullopt;
+}
+
+bool WindowFeed::wait_for_telemetry(std::uint64_t& seen) {
+  MutexLock lock(mutex_);
+  while (!stopped_ && batches_ == seen) changed_.wait(mutex_);
+  seen = batches_;
+  return !stopped_;
+}
+
+storage::Time WindowFeed::reached(std::size_t equipment) const {
+  MutexLock lock(mutex_);
+  return scheduler_.reached(equipment);
 }
 
 std::optional<WindowFeed::Job> WindowFeed::next() {

@@ -44,6 +44,12 @@ class WindowFeed : public ArchiveListener {
   void described(const std::vector<storage::ParameterDescriptor>& descriptors,
                  const storage::Archive& archive) override;
 
+  /// Asks for the window of an equipment that ends at `end`, or where its telemetry ends by now.
+  /// Returns that time; absent where no telemetry of such an equipment has come.
+  std::optional<storage::Time> ask(const std::string& spacecraft, const std::string& equipment,
+                                   const std::string& cause,
+                                   std::optional<storage::Time> end = std::nullopt);
+
   /// Waits for a window that is due. Absent after stop().
   std::optional<Job> next();
   void finished(const Job& job, bool completed);
@@ -52,6 +58,12 @@ class WindowFeed : public ArchiveListener {
   /// Forgets the archive's marks of late telemetry that no window has to be looked at for any more.
   /// Call on the writer's thread.
   void forget_settled(const std::string& spacecraft, storage::Archive& archive);
+
+  /// Waits until telemetry was stored since the last call with the same `seen`, which begins at 0.
+  /// False after stop().
+  bool wait_for_telemetry(std::uint64_t& seen);
+  /// Where the telemetry of an equipment, by its position in the configuration, ends by now.
+  storage::Time reached(std::size_t equipment) const;
 
   std::size_t pending() const;
   storage::Time newest_telemetry() const;
@@ -96,6 +108,7 @@ class WindowFeed : public ArchiveListener {
   std::vector<std::vector<storage::TimeRange>> altered_ REIDENT_GUARDED_BY(mutex_);
   Membership membership_ REIDENT_GUARDED_BY(mutex_);
   storage::Time newest_ REIDENT_GUARDED_BY(mutex_) = 0;
+  std::uint64_t batches_ REIDENT_GUARDED_BY(mutex_) = 0;
   bool stopped_ REIDENT_GUARDED_BY(mutex_) = false;
 };
 

@@ -18,24 +18,25 @@ WindowScheduler::WindowScheduler(const std::vector<Plan>& plans, Duration settle
     : settle_(settle) {
   for (const Plan& plan : plans) {
     assert(plan.slide > 0 && plan.window >= plan.slide);
-    equipment_.push_back({.plan = plan, .touched = {}, .tried = {}, .running = {}});
+    equipment_.push_back({.plan = plan, .due = {}, .tried = {}, .running = {}});
   }
-}
-
-storage::TimeRange WindowScheduler::window(const Plan& plan, std::int64_t number) const {
-  const storage::Time end = number * plan.slide;
-  return {end - plan.window, end};
 }
 
 void WindowScheduler::touched(std::size_t equipment, storage::Time time, storage::Time now) {
   if (time >= time_bound || time <= -time_bound) return;
   Equipment& state = equipment_[equipment];
-  const std::int64_t first = floor_divide(time, state.plan.slide) + 1;
-  const std::int64_t last = floor_divide(time + state.plan.window, state.plan.slide);
-  state.touched[first] = now;
+  const storage::Time first = (floor_divide(time, state.plan.slide) + 1) * state.plan.slide;
+  const auto touch = [&](storage::Time end) {
+    const bool again = state.tried.contains(end) || state.running == end;
+    state.due[end] = {now, again ? "late telemetry" : "slide"};
+  };
+  touch(first);
+  if (state.running && *state.running > time && *state.running <= time + state.plan.window)
+    touch(*state.running);
   // Later windows that hold the sample are due by samples of their own, unless they were tried.
-  for (auto it = state.tried.upper_bound(first); it != state.tried.end() && *it <= last; ++it)
-    state.touched[*it] = now;
+  for (auto it = state.tried.upper_bound(time);
+       it != state.tried.end() && *it <= time + state.plan.window; ++it)
+    touch(*it);
 }
 
 void WindowScheduler::reached(std::size_t equipment, storage::Time time) {
@@ -43,75 +44,73 @@ void WindowScheduler::reached(std::size_t equipment, storage::Time time) {
   state.reached = std::max(state.reached, std::min(time, time_bound));
 }
 
+void WindowScheduler::ask(std::size_t equipment, storage::Time end, std::string cause,
+                          storage::Time now) {
+  equipment_[equipment].due[end] = {now - settle_, std::move(cause)};
+}
+
 void WindowScheduler::tried_before(std::size_t equipment, storage::Time end) {
-  Equipment& state = equipment_[equipment];
-  if (end % state.plan.slide == 0) state.tried.insert(end / state.plan.slide);
+  equipment_[equipment].tried.insert(end);
 }
 
 std::optional<WindowScheduler::Job> WindowScheduler::next(storage::Time now) {
   std::optional<Job> best;
-  std::int64_t best_number = 0;
   for (std::size_t i = 0; i < equipment_.size(); ++i) {
     const Equipment& state = equipment_[i];
     if (state.running) continue;
-    for (const auto& [number, touched_at] : state.touched) {
-      const storage::TimeRange range = window(state.plan, number);
-      if (state.reached < range.end || (best && best->window.end <= range.end)) break;
-      if (now - touched_at < settle_) continue;
-      best = Job{i, range, state.tried.contains(number)};
-      best_number = number;
+    for (const auto& [end, due] : state.due) {
+      if (state.reached < end || (best && best->window.end <= end)) break;
+      if (now - due.touched < settle_) continue;
+      best = Job{i, {end - state.plan.window, end}, due.cause};
       break;
     }
   }
   if (best) {
-    equipment_[best->equipment].running = best_number;
-    equipment_[best->equipment].touched.erase(best_number);
+    equipment_[best->equipment].running = best->window.end;
+    equipment_[best->equipment].due.erase(best->window.end);
   }
   return best;
 }
 
 void WindowScheduler::finished(const Job& job, bool completed, storage::Time now) {
   Equipment& state = equipment_[job.equipment];
-  assert(state.running && window(state.plan, *state.running) == job.window);
+  assert(state.running == job.window.end);
   if (completed)
-    state.tried.insert(*state.running);
+    state.tried.insert(job.window.end);
   else
-    state.touched.emplace(*state.running, now);
+    state.due.emplace(job.window.end, Due{now, job.cause});
   state.running.reset();
 }
 
 std::optional<storage::Time> WindowScheduler::next_due() const {
-  std::optional<storage::Time> due;
+  std::optional<storage::Time> earliest;
   for (const Equipment& state : equipment_) {
     if (state.running) continue;
-    for (const auto& [number, touched_at] : state.touched) {
-      if (window(state.plan, number).end > state.reached) break;
-      due = std::min(due.value_or(INT64_MAX), touched_at + settle_);
+    for (const auto& [end, due] : state.due) {
+      if (end > state.reached) break;
+      earliest = std::min(earliest.value_or(INT64_MAX), due.touched + settle_);
     }
   }
-  return due;
+  return earliest;
 }
 
 std::size_t WindowScheduler::pending() const {
   std::size_t count = 0;
   for (const Equipment& state : equipment_) {
     if (state.running) ++count;
-    for (const auto& [number, touched_at] : state.touched) {
-      if (window(state.plan, number).end > state.reached) break;
-      ++count;
-    }
+    const auto later = state.due.upper_bound(state.reached);
+    count += static_cast<std::size_t>(std::distance(state.due.begin(), later));
   }
   return count;
 }
 
 bool WindowScheduler::pending_within(std::size_t equipment, storage::TimeRange range) const {
   const Equipment& state = equipment_[equipment];
-  const auto overlaps = [&](std::int64_t number) {
-    const storage::TimeRange other = window(state.plan, number);
-    return other.begin < range.end && range.begin < other.end;
+  const auto overlaps = [&](storage::Time end) {
+    return end - state.plan.window < range.end && range.begin < end;
   };
   if (state.running && overlaps(*state.running)) return true;
-  return std::any_of(state.touched.begin(), state.touched.end(),
+  return std::any_of(state.due.begin(), state.due.end(),
                      [&](const auto& entry) { return overlaps(entry.first); });
 }
 

@@ -6,6 +6,8 @@
 //     sample fell into it,
 //   - telemetry has reached its end, and
 //   - nothing has fallen into it for the time `settle` of the service's clock.
+// Others are asked for: by an operator, or because the champion drifts. They may end at any time,
+// and are due as soon as telemetry has reached it.
 // One window of an equipment runs at a time, the oldest due first, so that a candidate meets the
 // champion of the windows before it. A window that keeps receiving late telemetry holds nothing up.
 //
@@ -16,6 +18,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "service/daemon/config.hpp"
@@ -33,7 +36,7 @@ class WindowScheduler {
   struct Job {
     std::size_t equipment = 0;
     storage::TimeRange window;
-    bool again = false;  // tried before; late telemetry fell into it
+    std::string cause;  // "slide", "late telemetry" or what the window was asked for with
     bool operator==(const Job&) const = default;
   };
 
@@ -43,6 +46,8 @@ class WindowScheduler {
   void touched(std::size_t equipment, storage::Time time, storage::Time now);
   /// Telemetry of the equipment has reached `time`; it never goes back.
   void reached(std::size_t equipment, storage::Time time);
+  /// Asks for the window that ends at `end`.
+  void ask(std::size_t equipment, storage::Time end, std::string cause, storage::Time now);
   /// The window that ends at `end` was tried in an earlier run of the service.
   void tried_before(std::size_t equipment, storage::Time end);
 
@@ -50,6 +55,9 @@ class WindowScheduler {
   std::optional<Job> next(storage::Time now);
   /// The job that `next` gave is over. `completed` is false when it has to be tried once more.
   void finished(const Job& job, bool completed, storage::Time now);
+
+  /// Where the telemetry of the equipment ends; the lowest time where none came.
+  storage::Time reached(std::size_t equipment) const { return equipment_[equipment].reached; }
 
   /// When `next` may give a job without any further call; absent when only new telemetry can.
   std::optional<storage::Time> next_due() const;
@@ -59,14 +67,18 @@ class WindowScheduler {
   bool pending_within(std::size_t equipment, storage::TimeRange range) const;
 
  private:
+  struct Due {
+    storage::Time touched = 0;  // when something last fell into it
+    std::string cause;
+  };
   struct Equipment {
     Plan plan;
     storage::Time reached = INT64_MIN;
-    std::map<std::int64_t, storage::Time> touched;  // window number -> when it was last touched
-    std::set<std::int64_t> tried;                   // window numbers
-    std::optional<std::int64_t> running;
+    // Windows by their ends.
+    std::map<storage::Time, Due> due;
+    std::set<storage::Time> tried;
+    std::optional<storage::Time> running;
   };
-  storage::TimeRange window(const Plan& plan, std::int64_t number) const;
 
   std::vector<Equipment> equipment_;
   Duration settle_;

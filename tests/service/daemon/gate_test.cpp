@@ -30,7 +30,20 @@ Evidence good() {
   evidence.fit_percent = 70;
   evidence.residual_over_span = 0.3;
   evidence.window_end = 1000;
-  evidence.champion = Evidence::Champion{3, 8, 900};
+  evidence.mean = {.rows = 500,
+                   .mrse_percent = 5,
+                   .rival_mrse_percent = 17,
+                   .reduction_percent = 70,
+                   .sure_percent = 60};
+  evidence.champion =
+      Evidence::Champion{.version = 3,
+                         .window_end = 900,
+                         .comparison = Evidence::Comparison{.rows = 500,
+                                                            .mrse_percent = 5,
+                                                            .rival_mrse_percent = 8,
+                                                            .reduction_percent = 37.5,
+                                                            .sure_percent = 30},
+                         .elsewhere = std::nullopt};
   return evidence;
 }
 
@@ -64,18 +77,8 @@ const Case cases[] = {
     {"RadiusOfOne", [](auto& e, auto&) { e.spectral_radius = 1; }, Outcome::unstable},
     {"RadiusNotANumber", [](auto& e, auto&) { e.spectral_radius = nan; }, Outcome::unstable},
     {"RadiusJustBelowOne", [](auto& e, auto&) { e.spectral_radius = 0.999999; }, Outcome::approved},
-    {"ErrorAboveLimit",
-     [](auto& e, auto&) {
-       e.mrse_percent = 10.01;
-       e.champion->mrse_percent = 100;
-     },
-     Outcome::error_above_limit},
-    {"ErrorAtLimit",
-     [](auto& e, auto&) {
-       e.mrse_percent = 10;
-       e.champion->mrse_percent = 100;
-     },
-     Outcome::approved},
+    {"ErrorAboveLimit", [](auto& e, auto&) { e.mrse_percent = 10.01; }, Outcome::error_above_limit},
+    {"ErrorAtLimit", [](auto& e, auto&) { e.mrse_percent = 10; }, Outcome::approved},
     {"FitBelowLimit", [](auto& e, auto&) { e.fit_percent = 39.9; }, Outcome::fit_below_limit},
     {"FitAtLimit", [](auto& e, auto&) { e.fit_percent = 40; }, Outcome::approved},
     {"FitOfAConstant",
@@ -91,16 +94,58 @@ const Case cases[] = {
     {"ResidualAtSpan", [](auto& e, auto&) { e.residual_over_span = 1; }, Outcome::approved},
     {"ResidualNotANumber", [](auto& e, auto&) { e.residual_over_span = nan; },
      Outcome::residual_out_of_range},
-    {"EqualToChampion", [](auto& e, auto&) { e.champion->mrse_percent = 5; },
+    {"PerhapsNoBetterThanTheMean", [](auto& e, auto&) { e.mean.sure_percent = 0; },
+     Outcome::fit_below_limit},
+    {"SurelyBetterThanTheMean", [](auto& e, auto&) { e.mean.sure_percent = 0.01; },
+     Outcome::approved},
+    {"TooFewSamplesToBeSureOfTheMean", [](auto& e, auto&) { e.mean.sure_percent.reset(); },
+     Outcome::fit_below_limit},
+    {"MostlyOutsideTheRange", [](auto& e, auto&) { e.outside_share = 0.51; },
+     Outcome::inputs_out_of_range},
+    {"HalfOutsideTheRange", [](auto& e, auto&) { e.outside_share = 0.5; }, Outcome::approved},
+    {"BetterByTheMarginAndNotSurely",
+     [](auto& e, auto&) { e.champion->comparison->sure_percent = 5; },
      Outcome::not_better_than_champion},
-    {"BetterByLessThanTheMargin", [](auto& e, auto&) { e.champion->mrse_percent = 5.26; },
-     Outcome::not_better_than_champion},
-    {"BetterByMoreThanTheMargin", [](auto& e, auto&) { e.champion->mrse_percent = 5.27; },
+    {"SurelyBetterByMoreThanTheMargin",
+     [](auto& e, auto&) { e.champion->comparison->sure_percent = 5.01; }, Outcome::approved},
+    {"TooFewSamplesToCompare", [](auto& e, auto&) { e.champion->comparison->sure_percent.reset(); },
+     Outcome::comparison_says_nothing},
+    {"ChampionWentAstray",
+     [](auto& e, auto&) {
+       e.champion->comparison->rival_mrse_percent = infinity;
+       e.champion->comparison->sure_percent.reset();
+     },
      Outcome::approved},
-    {"ChampionWentAstray", [](auto& e, auto&) { e.champion->mrse_percent = infinity; },
+    {"ChampionCannotRun", [](auto& e, auto&) { e.champion->comparison.reset(); },
      Outcome::approved},
-    {"ChampionCannotRun", [](auto& e, auto&) { e.champion->mrse_percent = nan; },
+    {"DisagreesElsewhere",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 10.1, 6, 5};
+     },
+     Outcome::disagrees_with_champion},
+    {"AgreesElsewhere",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 10, 6, 5};
+     },
      Outcome::approved},
+    {"DisagreesElsewhereAndIsRight",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 50, 4.9, 5};
+     },
+     Outcome::approved},
+    {"TooSoonAfterTheChampion", [](auto&, auto& c) { c.min_interval = 101; }, Outcome::too_soon},
+    {"LateEnoughAfterTheChampion", [](auto&, auto& c) { c.min_interval = 100; }, Outcome::approved},
+    {"Held",
+     [](auto& e, auto&) {
+       e.hold = {"ana", "eclipse season"};
+     },
+     Outcome::held},
+    {"HeldAndNotGoodEnough",
+     [](auto& e, auto&) {
+       e.hold = {"ana", "eclipse season"};
+       e.fit_percent = 1;
+     },
+     Outcome::fit_below_limit},
     {"OlderThanChampion", [](auto& e, auto&) { e.window_end = 899; }, Outcome::older_than_champion},
     {"SameWindowAsChampion", [](auto& e, auto&) { e.window_end = 900; }, Outcome::approved},
     {"FirstAndWorseThanBaseline",
@@ -115,6 +160,20 @@ const Case cases[] = {
        c.baseline_mrse_percent = 5.01;
      },
      Outcome::approved},
+    {"FirstAndNotSurelyBetterThanTheSimulator",
+     [](auto& e, auto& c) {
+       e.champion.reset();
+       e.baseline = {500, 5, 6, 16.7, 0.0};
+       c.baseline_mrse_percent = 100;
+     },
+     Outcome::not_better_than_baseline},
+    {"FirstAndSurelyBetterThanTheSimulator",
+     [](auto& e, auto& c) {
+       e.champion.reset();
+       e.baseline = {500, 5, 6, 16.7, 0.1};
+       c.baseline_mrse_percent = 1;
+     },
+     Outcome::approved},
     {"FirstWithoutBaseline", [](auto& e, auto&) { e.champion.reset(); }, Outcome::approved},
     {"BaselineNoLongerCountsOnceThereIsAChampion",
      [](auto&, auto& c) { c.baseline_mrse_percent = 1; }, Outcome::approved},
@@ -125,9 +184,17 @@ INSTANTIATE_TEST_SUITE_P(Reasons, Gate, testing::ValuesIn(cases),
 
 TEST(GateReason, NamesTheFiguresThatDecided) {
   Evidence evidence = good();
-  evidence.champion->mrse_percent = 5;
+  evidence.champion->comparison = Evidence::Comparison{500, 5, 5.5, 9.09, 3.2};
   EXPECT_EQ(decide(evidence, limits()).reason,
-            "MRSE 5.000 % does not undercut champion 3 (5.000 % on the same samples) by 5 %.");
+            "MRSE 5.000 % does not surely undercut champion 3 (5.500 % on the same samples) by 5 "
+            "%: the reduction is 9.09 %, and 3.20 % with a confidence of 99 %.");
+}
+
+TEST(GateReason, OfAHoldNamesWhoHoldsAndWhy) {
+  Evidence evidence = good();
+  evidence.hold = {"ana", "eclipse season"};
+  EXPECT_THAT(decide(evidence, limits()).reason,
+              testing::HasSubstr("ana holds the equipment (eclipse season)"));
 }
 
 }  // namespace

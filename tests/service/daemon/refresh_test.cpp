@@ -26,9 +26,7 @@ class Refresh : public DaemonTest {
                    never);
   }
   void record(const RefreshResult& result) {
-    registry.record(result.attempt,
-                    {to_json(*result.candidate).dump(), model_digest(*result.candidate)},
-                    *result.decision);
+    registry.record(result.attempt, result.version, *result.decision);
   }
 
   storage::Database database = open();
@@ -45,12 +43,13 @@ TEST_F(Refresh, ApprovesAGoodFirstVersionAndExplainsIt) {
   EXPECT_EQ(result.candidate->inputs[0].unit, "V");
   EXPECT_EQ(result.candidate->inputs[0].low, -1);
   EXPECT_EQ(result.candidate->inputs[0].high, 1);
-  EXPECT_EQ(result.candidate->identified_from, (storage::TimeRange{day, day + 7 * minute}));
+  EXPECT_EQ(result.candidate->identified_from, (storage::TimeRange{day, day + 5 * minute}));
   EXPECT_EQ(result.candidate->validated_on,
             (storage::TimeRange{day + 7 * minute, day + 10 * minute}));
   EXPECT_GT(result.evidence.fit_percent, 90);
   const auto evidence = nlohmann::json::parse(result.attempt.evidence_json);
-  EXPECT_EQ(evidence["rows_identified"], 420);
+  EXPECT_EQ(evidence["rows_identified"], 300);
+  EXPECT_EQ(evidence["rows_tuned"], 120);
   EXPECT_EQ(evidence["rows_validated"], 180);
   EXPECT_EQ(evidence["coverage"], 1.0);
   EXPECT_TRUE(evidence["timing_ms"].contains("load"));
@@ -62,7 +61,11 @@ TEST_F(Refresh, ScoresTheChampionOnTheSameSamples) {
   const RefreshResult result = run(day + 15 * minute);
   ASSERT_TRUE(result.evidence.champion);
   EXPECT_EQ(result.evidence.champion->version, 1);
-  EXPECT_NEAR(result.evidence.champion->mrse_percent, result.evidence.mrse_percent, 0.05);
+  ASSERT_TRUE(result.evidence.champion->comparison);
+  EXPECT_NEAR(result.evidence.champion->comparison->rival_mrse_percent,
+              result.evidence.mrse_percent, 0.05);
+  EXPECT_EQ(result.evidence.champion->comparison->mrse_percent, result.evidence.mrse_percent);
+  EXPECT_EQ(result.evidence.champion->comparison->rows, 180);
   EXPECT_EQ(result.attempt.outcome, "not_better_than_champion") << result.attempt.reason;
 }
 
@@ -72,7 +75,8 @@ TEST_F(Refresh, ReplacesAChampionThatThePlantHasLeftBehind) {
   archive.append(telemetry(day + 20 * minute, 601, 2.0));
   const RefreshResult result = run(day + 30 * minute);
   EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
-  EXPECT_GT(result.evidence.champion->mrse_percent, 3 * result.evidence.mrse_percent);
+  EXPECT_GT(result.evidence.champion->comparison->rival_mrse_percent,
+            3 * result.evidence.mrse_percent);
 }
 
 TEST_F(Refresh, ScoresAChampionOfOtherInputsOnItsOwnInputs) {
@@ -82,7 +86,7 @@ TEST_F(Refresh, ScoresAChampionOfOtherInputsOnItsOwnInputs) {
   record(run(day + 10 * minute, narrower));
   const RefreshResult result = run(day + 15 * minute);
   ASSERT_TRUE(result.evidence.champion);
-  EXPECT_GT(result.evidence.champion->mrse_percent, result.evidence.mrse_percent);
+  EXPECT_GT(result.evidence.champion->comparison->rival_mrse_percent, result.evidence.mrse_percent);
   EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
 }
 

@@ -33,7 +33,7 @@ TEST_F(Scheduler, GivesAWindowOnceTelemetryHasReachedItsEndAndNothingFellIntoItF
   telemetry(0, 10, 100);
   EXPECT_FALSE(scheduler.next(200)) << "the sample at 9 does not reach the end at 10";
   telemetry(10, 11, 110);
-  EXPECT_EQ(scheduler.next(200), (Job{0, {-20, 10}, false}));
+  EXPECT_EQ(scheduler.next(200), (Job{0, {-20, 10}, "slide"}));
 }
 
 TEST_F(Scheduler, WaitsForStragglers) {
@@ -67,9 +67,9 @@ TEST_F(Scheduler, LooksAgainAtTriedWindowsThatLateTelemetryTouched) {
   for (int i = 0; i < 4; ++i) complete(200);
   scheduler.touched(0, 15, 300);
   EXPECT_FALSE(scheduler.next(304));
-  EXPECT_EQ(complete(305), (Job{0, {-10, 20}, true}));
-  EXPECT_EQ(complete(305), (Job{0, {0, 30}, true}));
-  EXPECT_EQ(complete(305), (Job{0, {10, 40}, true}));
+  EXPECT_EQ(complete(305), (Job{0, {-10, 20}, "late telemetry"}));
+  EXPECT_EQ(complete(305), (Job{0, {0, 30}, "late telemetry"}));
+  EXPECT_EQ(complete(305), (Job{0, {10, 40}, "late telemetry"}));
   EXPECT_FALSE(scheduler.next(400));
 }
 
@@ -93,8 +93,41 @@ TEST_F(Scheduler, KnowsWhatAnEarlierRunTried) {
   scheduler.reached(0, 20);
   EXPECT_FALSE(scheduler.next(200));
   scheduler.touched(0, 5, 200);
-  EXPECT_EQ(complete(300), (Job{0, {-20, 10}, true}));
-  EXPECT_EQ(complete(300), (Job{0, {-10, 20}, true}));
+  EXPECT_EQ(complete(300), (Job{0, {-20, 10}, "late telemetry"}));
+  EXPECT_EQ(complete(300), (Job{0, {-10, 20}, "late telemetry"}));
+}
+
+TEST_F(Scheduler, LooksAgainAtAWindowInWhichTelemetryLandedWhileItRan) {
+  telemetry(0, 31, 100);
+  complete(200);
+  complete(200);
+  const auto running = scheduler.next(200);
+  ASSERT_EQ(running->window, (storage::TimeRange{0, 30}));
+  scheduler.touched(0, 1, 201);
+  scheduler.finished(*running, true, 202);
+  EXPECT_EQ(complete(300), (Job{0, {-20, 10}, "late telemetry"}));
+  EXPECT_EQ(complete(300), (Job{0, {-10, 20}, "late telemetry"}));
+  EXPECT_EQ(complete(300), (Job{0, {0, 30}, "late telemetry"}));
+}
+
+TEST_F(Scheduler, GivesAWindowThatWasAskedForAsSoonAsTelemetryHasReachedIt) {
+  telemetry(0, 15, 100);
+  complete(200);
+  scheduler.ask(0, 17, "drift", 200);
+  EXPECT_FALSE(scheduler.next(200));
+  scheduler.reached(0, 17);
+  EXPECT_EQ(scheduler.next_due(), 200);
+  EXPECT_EQ(complete(200), (Job{0, {-13, 17}, "drift"}));
+  EXPECT_FALSE(scheduler.next(300)) << "the window that slides ends at 20";
+}
+
+TEST_F(Scheduler, KeepsTheCauseOfAWindowThatWasNotCompleted) {
+  telemetry(0, 8, 100);
+  scheduler.ask(0, 7, "asked for by ana", 100);
+  const auto job = scheduler.next(100);
+  ASSERT_TRUE(job);
+  scheduler.finished(*job, false, 200);
+  EXPECT_EQ(complete(205), (Job{0, {-23, 7}, "asked for by ana"}));
 }
 
 TEST_F(Scheduler, CountsWhatIsPendingAndWhere) {
@@ -123,8 +156,8 @@ TEST(SchedulerOfSeveral, GivesTheOldestWindowOfAllEquipmentFirst) {
     scheduler.touched(equipment, 1, 0);
     scheduler.reached(equipment, 100);
   }
-  EXPECT_EQ(scheduler.next(0), (Job{1, {-15, 5}, false}));
-  EXPECT_EQ(scheduler.next(0), (Job{0, {-10, 10}, false}));
+  EXPECT_EQ(scheduler.next(0), (Job{1, {-15, 5}, "slide"}));
+  EXPECT_EQ(scheduler.next(0), (Job{0, {-10, 10}, "slide"}));
 }
 
 }  // namespace

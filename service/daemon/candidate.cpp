@@ -1,0 +1,184 @@
+#include "service/daemon/candidate.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "service/daemon/gate.hpp"
+#include "service/model/diagnostics_json.hpp"
+#include "service/model/model_json.hpp"
+#include "service/support/version.hpp"
+
+namespace reident {
+namespace {
+
+using identification::Identified;
+using identification::Matrix;
+using identification::RowRange;
+using nlohmann::ordered_json;
+
+std::vector<Signal> signals(const std::vector<storage::ParameterDescriptor>& descriptors,
+                            const Matrix& samples) {
+  std::vector<Signal> result;
+  result.reserve(descriptors.size());
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const auto column = samples.col(static_cast<Eigen::Index>(i));
+    result.push_back(
+        {descriptors[i].name, descriptors[i].unit, column.minCoeff(), column.maxCoeff()});
+  }
+  return result;
+}
+
+storage::TimeRange time_range(const identification::Record& record, RowRange rows,
+                              Duration period) {
+  if (rows.size() == 0) return {};
+  return {time_of_row(record, rows.begin, period),
+          time_of_row(record, rows.end - 1, period) + period};
+}
+
+std::string method_text(const identification::Recipe& recipe) {
+  std::string text =
+      fmt::format("{}, horizon {}, order {}", name(recipe.weighting), recipe.horizon, recipe.order);
+  if (recipe.fit == identification::ResponseFit::subspace) text += ", B and D of the compression";
+  if (recipe.refinement_steps > 0) text += ", refined";
+  if (recipe.stability == identification::Stability::enforced) text += ", A made stable";
+  return text;
+}
+
+Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
+                       const Identified& identified, const WindowParts& parts) {
+  const Duration period = request.equipment.sample_period;
+  Candidate candidate{.model = {}, .parts = parts, .y_hat = {}, .tuned_on = {}};
+  EquipmentModel& model = candidate.model;
+  model.spacecraft = request.spacecraft;
+  model.equipment = request.equipment.name;
+  const auto fitted = [&](const Matrix& samples) {
+    return samples.middleRows(parts.identify.begin, parts.identify.size());
+  };
+  model.inputs = signals(data.inputs, fitted(data.record.u));
+  model.outputs = signals(data.outputs, fitted(data.record.y));
+  model.dynamics = identified.model;
+  model.hold_ns = request.equipment.hold;
+  model.identified_from = time_range(data.record, parts.identify, period);
+  model.validated_on = time_range(data.record, parts.validate, period);
+  model.method = method_text(identified.recipe);
+  candidate.tuned_on = time_range(data.record, parts.tune, period);
+  candidate.y_hat = free_run(identified.model, data.record, data.record.all(), identified.x0);
+  const auto validation = [&](const Matrix& samples) -> Matrix {
+    return samples.middleRows(parts.validate.begin, parts.validate.size());
+  };
+  model.validation = identification::score(validation(data.record.y), validation(candidate.y_hat));
+  return candidate;
+}
+
+void describe(const Identified& identified, PreparedWindow& prepared) {
+  const Candidate& candidate = *prepared.candidate;
+  const EquipmentModel& model = candidate.model;
+  ordered_json& json = prepared.evidence;
+  json["order"] = model.dynamics.order();
+  json["horizon"] = identified.recipe.horizon;
+  json["weighting"] = name(identified.recipe.weighting);
+  json["spectral_radius"] = identified.spectral_radius;
+  json["mrse_percent"] = model.validation.mrse();
+  json["fit_percent"] = model.validation.fit();
+  json["per_output"] = {{"mrse_percent", to_json(model.validation.mrse_percent)},
+                        {"fit_percent", to_json(model.validation.fit_percent)}};
+  json["tune_error"] = identified.held_out_error.value_or(0);
+  json["hankel_condition"] = identified.hankel_condition;
+  json["singular_values"] = to_json(identified.singular_values);
+  json["search_work"] = identified.search_work;
+  json["diagnostics"] =
+      to_json(diagnose(model.dynamics, prepared.data.record, prepared.data.record.all(),
+                       candidate.parts.validate, identified.x0),
+              signal_names(model.inputs), signal_names(model.outputs));
+  json["warnings"] = identified.warnings;
+}
+
+void refuse(PreparedWindow& prepared, std::string_view outcome, std::string reason) {
+  prepared.attempt.outcome = outcome;
+  prepared.attempt.reason = std::move(reason);
+}
+
+void identify_window(const RefreshRequest& request, KeptWindow& kept,
+                     const identification::ForEach& for_each, const std::function<bool()>& stop,
+                     PreparedWindow& prepared) {
+  const WindowData& data = prepared.data;
+  const WindowParts parts = parts_of(data.record.rows(), request.equipment);
+  prepared.evidence["rows_identified"] = parts.identify.size();
+  prepared.evidence["rows_tuned"] = parts.tune.size();
+  prepared.evidence["rows_validated"] = parts.validate.size();
+  prepared.evidence["coverage"] = data.coverage;
+  if (data.coverage < request.equipment.min_coverage || parts.validate.size() == 0)
+    return refuse(
+        prepared, name(Outcome::low_coverage),
+        fmt::format("Only {:.1f} % of the window has every parameter valid; {:g} % are needed.",
+                    100 * data.coverage, 100 * request.equipment.min_coverage));
+  identification::IdentifyOptions options = options_of(request.equipment);
+  options.tune_rows = parts.tune.size();
+  options.for_each = for_each;
+  options.on_phase = [&stop, &prepared](std::string_view phase) {
+    if (stop()) throw Stopped();
+    prepared.timer.begin(phase);
+  };
+  const auto result =
+      identify(data.record, {parts.identify.begin, parts.tune.end}, options, &kept.sums());
+  if (const auto* verdict = std::get_if<identification::Verdict>(&result))
+    return refuse(prepared, name(verdict->code), verdict->reason);
+  prepared.timer.begin("score");
+  const auto& identified = std::get<Identified>(result);
+  prepared.candidate = candidate_of(request, data, identified, parts);
+  describe(identified, prepared);
+}
+
+}  // namespace
+
+WindowParts parts_of(identification::Index rows, const EquipmentConfig& equipment) {
+  const auto share = [rows](double part) {
+    return static_cast<Eigen::Index>(std::llround(static_cast<double>(rows) * part));
+  };
+  const Eigen::Index validate = rows - share(equipment.validation_share);
+  const Eigen::Index tune = std::max<Eigen::Index>(0, validate - share(equipment.tune_share));
+  return {{0, tune}, {tune, validate}, {validate, rows}};
+}
+
+identification::IdentifyOptions options_of(const EquipmentConfig& equipment) {
+  identification::IdentifyOptions options;
+  options.input_names = equipment.inputs;
+  options.output_names = equipment.outputs;
+  options.min_order = equipment.min_order;
+  options.max_order = equipment.max_order;
+  options.horizon = equipment.horizon;
+  return options;
+}
+
+KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
+  return {request_of(spacecraft, equipment), block_rows_needed(options_of(equipment))};
+}
+
+PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
+                              KeptWindow& kept, const identification::ForEach& for_each,
+                              const std::function<bool()>& stop) {
+  PreparedWindow prepared;
+  prepared.attempt.spacecraft = request.spacecraft;
+  prepared.attempt.equipment = request.equipment.name;
+  prepared.attempt.window = request.window;
+  prepared.attempt.trigger = request.trigger;
+  prepared.attempt.configuration_digest = request.configuration_digest;
+  prepared.attempt.program_version = program_version();
+  prepared.loaded = kept.request();
+  prepared.timer.begin("load");
+  auto outcome = kept.load(archive, request.window);
+  if (const auto* unknown = std::get_if<UnknownParameter>(&outcome)) {
+    refuse(prepared, name(Outcome::unknown_parameter),
+           fmt::format("Parameter {} has not been described by telemetry yet; check its name in "
+                       "the configuration or wait for its descriptor.",
+                       unknown->name));
+  } else {
+    prepared.data = std::get<WindowData>(std::move(outcome));
+    identify_window(request, kept, for_each, stop, prepared);
+  }
+  prepared.timer.end();
+  return prepared;
+}
+
+}  // namespace reident

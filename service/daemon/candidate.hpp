@@ -1,0 +1,71 @@
+// From a window to a candidate: load, identify, correct, score. The registry is not looked at, so
+// that windows can be worked on in any order and side by side.
+//
+// The same archive, configuration and window give the same candidate to the last bit, timings
+// aside, whatever was kept of earlier windows.
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "identification/identify.hpp"
+#include "service/daemon/config.hpp"
+#include "service/daemon/kept_window.hpp"
+#include "service/model/model_version.hpp"
+#include "service/support/phase_timer.hpp"
+#include "storage/archive.hpp"
+#include "storage/registry.hpp"
+
+namespace reident {
+
+struct RefreshRequest {
+  std::string spacecraft;
+  EquipmentConfig equipment;
+  storage::TimeRange window;
+  std::string trigger;  // why now, as the attempt records it
+  std::string configuration_digest;
+};
+
+/// The rows of a window, in the order of time: fitted to, chosen by, judged by.
+struct WindowParts {
+  identification::RowRange identify, tune, validate;
+};
+
+WindowParts parts_of(identification::Index rows, const EquipmentConfig& equipment);
+
+struct Candidate {
+  EquipmentModel model;
+  WindowParts parts;
+  identification::Matrix y_hat;  // free run over all rows of the window
+  storage::TimeRange tuned_on;
+};
+
+struct PreparedWindow {
+  storage::NewAttempt attempt;  // outcome and reason are there where there is no candidate
+  WindowRequest loaded;
+  WindowData data;
+  std::optional<Candidate> candidate;
+  nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
+  PhaseTimer timer;
+};
+
+/// Thrown when `stop` answered true; nothing was decided.
+class Stopped : public std::exception {};
+
+/// The options that an equipment's configuration stands for.
+identification::IdentifyOptions options_of(const EquipmentConfig& equipment);
+
+/// What is kept of the equipment's windows.
+KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment);
+
+/// `kept` is of the same spacecraft and equipment. The search runs on `for_each`, or on the calling
+/// thread where it is empty.
+PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
+                              KeptWindow& kept, const identification::ForEach& for_each,
+                              const std::function<bool()>& stop);
+
+}  // namespace reident

@@ -1,0 +1,148 @@
+#include "service/daemon/provenance.hpp"
+
+#include <bit>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "service/model/model_json.hpp"
+#include "service/support/sha256.hpp"
+
+namespace reident {
+namespace {
+
+using identification::Index;
+using identification::RowRange;
+using nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "digests are of little-endian bytes");
+
+template <class T>
+void append(std::string& bytes, T value) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
+ordered_json to_json(const EquipmentConfig& equipment) {
+  ordered_json json = {{"name", equipment.name},
+                       {"inputs", equipment.inputs},
+                       {"outputs", equipment.outputs},
+                       {"sample_period_ns", equipment.sample_period},
+                       {"hold_ns", equipment.hold},
+                       {"tune_share", equipment.tune_share},
+                       {"validation_share", equipment.validation_share},
+                       {"min_coverage", equipment.min_coverage},
+                       {"min_order", equipment.min_order},
+                       {"max_order", equipment.max_order}};
+  json["horizon"] = equipment.horizon ? ordered_json(*equipment.horizon) : ordered_json(nullptr);
+  for (const DerivedInput& derived : equipment.derived)
+    json["derived"].push_back(
+        {{"name", derived.name}, {"expression", derived.expression}, {"unit", derived.unit}});
+  return json;
+}
+
+EquipmentConfig equipment_from(const ordered_json& json) {
+  EquipmentConfig equipment;
+  json.at("name").get_to(equipment.name);
+  json.at("inputs").get_to(equipment.inputs);
+  json.at("outputs").get_to(equipment.outputs);
+  json.at("sample_period_ns").get_to(equipment.sample_period);
+  json.at("hold_ns").get_to(equipment.hold);
+  json.at("tune_share").get_to(equipment.tune_share);
+  json.at("validation_share").get_to(equipment.validation_share);
+  json.at("min_coverage").get_to(equipment.min_coverage);
+  json.at("min_order").get_to(equipment.min_order);
+  json.at("max_order").get_to(equipment.max_order);
+  if (const auto& horizon = json.at("horizon"); !horizon.is_null())
+    equipment.horizon = horizon.get<int>();
+  if (const auto derived = json.find("derived"); derived != json.end())
+    for (const ordered_json& one : *derived)
+      equipment.derived.push_back({one.at("name").get<std::string>(),
+                                   one.at("expression").get<std::string>(),
+                                   one.at("unit").get<std::string>()});
+  return equipment;
+}
+
+ordered_json to_json(RowRange rows, storage::TimeRange range) {
+  return {{"rows", {rows.begin, rows.end}}, {"begin_ns", range.begin}, {"end_ns", range.end}};
+}
+
+ordered_json provenance_of(const RefreshRequest& request, const PreparedWindow& prepared) {
+  const Candidate& candidate = *prepared.candidate;
+  return {{"spacecraft", request.spacecraft},
+          {"window", {{"begin_ns", request.window.begin}, {"end_ns", request.window.end}}},
+          {"parts",
+           {{"identify", to_json(candidate.parts.identify, candidate.model.identified_from)},
+            {"tune", to_json(candidate.parts.tune, candidate.tuned_on)},
+            {"validate", to_json(candidate.parts.validate, candidate.model.validated_on)}}},
+          {"equipment", to_json(request.equipment)},
+          {"configuration_digest", request.configuration_digest},
+          {"program_version", prepared.attempt.program_version}};
+}
+
+RefreshRequest request_from(const ordered_json& provenance) {
+  RefreshRequest request;
+  provenance.at("spacecraft").get_to(request.spacecraft);
+  request.equipment = equipment_from(provenance.at("equipment"));
+  provenance.at("window").at("begin_ns").get_to(request.window.begin);
+  provenance.at("window").at("end_ns").get_to(request.window.end);
+  return request;
+}
+
+}  // namespace
+
+std::string digest_of_samples(const identification::Record& record, const WindowRequest& request) {
+  std::string bytes;
+  for (const auto* names : {&request.inputs, &request.outputs})
+    for (const std::string& name : *names) bytes += name + '\n';
+  for (const identification::Segment& segment : record.segments) {
+    append(bytes, std::int64_t{segment.first_tick});
+    append(bytes, static_cast<std::int64_t>(segment.size()));
+    for (Index row = segment.begin; row < segment.end; ++row) {
+      for (const double value : record.u.row(row)) append(bytes, value);
+      for (const double value : record.y.row(row)) append(bytes, value);
+    }
+  }
+  return sha256_hex(bytes);
+}
+
+storage::NewVersion version_of(const RefreshRequest& request, const PreparedWindow& prepared) {
+  const EquipmentModel& model = prepared.candidate->model;
+  return {.model_json = to_json(model).dump(),
+          .digest = model_digest(model),
+          .provenance_json = provenance_of(request, prepared).dump(),
+          .samples_digest = digest_of_samples(prepared.data.record, prepared.loaded)};
+}
+
+Reproduction reproduce(const storage::Archive& archive, const storage::Version& version,
+                       const identification::ForEach& for_each) {
+  Reproduction result;
+  RefreshRequest request;
+  try {
+    const ordered_json provenance = ordered_json::parse(version.provenance_json);
+    request = request_from(provenance);
+    provenance.at("program_version").get_to(result.program_version);
+  } catch (const nlohmann::json::exception& error) {
+    throw std::invalid_argument(std::string("the version does not say where it comes from: ") +
+                                error.what());
+  }
+  KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
+  const PreparedWindow prepared =
+      prepare_window(archive, request, kept, for_each, [] { return false; });
+  result.samples_digest = digest_of_samples(prepared.data.record, prepared.loaded);
+  result.same_samples = result.samples_digest == version.samples_digest;
+  if (!prepared.candidate) {
+    result.reason = prepared.attempt.reason;
+    return result;
+  }
+  const EquipmentModel& model = prepared.candidate->model;
+  result.model_digest = model_digest(model);
+  result.same_model =
+      result.model_digest == version.digest && to_json(model).dump() == version.model_json;
+  return result;
+}
+
+}  // namespace reident

@@ -1,0 +1,34 @@
+// Where a version comes from: all that is needed to identify it again from the archive, and the
+// digests that tell whether it came out the same.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/daemon/candidate.hpp"
+#include "storage/registry.hpp"
+
+namespace reident {
+
+/// The version of a window that gave a candidate: model, parts, options and digests.
+storage::NewVersion version_of(const RefreshRequest& request, const PreparedWindow& prepared);
+
+/// SHA-256, hexadecimal, of the samples on the grid, all parts of the window: for each stretch its
+/// first tick, its number of rows and the inputs and outputs row by row, as little-endian 64-bit
+/// integers and doubles, after the names of inputs and outputs, each ended by a line feed.
+std::string digest_of_samples(const identification::Record& record, const WindowRequest& request);
+
+struct Reproduction {
+  std::string samples_digest;   // of the samples that are in the archive now
+  std::string model_digest;     // empty where the window gives no model
+  std::string reason;           // why it gives none
+  std::string program_version;  // that made the version
+  bool same_samples = false;
+  bool same_model = false;  // to the last bit
+};
+
+/// Identifies a version again. Throws std::invalid_argument where its provenance cannot be read.
+Reproduction reproduce(const storage::Archive& archive, const storage::Version& version,
+                       const identification::ForEach& for_each);
+
+}  // namespace reident

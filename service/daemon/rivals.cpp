@@ -1,0 +1,212 @@
+#include "service/daemon/rivals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "identification/comparison.hpp"
+#include "service/model/model_json.hpp"
+
+namespace reident {
+namespace {
+
+using identification::Index;
+using identification::Matrix;
+using identification::Record;
+using identification::RowRange;
+using identification::Segment;
+
+constexpr double range_slack = 0.05;
+
+/// A rival that has no output on more than half of the samples is not one.
+constexpr double least_common_share = 0.5;
+
+/// Rows of two records at the same ticks.
+struct CommonRows {
+  std::vector<Index> one, other;
+  std::vector<RowRange> stretches;  // of the common rows, without a gap in each
+};
+
+CommonRows common_rows(const Record& one, RowRange rows, const Record& other) {
+  CommonRows common;
+  for (const Segment& a : segments_within(one, rows))
+    for (const Segment& b : other.segments) {
+      const std::int64_t begin = std::max(a.first_tick, b.first_tick);
+      const std::int64_t end = std::min(a.first_tick + a.size(), b.first_tick + b.size());
+      if (begin >= end) continue;
+      const auto first = static_cast<Index>(common.one.size());
+      common.stretches.push_back({first, first + static_cast<Index>(end - begin)});
+      for (std::int64_t tick = begin; tick < end; ++tick) {
+        common.one.push_back(a.begin + (tick - a.first_tick));
+        common.other.push_back(b.begin + (tick - b.first_tick));
+      }
+    }
+  return common;
+}
+
+std::vector<RowRange> stretches_of(const Record& record, RowRange rows) {
+  std::vector<RowRange> stretches;
+  for (const Segment& segment : segments_from(record, rows))
+    stretches.push_back({segment.begin, segment.end});
+  return stretches;
+}
+
+Evidence::Comparison comparison_of(const Matrix& y, const Matrix& rival, const Matrix& candidate,
+                                   const std::vector<RowRange>& stretches,
+                                   double confidence_percent) {
+  Evidence::Comparison result;
+  result.rows = y.rows();
+  result.mrse_percent = identification::score(y, candidate).mrse();
+  result.rival_mrse_percent = identification::score(y, rival).mrse();
+  result.reduction_percent = 100 * (1 - result.mrse_percent / result.rival_mrse_percent);
+  if (std::isfinite(result.mrse_percent) && std::isfinite(result.rival_mrse_percent))
+    if (const auto paired =
+            identification::compare_runs(y, rival, candidate, stretches, confidence_percent / 100))
+      result.sure_percent = 100 * paired->low;
+  return result;
+}
+
+/// The candidate against outputs of another run over `record`, where both have rows.
+std::optional<Evidence::Comparison> against_run(const PreparedWindow& prepared,
+                                                const Record& record, const Matrix& outputs,
+                                                double confidence_percent) {
+  const Candidate& candidate = *prepared.candidate;
+  const RowRange validate = candidate.parts.validate;
+  const CommonRows common = common_rows(prepared.data.record, validate, record);
+  const double needed = least_common_share * static_cast<double>(validate.size());
+  if (static_cast<double>(common.one.size()) < needed) return std::nullopt;
+  return comparison_of(prepared.data.record.y(common.one, Eigen::all),
+                       outputs(common.other, Eigen::all), candidate.y_hat(common.one, Eigen::all),
+                       common.stretches, confidence_percent);
+}
+
+bool is_outside(const Signal& signal, double value) {
+  const double slack = range_slack * (signal.high - signal.low);
+  return value < signal.low - slack || value > signal.high + slack;
+}
+
+bool reaches_beyond(const std::vector<Signal>& champion, const std::vector<Signal>& candidate) {
+  return champion.size() != candidate.size() ||
+         !std::equal(champion.begin(), champion.end(), candidate.begin(),
+                     [](const Signal& a, const Signal& b) {
+                       return a.name == b.name && !is_outside(b, a.low) && !is_outside(b, a.high);
+                     });
+}
+
+/// The two runs where the champion was validated with inputs that the candidate's window does not
+/// hold. Absent where there are too few such samples to tell, or no telemetry of then.
+std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
+                                                       const EquipmentModel& champion,
+                                                       const EquipmentModel& candidate,
+                                                       const WindowRequest& loaded) {
+  constexpr std::size_t least_rows = 30;
+  if (!reaches_beyond(champion.inputs, candidate.inputs)) return std::nullopt;
+  const storage::TimeRange then = champion.validated_on;
+  const auto seen = load_window(archive, loaded, then);
+  const auto championed = load_window(archive, request_of(champion), then);
+  if (!std::holds_alternative<WindowData>(seen) || !std::holds_alternative<WindowData>(championed))
+    return std::nullopt;
+  const Record& record = std::get<WindowData>(seen).record;
+  const Record& own = std::get<WindowData>(championed).record;
+  const CommonRows common = common_rows(record, record.all(), own);
+  const Matrix candidate_run = free_run(candidate.dynamics, record, record.all());
+  const Matrix champion_run = free_run(champion.dynamics, own, own.all());
+  const std::vector<Index> outside = rows_outside(record.u, candidate.inputs);
+  std::vector<Index> rows, own_rows;
+  for (std::size_t i = 0; i < common.one.size(); ++i)
+    if (std::binary_search(outside.begin(), outside.end(), common.one[i])) {
+      rows.push_back(common.one[i]);
+      own_rows.push_back(common.other[i]);
+    }
+  if (rows.size() < least_rows) return std::nullopt;
+  const Matrix y = record.y(rows, Eigen::all);
+  const Matrix one = candidate_run(rows, Eigen::all), other = champion_run(own_rows, Eigen::all);
+  Evidence::Champion::Elsewhere result;
+  result.rows = y.rows();
+  result.mrse_percent = identification::score(y, one).mrse();
+  result.champion_mrse_percent = identification::score(y, other).mrse();
+  for (Index q = 0; q < y.cols(); ++q) {
+    const double range = record.y.col(q).maxCoeff() - record.y.col(q).minCoeff();
+    const double rms = std::sqrt((one.col(q) - other.col(q)).squaredNorm() / double(y.rows()));
+    const double share = rms == 0 ? 0 : 100 * rms / range;
+    result.disagreement_percent = std::max(result.disagreement_percent, share);
+  }
+  return result;
+}
+
+bool same_outputs(const EquipmentModel& one, const EquipmentModel& other) {
+  return std::equal(one.outputs.begin(), one.outputs.end(), other.outputs.begin(),
+                    other.outputs.end(),
+                    [](const Signal& a, const Signal& b) { return a.name == b.name; });
+}
+
+}  // namespace
+
+std::vector<Index> rows_outside(const Matrix& u, const std::vector<Signal>& inputs) {
+  std::vector<Index> rows;
+  for (Index row = 0; row < u.rows(); ++row)
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      if (is_outside(inputs[i], u(row, static_cast<Index>(i)))) {
+        rows.push_back(row);
+        break;
+      }
+  return rows;
+}
+
+Evidence::Comparison against_mean(const PreparedWindow& prepared, double confidence_percent) {
+  const Candidate& candidate = *prepared.candidate;
+  const RowRange rows = candidate.parts.validate;
+  const Matrix y = prepared.data.record.y.middleRows(rows.begin, rows.size());
+  const Matrix mean = y.colwise().mean().replicate(y.rows(), 1);
+  return comparison_of(y, mean, candidate.y_hat.middleRows(rows.begin, rows.size()),
+                       stretches_of(prepared.data.record, rows), confidence_percent);
+}
+
+std::optional<Evidence::Comparison> against_simulator(const storage::Archive& archive,
+                                                      const PreparedWindow& prepared,
+                                                      double confidence_percent) {
+  WindowRequest request = prepared.loaded;
+  request.inputs.clear();
+  request.origin = storage::Origin::simulated;
+  const auto loaded = load_window(archive, request, prepared.candidate->model.validated_on);
+  const auto* simulated = std::get_if<WindowData>(&loaded);
+  if (!simulated) return std::nullopt;
+  return against_run(prepared, simulated->record, simulated->record.y, confidence_percent);
+}
+
+std::optional<Evidence::Champion> against_champion(const storage::Archive& archive,
+                                                   const storage::Registry& registry,
+                                                   const PreparedWindow& prepared,
+                                                   double confidence_percent) {
+  const EquipmentModel& candidate = prepared.candidate->model;
+  const auto version = registry.champion(candidate.spacecraft, candidate.equipment);
+  if (!version) return std::nullopt;
+  Evidence::Champion evidence;
+  evidence.version = version->number;
+  evidence.window_end = version->window.end;
+  EquipmentModel champion;
+  try {
+    champion = equipment_model_from_json(version->model_json);
+  } catch (const std::invalid_argument&) {
+    // Damaged in the registry: it cannot be published either, and any good candidate replaces it.
+    return evidence;
+  }
+  if (!same_outputs(champion, candidate)) return std::nullopt;
+  const WindowRequest request = request_of(champion);
+  if (request == prepared.loaded) {
+    const Record& record = prepared.data.record;
+    evidence.comparison = against_run(
+        prepared, record, free_run(champion.dynamics, record, record.all()), confidence_percent);
+  } else if (const auto loaded = load_window(archive, request, prepared.attempt.window);
+             std::holds_alternative<WindowData>(loaded)) {
+    const Record& record = std::get<WindowData>(loaded).record;
+    evidence.comparison = against_run(
+        prepared, record, free_run(champion.dynamics, record, record.all()), confidence_percent);
+  }
+  evidence.elsewhere = elsewhere(archive, champion, candidate, prepared.loaded);
+  return evidence;
+}
+
+}  // namespace reident

@@ -1,0 +1,35 @@
+// What a candidate is measured against: the mean, the simulator's own model and the champion, each
+// on the samples that judge the candidate.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "service/daemon/candidate.hpp"
+#include "service/daemon/gate.hpp"
+#include "storage/archive.hpp"
+#include "storage/registry.hpp"
+
+namespace reident {
+
+/// Rows of `u` (N x m) at which an input is outside the range that it was identified in, by more
+/// than noise: a twentieth of its width.
+std::vector<identification::Index> rows_outside(const identification::Matrix& u,
+                                                const std::vector<Signal>& inputs);
+
+/// `confidence_percent` is that of the lower bounds, in percent.
+Evidence::Comparison against_mean(const PreparedWindow& prepared, double confidence_percent);
+
+/// Telemetry of the simulator itself (origin simulated); absent where it covers less than half of
+/// the validation part.
+std::optional<Evidence::Comparison> against_simulator(const storage::Archive& archive,
+                                                      const PreparedWindow& prepared,
+                                                      double confidence_percent);
+
+/// Absent where there is no champion of the same outputs.
+std::optional<Evidence::Champion> against_champion(const storage::Archive& archive,
+                                                   const storage::Registry& registry,
+                                                   const PreparedWindow& prepared,
+                                                   double confidence_percent);
+
+}  // namespace reident

@@ -1,0 +1,73 @@
+#include "service/daemon/provenance.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "service/daemon/refresh.hpp"
+#include "tests/service/daemon/daemon_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+class Provenance : public DaemonTest {
+ protected:
+  Provenance() {
+    archive.describe(descriptors());
+    auto frames = telemetry(day, 901);
+    late.assign(frames.begin() + 100, frames.begin() + 120);
+    frames.erase(frames.begin() + 100, frames.begin() + 120);
+    archive.append(frames);
+  }
+
+  storage::Version record(storage::Time end, KeptWindow& kept) {
+    const RefreshResult result =
+        refresh(archive, registry, {"SAT", plant(), {end - plant().window, end}, "slide", "digest"},
+                kept, {}, [] { return false; });
+    registry.record(result.attempt, result.version, *result.decision);
+    return *registry.version("SAT", "PLANT", 1);
+  }
+
+  std::vector<storage::TelemetryFrame> late;  // of 20 seconds that the archive does not have yet
+  storage::Database database = open();
+  storage::Archive archive{database};
+  storage::Registry registry{database};
+};
+
+TEST_F(Provenance, NamesThreePartsThatNeverMix) {
+  KeptWindow kept = kept_window_of("SAT", plant());
+  const auto json = nlohmann::json::parse(record(day + 10 * minute, kept).provenance_json);
+  const auto& parts = json["parts"];
+  EXPECT_EQ(parts["identify"]["rows"], (std::vector{0, 291}));
+  EXPECT_EQ(parts["tune"]["rows"], (std::vector{291, 407}));
+  EXPECT_EQ(parts["validate"]["rows"], (std::vector{407, 582}));
+  EXPECT_EQ(parts["identify"]["end_ns"], parts["tune"]["begin_ns"]);
+  EXPECT_EQ(parts["tune"]["end_ns"], parts["validate"]["begin_ns"]);
+}
+
+TEST_F(Provenance, IsEnoughToIdentifyTheVersionAgainToTheLastBit) {
+  KeptWindow kept = kept_window_of("SAT", plant());
+  record(day + 10 * minute, kept);
+  const Reproduction again = reproduce(archive, *registry.version("SAT", "PLANT", 1), {});
+  EXPECT_TRUE(again.same_samples);
+  EXPECT_TRUE(again.same_model);
+}
+
+TEST_F(Provenance, TellsThatTheTelemetryOfTheWindowHasChangedSince) {
+  KeptWindow kept = kept_window_of("SAT", plant());
+  const storage::Version version = record(day + 10 * minute, kept);
+  archive.append(late);
+  const Reproduction again = reproduce(archive, version, {});
+  EXPECT_FALSE(again.same_samples);
+  EXPECT_FALSE(again.same_model);
+  EXPECT_NE(again.model_digest, version.digest);
+}
+
+TEST_F(Provenance, OfAVersionWithoutOneIsRefused) {
+  KeptWindow kept = kept_window_of("SAT", plant());
+  storage::Version version = record(day + 10 * minute, kept);
+  version.provenance_json.clear();
+  EXPECT_THROW(reproduce(archive, version, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace reident::test

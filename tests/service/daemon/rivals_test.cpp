@@ -1,0 +1,113 @@
+#include "service/daemon/rivals.hpp"
+
+#include <gmock/gmock.h>
+
+#include "service/daemon/refresh.hpp"
+#include "tests/service/daemon/daemon_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+class Rivals : public DaemonTest {
+ protected:
+  Rivals() { archive.describe(descriptors()); }
+
+  RefreshResult run(storage::Time end, const EquipmentConfig& equipment = plant()) {
+    KeptWindow kept = kept_window_of("SAT", equipment);
+    return refresh(archive, registry,
+                   {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, kept, {},
+                   [] { return false; });
+  }
+  void record(const RefreshResult& result) {
+    registry.record(result.attempt, result.version, *result.decision);
+  }
+  /// Telemetry of the simulator, whose model has another gain.
+  void simulate(storage::Time begin, int seconds, double gain) {
+    auto frames = telemetry(begin, seconds, gain, 0);
+    for (auto& frame : frames) {
+      frame.source = "simulator";
+      frame.origin = storage::Origin::simulated;
+    }
+    archive.append(frames);
+  }
+  /// Telemetry in which the inputs move by a fraction of what they do.
+  void quiet(storage::Time begin, int seconds, double share, double gain = 1) {
+    auto frames = telemetry(begin, seconds, 0, 0.001);
+    double state = 0;
+    for (auto& frame : frames) {
+      frame.samples[0].value *= share;
+      frame.samples[1].value *= share;
+      frame.samples[2].value += state;
+      state = 0.9 * state + 0.1 * gain * (frame.samples[0].value + frame.samples[1].value / 2);
+    }
+    archive.append(frames);
+  }
+
+  storage::Database database = open();
+  storage::Archive archive{database};
+  storage::Registry registry{database};
+};
+
+TEST_F(Rivals, TheSimulatorsTelemetryIsTheBaselineOfTheFirstVersion) {
+  archive.append(telemetry(day, 601));
+  simulate(day, 601, 0.5);
+  const RefreshResult result = run(day + 10 * minute);
+  ASSERT_TRUE(result.evidence.baseline);
+  EXPECT_EQ(result.evidence.baseline->rows, 180);
+  EXPECT_GT(result.evidence.baseline->rival_mrse_percent, 2);
+  EXPECT_GT(result.evidence.baseline->sure_percent, 50);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+}
+
+TEST_F(Rivals, ASimulatorThatIsAsGoodKeepsItsModel) {
+  archive.append(telemetry(day, 601, 1, 0.2));
+  simulate(day, 601, 1);
+  const RefreshResult result = run(day + 10 * minute);
+  ASSERT_TRUE(result.evidence.baseline);
+  EXPECT_EQ(result.attempt.outcome, "not_better_than_baseline") << result.attempt.reason;
+}
+
+TEST_F(Rivals, TelemetryOfTheSimulatorForLessThanHalfOfTheValidationIsNoBaseline) {
+  archive.append(telemetry(day, 601));
+  simulate(day + 8 * minute + 40 * second, 80, 0.5);
+  EXPECT_FALSE(run(day + 10 * minute).evidence.baseline);
+}
+
+TEST_F(Rivals, ACandidateOfAQuietWindowHasToAgreeWithTheChampionWhereItWasNot) {
+  archive.append(telemetry(day, 601));
+  record(run(day + 10 * minute));
+  // The output hardly follows the inputs for a while, as with loads switched off.
+  quiet(day + 20 * minute, 601, 0.2, 0.3);
+  const RefreshResult result = run(day + 30 * minute);
+  ASSERT_TRUE(result.evidence.champion && result.evidence.champion->elsewhere)
+      << result.attempt.reason;
+  EXPECT_GT(result.evidence.champion->elsewhere->disagreement_percent, 10);
+  EXPECT_EQ(result.attempt.outcome, "disagrees_with_champion") << result.attempt.reason;
+}
+
+TEST_F(Rivals, WhereTheWindowVisitedAllThatTheChampionDidThereIsNoElsewhere) {
+  archive.append(telemetry(day, 601));
+  record(run(day + 10 * minute));
+  archive.append(telemetry(day + 20 * minute, 601, 2.0));
+  const RefreshResult result = run(day + 30 * minute);
+  ASSERT_TRUE(result.evidence.champion);
+  EXPECT_FALSE(result.evidence.champion->elsewhere);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+}
+
+TEST_F(Rivals, AHoldLetsNoVersionThrough) {
+  archive.append(telemetry(day, 601));
+  registry.put_on_hold("SAT", "PLANT", {"ana", "eclipse season", day});
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "held") << result.attempt.reason;
+  EXPECT_EQ(result.decision->kind, storage::DecisionKind::wait);
+}
+
+TEST(RowsOutside, AreThoseWhereAnInputLeavesItsRangeByMoreThanNoise) {
+  identification::Matrix u(4, 2);
+  u << 0, 0, 1.04, 0, 1.06, 0, 0.5, -0.06;
+  EXPECT_THAT(rows_outside(u, {{"a", "A", 0, 1}, {"b", "A", 0, 1}}), testing::ElementsAre(2, 3));
+}
+
+}  // namespace
+}  // namespace reident::test
