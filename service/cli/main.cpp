@@ -20,6 +20,9 @@ int run(int argc, char** argv) {
   add_identify(app, exit_code);
   add_history(app, exit_code);
   add_show(app, exit_code);
+  add_why(app, exit_code);
+  add_reproduce(app, exit_code);
+  add_backfill(app, exit_code);
   add_check_config(app, exit_code);
   add_status(app, exit_code);
   add_version(app, exit_code);

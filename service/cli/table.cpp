@@ -19,24 +19,6 @@ std::string padded(const std::string& text, std::size_t width, Table::Align alig
   return align == Table::Align::left ? text + blanks : blanks + text;
 }
 
-/// Lines of at most `width` columns, broken at blanks; a longer word has a line of its own.
-std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
-  std::vector<std::string> lines(1);
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    std::string& line = lines.back();
-    if (line.empty()) {
-      line = word;
-    } else if (display_width(line) + 1 + display_width(word) <= width) {
-      line.append(" ").append(word);
-    } else {
-      lines.emplace_back(word);
-    }
-  }
-  return lines;
-}
-
 }  // namespace
 
 std::size_t terminal_width() {
@@ -50,6 +32,23 @@ std::size_t display_width(std::string_view text) {
     return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
   };
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_code_point));
+}
+
+std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
+  std::vector<std::string> lines(1);
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    std::string& line = lines.back();
+    if (line.empty()) {
+      line = word;
+    } else if (width == 0 || display_width(line) + 1 + display_width(word) <= width) {
+      line.append(" ").append(word);
+    } else {
+      lines.emplace_back(word);
+    }
+  }
+  return lines;
 }
 
 Table::Table(std::vector<Column> columns) : columns_(std::move(columns)) {

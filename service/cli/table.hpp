@@ -14,6 +14,10 @@ std::size_t terminal_width();
 /// Columns that a text takes on a terminal: the code points of its UTF-8.
 std::size_t display_width(std::string_view text);
 
+/// Lines of at most `width` columns, broken at blanks; a longer word has a line of its own. One
+/// line where `width` is 0.
+std::vector<std::string> wrapped(std::string_view text, std::size_t width);
+
 class Table {
  public:
   enum class Align { left, right };

@@ -1,0 +1,138 @@
+#include "service/daemon/backfill.hpp"
+
+#include <chrono>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/command.hpp"
+#include "service/cli/config_choice.hpp"
+#include "service/cli/story.hpp"
+#include "service/support/progress.hpp"
+#include "service/support/stop_signal.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+struct Arguments {
+  std::optional<std::string> config;
+  std::string subject;
+  std::optional<std::string> from, to;
+  bool json = false;
+};
+
+storage::Time now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::optional<Refusal> read_time(const char* flag, const std::optional<std::string>& text,
+                                 storage::Time& time) {
+  if (!text) return std::nullopt;
+  const auto parsed = parse_time(*text);
+  if (!parsed)
+    return Refusal{fmt::format("{} {} is no time; write it as 2026-03-01T12:00:00Z", flag, *text)};
+  time = *parsed;
+  return std::nullopt;
+}
+
+std::string equipment_of(const Config& config) {
+  std::string text;
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      text += fmt::format("{}{}/{}", text.empty() ? "" : ", ", spacecraft.name, equipment.name);
+  return text;
+}
+
+std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
+                                                  const Config& config) {
+  BackfillRequest request;
+  request.range = {0, now()};
+  if (auto refusal = read_time("--from", arguments.from, request.range.begin)) return *refusal;
+  if (auto refusal = read_time("--to", arguments.to, request.range.end)) return *refusal;
+  if (request.range.end <= request.range.begin)
+    return Refusal{"--to is not after --from; windows are those that end in between"};
+  if (arguments.subject.empty()) return request;
+  const auto subject = parse_subject(arguments.subject);
+  if (const auto* refusal = std::get_if<Refusal>(&subject)) return *refusal;
+  request.spacecraft = std::get<Subject>(subject).spacecraft;
+  request.equipment = std::get<Subject>(subject).equipment;
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      if (equipment.name == request.equipment &&
+          (request.spacecraft.empty() || request.spacecraft == spacecraft.name))
+        return request;
+  return Refusal{fmt::format("the configuration has no equipment {}; it has {}", arguments.subject,
+                             equipment_of(config))};
+}
+
+void print(const BackfillProgress& progress, bool json) {
+  if (json) {
+    const nlohmann::ordered_json object = {
+        {"windows", progress.windows}, {"done", progress.done}, {"approved", progress.approved}};
+    fmt::print("{}\n", object.dump());
+    return;
+  }
+  fmt::print("{} of {} windows tried, {} versions approved\n", progress.done, progress.windows,
+             progress.approved);
+  if (progress.done < progress.windows)
+    fmt::print("stopped; the same command goes on where it ended\n");
+}
+
+int run(const Arguments& arguments) {
+  auto chosen = chosen_config(arguments.config);
+  if (const auto* refusal = std::get_if<Refusal>(&chosen)) return refuse(*refusal);
+  const auto& config = std::get<std::optional<Config>>(chosen);
+  if (!config)
+    return refuse({fmt::format("no configuration: there is no {} here; name one with --config FILE",
+                               default_config_file)});
+  const auto request = request_of(arguments, *config);
+  if (const auto* refusal = std::get_if<Refusal>(&request)) return refuse(*refusal);
+  const StopSignal stop;
+  try {
+    storage::Database database(config->database, storage::Database::Mode::read_write);
+    WorkerPool workers(usable_cores());
+    Progress bar;
+    const BackfillProgress progress =
+        backfill(database, *config, std::get<BackfillRequest>(request), workers, now,
+                 [&](const BackfillProgress& at) {
+                   bar.update(static_cast<double>(at.done) / static_cast<double>(at.windows),
+                              fmt::format("{}/{} {} {} approved {}", at.done, at.windows,
+                                          at.equipment, time_text(at.window_end), at.approved));
+                   return !stop.token().stop_requested();
+                 });
+    bar.clear();
+    print(progress, arguments.json);
+    return progress.done == progress.windows ? exit_done : exit_failed;
+  } catch (const storage::Error& error) {
+    using Kind = storage::Error::Kind;
+    const Kind kind = error.kind();
+    if (kind == Kind::full || kind == Kind::corrupt || kind == Kind::failed) throw;
+    return refuse({error.what()});
+  }
+}
+
+}  // namespace
+
+void add_backfill(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "backfill", "Try the windows of telemetry that is archived already, on all cores");
+  command->add_option("subject", arguments->subject,
+                      "SPACECRAFT/EQUIPMENT; without it every equipment of the configuration");
+  command->add_option("--config", arguments->config,
+                      fmt::format("configuration of the service ({})", default_config_file));
+  command->add_option("--from", arguments->from, "only windows that end at this time or later");
+  command->add_option("--to", arguments->to, "only windows that end before this time");
+  command->add_flag("--json", arguments->json, "one JSON object with the counts");
+  command->footer(
+      "Works on the file, so reidentd must not run; it publishes the champions when it starts.\n"
+      "Windows that were tried are left out: stopped with Ctrl-C, the same command goes on.\n"
+      "Example:\n  reident backfill CBERS-4/BDR --from 2025-01-01 --to 2026-01-01");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,178 @@
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "service/cli/model_text.hpp"
+#include "service/cli/stored.hpp"
+#include "service/cli/story.hpp"
+#include "service/cli/table.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using Sentences = std::vector<std::string>;
+
+struct Arguments {
+  DatabaseOptions database;
+  std::string subject;
+  bool json = false;
+};
+
+const ordered_json* member(const ordered_json& object, const char* key) {
+  const auto found = object.find(key);
+  return found == object.end() || found->is_null() ? nullptr : &*found;
+}
+
+std::optional<double> number(const ordered_json& object, const char* key) {
+  const ordered_json* value = member(object, key);
+  return value && value->is_number() ? std::optional(value->get<double>()) : std::nullopt;
+}
+
+std::string figure(const ordered_json& object, const char* key) {
+  return evidence_number(object, key);
+}
+
+void window_sentences(const Story& story, const ordered_json& evidence, Sentences& sentences) {
+  const storage::TimeRange window = story.version.window;
+  sentences.push_back(fmt::format("The window from {} to {} ({}) was tried because of: {}.",
+                                  time_text(window.begin), time_text(window.end),
+                                  duration_text(window.end - window.begin), story.attempt.trigger));
+  if (member(evidence, "rows_tuned"))
+    sentences.push_back(fmt::format(
+        "{} rows identified the model, the next {} chose its order and poles, and {} that neither "
+        "had seen judged it.",
+        figure(evidence, "rows_identified"), figure(evidence, "rows_tuned"),
+        figure(evidence, "rows_validated")));
+  sentences.push_back(fmt::format("It is of order {} ({}); its poles are {}.",
+                                  story.model.dynamics.order(), story.model.method,
+                                  poles_text(story.model.dynamics)));
+}
+
+void score_sentences(const Story& story, const ordered_json& evidence, Sentences& sentences) {
+  std::string free_run =
+      fmt::format("Its free run errs by {} % (MRSE) and explains {} % (fit)",
+                  figure(evidence, "mrse_percent"), figure(evidence, "fit_percent"));
+  if (const ordered_json* diagnostics = member(evidence, "diagnostics"))
+    if (const ordered_json* interval = member(*diagnostics, "mrse_interval_percent"))
+      free_run += fmt::format("; the 95 % interval of the error is {} to {} %",
+                              figure(*interval, "mean_low"), figure(*interval, "mean_high"));
+  sentences.push_back(free_run + ".");
+  if (story.model.tracking)
+    sentences.push_back(
+        fmt::format("Corrected by the integral feedback of live telemetry it errs by {:.4g} %: "
+                    "what a simulator that follows the satellite sees.",
+                    story.model.tracking->validation.mrse()));
+}
+
+std::string comparison_text(const ordered_json& comparison) {
+  std::string text =
+      fmt::format("{} % against {} % on the same {} rows", figure(comparison, "mrse_percent"),
+                  figure(comparison, "rival_mrse_percent"), figure(comparison, "rows"));
+  if (const auto sure = number(comparison, "sure_reduction_percent"))
+    text += fmt::format(", a reduction of {} %, and {:.4g} % with the required confidence",
+                        figure(comparison, "reduction_percent"), *sure);
+  else
+    text += ", which is too little to be sure of anything";
+  return text;
+}
+
+void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
+  if (const ordered_json* mean = member(evidence, "mean"))
+    sentences.push_back(fmt::format("Beside a constant at the mean: {}.", comparison_text(*mean)));
+  if (const ordered_json* baseline = member(evidence, "baseline"))
+    sentences.push_back(
+        fmt::format("Beside the simulator's own telemetry: {}.", comparison_text(*baseline)));
+  const ordered_json* champion = member(evidence, "champion");
+  if (!champion) {
+    sentences.push_back("There was no champion.");
+    return;
+  }
+  const std::string version = figure(*champion, "version");
+  if (const ordered_json* comparison = member(*champion, "comparison"))
+    sentences.push_back(
+        fmt::format("Beside champion {}: {}.", version, comparison_text(*comparison)));
+  else
+    sentences.push_back(fmt::format("Champion {} cannot run on these samples.", version));
+  if (const ordered_json* elsewhere = member(*champion, "elsewhere"))
+    sentences.push_back(fmt::format(
+        "On {} rows where champion {} was validated and this window was not, the two differ by "
+        "{} % of the output's range; there they err by {} % and the champion by {} %.",
+        figure(*elsewhere, "rows"), version, figure(*elsewhere, "disagreement_percent"),
+        figure(*elsewhere, "mrse_percent"), figure(*elsewhere, "champion_mrse_percent")));
+}
+
+void hold_and_warning_sentences(const ordered_json& evidence, Sentences& sentences) {
+  if (const ordered_json* hold = member(evidence, "hold"))
+    sentences.push_back(fmt::format("The equipment was held by {}: {}.", hold->value("actor", ""),
+                                    hold->value("reason", "")));
+  if (const ordered_json* warnings = member(evidence, "warnings"))
+    for (const ordered_json& warning : *warnings)
+      if (warning.is_string()) sentences.push_back("Warning: " + warning.get<std::string>() + ".");
+}
+
+Sentences sentences_of(const Story& story) {
+  const ordered_json evidence = evidence_of(story.attempt);
+  Sentences sentences;
+  window_sentences(story, evidence, sentences);
+  score_sentences(story, evidence, sentences);
+  rival_sentences(evidence, sentences);
+  hold_and_warning_sentences(evidence, sentences);
+  sentences.push_back(
+      fmt::format("The gate: {} ({}).", story.attempt.reason, story.attempt.outcome));
+  for (const storage::Decision& decision : story.decisions)
+    sentences.push_back(fmt::format("{} {} by {}: {}", time_text(decision.time),
+                                    name(decision.kind), decision.actor, decision.reason));
+  return sentences;
+}
+
+int print(const Story& story, bool json) {
+  const Sentences sentences = sentences_of(story);
+  if (json) {
+    const ordered_json object = {{"spacecraft", story.version.spacecraft},
+                                 {"equipment", story.version.equipment},
+                                 {"version", story.version.number},
+                                 {"status", story.version.status},
+                                 {"outcome", story.attempt.outcome},
+                                 {"reason", story.attempt.reason},
+                                 {"sentences", sentences},
+                                 {"evidence", evidence_of(story.attempt)}};
+    fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+    return exit_done;
+  }
+  fmt::print("{} version {}: {}\n", full_name(story.version.spacecraft, story.version.equipment),
+             story.version.number, story.version.status);
+  for (const std::string& sentence : sentences)
+    fmt::print("{}\n", fmt::join(wrapped(sentence, terminal_width()), "\n  "));
+  return exit_done;
+}
+
+int run(const Arguments& arguments) {
+  const auto subject = parse_subject(arguments.subject);
+  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
+  return with_registry(arguments.database, [&](const storage::Registry& registry) {
+    const auto story = find_story(registry, std::get<Subject>(subject));
+    if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
+    return print(std::get<Story>(story), arguments.json);
+  });
+}
+
+}  // namespace
+
+void add_why(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("why", "Say in words why a version was approved, refused or waits");
+  command
+      ->add_option("subject", arguments->subject,
+                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      ->required();
+  add_database_options(*command, arguments->database);
+  command->add_flag("--json", arguments->json, "one JSON object with the evidence itself");
+  command->footer("Example:\n  reident why CBERS-4/BDR@3 --config reident.toml");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli
