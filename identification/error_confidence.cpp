@@ -19,12 +19,9 @@ constexpr Index replicates = 1000;
 constexpr double lengthening = 3;
 constexpr std::uint32_t seed = 20170717;
 
-/// The block length of least mean square error for one output.
 double optimal_block(const Vector& e2, const Vector& y2, const std::vector<RowRange>& stretches) {
   Series psi(e2 / e2.mean() - y2 / y2.mean(), stretches);
-  const double S = correlated_rows(psi);
-  const double correlated = (S * S - 1) / (2 * S);
-  return std::cbrt(1.5 * correlated * correlated * double(e2.size()));
+  return optimal_block_rows(correlated_rows(psi), e2.size());
 }
 
 /// Sums of squares over the blocks of `length` rows that start at each row, the first rows
@@ -84,6 +81,12 @@ double expanded_tail(Index blocks) {
 }
 
 }  // namespace
+
+double optimal_block_rows(double correlated_rows, Index rows) {
+  const double S = correlated_rows;
+  const double correlated = (S * S - 1) / (2 * S);
+  return std::cbrt(1.5 * correlated * correlated * double(rows));
+}
 
 std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat,
                                             const std::vector<RowRange>& stretches) {

@@ -32,6 +32,10 @@
 
 namespace reident::identification {
 
+/// The block length of least mean square error for the variance of a mean over `rows` rows, of
+/// which `correlated_rows` count as one.
+double optimal_block_rows(double correlated_rows, Index rows);
+
 /// 95 % intervals of the MRSE in percent.
 struct ErrorInterval {
   Vector low, high;     // p, one an output

@@ -1,0 +1,131 @@
+#include "identification/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "identification/correlation.hpp"
+#include "identification/error_confidence.hpp"
+#include "identification/quantiles.hpp"
+
+namespace reident::identification {
+namespace {
+
+constexpr Index least_rows = 50;
+constexpr Index least_blocks = 10;
+constexpr Index most_blocks = 50;
+/// No single stretch of this share of the rows may decide.
+constexpr double stretch_share = 0.05;
+/// A run without error errs by this share of the output all the same, so that it has a logarithm.
+constexpr double least_error = 1e-12;
+
+using Array = Eigen::ArrayXd;
+
+/// Sums of squares over some rows, by output.
+struct Sums {
+  Array incumbent, candidate, y;
+
+  Sums operator-(const Sums& other) const {
+    return {incumbent - other.incumbent, candidate - other.candidate, y - other.y};
+  }
+};
+
+/// ||e_q|| / ||y_q|| of each output.
+Array errors_of(const Array& squares, const Array& y) {
+  return (squares.max(0) / y).sqrt() + least_error;
+}
+
+double log_ratio(const Sums& sums) {
+  return std::log(errors_of(sums.incumbent, sums.y).sum()) -
+         std::log(errors_of(sums.candidate, sums.y).sum());
+}
+
+/// What each row adds to the logarithm of a run's error, to first order, but for what both runs
+/// have in common.
+Array influence(const Matrix& squares, const Array& totals, const Array& y) {
+  const Array errors = errors_of(totals, y);
+  const Array weights = errors / errors.sum() / totals.max(least_error * least_error * y);
+  return 0.5 * (squares * weights.matrix()).array();
+}
+
+Index block_rows_for(const Matrix& incumbent, const Matrix& candidate, const Sums& sums,
+                     const std::vector<RowRange>& stretches) {
+  const Index rows = incumbent.rows();
+  Series difference(
+      (influence(incumbent, sums.incumbent, sums.y) - influence(candidate, sums.candidate, sums.y))
+          .matrix(),
+      stretches);
+  const double length = 3 * optimal_block_rows(correlated_rows(difference), rows);
+  return std::clamp(static_cast<Index>(std::ceil(length)), (rows + most_blocks - 1) / most_blocks,
+                    rows / least_blocks);
+}
+
+/// By how much the variance of a mean grows where neighbours are alike.
+double neighbour_factor(const Array& values) {
+  const Array centred = values - values.mean();
+  const double energy = centred.square().sum();
+  if (!(energy > 0)) return 1;
+  const Index n = values.size();
+  const double r = (centred.head(n - 1) * centred.tail(n - 1)).sum() / energy;
+  return r > 0 ? (1 + r) / (1 - std::min(r, 0.9)) : 1;
+}
+
+/// The least logarithm that remains without one stretch of rows.
+template <class Over>
+double least_without_a_stretch(const Sums& all, Index rows, const Over& over) {
+  constexpr Index steps = 5;  // of a stretch from one to the next
+  const auto length = static_cast<Index>(std::ceil(stretch_share * double(rows)));
+  const Index step = std::max<Index>(1, length / steps);
+  double least = log_ratio(all);
+  for (Index begin = 0; begin < rows; begin += step) {
+    const Index count = std::min(length + step, rows - begin);
+    least = std::min(least, log_ratio(all - over(begin, count)));
+  }
+  return least;
+}
+
+}  // namespace
+
+std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incumbent,
+                                             const Matrix& candidate,
+                                             const std::vector<RowRange>& stretches,
+                                             double confidence) {
+  eigen_assert(y.rows() == incumbent.rows() && y.cols() == incumbent.cols());
+  eigen_assert(y.rows() == candidate.rows() && y.cols() == candidate.cols());
+  const Index rows = y.rows();
+  if (rows < least_rows) return std::nullopt;
+  const Matrix of_incumbent = (y - incumbent).cwiseAbs2(),
+               of_candidate = (y - candidate).cwiseAbs2(), of_y = y.cwiseAbs2();
+  const auto over = [&](Index begin, Index count) -> Sums {
+    const auto sum = [&](const Matrix& squares) -> Array {
+      return squares.middleRows(begin, count).colwise().sum().transpose().array();
+    };
+    return {sum(of_incumbent), sum(of_candidate), sum(of_y)};
+  };
+  const Sums all = over(0, rows);
+  if (!all.incumbent.allFinite() || !all.candidate.allFinite() || !all.y.allFinite() ||
+      !(all.y.minCoeff() > 0))
+    return std::nullopt;
+
+  PairedComparison result;
+  result.block_rows = block_rows_for(of_incumbent, of_candidate, all, stretches);
+  result.blocks = rows / result.block_rows;
+  const double phi = log_ratio(all);
+  Array pseudo(result.blocks);
+  const auto blocks = double(result.blocks);
+  for (Index b = 0; b < result.blocks; ++b) {
+    // The rows that are left over go to the last block.
+    const Index begin = b * result.block_rows;
+    const Index count = b + 1 < result.blocks ? result.block_rows : rows - begin;
+    pseudo(b) = blocks * phi - (blocks - 1) * log_ratio(all - over(begin, count));
+  }
+  if (!pseudo.allFinite()) return std::nullopt;
+  const double variance = (pseudo - pseudo.mean()).square().sum() / (blocks - 1) / blocks;
+  const double deviation = std::sqrt(variance * neighbour_factor(pseudo));
+  result.reduction = 1 - std::exp(-phi);
+  const double low = std::min(phi - student_quantile(confidence, blocks - 1) * deviation,
+                              least_without_a_stretch(all, rows, over));
+  result.low = 1 - std::exp(-low);
+  return result;
+}
+
+}  // namespace reident::identification

@@ -1,0 +1,158 @@
+#include "identification/comparison.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "identification/simulate.hpp"
+#include "tests/support/systems.hpp"
+
+namespace reident::identification {
+namespace {
+
+constexpr double confidence = 0.99;
+constexpr Index rows = 2000;
+
+Vector first_order(testing::Noise& noise, Index count, double coefficient) {
+  Vector values(count);
+  double value = noise.normal() / std::sqrt(1 - coefficient * coefficient);
+  for (Index k = 0; k < count; ++k) {
+    values(k) = value;
+    value = coefficient * value + noise.normal();
+  }
+  return values * std::sqrt(1 - coefficient * coefficient);
+}
+
+/// A measured output and the run of a model whose errors have the deviation 1.
+struct Trial {
+  Matrix y, run;
+};
+
+Trial trial(testing::Noise& noise, double coefficient) {
+  Trial result;
+  result.run = (5 + 4 * first_order(noise, rows, 0.9).array()).matrix();
+  result.y = result.run + first_order(noise, rows, coefficient);
+  return result;
+}
+
+/// Share of 1,000 trials in which the other run is surely better.
+double promoted(double coefficient,
+                const std::function<Matrix(const Trial&, testing::Noise&)>& other) {
+  testing::Noise noise(41);
+  int count = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Trial t = trial(noise, coefficient);
+    const auto compared = compare_runs(t.y, t.run, other(t, noise), {{0, rows}}, confidence);
+    count += compared && compared->low > 0;
+  }
+  return count / 1000.0;
+}
+
+class OfErrors : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Coloured, OfErrors, ::testing::Values(0.0, 0.8, 0.98));
+
+TEST_P(OfErrors, ARunIsNeverSurelyBetterThanItself) {
+  EXPECT_EQ(promoted(GetParam(), [](const Trial& t, auto&) { return t.run; }), 0);
+}
+
+TEST_P(OfErrors, NoiseOnARunIsPromotedInFewerThanOneOfAHundredTrials) {
+  for (const double size : {0.01, 0.1, 0.5})
+    EXPECT_LT(promoted(GetParam(),
+                       [size](const Trial& t, testing::Noise& noise) -> Matrix {
+                         return t.run + size * noise.normal(rows, 1);
+                       }),
+              0.01)
+        << size;
+  EXPECT_LT(promoted(GetParam(),
+                     [](const Trial& t, testing::Noise& noise) -> Matrix {
+                       return t.run + 0.3 * first_order(noise, rows, 0.98);
+                     }),
+            0.01);
+}
+
+TEST(PairedComparison, ARunThatErrsByATenthLessIsFoundInMoreThanNineteenOfTwentyTrials) {
+  const auto better = [](const Trial& t, auto&) -> Matrix { return 0.1 * t.y + 0.9 * t.run; };
+  EXPECT_GT(promoted(0, better), 0.95);
+  EXPECT_GT(promoted(0.8, better), 0.95);
+}
+
+TEST(PairedComparison, OfModelsThatErrByDifferentThingsFindsAnErrorSmallerByATenth) {
+  // Half of the error is common to both; the rest is each one's own, coloured.
+  testing::Noise noise(43);
+  int found = 0, wrong = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Trial t = trial(noise, 0.5);
+    const Matrix one = t.run + 0.7 * first_order(noise, rows, 0.5);
+    const Matrix other = t.run + 0.3 * first_order(noise, rows, 0.5);
+    const auto compared = compare_runs(t.y, one, other, {{0, rows}}, confidence);
+    const auto reversed = compare_runs(t.y, other, one, {{0, rows}}, confidence);
+    found += compared->low > 0;
+    wrong += reversed->low > 0;
+  }
+  EXPECT_GT(found, 950);
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(PairedComparison, AStuckSensorDoesNotPromoteWhoeverAgreesWithIt) {
+  testing::Noise noise(44);
+  int count = 0;
+  for (int i = 0; i < 1000; ++i) {
+    Trial t = trial(noise, 0.5);
+    const Index begin = static_cast<Index>(noise.uniform() * 0.9 * rows), stuck = rows * 3 / 100;
+    Matrix agreeing = t.run + 0.2 * first_order(noise, rows, 0.9);
+    t.y.middleRows(begin, stuck).setConstant(40);
+    agreeing.middleRows(begin, stuck).setConstant(35);
+    const auto compared = compare_runs(t.y, t.run, agreeing, {{0, rows}}, confidence);
+    EXPECT_GT(compared->reduction, 0.5);
+    count += compared->low > 0;
+  }
+  EXPECT_LT(count, 10);
+}
+
+TEST(PairedComparison, TellsTheReductionOfTheErrorAndBoundsItFromBelow) {
+  testing::Noise noise(45);
+  const Trial t = trial(noise, 0.5);
+  const Matrix better = 0.4 * t.y + 0.6 * t.run;
+  const auto compared = compare_runs(t.y, t.run, better, {{0, rows}}, confidence);
+  ASSERT_TRUE(compared);
+  EXPECT_NEAR(compared->reduction, 1 - score(t.y, better).mrse() / score(t.y, t.run).mrse(), 1e-9);
+  EXPECT_NEAR(compared->reduction, 0.4, 1e-9);
+  EXPECT_LE(compared->low, compared->reduction);
+  EXPECT_GE(compared->blocks, 10);
+}
+
+TEST(PairedComparison, WeighsOutputsAsTheErrorDoes) {
+  testing::Noise noise(46);
+  const Matrix run = Matrix::Constant(500, 2, 3) + noise.normal(500, 2);
+  Matrix y = run + noise.normal(500, 2) * Eigen::Vector2d(1, 0.01).asDiagonal();
+  Matrix other = run;
+  other.col(0) = 0.5 * (y.col(0) + run.col(0));
+  const auto compared = compare_runs(y, run, other, {{0, 500}}, confidence);
+  EXPECT_NEAR(compared->reduction, 1 - score(y, other).mrse() / score(y, run).mrse(), 1e-6);
+  EXPECT_GT(compared->low, 0.3);
+}
+
+TEST(PairedComparison, OfARunWithoutErrorIsCertain) {
+  testing::Noise noise(47);
+  const Trial t = trial(noise, 0);
+  const auto compared = compare_runs(t.y, t.run, t.y, {{0, rows}}, confidence);
+  ASSERT_TRUE(compared);
+  EXPECT_GT(compared->low, 0.999);
+}
+
+TEST(PairedComparison, SaysNothingOfTooFewRowsZerosOrInfinities) {
+  testing::Noise noise(48);
+  const Trial t = trial(noise, 0);
+  EXPECT_FALSE(
+      compare_runs(t.y.topRows(49), t.run.topRows(49), t.run.topRows(49), {{0, 49}}, confidence));
+  const Matrix zero = Matrix::Zero(100, 1), one = Matrix::Ones(100, 1);
+  EXPECT_FALSE(compare_runs(zero, one, zero, {{0, 100}}, confidence));
+  Matrix astray = t.run;
+  astray(7, 0) = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(compare_runs(t.y, astray, t.run, {{0, rows}}, confidence));
+}
+
+}  // namespace
+}  // namespace reident::identification
