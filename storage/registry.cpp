@@ -144,11 +144,11 @@ void add_hold(sqlite::Connection& connection, const std::string& spacecraft,
 
 // The table keeps a request's number with the same bits as a signed one.
 struct KeptCommand {
-  NewCommand command;
+  Command command;
   CommandOutcome outcome;
 };
 
-std::optional<KeptCommand> kept_command(sqlite::Connection& connection, const NewCommand& asked) {
+std::optional<KeptCommand> kept_command(sqlite::Connection& connection, const Command& asked) {
   sqlite::Query row = connection.query(
       "SELECT action, spacecraft, equipment, version, actor, reason, ok, reply FROM command "
       "WHERE requester = ? AND request = ?",
@@ -165,7 +165,7 @@ std::optional<KeptCommand> kept_command(sqlite::Connection& connection, const Ne
                      {.ok = row.integer(6) != 0, .reply = row.text(7)}};
 }
 
-void keep_command(sqlite::Connection& connection, const NewCommand& command,
+void keep_command(sqlite::Connection& connection, const Command& command,
                   const CommandOutcome& outcome, Time time) {
   connection
       .query(
@@ -228,6 +228,14 @@ std::int64_t Registry::decide(const std::string& spacecraft, const std::string& 
                                          " of " + spacecraft + " is " + found->status +
                                          ": it cannot get a decision of kind '" +
                                          std::string(name(decision.kind)) + "'");
+  if (decision.kind == DecisionKind::approve) {
+    const auto champion = champion_decision(spacecraft, equipment);
+    if (found->parent != (champion ? std::optional(champion->version) : std::nullopt))
+      throw Error(Error::Kind::failed, "version " + std::to_string(version) + " of " + equipment +
+                                           " of " + spacecraft +
+                                           " was judged against another champion than today's: "
+                                           "it cannot be approved");
+  }
   std::optional<Version> previous;
   if (decision.kind == DecisionKind::withdraw && found->status == "approved")
     previous = previous_champion(spacecraft, equipment);
@@ -261,7 +269,7 @@ void Registry::release(const std::string& spacecraft, const std::string& equipme
   transaction.commit();
 }
 
-CommandOutcome Registry::execute(const NewCommand& command, Time time,
+CommandOutcome Registry::execute(const Command& command, Time time,
                                  const std::function<CommandOutcome()>& effect) {
   sqlite::Connection& db = connection(database_);
   sqlite::Transaction transaction(db);
@@ -337,6 +345,14 @@ std::vector<Decision> Registry::decisions(const std::string& spacecraft,
       spacecraft, equipment, version);
   while (row.step()) decisions.push_back(read_decision(row));
   return decisions;
+}
+
+std::vector<EquipmentName> Registry::equipment() const {
+  std::vector<EquipmentName> names;
+  sqlite::Query row = connection(database_).query(
+      "SELECT DISTINCT spacecraft, equipment FROM attempt ORDER BY spacecraft, equipment");
+  while (row.step()) names.push_back({row.text(0), row.text(1)});
+  return names;
 }
 
 std::optional<Hold> Registry::hold(const std::string& spacecraft,

@@ -5,12 +5,14 @@
 // decision. The champion of an equipment at a time is the version named by the last decision of
 // kind `approve` or `roll_back` not later than it, unless that version was withdrawn by then; the
 // last one is the one with the highest id, which also holds when the clock was set back. A
-// version's parent is the champion at its approval.
+// version's parent is the champion that it was judged against; that one is still champion when it
+// is approved.
 //
 // What changes a decision's ground (another decision, a hold) and the decision itself never cross:
 // everything that decides checks its ground in the transaction that records it.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -70,7 +72,7 @@ struct Version {
   std::string digest;
   // "approved" (champion now), "superseded", "rejected", "waiting", "withdrawn" (for ever)
   std::string status;
-  std::optional<std::int64_t> parent;  // absent too where it was never champion
+  std::optional<std::int64_t> parent;  // absent where it was judged against no champion
   std::string provenance_json;
   std::string samples_digest;
 };
@@ -98,7 +100,7 @@ struct Standing {
 };
 
 /// An operator's command, identified by who asks and that one's count.
-struct NewCommand {
+struct Command {
   std::string requester;  // unique name of the asking program
   std::uint64_t request = 0;
   std::string action;
@@ -107,12 +109,18 @@ struct NewCommand {
   std::int64_t version = 0;  // 0 where the action names none
   std::string actor;         // the operator's name
   std::string reason;
-  bool operator==(const NewCommand&) const = default;
+  bool operator==(const Command&) const = default;
 };
 
 struct CommandOutcome {
   bool ok = false;
   std::string reply;  // what was done, or why not
+};
+
+struct EquipmentName {
+  std::string spacecraft;
+  std::string equipment;
+  auto operator<=>(const EquipmentName&) const = default;
 };
 
 /// Empty fields select everything.
@@ -140,9 +148,10 @@ class Registry {
   std::optional<std::int64_t> record_if(const Standing& standing, const NewAttempt& attempt,
                                         const NewVersion& version, const NewDecision& decision);
   /// One more decision about a version that exists. Throws Error where it does not follow from what
-  /// was decided before: a waiting version is approved or rejected, a superseded one rolled back
-  /// to, an approved or superseded one withdrawn. In the transaction that withdraws the champion,
-  /// the previous champion, where there is one, is rolled back to. Returns the decision's id.
+  /// was decided before: a waiting version is approved, if its parent is the champion, or rejected,
+  /// a superseded one rolled back to, an approved or superseded one withdrawn. In the transaction
+  /// that withdraws the champion, the previous champion, where there is one, is rolled back to.
+  /// Returns the decision's id.
   std::int64_t decide(const std::string& spacecraft, const std::string& equipment,
                       std::int64_t version, const NewDecision& decision, Time time);
 
@@ -154,7 +163,7 @@ class Registry {
   /// Runs `effect`, which decides on this registry, and keeps the command with its outcome, in one
   /// transaction. A command whose outcome is kept already gets that, and its effect does not run
   /// again. Throws Error where the request's number was used for another command.
-  CommandOutcome execute(const NewCommand& command, Time time,
+  CommandOutcome execute(const Command& command, Time time,
                          const std::function<CommandOutcome()>& effect);
 
   std::optional<Version> version(const std::string& spacecraft, const std::string& equipment,
@@ -173,6 +182,8 @@ class Registry {
   /// Ascending by id.
   std::vector<Decision> decisions(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<std::int64_t> version = std::nullopt) const;
+  /// Those with attempts, in alphabetical order.
+  std::vector<EquipmentName> equipment() const;
   std::optional<Hold> hold(const std::string& spacecraft, const std::string& equipment) const;
   Standing standing(const std::string& spacecraft, const std::string& equipment) const;
   /// Ascending by id.

@@ -157,9 +157,9 @@ CREATE VIEW telemetry_late AS
 )sql";
 
 constexpr std::string_view registry_views = R"sql(
--- Each version that was ever champion, with the champion that it followed.
+-- Each version with the champion that it was judged against: the one before its first decision.
 CREATE VIEW lineage AS
-  SELECT spacecraft, equipment, version, time AS approved,
+  SELECT spacecraft, equipment, version,
          (SELECT before.version FROM decision AS before
           WHERE before.id = (SELECT max(id) FROM decision AS earlier
                              WHERE earlier.spacecraft = own.spacecraft
@@ -172,7 +172,10 @@ CREATE VIEW lineage AS
                               AND withdrawal.version = before.version
                               AND withdrawal.kind = 'withdraw'
                               AND withdrawal.id < own.id)) AS parent
-  FROM decision AS own WHERE kind = 'approve';
+  FROM decision AS own
+  WHERE id = (SELECT min(id) FROM decision AS first WHERE first.spacecraft = own.spacecraft
+                                                      AND first.equipment = own.equipment
+                                                      AND first.version = own.version);
 
 CREATE VIEW model_version AS
   SELECT version.spacecraft, version.equipment, number AS version, attempt, window_begin,

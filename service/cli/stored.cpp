@@ -43,7 +43,8 @@ int with_database(const DatabaseOptions& options,
     return work(database);
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::cannot_open &&
-        error.kind() != storage::Error::Kind::newer_schema)
+        error.kind() != storage::Error::Kind::newer_schema &&
+        error.kind() != storage::Error::Kind::older_schema)
       throw;
     return refuse({error.what()});
   }

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "service/daemon/commands.hpp"
 #include "service/support/log.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/version.hpp"
@@ -58,6 +59,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       writer_(open_for_writing(config), queue_, config.batch_frames, config.batch_delay, feed_),
       participant_(dds::Endpoint{config.domain, config.partition}),
       publisher_(participant_),
+      desk_(participant_, config.service_name),
       ingest_(std::in_place, participant_, config, queue_) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
@@ -84,6 +86,8 @@ void Daemon::start() {
   ingest_thread_ = spawn("ingest", [this] { ingest_->run(); });
   for (unsigned i = 0; i < config_.workers; ++i)
     identification_threads_.push_back(spawn("identify", [this] { identify_windows(); }));
+  desk_thread_ = spawn("command", [this] { answer_operators(); });
+  monitor_thread_ = spawn("monitor", [this] { watch_champions(); });
 }
 
 std::thread Daemon::spawn(const char* name, std::function<void()> body) {
@@ -140,7 +144,7 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
     const storage::Standing standing = registry.standing(*job.spacecraft, job.equipment->name);
     return conclude(refresh(archive, registry, request, kept, on_all_cores,
                             [this] { return stopping_.load(); }),
-                    standing);
+                    standing, registry);
   } catch (const Stopped&) {
     return false;
   } catch (const std::future_error&) {  // the writer has ended
@@ -148,9 +152,8 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
   }
 }
 
-bool Daemon::conclude(RefreshResult&& result, const storage::Standing& standing) {
-  std::optional<storage::Version> approved;
-  std::optional<storage::Decision> decision;
+bool Daemon::conclude(RefreshResult&& result, const storage::Standing& standing,
+                      const storage::Registry& reader) {
   std::optional<std::int64_t> number;
   writer_
       .post([&](storage::Registry& registry, auto&) {
@@ -161,19 +164,73 @@ bool Daemon::conclude(RefreshResult&& result, const storage::Standing& standing)
           return;
         }
         number = registry.record_if(standing, result.attempt, result.version, *result.decision);
-        if (!number || result.decision->kind != storage::DecisionKind::approve) return;
-        approved = registry.champion(result.attempt.spacecraft, result.attempt.equipment);
-        decision = registry.champion_decision(result.attempt.spacecraft, result.attempt.equipment);
       })
       .get();
   if (!number) return false;
   ++attempts_;
-  if (approved && publisher_.publish(*approved, *decision)) ++approvals_;
+  if (result.decision && result.decision->kind == storage::DecisionKind::approve) {
+    ++approvals_;
+    publisher_.publish_champion(reader, {result.attempt.spacecraft, result.attempt.equipment});
+  }
   IdentificationReport report = report_of(result);
   report.version = *number;
   publisher_.report(report);
   log_attempt(report);
   return true;
+}
+
+void Daemon::answer_operators() {
+  storage::Database database(config_.database, storage::Database::Mode::read_only);
+  const storage::Registry reader(database);
+  const std::vector<storage::EquipmentName> configured = equipment_of(config_);
+  desk_.run([&](const storage::Command& command) -> std::optional<storage::CommandOutcome> {
+    storage::CommandOutcome outcome;
+    try {
+      writer_
+          .post([&](storage::Registry& registry, auto&) {
+            outcome = execute(command, registry, configured, clock_());
+          })
+          .get();
+    } catch (const std::future_error&) {  // the writer has ended
+      return std::nullopt;
+    }
+    if (outcome.ok)
+      for (const storage::EquipmentName& equipment : reader.equipment())
+        if (equipment.equipment == command.equipment)
+          publisher_.publish_champion(reader, equipment);
+    return outcome;
+  });
+}
+
+void Daemon::watch_champions() {
+  storage::Database database(config_.database, storage::Database::Mode::read_only);
+  const storage::Archive archive(database);
+  const storage::Registry registry(database);
+  struct Watched {
+    const std::string* spacecraft;
+    const EquipmentConfig* equipment;
+    ChampionMonitor monitor;
+  };
+  std::vector<Watched> watched;
+  for (const SpacecraftConfig& spacecraft : config_.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      watched.push_back({&spacecraft.name, &equipment, {spacecraft.name, equipment.name}});
+  std::uint64_t seen = 0;
+  while (feed_.wait_for_telemetry(seen))
+    for (std::size_t i = 0; i < watched.size() && !stopping_; ++i) {
+      const storage::Time reached = feed_.reached(i);
+      if (reached == INT64_MIN) continue;  // none of its telemetry has come
+      auto& [spacecraft, equipment, monitor] = watched[i];
+      const auto drift =
+          monitor.look(archive, registry, reached - config_.settle, equipment->window);
+      if (!drift) continue;
+      feed_.ask(*spacecraft, equipment->name, "drift", drift->end);
+      log::warning("monitor", "the champion drifts; its equipment is identified anew",
+                   {{"equipment", *spacecraft + "/" + equipment->name},
+                    {"version", drift->version},
+                    {"window_end", time_text(drift->end)},
+                    {"error_ratio", drift->error_ratio}});
+    }
 }
 
 void Daemon::heartbeat() {
@@ -203,6 +260,9 @@ void Daemon::heartbeat() {
 
 bool Daemon::stop() {
   if (stopping_.exchange(true)) return true;
+  desk_.stop();
+  if (desk_thread_.joinable()) desk_thread_.join();
+  if (monitor_thread_.joinable()) monitor_thread_.join();
   feed_.stop();
   ingest_->stop();
   if (ingest_thread_.joinable()) ingest_thread_.join();

@@ -5,6 +5,8 @@
 //                                     window feed -> identification threads (read-only databases)
 //                                        ^               | attempt, version, decision
 //                                        '- writer <-----' then publisher
+//   command desk thread -> writer thread, then publisher, then the reply
+//   monitor thread (a read-only database) -> window feed, when a champion drifts
 #pragma once
 
 #include <atomic>
@@ -14,6 +16,8 @@
 
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
+#include "service/daemon/champion_monitor.hpp"
+#include "service/daemon/command_desk.hpp"
 #include "service/daemon/config.hpp"
 #include "service/daemon/ingest.hpp"
 #include "service/daemon/publisher.hpp"
@@ -50,7 +54,10 @@ class Daemon {
                 const storage::Registry& registry);
   /// Commits the attempt, then publishes what follows from it. False when the equipment's standing
   /// is not the one that the attempt saw any more.
-  bool conclude(RefreshResult&& result, const storage::Standing& standing);
+  bool conclude(RefreshResult&& result, const storage::Standing& standing,
+                const storage::Registry& registry);
+  void answer_operators();
+  void watch_champions();
 
   const Config& config_;
   const Clock clock_;
@@ -61,11 +68,12 @@ class Daemon {
   ArchiveWriter writer_;
   dds::Participant participant_;
   Publisher publisher_;
+  CommandDesk desk_;
   std::optional<Ingest> ingest_;  // ends before the middleware hears again
   /// By equipment, which has one job at a time: the job's thread owns its entry.
   std::vector<KeptWindow> kept_;
 
-  std::thread ingest_thread_, writer_thread_;
+  std::thread ingest_thread_, writer_thread_, desk_thread_, monitor_thread_;
   std::vector<std::thread> identification_threads_;
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> failed_ = false;

@@ -1,5 +1,7 @@
 #include "service/daemon/publisher.hpp"
 
+#include <algorithm>
+
 #include "service/model/model_json.hpp"
 #include "service/support/log.hpp"
 #include "service/support/version.hpp"
@@ -9,7 +11,8 @@ namespace reident {
 Publisher::Publisher(dds::Participant& participant)
     : versions_(participant), reports_(participant), status_(participant) {}
 
-bool Publisher::publish(const storage::Version& version, const storage::Decision& decision) {
+bool Publisher::write(const storage::Version& version, const storage::Decision& decision,
+                      bool follows_a_newer_one) {
   ModelVersion message;
   std::string fault;
   try {
@@ -30,18 +33,45 @@ bool Publisher::publish(const storage::Version& version, const storage::Decision
   message.digest = version.digest;
   message.decided = decision.time;
   message.decided_by = decision.actor;
-  message.rollback = decision.kind == storage::DecisionKind::roll_back;
+  // Said also of a version that was approved after a rollback: a simulator may have missed that.
+  message.rollback = decision.kind == storage::DecisionKind::roll_back || follows_a_newer_one;
   message.program_version = program_version();
   versions_.write(message);
   return true;
 }
 
+bool Publisher::publish_champion(const storage::Registry& registry,
+                                 const storage::EquipmentName& equipment) {
+  const MutexLock lock(versions_mutex_);
+  const auto& [spacecraft, name] = equipment;
+  const auto made = registry.champion_decision(spacecraft, name);
+  const auto published = published_.find(equipment);
+  if (!made) {
+    if (published == published_.end()) return true;
+    ModelVersion none;
+    none.model.spacecraft = spacecraft;
+    none.model.equipment = name;
+    versions_.dispose(none);
+    published_.erase(published);
+    return true;
+  }
+  if (published != published_.end() && published->second == made->id) return true;
+  const auto decisions = registry.decisions(spacecraft, name);
+  const bool follows_a_newer_one =
+      std::any_of(decisions.begin(), decisions.end(), [&](const storage::Decision& earlier) {
+        return earlier.id < made->id && earlier.version > made->version &&
+               earlier.kind == storage::DecisionKind::approve;
+      });
+  const auto version = registry.version(spacecraft, name, made->version);
+  if (!write(*version, *made, follows_a_newer_one)) return false;
+  published_[equipment] = made->id;
+  return true;
+}
+
 std::size_t Publisher::publish_champions(const storage::Registry& registry) {
   std::size_t published = 0;
-  for (const storage::Version& champion : registry.champions()) {
-    const auto decision = registry.champion_decision(champion.spacecraft, champion.equipment);
-    if (decision && publish(champion, *decision)) ++published;
-  }
+  for (const storage::Version& champion : registry.champions())
+    if (publish_champion(registry, {champion.spacecraft, champion.equipment})) ++published;
   return published;
 }
 

@@ -1,7 +1,11 @@
-// Everything that the service says: approved versions, a report of every attempt, its heartbeat.
+// Everything that the service says by itself: approved versions, a report of every attempt, its
+// heartbeat.
 #pragma once
 
+#include <map>
+
 #include "service/dds/dds.hpp"
+#include "service/support/mutex.hpp"
 #include "storage/registry.hpp"
 
 namespace reident {
@@ -12,18 +16,31 @@ class Publisher {
   /// Throws dds::Error, as every call does.
   explicit Publisher(dds::Participant& participant);
 
-  /// Publishes a champion as the registry holds it. A model that does not match its digest is not
-  /// published; returns false and logs why.
-  bool publish(const storage::Version& version, const storage::Decision& decision);
-  /// Publishes every champion again, for simulators that start after the service. Returns how many.
+  /// Publishes what the registry says now about an equipment: its champion, if that was not
+  /// published yet, or that there is none. Whoever decided calls it afterwards; of several at a
+  /// time the last one publishes the last decision. A model that does not match its digest is not
+  /// published, which is logged; returns false.
+  bool publish_champion(const storage::Registry& registry, const storage::EquipmentName& equipment);
+  /// The same for every champion, for simulators that start after the service. Returns how many.
   std::size_t publish_champions(const storage::Registry& registry);
 
-  void report(const IdentificationReport& report) { reports_.write(report); }
+  void report(const IdentificationReport& report) {
+    const MutexLock lock(reports_mutex_);
+    reports_.write(report);
+  }
+  /// One thread's.
   void status(const ServiceStatus& status) { status_.write(status); }
 
  private:
-  dds::Writer<ModelVersion> versions_;
-  dds::Writer<IdentificationReport> reports_;
+  bool write(const storage::Version& version, const storage::Decision& decision,
+             bool follows_a_newer_one) REIDENT_REQUIRES(versions_mutex_);
+
+  Mutex versions_mutex_;
+  dds::Writer<ModelVersion> versions_ REIDENT_GUARDED_BY(versions_mutex_);
+  /// Id of the decision that made the published champion; absent where none is published.
+  std::map<storage::EquipmentName, std::int64_t> published_ REIDENT_GUARDED_BY(versions_mutex_);
+  Mutex reports_mutex_;
+  dds::Writer<IdentificationReport> reports_ REIDENT_GUARDED_BY(reports_mutex_);
   dds::Writer<ServiceStatus> status_;
 };
 

@@ -129,4 +129,36 @@ struct Codec<ServiceStatus> {
   static Fault decode(const Wire& wire, const ReaderOptions& options, ServiceStatus& status);
 };
 
+template <>
+struct Codec<CommandRequest> {
+  using Wire = reident_Command;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_Command_desc;
+  static constexpr const Profile& profile = command_request;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const CommandRequest& request);
+
+   private:
+    Wire wire_{};
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, CommandRequest& request);
+};
+
+template <>
+struct Codec<CommandReply> {
+  using Wire = reident_CommandReply;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_CommandReply_desc;
+  static constexpr const Profile& profile = command_reply;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const CommandReply& reply);
+
+   private:
+    Wire wire_{};
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, CommandReply& reply);
+};
+
 }  // namespace reident::dds

@@ -1,8 +1,8 @@
 // Typed, owning access to the topics of idl/README.md. No DDS type shows here.
 //
 // M is one of storage::TelemetryFrame, storage::ParameterDescriptor, ModelVersion,
-// IdentificationReport, ModelAcknowledgement and ServiceStatus; the topic, its key and its QoS
-// follow from it (service/dds/qos.hpp has every profile).
+// IdentificationReport, ModelAcknowledgement, ServiceStatus, CommandRequest and CommandReply; the
+// topic, its key and its QoS follow from it (service/dds/qos.hpp has every profile).
 #pragma once
 
 #include <chrono>
@@ -72,6 +72,9 @@ class Writer {
   /// the message was not written (a reader in this process that was full may find it missing, those
   /// in other processes may have it).
   bool write(const M& message, const std::function<bool()>& stop);
+  /// Says that what was written for the message's key holds no more: readers that join later get
+  /// nothing for it. Throws Error.
+  void dispose(const M& message);
   std::uint32_t matched_readers() const;
   /// False when `timeout` passed before every matched reader had everything.
   bool wait_for_acknowledgments(std::chrono::nanoseconds timeout);

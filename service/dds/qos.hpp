@@ -26,7 +26,7 @@ struct Profile {
   const char* topic;
   std::int32_t history;       // samples kept of an instance, or keep_all
   std::int32_t late_joiners;  // the same for readers that join late; with keep_all the writer's
-                              // options say how many
+                              // options say how many; 0 makes the topic VOLATILE
   /// The instances of a writer that ends are disposed of. False where what was said last stays
   /// true without its writer.
   bool autodispose;
@@ -38,6 +38,8 @@ inline constexpr Profile model_version{"reident/ModelVersion", 1, 1, false};
 inline constexpr Profile identification_report{"reident/IdentificationReport", 64, 64, false};
 inline constexpr Profile model_acknowledgement{"reident/ModelAcknowledgement", 1, 1, true};
 inline constexpr Profile service_status{"reident/ServiceStatus", 1, 1, true};
+inline constexpr Profile command_request{"reident/Command", 1, 0, true};
+inline constexpr Profile command_reply{"reident/CommandReply", 1, 0, true};
 
 /// The middleware's blocking time of one attempt to write: how soon a stop request is seen.
 inline constexpr std::chrono::milliseconds write_slice{100};

@@ -62,5 +62,7 @@ template class Reader<ModelVersion>;
 template class Reader<IdentificationReport>;
 template class Reader<ModelAcknowledgement>;
 template class Reader<ServiceStatus>;
+template class Reader<CommandRequest>;
+template class Reader<CommandReply>;
 
 }  // namespace reident::dds

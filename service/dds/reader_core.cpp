@@ -39,7 +39,7 @@ ReaderCore::ReaderCore(Participant& participant, const Profile& profile,
       topic_(dds_create_topic(participant.impl().participant.get(), &descriptor, profile.topic,
                               nullptr, nullptr),
              "dds_create_topic", profile.topic),
-      first_(make_ear(true)) {}
+      first_(make_ear(!is_volatile())) {}
 
 ReaderCore::Ear ReaderCore::make_ear(bool transient_local) const {
   const Qos qos = reader_qos(profile_, options_, transient_local);
@@ -60,7 +60,7 @@ void ReaderCore::meet_writers() {
                  {{"topic", profile_.topic}});
     warned_of_best_effort_ = true;
   }
-  if (!unmatched.reliable_volatile || second_.reader) return;
+  if (!unmatched.reliable_volatile || second_.reader || is_volatile()) return;
   second_ = make_ear(false);
   for (const dds_entity_t wait_set : wait_sets_) attach(wait_set, second_);
 }

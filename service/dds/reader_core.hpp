@@ -49,6 +49,8 @@ class ReaderCore {
   bool is_heard_by_first(dds_instance_handle_t writer);
   /// Takes until nothing came for `quiet`, or until `limit` has passed.
   std::size_t take_until_quiet(dds_duration_t quiet, dds_duration_t limit, const Visit& visit);
+  /// A topic without history: the first reader matches every writer.
+  bool is_volatile() const { return profile_.history != keep_all && profile_.late_joiners == 0; }
   /// Whether a full reader makes writers, and the middleware's thread, wait.
   bool is_bounded() const { return profile_.history == keep_all && options_.keep_last == 0; }
 

@@ -50,5 +50,7 @@ template void WaitSet::attach(Reader<ModelVersion>& reader);
 template void WaitSet::attach(Reader<IdentificationReport>& reader);
 template void WaitSet::attach(Reader<ModelAcknowledgement>& reader);
 template void WaitSet::attach(Reader<ServiceStatus>& reader);
+template void WaitSet::attach(Reader<CommandRequest>& reader);
+template void WaitSet::attach(Reader<CommandReply>& reader);
 
 }  // namespace reident::dds

@@ -13,6 +13,22 @@ struct Writer<M>::Impl {
                                  writer_qos(Codec<M>::profile, options).get(), nullptr),
                "dds_create_writer", name) {}
 
+  /// Makes the call until it does not time out, or `stop` answers true: then false.
+  bool insist(const char* what, const std::function<dds_return_t()>& call,
+              const std::function<bool()>& stop) const {
+    const bool waits_for_room = Codec<M>::profile.history == keep_all;
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (true) {
+      const dds_return_t result = call();
+      if (result != DDS_RETCODE_TIMEOUT) {
+        check(result, what, name);
+        return true;
+      }
+      if (stop()) return false;
+      if (!waits_for_room && std::chrono::steady_clock::now() >= deadline) fail(result, what, name);
+    }
+  }
+
   static constexpr const char* name = Codec<M>::profile.topic;
   Entity topic;
   Entity writer;
@@ -37,19 +53,15 @@ void Writer<M>::write(const M& message) {
 template <class M>
 bool Writer<M>::write(const M& message, const std::function<bool()>& stop) {
   const auto& wire = impl_->encode(message);
-  const bool waits_for_room = Codec<M>::profile.history == keep_all;
-  const auto deadline = std::chrono::steady_clock::now() + patience;
-  while (true) {
-    const dds_return_t result = dds_write(impl_->writer.get(), &wire);
-    if (result != DDS_RETCODE_TIMEOUT) {
-      check(result, "dds_write", impl_->name);
-      return true;
-    }
-    if (stop()) return false;
-    if (!waits_for_room && std::chrono::steady_clock::now() >= deadline) {
-      fail(result, "dds_write", impl_->name);
-    }
-  }
+  return impl_->insist(
+      "dds_write", [&] { return dds_write(impl_->writer.get(), &wire); }, stop);
+}
+
+template <class M>
+void Writer<M>::dispose(const M& message) {
+  const auto& wire = impl_->encode(message);
+  impl_->insist(
+      "dds_dispose", [&] { return dds_dispose(impl_->writer.get(), &wire); }, [] { return false; });
 }
 
 template <class M>
@@ -74,5 +86,7 @@ template class Writer<ModelVersion>;
 template class Writer<IdentificationReport>;
 template class Writer<ModelAcknowledgement>;
 template class Writer<ServiceStatus>;
+template class Writer<CommandRequest>;
+template class Writer<CommandReply>;
 
 }  // namespace reident::dds

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "storage/registry.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident {
@@ -37,6 +38,18 @@ struct ModelAcknowledgement {
   bool accepted = true;  // false: refused, `reason` says why, and the older version goes on
   std::string reason;
   double running_mrse_percent = 0;  // since the swap; NaN before the first sample
+};
+
+/// An operator's order, sent again until its reply comes.
+struct CommandRequest {
+  storage::Command command;
+  std::string service;  // instance name of the one that is asked; empty: every one
+};
+
+struct CommandReply {
+  std::string requester;
+  std::uint64_t request = 0;
+  storage::CommandOutcome outcome;
 };
 
 /// Heartbeat of a service.

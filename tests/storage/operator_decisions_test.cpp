@@ -20,7 +20,7 @@ class OperatorDecisions : public RegistryTest {
     const auto version = registry.previous_champion("CB4", "BDR");
     return version ? version->number : 0;
   }
-  static NewCommand approval_of(std::uint64_t request) {
+  static Command approval_of(std::uint64_t request) {
     return {.requester = "console-1",
             .request = request,
             .action = "approve",
@@ -95,17 +95,37 @@ TEST_F(OperatorDecisions, AWithdrawalCountsFromItsTimeWhenTheClockWasSetBack) {
   EXPECT_EQ(champion_at(std::nullopt), 0);
 }
 
-TEST_F(OperatorDecisions, AParentIsTheChampionAtTheApproval) {
+TEST_F(OperatorDecisions, AParentIsTheChampionThatAVersionWasJudgedAgainst) {
   version(10, approve);
   version(20, reject);
   version(30, approve);
   version(40, wait);
   decide(1, roll_back, 50);
   version(60, approve);  // 5, follows 1
-  decide(4, approve, 70);
-  EXPECT_THAT(parents(), ElementsAre(0, 0, 1, 5, 1));
-  decide(4, withdraw, 80);
-  EXPECT_THAT(parents(), ElementsAre(0, 0, 1, 5, 1)) << "what was, was";
+  EXPECT_THAT(parents(), ElementsAre(0, 1, 1, 3, 1));
+  decide(5, withdraw, 70);
+  decide(3, roll_back, 80);
+  EXPECT_THAT(parents(), ElementsAre(0, 1, 1, 3, 1)) << "what was, was";
+}
+
+TEST_F(OperatorDecisions, AVersionIsApprovedAgainstTheChampionThatItWasJudgedAgainst) {
+  version(10, approve);
+  version(20, wait);
+  version(30, wait);
+  decide(2, approve, 40);
+  EXPECT_THAT(error_of([&] { decide(3, approve, 50); }), HasSubstr("another champion"));
+  EXPECT_EQ(champion_at(std::nullopt), 2);
+  decide(1, roll_back, 60);
+  decide(3, approve, 70);
+  EXPECT_EQ(champion_at(std::nullopt), 3);
+}
+
+TEST_F(OperatorDecisions, EquipmentIsNamedOnce) {
+  version(10, approve);
+  version(20, approve);
+  registry.record(attempt(30, {0, 100}, "BAT1"));
+  EXPECT_THAT(registry.equipment(),
+              ElementsAre(EquipmentName{"CB4", "BAT1"}, EquipmentName{"CB4", "BDR"}));
 }
 
 TEST_F(OperatorDecisions, AfterAWithdrawalWithoutSuccessorTheNextHasNoParent) {
@@ -201,7 +221,7 @@ TEST_F(OperatorDecisions, ACommandThatComesTwiceHasItsEffectOnceAndTheSameReply)
     decide(1, approve, 20);
     return CommandOutcome{true, "approved"};
   };
-  NewCommand command = approval_of(0xffffffffffffffff);
+  Command command = approval_of(0xffffffffffffffff);
   for (const Time time : {20, 30}) {
     const CommandOutcome outcome = registry.execute(command, time, approval);
     EXPECT_TRUE(outcome.ok);
@@ -221,7 +241,7 @@ TEST_F(OperatorDecisions, ACommandThatComesTwiceHasItsEffectOnceAndTheSameReply)
 }
 
 TEST_F(OperatorDecisions, ARefusedCommandIsKeptToo) {
-  const NewCommand command = approval_of(1);
+  const Command command = approval_of(1);
   const auto refusal = [] { return CommandOutcome{false, "not waiting"}; };
   registry.execute(command, 20, refusal);
   EXPECT_THAT(rows(path, "SELECT ok, reply FROM command"), ElementsAre("0|not waiting"));
@@ -229,7 +249,7 @@ TEST_F(OperatorDecisions, ARefusedCommandIsKeptToo) {
 
 TEST_F(OperatorDecisions, ACommandAndItsEffectAreKeptBothOrNeither) {
   version(10, wait);
-  const NewCommand command = approval_of(1);
+  const Command command = approval_of(1);
   rows(path,
        "CREATE TRIGGER refuse BEFORE INSERT ON command "
        "BEGIN SELECT RAISE(ABORT, 'not today'); END");

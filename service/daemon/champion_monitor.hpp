@@ -1,0 +1,57 @@
+// Scores the champion of an equipment on new telemetry, block by block, and tells when its errors
+// have grown for good.
+//
+// A block is a sixteenth of the stretch that the champion was validated on, whose blocks are the
+// reference (identification/change_detection.hpp). The free run goes on from block to block, as a
+// simulator's does; after a gap its state is the one that agrees with the first telemetry behind.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "identification/change_detection.hpp"
+#include "service/daemon/config.hpp"
+#include "service/model/model_version.hpp"
+#include "storage/archive.hpp"
+#include "storage/registry.hpp"
+
+namespace reident {
+
+class ChampionMonitor {
+ public:
+  ChampionMonitor(std::string spacecraft, std::string equipment);
+
+  struct Drift {
+    std::int64_t version = 0;
+    storage::Time end = 0;   // of the block with which it was found
+    double error_ratio = 0;  // of that block's error to the usual one
+  };
+
+  /// Takes in the blocks that telemetry up to `reached` completes. A champion that was replaced is
+  /// forgotten. Of a champion that was validated in the past at most `most_past` before `reached`
+  /// is looked at.
+  std::optional<Drift> look(const storage::Archive& archive, const storage::Registry& registry,
+                            storage::Time reached, Duration most_past);
+
+ private:
+  void watch(const storage::Archive& archive, const storage::Version& version);
+  /// Runs the champion over a block. Logarithm of its error there; absent where telemetry covers
+  /// less than half of it.
+  std::optional<double> log_error(const storage::Archive& archive, storage::TimeRange block);
+  /// Outputs over a segment, from where the run is or, after a gap, anew.
+  identification::Matrix run(const identification::Record& record,
+                             const identification::Segment& segment);
+
+  const std::string spacecraft_;
+  const std::string equipment_;
+  std::int64_t version_ = 0;  // that is watched; 0 before the first
+  EquipmentModel model_;
+  Duration block_ = 0;
+  storage::Time next_ = 0;        // begin of the next block
+  identification::Vector state_;  // of the run, at the tick state_tick_
+  std::optional<std::int64_t> state_tick_;
+  std::optional<identification::ChangeDetector> detector_;  // absent: nothing to compare with
+};
+
+}  // namespace reident

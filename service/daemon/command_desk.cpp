@@ -1,0 +1,69 @@
+#include "service/daemon/command_desk.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "service/support/log.hpp"
+
+namespace reident {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t take_at_most = 16;
+constexpr auto look_around = 500ms;  // for stop(); data and wake() end the wait earlier
+
+}  // namespace
+
+CommandDesk::CommandDesk(dds::Participant& participant, std::string service)
+    : service_(std::move(service)),
+      commands_(participant),
+      replies_(participant),
+      ready_(participant) {
+  ready_.attach(commands_);
+}
+
+void CommandDesk::answer(const CommandRequest& request, const Execute& execute) {
+  if (!request.service.empty() && request.service != service_) return;
+  const storage::Command& command = request.command;
+  std::optional<storage::CommandOutcome> outcome;
+  try {
+    outcome = execute(command);
+  } catch (const storage::Error& error) {
+    // Not kept, so that the same command can succeed later.
+    outcome = {false, error.what()};
+  }
+  if (!outcome) return;
+  log::info("command", outcome->ok ? "done" : "refused",
+            {{"action", command.action},
+             {"equipment", command.spacecraft + "/" + command.equipment},
+             {"version", command.version},
+             {"actor", command.actor},
+             {"reply", outcome->reply}});
+  replies_.write({command.requester, command.request, *std::move(outcome)});
+}
+
+void CommandDesk::run(const Execute& execute) {
+  while (!stopping_) {
+    ready_.wait(look_around);
+    std::vector<CommandRequest> requests;
+    do {
+      requests.clear();
+      commands_.take(
+          take_at_most, [&](CommandRequest&& request) { requests.push_back(std::move(request)); },
+          [](const CommandRequest& request, const std::string& reason) {
+            log::warning("command", "refused a malformed command",
+                         {{"requester", request.command.requester}, {"reason", reason}});
+          });
+      for (const CommandRequest& request : requests)
+        if (!stopping_) answer(request, execute);
+    } while (!requests.empty() && !stopping_);
+  }
+}
+
+void CommandDesk::stop() {
+  stopping_ = true;
+  ready_.wake();
+}
+
+}  // namespace reident

@@ -1,0 +1,94 @@
+#include "service/daemon/champion_monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "service/daemon/refresh.hpp"
+#include "tests/service/daemon/daemon_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+class Monitor : public DaemonTest {
+ protected:
+  Monitor() {
+    archive.describe(descriptors());
+    archive.append(telemetry(day, 1201));
+    approve(day + 20 * minute);
+  }
+
+  static EquipmentConfig equipment() {
+    EquipmentConfig equipment = plant();
+    equipment.window = 20 * minute;
+    return equipment;
+  }
+  void approve(storage::Time end) {
+    KeptWindow kept = kept_window_of("SAT", equipment());
+    const RefreshResult result = refresh(
+        archive, registry, {"SAT", equipment(), {end - equipment().window, end}, "slide", "digest"},
+        kept, {}, [] { return false; });
+    ASSERT_TRUE(result.candidate) << result.attempt.reason;
+    registry.record(result.attempt, result.version,
+                    {storage::DecisionKind::approve, "gate", "good"});
+  }
+  std::optional<ChampionMonitor::Drift> look(storage::Time reached) {
+    return monitor.look(archive, registry, reached, 60 * minute);
+  }
+
+  storage::Database database = open();
+  storage::Archive archive{database};
+  storage::Registry registry{database};
+  ChampionMonitor monitor{"SAT", "PLANT"};
+};
+
+TEST_F(Monitor, IsSilentWhileThePlantIsAsItWas) {
+  archive.append(telemetry(day + 20 * minute + second, 7200));
+  for (int minutes = 20; minutes <= 140; minutes += 5)
+    EXPECT_FALSE(look(day + minutes * minute)) << minutes;
+}
+
+TEST_F(Monitor, FindsThatThePlantHasChangedBeforeAWindowHasSlid) {
+  archive.append(telemetry(day + 20 * minute + second, 600, 1.5));
+  std::optional<ChampionMonitor::Drift> drift;
+  storage::Time reached = day + 20 * minute;
+  while (!drift && reached < day + 30 * minute) drift = look(reached += second);
+  ASSERT_TRUE(drift);
+  EXPECT_EQ(drift->version, 1);
+  EXPECT_LT(drift->end, day + 25 * minute);
+  EXPECT_GT(drift->error_ratio, 2);
+}
+
+TEST_F(Monitor, DoesNotTakeOneBadStretchForAChange) {
+  auto frames = telemetry(day + 20 * minute + second, 1800);
+  for (std::size_t k = 300; k < 310; ++k) frames[k].samples[2].value = 1000;
+  archive.append(frames);
+  EXPECT_FALSE(look(day + 50 * minute));
+}
+
+TEST_F(Monitor, PassesOverBlocksWithoutTelemetry) {
+  archive.append(telemetry(day + 40 * minute, 900));
+  EXPECT_FALSE(look(day + 55 * minute));
+}
+
+TEST_F(Monitor, WatchesTheNextChampionAfterwards) {
+  archive.append(telemetry(day + 20 * minute + second, 1800, 1.5));
+  EXPECT_TRUE(look(day + 30 * minute));
+  approve(day + 50 * minute);
+  archive.append(telemetry(day + 50 * minute + 2 * second, 1800, 1.5));
+  EXPECT_FALSE(look(day + 80 * minute));
+}
+
+TEST_F(Monitor, HasNothingToSayWithoutAChampion) {
+  ChampionMonitor other("SAT", "OTHER");
+  EXPECT_FALSE(other.look(archive, registry, day + 20 * minute, 60 * minute));
+}
+
+TEST_F(Monitor, ThatBeginsLateLooksAtTheRecentPastAlone) {
+  archive.append(telemetry(day + 20 * minute + second, 600, 1.5));
+  archive.append(telemetry(day + 30 * minute + 2 * second, 7200));
+  ChampionMonitor later("SAT", "PLANT");
+  EXPECT_FALSE(later.look(archive, registry, day + 150 * minute, 60 * minute));
+  EXPECT_TRUE(look(day + 79 * minute)) << "one that began in time";
+}
+
+}  // namespace
+}  // namespace reident::test
