@@ -48,6 +48,13 @@ std::string order_text(const EquipmentConfig& equipment) {
              : fmt::format("{} to {}", equipment.min_order, equipment.max_order);
 }
 
+std::string signals_text(const EquipmentConfig& equipment) {
+  std::string text = joined(equipment.inputs) + " -> " + joined(equipment.outputs);
+  for (const DerivedInput& input : equipment.derived)
+    text += fmt::format("; {} = {}", input.name, input.expression);
+  return text;
+}
+
 void print_summary(const Config& config) {
   fmt::print("service {} on domain {}, partition {}; database {}\n", config.service_name,
              config.domain, config.partition, config.database.string());
@@ -59,8 +66,15 @@ void print_summary(const Config& config) {
                  duration_text(equipment.window), duration_text(equipment.slide),
                  order_text(equipment),
                  equipment.approval == ApprovalPolicy::automatic ? "automatic" : "by hand",
-                 joined(equipment.inputs) + " -> " + joined(equipment.outputs)});
+                 signals_text(equipment)});
   fmt::print("{}", table.text(terminal_width()));
+}
+
+ordered_json derived_json(const std::vector<DerivedInput>& inputs) {
+  ordered_json list = ordered_json::array();
+  for (const DerivedInput& input : inputs)
+    list.push_back({{"name", input.name}, {"expression", input.expression}, {"unit", input.unit}});
+  return list;
 }
 
 void print_summary_json(const Config& config) {
@@ -70,6 +84,7 @@ void print_summary_json(const Config& config) {
       list.push_back({{"spacecraft", spacecraft.name},
                       {"equipment", equipment.name},
                       {"inputs", equipment.inputs},
+                      {"derived", derived_json(equipment.derived)},
                       {"outputs", equipment.outputs},
                       {"sample_period", duration_text(equipment.sample_period)},
                       {"window", duration_text(equipment.window)},

@@ -137,6 +137,7 @@ int run(const Arguments& arguments) {
   outcome.identified = std::get<Identified>(std::move(result));
   outcome.inputs = data.inputs;
   outcome.outputs = data.outputs;
+  outcome.derived = data.derived;
   outcome.warnings = data.warnings;
   const auto& own = outcome.identified.warnings;
   outcome.warnings.insert(outcome.warnings.end(), own.begin(), own.end());
@@ -160,6 +161,11 @@ void add_identify(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--output", arguments->data.outputs, "columns that the model computes")
       ->required();
+  command
+      ->add_option("--derive", arguments->data.derive,
+                   "NAME=EXPRESSION: an input for --input that follows from columns, such as "
+                   "\"P=u*i\"; + - * / ^ ( ), comparisons, a ? b : c, abs, min, max")
+      ->allow_extra_args(false);
   command->add_option("--time", arguments->data.time,
                       "column of times: seconds or ISO 8601; gaps split the rows");
   command->add_option("--period", arguments->data.period_s,

@@ -8,6 +8,7 @@
 
 #include "identification/grid.hpp"
 #include "service/support/csv.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {
@@ -20,23 +21,26 @@ using identification::RowRange;
 // The same as the daemon's default: a sample serves this many periods.
 constexpr std::int64_t hold_periods = 3;
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 /// Columns by the names of the request, a name with commas in it taken apart where the file has no
-/// such column. The order of the request stays.
+/// such column. The order of the request stays; names among `derived` are no columns.
 std::variant<std::vector<std::string>, Refusal> resolve(const csv::Reader& reader,
+                                                        const std::vector<std::string>& derived,
                                                         const std::vector<std::string>& names,
                                                         std::string_view flag) {
-  const std::vector<std::string>& columns = reader.columns();
-  const auto exists = [&](const std::string& name) {
-    return std::find(columns.begin(), columns.end(), name) != columns.end();
-  };
   std::vector<std::string> result;
   for (const std::string& name : names) {
     std::size_t begin = 0;
     while (begin <= name.size()) {
-      const std::size_t end =
-          exists(name) ? name.size() : std::min(name.find(',', begin), name.size());
+      const std::size_t end = contains(reader.columns(), name) || contains(derived, name)
+                                  ? name.size()
+                                  : std::min(name.find(',', begin), name.size());
       result.push_back(name.substr(begin, end - begin));
       begin = end + 1;
+      if (contains(derived, result.back())) continue;
       const auto found = reader.find(result.back());
       if (const auto* error = std::get_if<csv::Error>(&found))
         return Refusal{fmt::format("{} {}", flag, error->message)};
@@ -45,8 +49,45 @@ std::variant<std::vector<std::string>, Refusal> resolve(const csv::Reader& reade
   return result;
 }
 
+std::variant<std::vector<DerivedInput>, Refusal> parse_derived(
+    const std::vector<std::string>& derive) {
+  std::vector<DerivedInput> derived;
+  for (const std::string& text : derive) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const std::string name(trimmed(std::string_view(text).substr(0, equals)));
+    if (name.empty() || equals == text.size())
+      return Refusal{fmt::format(
+          "--derive {} is no input; write it as NAME=EXPRESSION, such as P=u_in*i_in", text)};
+    derived.push_back({name, std::string(trimmed(std::string_view(text).substr(equals + 1))), ""});
+  }
+  return derived;
+}
+
+/// What is wrong with the derived inputs beside the columns of the file and of the request.
+std::optional<Refusal> refuse_derived(const std::vector<DerivedInput>& derived,
+                                      const DataRequest& request, const csv::Reader& reader) {
+  for (const DerivedInput& input : derived)
+    if (contains(reader.columns(), input.name))
+      return Refusal{
+          fmt::format("--derive {0}: the file has a column {0}; choose another name", input.name)};
+  const auto mistakes = mistakes_in(derived, request.inputs, request.outputs);
+  if (!mistakes.empty())
+    return Refusal{fmt::format("--derive {}: {} {}", derived[mistakes.front().index].name,
+                               mistakes.front().key, mistakes.front().message)};
+  for (const DerivedInput& input : derived) {
+    const InputExpressions alone({input.name}, derived);
+    for (const std::string& operand : alone.parameters()) {
+      const auto found = reader.find(operand);
+      if (const auto* error = std::get_if<csv::Error>(&found))
+        return Refusal{fmt::format("--derive {}: {}", input.name, error->message)};
+    }
+  }
+  return std::nullopt;
+}
+
 /// Resolves the names of the request in place.
-std::optional<Refusal> resolve_columns(DataRequest& request) {
+std::optional<Refusal> resolve_columns(const std::vector<DerivedInput>& derived,
+                                       DataRequest& request) {
   std::error_code ignored;
   if (std::filesystem::is_character_file(request.file, ignored) ||
       std::filesystem::is_fifo(request.file, ignored))
@@ -55,9 +96,11 @@ std::optional<Refusal> resolve_columns(DataRequest& request) {
   auto opened = csv::Reader::open(request.file);
   if (const auto* error = std::get_if<csv::Error>(&opened)) return Refusal{error->message};
   const auto& reader = std::get<csv::Reader>(opened);
+  std::vector<std::string> derived_names;
+  for (const DerivedInput& input : derived) derived_names.push_back(input.name);
   for (const auto& [flag, names] :
        {std::pair("--input:", &request.inputs), std::pair("--output:", &request.outputs)}) {
-    auto resolved = resolve(reader, *names, flag);
+    auto resolved = resolve(reader, derived_names, *names, flag);
     if (auto* refusal = std::get_if<Refusal>(&resolved)) return *refusal;
     *names = std::get<std::vector<std::string>>(std::move(resolved));
   }
@@ -71,6 +114,7 @@ std::optional<Refusal> resolve_columns(DataRequest& request) {
           fmt::format("--output names {}, which is named already; a column is an input "
                       "or an output, once",
                       name)};
+  if (auto refusal = refuse_derived(derived, request, reader)) return refusal;
   if (!request.time) return std::nullopt;
   if (seen.contains(*request.time))
     return Refusal{
@@ -249,6 +293,17 @@ void warn_of_missing(const csv::Table& table, std::vector<std::string>& warnings
                     missing, table.rows));
 }
 
+/// Puts the derived inputs in the place of the columns that they follow from.
+void derive_inputs(InputExpressions& expressions, IdentifyData& data) {
+  const Index before = data.record.rows();
+  data.record = expressions.evaluate(std::move(data.record));
+  if (const Index lost = before - data.record.rows(); lost != 0)
+    data.warnings.push_back(
+        fmt::format("at {} of {} rows a derived input has no finite value; they were left out and "
+                    "the record is split there",
+                    lost, before));
+}
+
 /// Without a time column ticks are rows of the file.
 void warn_of_late_start(IdentifyData& data, Index asked) {
   const auto parts = segments_within(data.record, data.identify);
@@ -263,8 +318,14 @@ void warn_of_late_start(IdentifyData& data, Index asked) {
 
 std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   DataRequest request = asked;
-  if (auto refusal = resolve_columns(request)) return *refusal;
-  std::vector<std::string> columns = request.inputs;
+  auto derived = parse_derived(request.derive);
+  if (const auto* refusal = std::get_if<Refusal>(&derived)) return *refusal;
+  IdentifyData data;
+  data.derived = std::get<std::vector<DerivedInput>>(std::move(derived));
+  if (auto refusal = resolve_columns(data.derived, request)) return *refusal;
+  InputExpressions expressions(request.inputs, data.derived);
+  std::vector<std::string> columns = expressions.parameters();
+  const std::size_t inputs = columns.size();
   columns.insert(columns.end(), request.outputs.begin(), request.outputs.end());
   auto read = csv::read_table(request.file, columns, request.time);
   if (const auto* error = std::get_if<csv::Error>(&read)) return Refusal{error->message};
@@ -275,7 +336,6 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   if (const auto* refusal = std::get_if<Refusal>(&ranges)) return *refusal;
   const auto& [identify, validate] = std::get<FileRanges>(ranges);
 
-  IdentifyData data;
   data.inputs = request.inputs;
   data.outputs = request.outputs;
   warn_of_missing(table, data.warnings);
@@ -291,10 +351,11 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
         period_of(request, std::get<std::vector<std::int64_t>>(steps), data.warnings);
     if (const auto* refusal = std::get_if<Refusal>(&period)) return *refusal;
     period_ns = std::get<std::int64_t>(period);
-    data.record = record_of_times(table, request.inputs.size(), period_ns);
+    data.record = record_of_times(table, inputs, period_ns);
   } else {
-    data.record = record_of_rows(table, request.inputs.size(), request.period_s.value_or(1));
+    data.record = record_of_rows(table, inputs, request.period_s.value_or(1));
   }
+  derive_inputs(expressions, data);
   const auto record_row = [&](Index row) {
     return first_row_at(data.record, request.time ? tick_of_row(table, row, period_ns) : row);
   };

@@ -9,6 +9,7 @@
 
 #include "identification/record.hpp"
 #include "service/cli/command.hpp"
+#include "service/model/derived_inputs.hpp"
 
 namespace reident::cli {
 
@@ -16,6 +17,7 @@ struct DataRequest {
   std::filesystem::path file;
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
+  std::vector<std::string> derive;      // "NAME=EXPRESSION", inputs that follow from columns
   std::optional<std::string> time;      // column; without it rows are one period apart
   std::optional<double> period_s;       // default: 1, or the median step of the time column
   std::optional<std::string> identify;  // "A:B", rows of the file
@@ -27,6 +29,7 @@ struct IdentifyData {
   identification::RowRange identify;         // rows of the record
   identification::RowRange validate;         // at least one row
   std::vector<std::string> inputs, outputs;  // columns of u and y
+  std::vector<DerivedInput> derived;         // of the inputs; units are not known
   std::vector<std::string> warnings;
 };
 

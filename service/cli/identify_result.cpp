@@ -58,6 +58,13 @@ ordered_json recipe_json(const identification::Identified& identified) {
   return json;
 }
 
+ordered_json derived_json(const std::vector<DerivedInput>& derived) {
+  ordered_json list = ordered_json::array();
+  for (const DerivedInput& input : derived)
+    list.push_back({{"name", input.name}, {"expression", input.expression}});
+  return list;
+}
+
 }  // namespace
 
 std::string to_json_text(const IdentifyOutcome& outcome) {
@@ -77,6 +84,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"sample_period_s", model.period_s},
       {"inputs", outcome.inputs},
       {"outputs", outcome.outputs},
+      {"derived", derived_json(outcome.derived)},
       {"A", to_json(model.A)},
       {"B", to_json(model.B)},
       {"C", to_json(model.C)},

@@ -9,6 +9,7 @@
 #include "identification/continuous.hpp"
 #include "identification/diagnostics.hpp"
 #include "identification/identify.hpp"
+#include "service/model/derived_inputs.hpp"
 
 namespace reident::cli {
 
@@ -17,7 +18,8 @@ struct IdentifyOutcome {
   identification::Score identify;           // on the rows that it was identified from
   identification::Diagnostics diagnostics;  // on the validation rows, with the score there
   std::variant<identification::ContinuousModel, identification::Verdict> continuous;
-  std::vector<std::string> inputs, outputs;  // column names
+  std::vector<std::string> inputs, outputs;  // column names, or those of derived inputs
+  std::vector<DerivedInput> derived;
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::string> warnings;
 };

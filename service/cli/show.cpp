@@ -77,7 +77,10 @@ std::string signals_text(const EquipmentModel& model) {
     for (const Signal& signal : *signals)
       table.add({signal.name, kind, signal.unit, fmt::format("{:.6g}", signal.low),
                  fmt::format("{:.6g}", signal.high)});
-  return table.text(0);
+  std::string text = table.text(0);
+  for (const DerivedInput& input : derived_inputs(model.inputs))
+    text += fmt::format("{} = {}\n", input.name, input.expression);
+  return text;
 }
 
 std::string scores_text(const EquipmentModel& model) {

@@ -7,9 +7,9 @@
 namespace reident {
 namespace {
 
-bool same_names(const std::vector<Signal>& a, const std::vector<Signal>& b) {
+bool same_signals(const std::vector<Signal>& a, const std::vector<Signal>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Signal& x, const Signal& y) {
-    return x.name == y.name && x.unit == y.unit;
+    return x.name == y.name && x.unit == y.unit && x.expression == y.expression;
   });
 }
 
@@ -107,7 +107,7 @@ ModelRunner::Matrix ModelRunner::states(const identification::Record& record) co
 }
 
 bool ModelRunner::fits(const EquipmentModel& next) const {
-  return same_names(model_.inputs, next.inputs) && same_names(model_.outputs, next.outputs) &&
+  return same_signals(model_.inputs, next.inputs) && same_signals(model_.outputs, next.outputs) &&
          model_.dynamics.period_s == next.dynamics.period_s;
 }
 

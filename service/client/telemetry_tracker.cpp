@@ -27,10 +27,13 @@ TelemetryTracker::TelemetryTracker(const EquipmentModel& model)
     : spacecraft_(model.spacecraft),
       period_ns_(std::max<storage::Time>(1, std::llround(model.dynamics.period_s * 1e9))),
       hold_ns_(model.hold_ns),
-      inputs_(model.inputs.size()) {
-  for (const auto* signals : {&model.inputs, &model.outputs}) {
-    for (const Signal& signal : *signals) channels_.push_back({signal.name, false, 0, {}});
+      expressions_(signal_names(model.inputs), derived_inputs(model.inputs)),
+      inputs_(expressions_.parameters().size()),
+      parameters_(static_cast<identification::Index>(inputs_)) {
+  for (const std::string& name : expressions_.parameters()) {
+    channels_.push_back({name, false, 0, {}});
   }
+  for (const Signal& output : model.outputs) channels_.push_back({output.name, false, 0, {}});
   tick_.u.resize(static_cast<identification::Index>(model.inputs.size()));
   tick_.y.resize(static_cast<identification::Index>(model.outputs.size()));
 }
@@ -83,9 +86,10 @@ void TelemetryTracker::give_out(std::int64_t tick, const std::function<void(cons
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const double value = value_at(channels_[c], tick * period_ns_);
     const auto i = static_cast<identification::Index>(c < inputs_ ? c : c - inputs_);
-    (c < inputs_ ? tick_.u : tick_.y)(i) = value;
+    (c < inputs_ ? parameters_ : tick_.y)(i) = value;
   }
-  sink(tick_);
+  expressions_.evaluate(parameters_, tick_.u);
+  if (tick_.u.allFinite()) sink(tick_);
 }
 
 bool TelemetryTracker::went_back(storage::Time time) {

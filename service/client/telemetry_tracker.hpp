@@ -3,7 +3,8 @@
 // The rule is that of identification/grid.hpp: the value of a signal at a tick is its latest usable
 // sample at or before it and younger than the hold; a sample that is not usable ends the hold of
 // the one before it. A tick is given out once a frame with a later generation time has come, so
-// that samples of the tick's own time that travel in several frames are all there.
+// that samples of the tick's own time that travel in several frames are all there. Derived inputs
+// follow from the values of their parameters at the tick.
 #pragma once
 
 #include <cstdint>
@@ -30,11 +31,12 @@ class TelemetryTracker {
     std::uint64_t clock_jumps = 0;  // times that the telemetry's clock was taken to have gone back
   };
 
+  /// The model's expressions are ones (version_check.hpp).
   explicit TelemetryTracker(const EquipmentModel& model);
 
-  /// Learns the parameter's id where the model has its name.
+  /// Learns the parameter's id where the model needs it.
   void describe(const storage::ParameterDescriptor& descriptor);
-  /// Inputs and outputs whose descriptor has not come yet.
+  /// Parameters that the model needs and whose descriptor has not come yet.
   std::vector<std::string> undescribed() const;
 
   /// Takes the frame's samples in, and gives out, ascending, the ticks before its generation time
@@ -62,7 +64,7 @@ class TelemetryTracker {
   void insert(Channel& channel, Held held);
   double value_at(const Channel& channel, storage::Time time) const;
   void give_out(std::int64_t tick, const std::function<void(const Tick&)>& sink);
-  /// The first tick in [tick, end) at which every input has a value, or end.
+  /// The first tick in [tick, end) at which every parameter of the inputs has a value, or end.
   std::int64_t next_complete(std::int64_t tick, std::int64_t end) const;
   /// The same for one channel.
   std::int64_t next_value(const Channel& channel, std::int64_t tick, std::int64_t end) const;
@@ -71,14 +73,16 @@ class TelemetryTracker {
   std::string spacecraft_;
   storage::Time period_ns_;
   storage::Time hold_ns_;
-  std::size_t inputs_;
-  std::vector<Channel> channels_;  // inputs, then outputs
+  InputExpressions expressions_;
+  std::size_t inputs_;             // channels that the inputs are computed from
+  std::vector<Channel> channels_;  // these, then outputs
   std::multimap<std::uint32_t, std::size_t> by_parameter_;
   bool started_ = false;
   storage::Time newest_ = 0;
   std::int64_t next_tick_ = 0;
   int frames_in_the_past_ = 0;  // in a row
   Counters counters_;
+  identification::Vector parameters_;  // values of the first channels at the tick
   Tick tick_;
 };
 

@@ -21,6 +21,16 @@ bool is_sound(const identification::TrackingGain& gain,
          gain.integral.allFinite() && gain.error_limit.allFinite();
 }
 
+std::optional<std::string> fault_in_expressions(const std::vector<Signal>& inputs) {
+  for (const DerivedInput& input : derived_inputs(inputs)) {
+    const auto parsed = Expression::parse(input.expression);
+    if (const auto* mistake = std::get_if<ExpressionMistake>(&parsed)) {
+      return "its input " + input.name + " cannot be computed: " + mistake->message;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> damage(const ModelVersion& version) {
@@ -30,6 +40,7 @@ std::optional<std::string> damage(const ModelVersion& version) {
   if (version.model.tracking && !is_sound(version.model.tracking->gain, version.model.dynamics)) {
     return "its tracking gain does not fit its matrices, or is not finite";
   }
+  if (auto reason = fault_in_expressions(version.model.inputs)) return reason;
   if (const std::string digest = model_digest(version.model); digest != version.digest) {
     return "its content has the digest " + digest + " and it says " + version.digest +
            "; it was damaged, or another program's format is newer";

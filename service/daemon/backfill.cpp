@@ -28,9 +28,7 @@ std::vector<storage::Time> untried(const storage::Archive& archive,
                                    const storage::Registry& registry, const std::string& spacecraft,
                                    const EquipmentConfig& equipment, storage::TimeRange range) {
   std::set<storage::Time> ends;
-  std::vector<std::string> parameters = equipment.inputs;
-  parameters.insert(parameters.end(), equipment.outputs.begin(), equipment.outputs.end());
-  for (const std::string& name : parameters) {
+  for (const std::string& name : parameters_of(equipment)) {
     const auto descriptor = archive.parameter(spacecraft, name);
     if (!descriptor) continue;
     const auto sample_at_or_after = [&](storage::Time time) {

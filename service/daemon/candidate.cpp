@@ -17,16 +17,13 @@ using identification::Matrix;
 using identification::RowRange;
 using nlohmann::ordered_json;
 
-std::vector<Signal> signals(const std::vector<storage::ParameterDescriptor>& descriptors,
-                            const Matrix& samples) {
-  std::vector<Signal> result;
-  result.reserve(descriptors.size());
-  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+std::vector<Signal> with_ranges(std::vector<Signal> signals, const Matrix& samples) {
+  for (std::size_t i = 0; i < signals.size(); ++i) {
     const auto column = samples.col(static_cast<Eigen::Index>(i));
-    result.push_back(
-        {descriptors[i].name, descriptors[i].unit, column.minCoeff(), column.maxCoeff()});
+    signals[i].low = column.minCoeff();
+    signals[i].high = column.maxCoeff();
   }
-  return result;
+  return signals;
 }
 
 storage::TimeRange time_range(const identification::Record& record, RowRange rows,
@@ -55,8 +52,8 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   const auto fitted = [&](const Matrix& samples) {
     return samples.middleRows(parts.identify.begin, parts.identify.size());
   };
-  model.inputs = signals(data.inputs, fitted(data.record.u));
-  model.outputs = signals(data.outputs, fitted(data.record.y));
+  model.inputs = with_ranges(data.inputs, fitted(data.record.u));
+  model.outputs = with_ranges(data.outputs, fitted(data.record.y));
   model.dynamics = identified.model;
   model.hold_ns = request.equipment.hold;
   model.identified_from = time_range(data.record, parts.identify, period);

@@ -141,6 +141,29 @@ void read_signals(TableReader& reader, EquipmentConfig& equipment) {
   read("outputs", equipment.outputs);
 }
 
+/// Derived inputs that are whole, each judged beside the signals of the equipment. Their names are
+/// those of inputs, which are checked there.
+void read_derived(TableReader& reader, ConfigDocument& document, EquipmentConfig& equipment) {
+  std::vector<TableReader> readers;  // of the whole ones
+  for (const toml::table* table : reader.sections("derived")) {
+    TableReader derived(*table, fmt::format("{} derived input:", reader.title()), document);
+    derived.require("name", "\"P_IN\"");
+    derived.require("expression", "\"U_IN * I_IN\"");
+    derived.require("unit", "\"W\"");
+    const auto name = derived.text("name");
+    const auto expression = derived.text("expression");
+    const auto unit = derived.text("unit");
+    if (name) derived.set_title(fmt::format("{} derived input {}:", reader.title(), *name));
+    derived.refuse_unknown_keys();
+    if (!name || !expression || !unit) continue;
+    equipment.derived.push_back({*name, *expression, *unit});
+    readers.push_back(std::move(derived));
+  }
+  for (const DerivedInputMistake& mistake :
+       mistakes_in(equipment.derived, equipment.inputs, equipment.outputs))
+    readers[mistake.index].mistake(mistake.key, fmt::format("{} {}", mistake.key, mistake.message));
+}
+
 void read_order(TableReader& reader, EquipmentConfig& equipment) {
   const toml::array* range = reader.array("order");
   if (range != nullptr) {
@@ -257,6 +280,7 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
   }
   const std::size_t before = document.mistakes.size();
   read_signals(reader, equipment);
+  read_derived(reader, document, equipment);
   read_order(reader, equipment);
   assign(equipment.horizon, reader.integer_or_auto("horizon", 2, max_horizon));
   if (equipment.horizon && *equipment.horizon < least_horizon(equipment))

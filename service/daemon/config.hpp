@@ -9,20 +9,14 @@
 #include <variant>
 #include <vector>
 
+#include "service/model/derived_inputs.hpp"
+
 namespace reident {
 
 /// Nanoseconds; in the file a string with a unit: "500ms", "10s", "90min", "2h", "3d".
 using Duration = std::int64_t;
 
 enum class ApprovalPolicy { automatic, by_hand };
-
-/// An input that follows from SATCS parameters by an expression.
-struct DerivedInput {
-  std::string name;
-  std::string expression;
-  std::string unit;
-  bool operator==(const DerivedInput&) const = default;
-};
 
 struct EquipmentConfig {
   std::string name;

@@ -39,10 +39,8 @@ std::variant<WindowData, UnknownParameter> KeptWindow::load(const storage::Archi
   auto described = describe_window(archive, request_);
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
   WindowData data = std::get<WindowData>(std::move(described));
-  std::vector<std::uint32_t> parameters;
-  for (const auto* descriptors : {&data.inputs, &data.outputs})
-    for (const storage::ParameterDescriptor& descriptor : *descriptors)
-      parameters.push_back(descriptor.id);
+  std::vector<std::uint32_t> parameters = data.parameters;
+  parameters.insert(parameters.end(), data.output_parameters.begin(), data.output_parameters.end());
   if (parameters != parameters_) {
     chunks_.clear();
     sums_ = identification::LagSums(sums_.shape());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 
 #include "identification/grid.hpp"
 
@@ -31,28 +32,53 @@ std::vector<identification::ChannelSamples> views(const std::vector<Channel>& ch
 }  // namespace
 
 WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
-  return {spacecraft, equipment.inputs, equipment.outputs, equipment.sample_period, equipment.hold};
+  return {spacecraft,        equipment.inputs,        equipment.derived,
+          equipment.outputs, equipment.sample_period, equipment.hold};
 }
 
 WindowRequest request_of(const EquipmentModel& model) {
-  return {model.spacecraft, signal_names(model.inputs), signal_names(model.outputs),
-          static_cast<Duration>(std::llround(model.dynamics.period_s * 1e9)), model.hold_ns};
+  return {model.spacecraft,
+          signal_names(model.inputs),
+          derived_inputs(model.inputs),
+          signal_names(model.outputs),
+          static_cast<Duration>(std::llround(model.dynamics.period_s * 1e9)),
+          model.hold_ns};
+}
+
+std::vector<std::string> parameters_of(const EquipmentConfig& equipment) {
+  std::vector<std::string> names =
+      InputExpressions(equipment.inputs, equipment.derived).parameters();
+  names.insert(names.end(), equipment.outputs.begin(), equipment.outputs.end());
+  return names;
 }
 
 std::variant<WindowData, UnknownParameter> describe_window(const storage::Archive& archive,
                                                            const WindowRequest& request) {
   WindowData data;
+  std::map<std::string, std::string> units;
   const auto describe = [&](const std::vector<std::string>& names,
-                            std::vector<storage::ParameterDescriptor>& descriptors) {
+                            std::vector<std::uint32_t>& parameters) {
     for (const std::string& name : names) {
       const auto descriptor = archive.parameter(request.spacecraft, name);
       if (!descriptor) return &name;
-      descriptors.push_back(*descriptor);
+      parameters.push_back(descriptor->id);
+      units[name] = descriptor->unit;
     }
     return static_cast<const std::string*>(nullptr);
   };
-  if (const auto* name = describe(request.inputs, data.inputs)) return UnknownParameter{*name};
-  if (const auto* name = describe(request.outputs, data.outputs)) return UnknownParameter{*name};
+  const InputExpressions expressions(request.inputs, request.derived);
+  if (const auto* name = describe(expressions.parameters(), data.parameters))
+    return UnknownParameter{*name};
+  if (const auto* name = describe(request.outputs, data.output_parameters))
+    return UnknownParameter{*name};
+  for (const std::string& name : request.inputs) data.inputs.push_back({name, units[name]});
+  for (const std::string& name : request.outputs) data.outputs.push_back({name, units[name]});
+  for (Signal& input : data.inputs)
+    for (const DerivedInput& derived : request.derived)
+      if (derived.name == input.name) {
+        input.unit = derived.unit;
+        input.expression = derived.expression;
+      }
   return data;
 }
 
@@ -69,15 +95,18 @@ std::variant<WindowData, UnknownParameter> load_window(const storage::Archive& a
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
   WindowData data = std::get<WindowData>(std::move(described));
   const storage::TimeRange read{window.begin - request.hold, window.end};
-  const auto channels = [&](const std::vector<storage::ParameterDescriptor>& descriptors) {
+  const auto channels = [&](const std::vector<std::uint32_t>& parameters) {
     std::vector<Channel> result;
-    for (const storage::ParameterDescriptor& descriptor : descriptors)
-      result.emplace_back(archive.read(request.spacecraft, request.origin, descriptor.id, read));
+    for (const std::uint32_t parameter : parameters)
+      result.emplace_back(archive.read(request.spacecraft, request.origin, parameter, read));
     return result;
   };
-  const std::vector<Channel> inputs = channels(data.inputs), outputs = channels(data.outputs);
-  data.record = identification::make_record(views(inputs), views(outputs), window.begin, window.end,
-                                            {.period_ns = request.period, .hold_ns = request.hold});
+  const std::vector<Channel> inputs = channels(data.parameters);
+  const std::vector<Channel> outputs = channels(data.output_parameters);
+  data.record = InputExpressions(request.inputs, request.derived)
+                    .evaluate(identification::make_record(
+                        views(inputs), views(outputs), window.begin, window.end,
+                        {.period_ns = request.period, .hold_ns = request.hold}));
   data.coverage = coverage_of(data.record, window, request.period);
   return data;
 }

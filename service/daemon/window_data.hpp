@@ -16,8 +16,9 @@ namespace reident {
 /// both say it.
 struct WindowRequest {
   std::string spacecraft;
-  std::vector<std::string> inputs;  // parameter names
-  std::vector<std::string> outputs;
+  std::vector<std::string> inputs;    // names of parameters or of derived inputs
+  std::vector<DerivedInput> derived;  // of the inputs
+  std::vector<std::string> outputs;   // names of parameters
   Duration period = 0;
   Duration hold = 0;
   storage::Origin origin = storage::Origin::real;
@@ -27,10 +28,14 @@ struct WindowRequest {
 WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment);
 WindowRequest request_of(const EquipmentModel& model);
 
+/// The parameters that the equipment's signals are, or are computed from, each once.
+std::vector<std::string> parameters_of(const EquipmentConfig& equipment);
+
 struct WindowData {
   identification::Record record;
-  std::vector<storage::ParameterDescriptor> inputs;
-  std::vector<storage::ParameterDescriptor> outputs;
+  std::vector<Signal> inputs, outputs;    // as they are described; their ranges are not set
+  std::vector<std::uint32_t> parameters;  // ids of those that the inputs are computed from
+  std::vector<std::uint32_t> output_parameters;
   double coverage = 0;  // share of the window's ticks at which every channel is valid
 };
 
@@ -39,7 +44,7 @@ struct UnknownParameter {
   std::string name;
 };
 
-/// The descriptors of the request's parameters, and no rows.
+/// What the request's signals and parameters are, and no rows.
 std::variant<WindowData, UnknownParameter> describe_window(const storage::Archive& archive,
                                                            const WindowRequest& request);
 
@@ -47,7 +52,8 @@ std::variant<WindowData, UnknownParameter> describe_window(const storage::Archiv
 double coverage_of(const identification::Record& record, storage::TimeRange window,
                    Duration period);
 
-/// Samples of quality good or out of limits count; suspect and invalid ones are holes.
+/// Samples of quality good or out of limits count; suspect and invalid ones are holes, and so are
+/// ticks at which a derived input has no finite value.
 std::variant<WindowData, UnknownParameter> load_window(const storage::Archive& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window);

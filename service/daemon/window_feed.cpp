@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "service/daemon/window_data.hpp"
 #include "service/support/floor_divide.hpp"
 
 namespace reident {
@@ -31,7 +32,7 @@ WindowFeed::WindowFeed(const Config& config, Clock clock)
       scheduler_(plans(config), config.settle) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      equipment_.push_back({spacecraft.name, &equipment});
+      equipment_.push_back({spacecraft.name, &equipment, parameters_of(equipment)});
   altered_.resize(equipment_.size());
 }
 
@@ -40,8 +41,7 @@ void WindowFeed::join(const storage::ParameterDescriptor& descriptor,
   for (std::size_t i = 0; i < equipment_.size(); ++i) {
     const Equipment& equipment = equipment_[i];
     if (equipment.spacecraft != descriptor.spacecraft ||
-        !(contains(equipment.config->inputs, descriptor.name) ||
-          contains(equipment.config->outputs, descriptor.name)))
+        !contains(equipment.parameters, descriptor.name))
       continue;
     EquipmentIds& ids = membership_[descriptor.spacecraft][descriptor.id];
     if (contains(ids, i)) continue;

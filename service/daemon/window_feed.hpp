@@ -74,6 +74,7 @@ class WindowFeed : public ArchiveListener {
   struct Equipment {
     std::string spacecraft;
     const EquipmentConfig* config = nullptr;
+    std::vector<std::string> parameters;    // that its signals are, or are computed from
     storage::Time tried_until = INT64_MIN;  // end of the latest window tried in earlier runs
   };
   using EquipmentIds = std::vector<std::size_t>;

@@ -88,6 +88,7 @@ class Field {
     if (!value_.is_number()) refuse(path_, "must be a number or null");
     return value_.get<double>();
   }
+  [[noreturn]] void refuse_value(const std::string& what) const { refuse(path_, what); }
   void require_size(std::size_t size) const {
     if (array_size() != size) {
       refuse(path_, "must have " + std::to_string(size) + " entries and has " +
@@ -116,13 +117,21 @@ Matrix matrix_from(const Field& field, Index rows, Index columns) {
   return matrix;
 }
 
+std::string expression_from(const Field& signal) {
+  if (!signal.has("expression")) return {};
+  const Field field = signal["expression"];
+  const auto parsed = Expression::parse(field.text());
+  if (const auto* mistake = std::get_if<ExpressionMistake>(&parsed))
+    field.refuse_value(mistake->message);
+  return field.text();
+}
+
 std::vector<Signal> signals_from(const Field& field) {
   std::vector<Signal> signals;
   for (std::size_t i = 0; i < field.array_size(); ++i) {
     const Field entry = field[i];
     signals.push_back({entry["name"].text(), entry["unit"].text(), entry["low"].number(),
-                       entry["high"].number(),
-                       entry.has("expression") ? entry["expression"].text() : ""});
+                       entry["high"].number(), expression_from(entry)});
   }
   return signals;
 }

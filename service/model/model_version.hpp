@@ -10,6 +10,7 @@
 #include "identification/simulate.hpp"
 #include "identification/state_space.hpp"
 #include "identification/tracking.hpp"
+#include "service/model/derived_inputs.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident {
@@ -36,6 +37,14 @@ inline std::vector<std::string> signal_names(const std::vector<Signal>& signals)
 inline bool has_expressions(const std::vector<Signal>& signals) {
   return std::any_of(signals.begin(), signals.end(),
                      [](const Signal& signal) { return !signal.expression.empty(); });
+}
+
+inline std::vector<DerivedInput> derived_inputs(const std::vector<Signal>& inputs) {
+  std::vector<DerivedInput> derived;
+  for (const Signal& input : inputs) {
+    if (!input.expression.empty()) derived.push_back({input.name, input.expression, input.unit});
+  }
+  return derived;
 }
 
 /// What is identified, stored as JSON and digested; it says nothing about when it was approved.

@@ -162,6 +162,9 @@ TEST(ModelRunner, tells_models_with_other_signals_or_period) {
   other.inputs[0].unit = "mA";
   EXPECT_FALSE(runner.fits(other));
   other = example_model();
+  other.inputs[0].expression = "V_BUS * 2";
+  EXPECT_FALSE(runner.fits(other)) << "another meaning of the same name";
+  other = example_model();
   std::swap(other.inputs[0], other.inputs[1]);
   EXPECT_FALSE(runner.fits(other));
   other = example_model();

@@ -192,5 +192,57 @@ TEST(TrackerGrid, is_that_of_the_identification) {
   }
 }
 
+/// I_BDRIN1 stays; the second input is computed from it and a parameter that is no input.
+EquipmentModel derived_model() {
+  EquipmentModel model = example_model();
+  model.inputs[1] = {"P", "W", 0, 10, "V_BUS * I_BDRIN1 / (I_BDRIN1 - 4)"};
+  return model;
+}
+
+class DerivedTracker : public testing::Test {
+ protected:
+  DerivedTracker() {
+    describe_all(tracker_);
+    storage::ParameterDescriptor bus = example_descriptors()[0];
+    bus.id = 9;
+    bus.name = "V_BUS";
+    tracker_.describe(bus);
+  }
+  std::vector<Tick> ticks_of(const std::vector<storage::TelemetryFrame>& frames) {
+    std::vector<Tick> ticks;
+    for (const storage::TelemetryFrame& frame : frames)
+      tracker_.add(frame, [&ticks](const Tick& tick) { ticks.push_back(tick); });
+    return ticks;
+  }
+
+  TelemetryTracker tracker_{derived_model()};
+};
+
+TEST_F(DerivedTracker, computes_an_input_from_its_parameters) {
+  const auto ticks =
+      ticks_of({frame_at(10 * second,
+                         {{1, Quality::good, 5}, {9, Quality::good, 28}, {3, Quality::good, 7}}),
+                frame_at(11 * second, {})});
+  ASSERT_EQ(ticks.size(), 1U);
+  EXPECT_EQ(ticks[0].u, (identification::Vector{{5, 140}}));
+  EXPECT_EQ(ticks[0].y(0), 7);
+}
+
+TEST_F(DerivedTracker, gives_no_tick_out_at_which_an_operand_is_missing_or_the_value_not_finite) {
+  const auto good = Quality::good;
+  const auto ticks = ticks_of(
+      {frame_at(10 * second, {{1, good, 5}}), frame_at(11 * second, {{1, good, 4}, {9, good, 28}}),
+       frame_at(12 * second, {{1, good, 6}}), frame_at(13 * second, {{9, Quality::invalid, 28}}),
+       frame_at(14 * second, {})});
+  ASSERT_EQ(ticks.size(), 1U);
+  EXPECT_EQ(ticks[0].number, 12);
+  EXPECT_EQ(ticks[0].u(1), 28 * 6 / 2.0);
+}
+
+TEST(UndescribedTracker, names_the_parameters_of_an_expression) {
+  const TelemetryTracker tracker(derived_model());
+  EXPECT_THAT(tracker.undescribed(), testing::ElementsAre("I_BDRIN1", "V_BUS", "I_BDROUT"));
+}
+
 }  // namespace
 }  // namespace reident::test

@@ -311,12 +311,44 @@ const Mistake syntax[] = {
     {"no_utf8", with(4, "name = \"\xff\""), "4: "},
 };
 
+/// With P = U * I_BDRIN1 as a second input on lines 5 and 9 to 12, line `line` replaced.
+std::string with_derived(std::size_t line, const std::string& text) {
+  const std::vector<std::string> table = {"[[spacecraft.equipment.derived]]", "name = \"P\"",
+                                          "expression = \"U * I_BDRIN1\"", "unit = \"W\""};
+  std::string result = with(5, "inputs = [\"I_BDRIN1\", \"P\"]");
+  for (std::size_t i = 0; i < table.size(); ++i) result += (9 + i == line ? text : table[i]) + "\n";
+  return result;
+}
+
+const Mistake derived[] = {
+    {"no_name", with_derived(10, ""), "9: equipment BDR: derived input: name is missing"},
+    {"no_expression", with_derived(11, ""),
+     "9: equipment BDR: derived input P: expression is missing; add a line such as expression = "},
+    {"no_unit", with_derived(12, ""), "9: equipment BDR: derived input P: unit is missing"},
+    {"no_text", with_derived(11, "expression = 3"),
+     "11: equipment BDR: derived input P: expression"},
+    {"unknown_key", with_derived(12, "unit = \"W\"\nlimit = 3"),
+     "13: equipment BDR: derived input P: limit is not known"},
+    {"syntax", with_derived(11, "expression = \"U *\""),
+     "11: equipment BDR: derived input P: expression at byte 4: a number"},
+    {"constant", with_derived(11, "expression = \"2\""),
+     "11: equipment BDR: derived input P: expression uses no parameter"},
+    {"output", with_derived(11, "expression = \"U * I_BDROUT\""),
+     "11: equipment BDR: derived input P: expression uses the output I_BDROUT; a model cannot"},
+    {"in_itself", with_derived(11, "expression = \"P * 2\""),
+     "11: equipment BDR: derived input P: expression uses its own name P"},
+    {"unused", with_derived(10, "name = \"Q\""),
+     "10: equipment BDR: derived input Q: name Q is not used; add it to the inputs"},
+    {"no_table", minimal + "derived = 3", "9: equipment BDR: derived must be tables in double"},
+};
+
 std::string name_of(const ::testing::TestParamInfo<Mistake>& tested) {
   return tested.param.name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Structure, ConfigMistakes, ::testing::ValuesIn(structure), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, ConfigMistakes, ::testing::ValuesIn(values), name_of);
+INSTANTIATE_TEST_SUITE_P(Derived, ConfigMistakes, ::testing::ValuesIn(derived), name_of);
 INSTANTIATE_TEST_SUITE_P(Syntax, ConfigMistakes, ::testing::ValuesIn(syntax), name_of);
 
 TEST(Config, AllMistakesAreReportedAtOnceByLine) {
@@ -339,6 +371,12 @@ TEST(Config, AllMistakesAreReportedAtOnceByLine) {
                           StartsWith("12: mistake in key-value pair"),
                           StartsWith("13: equipment X: min_fit")))
       << "what a line with a syntax mistake hides is not reported as missing";
+}
+
+TEST(Config, AnInputMayFollowFromParameters) {
+  const EquipmentConfig bdr = config_of(with_derived(0, "")).spacecraft.at(0).equipment.at(0);
+  EXPECT_THAT(bdr.inputs, ElementsAre("I_BDRIN1", "P"));
+  EXPECT_THAT(bdr.derived, ElementsAre(DerivedInput{"P", "U * I_BDRIN1", "W"}));
 }
 
 TEST(Config, AWindowThatJustHoldsEnoughIsAccepted) {

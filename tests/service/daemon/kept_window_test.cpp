@@ -59,5 +59,35 @@ TEST_F(KeptWindows, NameAParameterThatNobodyDescribed) {
   EXPECT_EQ(std::get<UnknownParameter>(result).name, "w");
 }
 
+TEST_F(KeptWindows, ComputeDerivedInputsWithTheBitsOfAFreshRead) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs = {"v", "q"};
+  equipment.derived = {{"q", "v / max(u, 0) + 0.1 * u", "V"}};  // not finite while u <= 0
+  kept = kept_window_of("SAT", equipment);
+  archive.append(telemetry(day, 3000));
+  for (const int begin : {0, 600, 1100}) {
+    expect_as_read_afresh({day + begin * second, day + (begin + 1500) * second});
+    const auto loaded = kept.load(archive, {day + begin * second, day + (begin + 1500) * second});
+    const auto& data = std::get<WindowData>(loaded);
+    EXPECT_NEAR(data.coverage, 1. / 3, 0.02) << "u is above 0 for 40 s of 120";
+    EXPECT_GE(data.record.segments.size(), 12U);
+    EXPECT_TRUE((data.record.u.col(1).array() == data.record.u.col(0).array() + 0.1).all());
+  }
+  const auto result = kept.load(archive, {day, day + 10 * minute});
+  const WindowData& data = std::get<WindowData>(result);
+  EXPECT_EQ(data.inputs[1].unit, "V");
+  EXPECT_EQ(data.inputs[1].expression, equipment.derived[0].expression);
+  EXPECT_EQ(data.inputs[0].expression, "");
+}
+
+TEST_F(KeptWindows, NameAParameterOfAnExpressionThatNobodyDescribed) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs = {"q"};
+  equipment.derived = {{"q", "u * w", "V"}};
+  KeptWindow unknown = kept_window_of("SAT", equipment);
+  const auto result = unknown.load(archive, {day, day + 10 * minute});
+  EXPECT_EQ(std::get<UnknownParameter>(result).name, "w");
+}
+
 }  // namespace
 }  // namespace reident::test

@@ -198,6 +198,21 @@ TEST_F(Refresh, OfASlidWindowReadsOnlyWhatIsNew) {
   EXPECT_LE(kept.ticks_read(), 2400 + 600 + 2 * 512) << "the new minutes and a chunk at each end";
 }
 
+TEST_F(Refresh, IdentifiesFromADerivedInputAndPutsItsExpressionInTheModel) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs = {"w"};
+  equipment.derived = {{"w", "u + v / 2", "V"}};
+  archive.append(telemetry(day, 601));
+  const RefreshResult result = run(day + 10 * minute, equipment);
+  ASSERT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  const Signal& input = result.candidate->inputs.at(0);
+  EXPECT_EQ(input.expression, "u + v / 2");
+  EXPECT_EQ(input.unit, "V");
+  EXPECT_NEAR(input.low, -1.5, 0.01);
+  EXPECT_NEAR(input.high, 1.5, 0.01);
+  EXPECT_EQ(request_of(*result.candidate), request_of("SAT", equipment));
+}
+
 TEST_F(Refresh, StopsWhenItIsAskedTo) {
   archive.append(telemetry(day, 601));
   KeptWindow kept = kept_window_of("SAT", plant());

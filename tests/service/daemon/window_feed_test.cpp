@@ -52,6 +52,19 @@ TEST_F(Feed, GivesTheWindowsOfStoredTelemetry) {
   EXPECT_EQ(feed->newest_telemetry(), day + 15 * minute);
 }
 
+TEST_F(Feed, GivesTheWindowsOfTheParametersOfADerivedInput) {
+  Config derived = config();
+  derived.spacecraft[0].equipment[0].inputs = {"w"};
+  derived.spacecraft[0].equipment[0].derived = {{"w", "u + v", "V"}};
+  WindowFeed feed(derived, [this] { return now; });
+  archive.describe(descriptors());
+  feed.described(descriptors(), archive);
+  auto frames = telemetry(day, 601);
+  for (auto& frame : frames) frame.samples.resize(2);  // the parameters of the expression alone
+  store(feed, frames);
+  EXPECT_EQ(try_all(feed), (std::vector{day + 5 * minute, day + 10 * minute}));
+}
+
 TEST_F(Feed, GivesThemTooWhenTheDescriptorsComeAfterTheFrames) {
   auto feed = make_feed();
   store(*feed, telemetry(day, 901));

@@ -146,6 +146,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Damage{"/inputs/1/name", "7", "\"inputs[1].name\" must be a string"},
                     Damage{"/validated_on", "[]", "\"validated_on\" must be an object"},
                     Damage{"/inputs/1/expression", "1", "\"inputs[1].expression\" must be a str"},
+                    Damage{"/inputs/1/expression", "\"V_BUS *\"",
+                           "\"inputs[1].expression\" at byte 8: a number"},
                     Damage{"/tracking/state", "[[1,2]]", "\"tracking.state\" must have 2 entr"},
                     Damage{"/tracking/integral/0", "[1]", "\"tracking.integral[0]\" must have 2"},
                     Damage{"/tracking/error_limit", "[]", "\"tracking.error_limit\" must have 1"},

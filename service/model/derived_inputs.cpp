@@ -1,0 +1,147 @@
+#include "service/model/derived_inputs.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace reident {
+namespace {
+
+using identification::Index;
+using identification::Matrix;
+using identification::Record;
+using identification::Vector;
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_derived(const std::vector<DerivedInput>& derived, const std::string& name) {
+  return std::any_of(derived.begin(), derived.end(),
+                     [&name](const DerivedInput& one) { return one.name == name; });
+}
+
+/// What is wrong with the name of the derived input `index`; empty when nothing is.
+std::string name_mistake(const std::vector<DerivedInput>& derived, std::size_t index,
+                         const std::vector<std::string>& inputs,
+                         const std::vector<std::string>& outputs) {
+  const std::string& name = derived[index].name;
+  const auto above = derived.begin() + static_cast<std::ptrdiff_t>(index);
+  if (std::any_of(derived.begin(), above,
+                  [&name](const DerivedInput& other) { return other.name == name; }))
+    return fmt::format("{} is the name of a derived input above; give it another", name);
+  if (contains(outputs, name))
+    return fmt::format("{} is the name of an output; give the derived input another", name);
+  if (!contains(inputs, name))
+    return fmt::format("{} is not used; add it to the inputs or leave it out", name);
+  return {};
+}
+
+std::string operand_mistake(const std::vector<DerivedInput>& derived, const DerivedInput& one,
+                            const std::string& operand, const std::vector<std::string>& outputs) {
+  if (operand == one.name)
+    return fmt::format("uses its own name {}; a derived input and a parameter need two names",
+                       operand);
+  if (is_derived(derived, operand))
+    return fmt::format("uses {}, which is derived itself; write its expression in its place",
+                       operand);
+  if (contains(outputs, operand))
+    return fmt::format("uses the output {}; a model cannot be driven by what it computes", operand);
+  return {};
+}
+
+}  // namespace
+
+std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& derived,
+                                             const std::vector<std::string>& inputs,
+                                             const std::vector<std::string>& outputs) {
+  std::vector<DerivedInputMistake> mistakes;
+  for (std::size_t i = 0; i < derived.size(); ++i) {
+    const auto add = [&](std::string_view key, std::string message) {
+      if (!message.empty()) mistakes.push_back({i, key, std::move(message)});
+    };
+    add("name", name_mistake(derived, i, inputs, outputs));
+    const auto parsed = Expression::parse(derived[i].expression);
+    if (const auto* mistake = std::get_if<ExpressionMistake>(&parsed)) {
+      add("expression", mistake->message);
+      continue;
+    }
+    const auto& operands = std::get<Expression>(parsed).variables();
+    if (operands.empty())
+      add("expression", "uses no parameter; what never changes cannot drive a model");
+    for (const std::string& operand : operands)
+      add("expression", operand_mistake(derived, derived[i], operand, outputs));
+  }
+  return mistakes;
+}
+
+InputExpressions::InputExpressions(const std::vector<std::string>& inputs,
+                                   const std::vector<DerivedInput>& derived) {
+  for (const std::string& name : inputs) {
+    Input input;
+    const auto found = std::find_if(derived.begin(), derived.end(),
+                                    [&name](const DerivedInput& one) { return one.name == name; });
+    if (found == derived.end()) {
+      input.operands.push_back(place_of(name));
+    } else {
+      auto parsed = Expression::parse(found->expression);
+      if (const auto* mistake = std::get_if<ExpressionMistake>(&parsed))
+        throw std::invalid_argument(
+            fmt::format("the expression of input {}: {}", name, mistake->message));
+      input.expression = std::get<Expression>(std::move(parsed));
+      for (const std::string& operand : input.expression->variables())
+        input.operands.push_back(place_of(operand));
+      input.values.resize(input.operands.size());
+      any_derived_ = true;
+    }
+    inputs_.push_back(std::move(input));
+  }
+}
+
+Index InputExpressions::place_of(const std::string& parameter) {
+  const auto found = std::find(parameters_.begin(), parameters_.end(), parameter);
+  const Index place = found - parameters_.begin();
+  if (found == parameters_.end()) parameters_.push_back(parameter);
+  return place;
+}
+
+void InputExpressions::evaluate(const Vector& parameters, Vector& inputs) {
+  Index at = 0;
+  for (Input& input : inputs_) {
+    for (std::size_t i = 0; i < input.values.size(); ++i)
+      input.values[i] = parameters(input.operands[i]);
+    inputs(at++) = input.expression ? input.expression->evaluate(input.values)
+                                    : parameters(input.operands.front());
+  }
+}
+
+Record InputExpressions::evaluate(Record record) {
+  if (!any_derived_) return record;
+  const auto m = static_cast<Index>(inputs_.size());
+  Record result;
+  result.period_s = record.period_s;
+  result.u.resize(record.rows(), m);
+  result.y.resize(record.rows(), record.y.cols());
+  Vector parameters(record.u.cols()), inputs(m);
+  Index rows = 0;
+  for (const identification::Segment& segment : record.segments) {
+    for (Index row = segment.begin; row < segment.end; ++row) {
+      parameters = record.u.row(row).transpose();
+      evaluate(parameters, inputs);
+      if (!inputs.allFinite()) continue;
+      const std::int64_t tick = segment.first_tick + (row - segment.begin);
+      auto& segments = result.segments;
+      if (segments.empty() || segments.back().first_tick + segments.back().size() != tick)
+        segments.push_back({rows, rows, tick});
+      result.u.row(rows) = inputs.transpose();
+      result.y.row(rows) = record.y.row(row);
+      segments.back().end = ++rows;
+    }
+  }
+  result.u.conservativeResize(rows, Eigen::NoChange);
+  result.y.conservativeResize(rows, Eigen::NoChange);
+  return result;
+}
+
+}  // namespace reident

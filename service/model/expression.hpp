@@ -1,0 +1,55 @@
+// An arithmetic expression of telemetry parameters, such as U_IN * I_IN / V_BUS.
+//
+//   conditional := comparison [ ? conditional : conditional ]
+//   comparison  := sum [ < sum | <= sum | > sum | >= sum | == sum | != sum ]       (1 or 0)
+//   sum         := term { + term | - term }
+//   term        := factor { * factor | / factor }
+//   factor      := [ + | - ] value [ ^ factor ]                        (-a^2 is -(a^2))
+//   value       := number | parameter | ( conditional )
+//                | abs(conditional) | min(conditional, conditional) | max(conditional, conditional)
+//
+// A number is written as 2, 0.5 or 1e-3, in every locale. A parameter stands by its name, where
+// this has ASCII letters, digits, _ and . alone, begins with a letter or _, has at most 100 bytes
+// and is not abs, min or max.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace reident {
+
+/// What is wrong with an expression, where (1 is its first byte), and what would be right.
+struct ExpressionMistake {
+  std::string message;
+};
+
+class Expression {
+ public:
+  static constexpr std::size_t max_bytes = 1000;
+  static constexpr int max_depth = 32;  // of brackets, powers and conditions in each other
+
+  static std::variant<Expression, ExpressionMistake> parse(std::string_view text);
+
+  Expression(Expression&&) noexcept;
+  Expression& operator=(Expression&&) noexcept;
+  ~Expression();
+
+  /// Names of the parameters, each once, in the order of their first use.
+  const std::vector<std::string>& variables() const;
+
+  /// The value for those of variables(). NaN where one of them, or the result, is not finite. The
+  /// same values give the same bits. For one thread at a time.
+  double evaluate(std::span<const double> values);
+
+ private:
+  struct Evaluator;
+  explicit Expression(std::unique_ptr<Evaluator> evaluator);
+
+  std::unique_ptr<Evaluator> evaluator_;
+};
+
+}  // namespace reident

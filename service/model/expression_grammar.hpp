@@ -1,0 +1,61 @@
+// The grammar of expression.hpp, checked by recursive descent.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace reident {
+
+/// Reads one text.
+class ExpressionGrammar {
+ public:
+  explicit ExpressionGrammar(std::string_view text) : text_(text) {}
+
+  /// Whether the whole text is an expression; call once. What follows holds afterwards.
+  bool check();
+
+  /// Where it is not: the first mistake, with its place.
+  const std::string& mistake() const { return mistake_; }
+  /// The text without blanks.
+  const std::string& canonical() const { return canonical_; }
+  /// The parameters, each once, in the order of their first use.
+  const std::vector<std::string>& variables() const { return variables_; }
+
+ private:
+  /// The next byte that is no blank; 0 at the end.
+  char peek();
+  bool at_end();
+  bool take(std::string_view token);
+  bool take_any(std::initializer_list<std::string_view> tokens);
+  bool expect(std::string_view token);
+
+  /// Each notes the mistake, where there is none yet, and says false.
+  bool refuse(std::size_t at, std::string_view what);
+  bool refuse_value();
+  bool refuse_rest();
+  /// What stands at the next byte, for a message; the bytes of one character or name together.
+  std::string found();
+
+  /// What stands within something else: `rule`, one level deeper.
+  bool nested(bool (ExpressionGrammar::*rule)());
+  bool conditional();
+  bool comparison();
+  bool sum();
+  bool term();
+  bool factor();
+  bool value();
+  bool number();
+  bool name();
+  bool call(int values);
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+  std::string canonical_;
+  std::string mistake_;
+  std::vector<std::string> variables_;
+};
+
+}  // namespace reident

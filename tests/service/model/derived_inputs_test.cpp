@@ -1,0 +1,122 @@
+#include "service/model/derived_inputs.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+
+namespace reident::test {
+namespace {
+
+using identification::Matrix;
+using identification::Record;
+using identification::Vector;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<DerivedInput> power = {{"P", "u * i", "W"}};
+
+TEST(InputExpressions, need_each_parameter_once_in_the_order_of_its_use) {
+  const InputExpressions expressions({"i", "P", "v"}, {{"P", "u * i / v", "A"}});
+  EXPECT_THAT(expressions.parameters(), ElementsAre("i", "u", "v"));
+}
+
+TEST(InputExpressions, without_derived_inputs_are_the_inputs_themselves) {
+  InputExpressions expressions({"b", "a"}, {});
+  EXPECT_THAT(expressions.parameters(), ElementsAre("b", "a"));
+  Vector inputs(2);
+  expressions.evaluate(Vector{{1, nan}}, inputs);
+  EXPECT_EQ(inputs(0), 1);
+  EXPECT_TRUE(std::isnan(inputs(1)));
+}
+
+TEST(InputExpressions, put_each_value_in_the_place_of_its_input) {
+  InputExpressions expressions({"i", "P", "Q"}, {{"Q", "u / i", ""}, {"P", "u * i", "W"}});
+  Vector inputs(3);
+  expressions.evaluate(Vector{{2, 10}}, inputs);
+  EXPECT_EQ(inputs, (Vector{{2, 20, 5}}));
+}
+
+TEST(InputExpressions, refuse_what_is_no_expression) {
+  try {
+    InputExpressions({"P"}, {{"P", "u *", "W"}});
+    FAIL() << "it was taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("input P: at byte 4"));
+  }
+}
+
+TEST(InputExpressions, split_a_record_where_an_input_has_no_finite_value) {
+  Record record;
+  record.u = Matrix{{1, 1}, {2, 1}, {3, 0}, {4, 2}, {5, 2}, {6, 0}};
+  record.y = Matrix{{10}, {20}, {30}, {40}, {50}, {60}};
+  record.segments = {{0, 4, 7}, {4, 6, 20}};
+  const Record result = InputExpressions({"q"}, {{"q", "u / v", ""}}).evaluate(record);
+  EXPECT_EQ(result.u, (Matrix{{1}, {2}, {2}, {2.5}}));
+  EXPECT_EQ(result.y, (Matrix{{10}, {20}, {40}, {50}}));
+  EXPECT_EQ(result.segments,
+            (std::vector<identification::Segment>{{0, 2, 7}, {2, 3, 10}, {3, 4, 20}}));
+}
+
+TEST(InputExpressions, leave_a_record_without_derived_inputs_as_it_is) {
+  const Record record = identification::contiguous_record(2, Matrix{{1}, {2}}, Matrix{{3}, {4}});
+  const Record result = InputExpressions({"u"}, {}).evaluate(record);
+  EXPECT_EQ(result.u, record.u);
+  EXPECT_EQ(result.segments, record.segments);
+  EXPECT_EQ(result.period_s, 2);
+}
+
+TEST(InputExpressions, may_leave_no_row) {
+  const Record record = identification::contiguous_record(1, Matrix{{0}, {0}}, Matrix{{3}, {4}});
+  const Record result = InputExpressions({"q"}, {{"q", "1 / u", ""}}).evaluate(record);
+  EXPECT_EQ(result.rows(), 0);
+  EXPECT_EQ(result.u.cols(), 1);
+  EXPECT_THAT(result.segments, IsEmpty());
+}
+
+struct Case {
+  const char* name;
+  std::vector<DerivedInput> derived;
+  const char* key;
+  const char* says;
+};
+void PrintTo(const Case& one, std::ostream* out) {
+  *out << one.name;
+}
+
+class DerivedInputMistakes : public testing::TestWithParam<Case> {};
+
+TEST_P(DerivedInputMistakes, are_told_with_their_remedy) {
+  const auto mistakes = mistakes_in(GetParam().derived, {"P", "v"}, {"y"});
+  ASSERT_EQ(mistakes.size(), 1U);
+  EXPECT_EQ(mistakes[0].index, GetParam().derived.size() - 1);
+  EXPECT_EQ(mistakes[0].key, GetParam().key);
+  EXPECT_THAT(mistakes[0].message, HasSubstr(GetParam().says));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    table, DerivedInputMistakes,
+    testing::Values(
+        Case{"syntax", {{"P", "u *", "W"}}, "expression", "at byte 4"},
+        Case{"constant", {{"P", "2 ^ 3", "W"}}, "expression", "uses no parameter"},
+        Case{"unused", {{"Q", "u", "W"}}, "name", "Q is not used; add it to the inputs"},
+        Case{"output's name", {{"y", "u", "W"}}, "name", "y is the name of an output"},
+        Case{"twice", {{"P", "u", "W"}, {"P", "i", "W"}}, "name", "derived input above"},
+        Case{"output in it", {{"P", "u * y", "W"}}, "expression", "uses the output y; a model"},
+        Case{"itself in it", {{"P", "P * 2", "W"}}, "expression", "uses its own name P"},
+        Case{"derived in it",
+             {{"P", "u", "W"}, {"v", "P * 2", ""}},
+             "expression",
+             "uses P, which is derived itself; write its expression in its place"}));
+
+TEST(DerivedInputs, without_a_mistake_have_none) {
+  EXPECT_THAT(mistakes_in(power, {"P"}, {"y"}), IsEmpty());
+  EXPECT_THAT(mistakes_in(power, {"P", "u", "i"}, {"y"}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace reident::test
