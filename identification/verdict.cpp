@@ -22,6 +22,8 @@ std::string_view name(VerdictCode code) {
       return "no_better_than_mean";
     case VerdictCode::no_continuous_time:
       return "no_continuous_time";
+    case VerdictCode::no_gain:
+      return "no_gain";
   }
   return "unknown";
 }

@@ -17,6 +17,7 @@ enum class VerdictCode {
   unstable,
   no_better_than_mean,
   no_continuous_time,
+  no_gain,
 };
 
 /// The code as it is stored and printed, such as "too_few_samples".
