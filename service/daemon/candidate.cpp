@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "identification/correction.hpp"
 #include "service/daemon/gate.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
@@ -42,8 +43,35 @@ std::string method_text(const identification::Recipe& recipe) {
   return text;
 }
 
+/// The identified model, or that with its poles moved where it errs less on the rows for choices.
+struct ChosenModel {
+  identification::StateSpaceModel dynamics;
+  identification::Vector x0;
+  std::string method;
+  ordered_json correction;
+};
+
+ChosenModel corrected(const identification::Record& record, const Identified& identified,
+                      const WindowParts& parts) {
+  constexpr Eigen::Index state_rows = 500;
+  ChosenModel chosen{identified.model, identified.x0, method_text(identified.recipe), {}};
+  const auto search = search_correction(identified.model, record, parts.identify, parts.tune);
+  chosen.correction = {{"plain_tune_mrse_percent", search.plain.mrse()}};
+  if (!search.best) return chosen;
+  const identification::Correction& best = *search.best;
+  chosen.dynamics = best.model;
+  chosen.x0 = estimate_initial_state(best.model, record, record.segments.front(), state_rows);
+  chosen.method += fmt::format(", poles placed at scale {:.3g}{}", best.scale,
+                               best.keeps_static_gain ? ", static gain kept" : "");
+  chosen.correction["tune_mrse_percent"] = best.error.mrse();
+  chosen.correction["scale"] = best.scale;
+  chosen.correction["keeps_static_gain"] = best.keeps_static_gain;
+  chosen.correction["uncontrollable_poles"] = best.uncontrollable.size();
+  return chosen;
+}
+
 Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
-                       const Identified& identified, const WindowParts& parts) {
+                       const ChosenModel& chosen, const WindowParts& parts) {
   const Duration period = request.equipment.sample_period;
   Candidate candidate{.model = {}, .parts = parts, .y_hat = {}, .tuned_on = {}};
   EquipmentModel& model = candidate.model;
@@ -54,13 +82,13 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   };
   model.inputs = with_ranges(data.inputs, fitted(data.record.u));
   model.outputs = with_ranges(data.outputs, fitted(data.record.y));
-  model.dynamics = identified.model;
+  model.dynamics = chosen.dynamics;
   model.hold_ns = request.equipment.hold;
   model.identified_from = time_range(data.record, parts.identify, period);
   model.validated_on = time_range(data.record, parts.validate, period);
-  model.method = method_text(identified.recipe);
+  model.method = chosen.method;
   candidate.tuned_on = time_range(data.record, parts.tune, period);
-  candidate.y_hat = free_run(identified.model, data.record, data.record.all(), identified.x0);
+  candidate.y_hat = free_run(chosen.dynamics, data.record, data.record.all(), chosen.x0);
   const auto validation = [&](const Matrix& samples) -> Matrix {
     return samples.middleRows(parts.validate.begin, parts.validate.size());
   };
@@ -68,14 +96,15 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   return candidate;
 }
 
-void describe(const Identified& identified, PreparedWindow& prepared) {
+void describe(const Identified& identified, const ChosenModel& chosen, PreparedWindow& prepared) {
   const Candidate& candidate = *prepared.candidate;
   const EquipmentModel& model = candidate.model;
   ordered_json& json = prepared.evidence;
   json["order"] = model.dynamics.order();
   json["horizon"] = identified.recipe.horizon;
   json["weighting"] = name(identified.recipe.weighting);
-  json["spectral_radius"] = identified.spectral_radius;
+  json["spectral_radius"] = spectral_radius(model.dynamics);
+  json["pole_placement"] = chosen.correction;
   json["mrse_percent"] = model.validation.mrse();
   json["fit_percent"] = model.validation.fit();
   json["per_output"] = {{"mrse_percent", to_json(model.validation.mrse_percent)},
@@ -86,7 +115,7 @@ void describe(const Identified& identified, PreparedWindow& prepared) {
   json["search_work"] = identified.search_work;
   json["diagnostics"] =
       to_json(diagnose(model.dynamics, prepared.data.record, prepared.data.record.all(),
-                       candidate.parts.validate, identified.x0),
+                       candidate.parts.validate, chosen.x0),
               signal_names(model.inputs), signal_names(model.outputs));
   json["warnings"] = identified.warnings;
 }
@@ -121,10 +150,12 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
       identify(data.record, {parts.identify.begin, parts.tune.end}, options, &kept.sums());
   if (const auto* verdict = std::get_if<identification::Verdict>(&result))
     return refuse(prepared, name(verdict->code), verdict->reason);
-  prepared.timer.begin("score");
+  prepared.timer.begin("correct");
   const auto& identified = std::get<Identified>(result);
-  prepared.candidate = candidate_of(request, data, identified, parts);
-  describe(identified, prepared);
+  const ChosenModel chosen = corrected(data.record, identified, parts);
+  prepared.timer.begin("score");
+  prepared.candidate = candidate_of(request, data, chosen, parts);
+  describe(identified, chosen, prepared);
 }
 
 }  // namespace
