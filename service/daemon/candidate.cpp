@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "identification/correction.hpp"
+#include "identification/tracking_search.hpp"
 #include "service/daemon/gate.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
@@ -43,30 +44,52 @@ std::string method_text(const identification::Recipe& recipe) {
   return text;
 }
 
-/// The identified model, or that with its poles moved where it errs less on the rows for choices.
+/// The identified model, or that with its poles moved where it errs less on the rows for choices;
+/// and the gain with which it follows telemetry.
 struct ChosenModel {
   identification::StateSpaceModel dynamics;
   identification::Vector x0;
   std::string method;
-  ordered_json correction;
+  std::optional<identification::TrackingGain> gain;
+  ordered_json pole_placement, integral_feedback;
 };
 
-ChosenModel corrected(const identification::Record& record, const Identified& identified,
-                      const WindowParts& parts) {
+void choose_tracking(const identification::Record& record, const WindowParts& parts,
+                     ChosenModel& chosen) {
+  const auto result = search_tracking(chosen.dynamics, record, parts.identify, parts.tune);
+  if (const auto* verdict = std::get_if<identification::Verdict>(&result)) {
+    chosen.integral_feedback = {{"rejected", name(verdict->code)}, {"reason", verdict->reason}};
+    return;
+  }
+  const auto& found = std::get<identification::TrackingSearch>(result);
+  chosen.gain = found.gain;
+  chosen.integral_feedback = {{"scale", found.scale},
+                              {"tau_samples", found.tau_samples},
+                              {"free_run_tune_mrse_percent", found.free_run.mrse()},
+                              {"tracking_tune_mrse_percent", found.tracking.mrse()},
+                              {"uncontrollable_poles", found.uncontrollable.size()}};
+}
+
+void place(const identification::Correction& best, const identification::Record& record,
+           ChosenModel& chosen) {
   constexpr Eigen::Index state_rows = 500;
-  ChosenModel chosen{identified.model, identified.x0, method_text(identified.recipe), {}};
-  const auto search = search_correction(identified.model, record, parts.identify, parts.tune);
-  chosen.correction = {{"plain_tune_mrse_percent", search.plain.mrse()}};
-  if (!search.best) return chosen;
-  const identification::Correction& best = *search.best;
   chosen.dynamics = best.model;
   chosen.x0 = estimate_initial_state(best.model, record, record.segments.front(), state_rows);
   chosen.method += fmt::format(", poles placed at scale {:.3g}{}", best.scale,
                                best.keeps_static_gain ? ", static gain kept" : "");
-  chosen.correction["tune_mrse_percent"] = best.error.mrse();
-  chosen.correction["scale"] = best.scale;
-  chosen.correction["keeps_static_gain"] = best.keeps_static_gain;
-  chosen.correction["uncontrollable_poles"] = best.uncontrollable.size();
+  chosen.pole_placement["tune_mrse_percent"] = best.error.mrse();
+  chosen.pole_placement["scale"] = best.scale;
+  chosen.pole_placement["keeps_static_gain"] = best.keeps_static_gain;
+  chosen.pole_placement["uncontrollable_poles"] = best.uncontrollable.size();
+}
+
+ChosenModel corrected(const identification::Record& record, const Identified& identified,
+                      const WindowParts& parts) {
+  ChosenModel chosen{identified.model, identified.x0, method_text(identified.recipe), {}, {}, {}};
+  const auto search = search_correction(identified.model, record, parts.identify, parts.tune);
+  chosen.pole_placement = {{"plain_tune_mrse_percent", search.plain.mrse()}};
+  if (search.best) place(*search.best, record, chosen);
+  choose_tracking(record, parts, chosen);
   return chosen;
 }
 
@@ -92,7 +115,13 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   const auto validation = [&](const Matrix& samples) -> Matrix {
     return samples.middleRows(parts.validate.begin, parts.validate.size());
   };
-  model.validation = identification::score(validation(data.record.y), validation(candidate.y_hat));
+  const Matrix y = validation(data.record.y);
+  model.validation = identification::score(y, validation(candidate.y_hat));
+  if (chosen.gain) {
+    const Matrix tracked =
+        tracked_run(chosen.dynamics, *chosen.gain, data.record, data.record.all(), chosen.x0);
+    model.tracking = {*chosen.gain, identification::score(y, validation(tracked))};
+  }
   return candidate;
 }
 
@@ -104,7 +133,9 @@ void describe(const Identified& identified, const ChosenModel& chosen, PreparedW
   json["horizon"] = identified.recipe.horizon;
   json["weighting"] = name(identified.recipe.weighting);
   json["spectral_radius"] = spectral_radius(model.dynamics);
-  json["pole_placement"] = chosen.correction;
+  json["pole_placement"] = chosen.pole_placement;
+  json["integral_feedback"] = chosen.integral_feedback;
+  if (model.tracking) json["tracking_mrse_percent"] = model.tracking->validation.mrse();
   json["mrse_percent"] = model.validation.mrse();
   json["fit_percent"] = model.validation.fit();
   json["per_output"] = {{"mrse_percent", to_json(model.validation.mrse_percent)},
