@@ -14,15 +14,6 @@ constexpr double well_conditioned = 1e-10;
 constexpr Index most_rows = 20000;  // of either part
 constexpr int scales_per_decade = 20;
 
-/// C (I - A)^-1 B + D, absent where a pole is so near to 1 that it says nothing.
-std::optional<Matrix> static_gain(const StateSpaceModel& model) {
-  const Index n = model.order();
-  if (n == 0) return model.D;
-  const Eigen::FullPivLU<Matrix> resolvent(Matrix::Identity(n, n) - model.A);
-  if (!(resolvent.rcond() > well_conditioned)) return std::nullopt;
-  return model.C * resolvent.solve(model.B) + model.D;
-}
-
 StateSpaceModel with_feedback(const StateSpaceModel& model, const Matrix& F) {
   StateSpaceModel result = model;
   result.A -= model.B * F;
@@ -148,6 +139,14 @@ Poles scaled_poles(const Poles& poles, double scale) {
   Poles scaled;
   for (const auto& pole : poles) scaled.push_back(scaled_pole(pole, scale));
   return scaled;
+}
+
+std::optional<Matrix> static_gain(const StateSpaceModel& model) {
+  const Index n = model.order();
+  if (n == 0) return model.D;
+  const Eigen::FullPivLU<Matrix> resolvent(Matrix::Identity(n, n) - model.A);
+  if (!(resolvent.rcond() > well_conditioned)) return std::nullopt;
+  return model.C * resolvent.solve(model.B) + model.D;
 }
 
 CorrectionSearch search_correction(const StateSpaceModel& model, const Record& record,

@@ -29,6 +29,9 @@ namespace reident::identification {
 std::complex<double> scaled_pole(std::complex<double> pole, double scale);
 Poles scaled_poles(const Poles& poles, double scale);
 
+/// C (I - A)^-1 B + D, absent where a pole is so near to 1 that it says nothing.
+std::optional<Matrix> static_gain(const StateSpaceModel& model);
+
 struct Correction {
   /// Without K: that of the model corrected belongs to the noise as it enters its A and C, and no
   /// noise model of the corrected A and C is known.

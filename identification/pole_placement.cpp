@@ -67,7 +67,8 @@ class Placement {
  private:
   auto rows_of(Index block) { return B_.middleRows(schur_.first_row(block), schur_.size(block)); }
 
-  void swap(Index block);
+  /// False where blocks of different size stayed.
+  bool swap(Index block);
 
   bool leave_unreached();
 
@@ -82,10 +83,17 @@ class Placement {
 
   void place(Index block);
 
+  /// Of a block of two with two real poles, of which one is given, makes two blocks: single states
+  /// can always be exchanged.
+  void separate(Index block, double pole);
+
+  /// Brings the blocks just placed to the upper end.
+  bool raise_placed();
+
   Matrix feedback_of_one(Index block);
 
-  /// leave_unreached_part() has made the input rows orthogonal.
-  Matrix feedback_of_two(Index block);
+  /// leave_unreached_part() has made the input rows orthogonal. `first` is one of the poles taken.
+  Matrix feedback_of_two(Index block, std::complex<double>& first);
 
   SchurBlocks schur_;
   Vector input_size_;
@@ -93,6 +101,7 @@ class Placement {
   Matrix gain_;  // of inputs so measured
   Poles reals_, pairs_, uncontrollable_;
   double unreached_ = 0;
+  Index just_placed_ = 0;
   Index placed_ = 0;  // blocks at the upper end that are done
   Index end_ = 0;     // blocks below are out of reach
 };
@@ -125,8 +134,10 @@ std::variant<PolePlacement, Verdict> Placement::run() {
       return Verdict{VerdictCode::no_gain,
                      "a pair of poles is wanted where the inputs reach a single mode"};
     place(end_ - 1);
-    for (Index block = end_ - 1; block > placed_; --block) swap(block - 1);
-    ++placed_;
+    if (!raise_placed())
+      return Verdict{VerdictCode::no_gain,
+                     "a wanted pair of poles is so near to a pole of A that they cannot be told "
+                     "apart"};
   }
   PolePlacement result{input_size_.cwiseInverse().asDiagonal() * gain_, uncontrollable_};
   if (!result.gain.allFinite())
@@ -134,10 +145,12 @@ std::variant<PolePlacement, Verdict> Placement::run() {
   return result;
 }
 
-void Placement::swap(Index block) {
+bool Placement::swap(Index block) {
+  const Index size = schur_.size(block), next = schur_.size(block + 1);
   const Matrix Z = schur_.swap_with_next(block);
   auto rows = B_.middleRows(schur_.first_row(block), Z.rows());
   rows = (Z.transpose() * rows).eval();
+  return schur_.size(block) == next && schur_.size(block + 1) == size;
 }
 
 bool Placement::leave_unreached() {
@@ -186,9 +199,34 @@ bool Placement::join_another() {
 
 void Placement::place(Index block) {
   const Index row = schur_.first_row(block), size = schur_.size(block);
-  const Matrix feedback = size == 1 ? feedback_of_one(block) : feedback_of_two(block);
+  const bool pair = size == 2 && !pairs_.empty();
+  std::complex<double> pole;
+  const Matrix feedback = size == 1 ? feedback_of_one(block) : feedback_of_two(block, pole);
   schur_.subtract_from_columns(block, B_ * feedback);
   gain_ += feedback * schur_.Q().middleCols(row, size).transpose();
+  just_placed_ = 1;
+  if (size == 2 && !pair) separate(block, pole.real());
+}
+
+void Placement::separate(Index block, double pole) {
+  const Index row = schur_.first_row(block);
+  const Eigen::Matrix2d T = schur_.T().block<2, 2>(row, row) - pole * Eigen::Matrix2d::Identity();
+  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(T, Eigen::ComputeFullV);
+  const Eigen::Vector2d v = svd.matrixV().col(1);  // T v = 0
+  Matrix Z(2, 2);
+  Z << v(0), -v(1), v(1), v(0);
+  schur_.rotate(block, Z);
+  rows_of(block) = (Z.transpose() * rows_of(block)).eval();
+  schur_.split(block);
+  ++end_;
+  just_placed_ = 2;
+}
+
+bool Placement::raise_placed() {
+  for (Index first = end_ - just_placed_; just_placed_ > 0; --just_placed_, ++first, ++placed_)
+    for (Index block = first; block > placed_; --block)
+      if (!swap(block - 1)) return false;
+  return true;
 }
 
 Matrix Placement::feedback_of_one(Index block) {
@@ -197,10 +235,10 @@ Matrix Placement::feedback_of_one(Index block) {
   return g.transpose() * (pole - take_nearest(reals_, pole).real()) / g.squaredNorm();
 }
 
-Matrix Placement::feedback_of_two(Index block) {
+Matrix Placement::feedback_of_two(Index block, std::complex<double>& first) {
   const Index row = schur_.first_row(block);
   const std::complex<double> pole = schur_.eigenvalue(block);
-  std::complex<double> first, second;
+  std::complex<double> second;
   if (pairs_.empty()) {
     first = take_nearest(reals_, pole);
     second = take_nearest(reals_, pole);
