@@ -335,6 +335,19 @@ std::vector<Version> Registry::champions() const {
   return champions;
 }
 
+std::vector<VersionSummary> Registry::summaries(const std::string& spacecraft,
+                                                const std::string& equipment) const {
+  std::vector<VersionSummary> summaries;
+  sqlite::Query row = connection(database_).query(
+      "SELECT version, status, parent FROM model_version WHERE spacecraft = ? AND equipment = ? "
+      "ORDER BY version",
+      spacecraft, equipment);
+  while (row.step())
+    summaries.push_back({row.integer(0), row.text(1),
+                         row.is_null(2) ? std::nullopt : std::optional(row.integer(2))});
+  return summaries;
+}
+
 std::vector<Decision> Registry::decisions(const std::string& spacecraft,
                                           const std::string& equipment,
                                           std::optional<std::int64_t> version) const {

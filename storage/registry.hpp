@@ -77,6 +77,13 @@ struct Version {
   std::string samples_digest;
 };
 
+/// A version without its model.
+struct VersionSummary {
+  std::int64_t number = 0;
+  std::string status;
+  std::optional<std::int64_t> parent;
+};
+
 struct Decision : NewDecision {
   std::int64_t id = 0;
   std::string spacecraft;
@@ -179,6 +186,9 @@ class Registry {
   std::optional<Version> previous_champion(const std::string& spacecraft,
                                            const std::string& equipment) const;
   std::vector<Version> champions() const;
+  /// Every version of an equipment, ascending.
+  std::vector<VersionSummary> summaries(const std::string& spacecraft,
+                                        const std::string& equipment) const;
   /// Ascending by id.
   std::vector<Decision> decisions(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<std::int64_t> version = std::nullopt) const;

@@ -37,6 +37,9 @@ void add_show(CLI::App& app, int& exit_code);
 void add_why(CLI::App& app, int& exit_code);
 void add_reproduce(CLI::App& app, int& exit_code);
 void add_backfill(CLI::App& app, int& exit_code);
+void add_at(CLI::App& app, int& exit_code);
+/// approve, reject, withdraw, hold, release and rollback.
+void add_operator_commands(CLI::App& app, int& exit_code);
 void add_check_config(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_version(CLI::App& app, int& exit_code);

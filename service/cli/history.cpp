@@ -1,5 +1,5 @@
 #include <cstdio>
-#include <set>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -12,8 +12,12 @@ namespace {
 
 using nlohmann::ordered_json;
 using storage::Attempt;
+using storage::Decision;
+using storage::EquipmentName;
 using storage::HistoryFilter;
+using storage::Hold;
 using storage::Registry;
+using storage::VersionSummary;
 
 struct Arguments {
   DatabaseOptions database;
@@ -24,28 +28,64 @@ struct Arguments {
   bool json = false;
 };
 
-/// Tells the version that runs now from the others.
-class Champions {
+/// What the registry says about the versions that attempts gave, and about their equipment.
+class Decided {
  public:
-  explicit Champions(const Registry& registry) {
-    for (const storage::Version& version : registry.champions())
-      champions_.insert({version.spacecraft, version.equipment, version.number});
+  explicit Decided(const Registry& registry) {
+    for (const EquipmentName& equipment : registry.equipment()) {
+      const auto& [spacecraft, name] = equipment;
+      for (VersionSummary& version : registry.summaries(spacecraft, name))
+        versions_[{equipment, version.number}].summary = std::move(version);
+      for (Decision& decision : registry.decisions(spacecraft, name))
+        versions_[{equipment, decision.version}].decisions.push_back(std::move(decision));
+      if (auto hold = registry.hold(spacecraft, name)) holds_.emplace(equipment, *std::move(hold));
+    }
   }
-  bool contains(const Attempt& attempt) const {
-    return attempt.version &&
-           champions_.contains({attempt.spacecraft, attempt.equipment, *attempt.version});
+  struct Version {
+    VersionSummary summary;
+    std::vector<Decision> decisions;
+  };
+  /// Of an attempt that gave one.
+  const Version& version(const Attempt& attempt) const {
+    return versions_.at({{attempt.spacecraft, attempt.equipment}, *attempt.version});
   }
+  bool is_champion(const Attempt& attempt) const {
+    return attempt.version && version(attempt).summary.status == "approved";
+  }
+  const std::map<EquipmentName, Hold>& holds() const { return holds_; }
 
  private:
-  std::set<std::tuple<std::string, std::string, std::int64_t>> champions_;
+  std::map<std::pair<EquipmentName, std::int64_t>, Version> versions_;
+  std::map<EquipmentName, Hold> holds_;
 };
 
-std::string version_text(const Attempt& attempt, bool champion) {
+std::string version_text(const Attempt& attempt, const Decided& decided) {
   if (!attempt.version) return "-";
-  return fmt::format("{}{}", *attempt.version, champion ? "*" : "");
+  const std::string& status = decided.version(attempt).summary.status;
+  return fmt::format("{}{}", *attempt.version,
+                     status == "approved"    ? "*"
+                     : status == "withdrawn" ? "x"
+                                             : "");
 }
 
-void print_table(const std::vector<Attempt>& attempts, const Champions& champions) {
+/// The outcome at first, and what was decided since.
+std::string outcome_text(const Attempt& attempt, const Decided& decided) {
+  std::string text = fmt::format("{}: {}", attempt.outcome, attempt.reason);
+  if (!attempt.version) return text;
+  const std::vector<Decision>& decisions = decided.version(attempt).decisions;
+  for (std::size_t i = 1; i < decisions.size(); ++i)
+    text += fmt::format("; {} by {} at {}{}", name(decisions[i].kind), decisions[i].actor,
+                        time_text(decisions[i].time), reason_text(decisions[i].reason));
+  return text;
+}
+
+bool is_selected(const EquipmentName& equipment, const Arguments& arguments) {
+  return (arguments.spacecraft.empty() || arguments.spacecraft == equipment.spacecraft) &&
+         (arguments.equipment.empty() || arguments.equipment == equipment.equipment);
+}
+
+void print_table(const std::vector<Attempt>& attempts, const Decided& decided,
+                 const Arguments& arguments) {
   Table table({{"equipment"},
                {"window (UTC)"},
                {"length"},
@@ -58,41 +98,57 @@ void print_table(const std::vector<Attempt>& attempts, const Champions& champion
     const ordered_json evidence = evidence_of(attempt);
     table.add({full_name(attempt.spacecraft, attempt.equipment), time_text(attempt.window.begin),
                duration_text(attempt.window.end - attempt.window.begin),
-               version_text(attempt, champions.contains(attempt)),
-               evidence_number(evidence, "order"), evidence_number(evidence, "mrse_percent"),
-               evidence_number(evidence, "fit_percent"),
-               fmt::format("{}: {}", attempt.outcome, attempt.reason)});
+               version_text(attempt, decided), evidence_number(evidence, "order"),
+               evidence_number(evidence, "mrse_percent"), evidence_number(evidence, "fit_percent"),
+               outcome_text(attempt, decided)});
   }
   fmt::print("{}", table.text(terminal_width()));
-  fmt::print("* champion: what simulators run now\n");
+  fmt::print("* champion: what simulators run now; x withdrawn\n");
+  for (const auto& [equipment, hold] : decided.holds())
+    if (is_selected(equipment, arguments)) fmt::print("{}\n", hold_text(equipment, hold));
 }
 
-void print_json(const std::vector<Attempt>& attempts, const Champions& champions) {
+ordered_json attempt_json(const Attempt& attempt, const Decided& decided) {
+  const ordered_json evidence = evidence_of(attempt);
+  const auto number = [&](const char* key) { return evidence.value(key, ordered_json()); };
+  ordered_json json = {
+      {"attempt", attempt.id},
+      {"spacecraft", attempt.spacecraft},
+      {"equipment", attempt.equipment},
+      {"window",
+       {{"begin", time_text(attempt.window.begin)}, {"end", time_text(attempt.window.end)}}},
+      {"trigger", attempt.trigger},
+      {"time", time_text(attempt.time)},
+      {"outcome", attempt.outcome},
+      {"reason", attempt.reason},
+      {"version", attempt.version ? ordered_json(*attempt.version) : ordered_json()},
+      {"champion", decided.is_champion(attempt)},
+      {"order", number("order")},
+      {"mrse_percent", number("mrse_percent")},
+      {"fit_percent", number("fit_percent")},
+      {"evidence", evidence},
+      {"configuration_digest", attempt.configuration_digest},
+      {"program_version", attempt.program_version}};
+  if (!attempt.version) return json;
+  const Decided::Version& version = decided.version(attempt);
+  json["status"] = version.summary.status;
+  json["parent"] = version.summary.parent ? ordered_json(*version.summary.parent) : ordered_json();
+  json["decisions"] = decisions_json(version.decisions);
+  return json;
+}
+
+void print_json(const std::vector<Attempt>& attempts, const Decided& decided,
+                const Arguments& arguments) {
   ordered_json list = ordered_json::array();
-  for (const Attempt& attempt : attempts) {
-    const ordered_json evidence = evidence_of(attempt);
-    const auto number = [&](const char* key) { return evidence.value(key, ordered_json()); };
-    list.push_back(
-        {{"attempt", attempt.id},
-         {"spacecraft", attempt.spacecraft},
-         {"equipment", attempt.equipment},
-         {"window",
-          {{"begin", time_text(attempt.window.begin)}, {"end", time_text(attempt.window.end)}}},
-         {"trigger", attempt.trigger},
-         {"time", time_text(attempt.time)},
-         {"outcome", attempt.outcome},
-         {"reason", attempt.reason},
-         {"version", attempt.version ? ordered_json(*attempt.version) : ordered_json()},
-         {"champion", champions.contains(attempt)},
-         {"order", number("order")},
-         {"mrse_percent", number("mrse_percent")},
-         {"fit_percent", number("fit_percent")},
-         {"evidence", evidence},
-         {"configuration_digest", attempt.configuration_digest},
-         {"program_version", attempt.program_version}});
-  }
-  fmt::print("{}\n", ordered_json{{"attempts", list}}.dump(2, ' ', false,
-                                                           ordered_json::error_handler_t::replace));
+  for (const Attempt& attempt : attempts) list.push_back(attempt_json(attempt, decided));
+  ordered_json holds = ordered_json::array();
+  for (const auto& [equipment, hold] : decided.holds())
+    if (is_selected(equipment, arguments))
+      holds.push_back({{"spacecraft", equipment.spacecraft},
+                       {"equipment", equipment.equipment},
+                       {"hold", hold_json(hold)}});
+  const ordered_json object = {{"attempts", list}, {"holds", holds}};
+  fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 /// Why a filter selects nothing.
@@ -119,11 +175,11 @@ int run(const Arguments& arguments) {
     const bool filtered = !arguments.spacecraft.empty() || !arguments.equipment.empty();
     if (attempts.empty() && (filtered || !arguments.json))
       return refuse(nothing_selected(arguments, registry));
-    const Champions champions(registry);
+    const Decided decided(registry);
     if (arguments.json)
-      print_json(attempts, champions);
+      print_json(attempts, decided, arguments);
     else
-      print_table(attempts, champions);
+      print_table(attempts, decided, arguments);
     return static_cast<int>(exit_done);
   });
 }

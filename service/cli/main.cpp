@@ -23,6 +23,8 @@ int run(int argc, char** argv) {
   add_why(app, exit_code);
   add_reproduce(app, exit_code);
   add_backfill(app, exit_code);
+  add_at(app, exit_code);
+  add_operator_commands(app, exit_code);
   add_check_config(app, exit_code);
   add_status(app, exit_code);
   add_version(app, exit_code);

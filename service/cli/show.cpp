@@ -34,30 +34,35 @@ ordered_json continuous_json(const identification::StateSpaceModel& dynamics) {
   return to_json(to_continuous(dynamics));
 }
 
+/// null for a version from before it was kept.
+ordered_json provenance_json(const storage::Version& version) {
+  if (version.provenance_json.empty()) return nullptr;
+  return ordered_json::parse(version.provenance_json, nullptr, false);
+}
+
 void print_json(const Story& story) {
-  ordered_json decisions = ordered_json::array();
-  for (const Decision& decision : story.decisions)
-    decisions.push_back({{"kind", name(decision.kind)},
-                         {"time", time_text(decision.time)},
-                         {"actor", decision.actor},
-                         {"reason", decision.reason}});
-  const ordered_json object = {{"spacecraft", story.version.spacecraft},
-                               {"equipment", story.version.equipment},
-                               {"version", story.version.number},
-                               {"status", story.version.status},
-                               {"digest", story.version.digest},
-                               {"digest_matches", story.digest_matches},
-                               {"created", time_text(story.version.created)},
-                               {"window", range_json(story.version.window)},
-                               {"trigger", story.attempt.trigger},
-                               {"outcome", story.attempt.outcome},
-                               {"reason", story.attempt.reason},
-                               {"evidence", evidence_of(story.attempt)},
-                               {"decisions", decisions},
-                               {"configuration_digest", story.attempt.configuration_digest},
-                               {"program_version", story.attempt.program_version},
-                               {"model", to_json(story.model)},
-                               {"continuous", continuous_json(story.model.dynamics)}};
+  const ordered_json object = {
+      {"spacecraft", story.version.spacecraft},
+      {"equipment", story.version.equipment},
+      {"version", story.version.number},
+      {"status", story.version.status},
+      {"digest", story.version.digest},
+      {"digest_matches", story.digest_matches},
+      {"created", time_text(story.version.created)},
+      {"window", range_json(story.version.window)},
+      {"trigger", story.attempt.trigger},
+      {"outcome", story.attempt.outcome},
+      {"reason", story.attempt.reason},
+      {"evidence", evidence_of(story.attempt)},
+      {"decisions", decisions_json(story.decisions)},
+      {"parent", story.version.parent ? ordered_json(*story.version.parent) : ordered_json()},
+      {"hold", story.hold ? hold_json(*story.hold) : ordered_json()},
+      {"samples_digest", story.version.samples_digest},
+      {"provenance", provenance_json(story.version)},
+      {"configuration_digest", story.attempt.configuration_digest},
+      {"program_version", story.attempt.program_version},
+      {"model", to_json(story.model)},
+      {"continuous", continuous_json(story.model.dynamics)}};
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
@@ -109,6 +114,12 @@ std::string decisions_text(const std::vector<Decision>& decisions) {
   return table.text(terminal_width());
 }
 
+std::string provenance_text(const storage::Version& version) {
+  if (version.provenance_json.empty()) return "";
+  return fmt::format("samples         {}\nprovenance      {}\n", version.samples_digest,
+                     version.provenance_json);
+}
+
 void print_continuous(
     const std::variant<identification::ContinuousModel, identification::Verdict>& continuous) {
   fmt::print("{}", continuous_text(continuous));
@@ -126,17 +137,22 @@ void print_story(const Story& story) {
   fmt::print("identified from {}\n", range_text(model.identified_from));
   fmt::print("validated on    {}\n", range_text(model.validated_on));
   fmt::print("trigger         {}\n", story.attempt.trigger);
+  fmt::print("judged against  {}\n", story.version.parent
+                                         ? fmt::format("version {}", *story.version.parent)
+                                         : "no champion");
   fmt::print("method          {}, sample period {:g} s\n", model.method, dynamics.period_s);
   fmt::print("poles           {} (spectral radius {:.6g})\n", poles_text(dynamics),
              spectral_radius(dynamics));
   fmt::print("digest          {}{}\n", story.version.digest,
              story.digest_matches ? "" : " DOES NOT MATCH the stored model");
-  fmt::print("configuration   {}\nprogram         {}\n", story.attempt.configuration_digest,
-             story.attempt.program_version);
+  fmt::print("configuration   {}\nprogram         {}\n{}", story.attempt.configuration_digest,
+             story.attempt.program_version, provenance_text(story.version));
   fmt::print("\n{}\n", signals_text(model));
   fmt::print("free run over {} rows that the identification did not use:\n{}{}\n",
              model.validation.rows, scores_text(model), champion_text(evidence_of(story.attempt)));
   fmt::print("{}\n", decisions_text(story.decisions));
+  if (story.hold)
+    fmt::print("{}\n", hold_text({story.version.spacecraft, story.version.equipment}, *story.hold));
   fmt::print("x[k+1] = A x[k] + B (u[k] - u0),  y[k] = C x[k] + D (u[k] - u0) + y0\n");
   fmt::print("{}{}{}{}{}{}{}", matrix_text("A", dynamics.A), matrix_text("B", dynamics.B),
              matrix_text("C", dynamics.C), matrix_text("D", dynamics.D),

@@ -1,10 +1,10 @@
 #include "service/cli/stored.hpp"
 
-#include <set>
-
 #include <fmt/format.h>
 
 #include "service/cli/config_choice.hpp"
+#include "service/support/text.hpp"
+#include "service/support/time_text.hpp"
 
 namespace reident::cli {
 namespace {
@@ -61,12 +61,34 @@ std::string full_name(const std::string& spacecraft, const std::string& equipmen
 }
 
 std::string equipment_in(const storage::Registry& registry) {
-  std::set<std::string> names;
-  for (const storage::Attempt& attempt : registry.attempts())
-    names.insert(full_name(attempt.spacecraft, attempt.equipment));
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "nothing yet" : text;
+  std::vector<std::string> names;
+  for (const auto& [spacecraft, equipment] : registry.equipment())
+    names.push_back(full_name(spacecraft, equipment));
+  return names.empty() ? "nothing yet" : joined(names);
+}
+
+std::string reason_text(const std::string& reason) {
+  return reason.empty() ? "" : fmt::format(" ({})", reason);
+}
+
+std::string hold_text(const storage::EquipmentName& equipment, const storage::Hold& hold) {
+  return fmt::format("{} is held by {} since {}{}",
+                     full_name(equipment.spacecraft, equipment.equipment), hold.actor,
+                     time_text(hold.since), reason_text(hold.reason));
+}
+
+ordered_json hold_json(const storage::Hold& hold) {
+  return {{"actor", hold.actor}, {"reason", hold.reason}, {"since", time_text(hold.since)}};
+}
+
+ordered_json decisions_json(const std::vector<storage::Decision>& decisions) {
+  ordered_json list = ordered_json::array();
+  for (const storage::Decision& decision : decisions)
+    list.push_back({{"kind", storage::name(decision.kind)},
+                    {"time", time_text(decision.time)},
+                    {"actor", decision.actor},
+                    {"reason", decision.reason}});
+  return list;
 }
 
 ordered_json evidence_of(const storage::Attempt& attempt) {

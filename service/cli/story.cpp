@@ -74,6 +74,7 @@ std::variant<Story, Refusal> find_story(const Registry& registry, const Subject&
   for (const Attempt& attempt : attempts)
     if (attempt.id == version->attempt) story.attempt = attempt;
   story.decisions = registry.decisions(spacecraft, subject.equipment, version->number);
+  story.hold = registry.hold(spacecraft, subject.equipment);
   story.model = equipment_model_from_json(version->model_json);
   story.digest_matches = model_digest(story.model) == version->digest;
   story.version = *std::move(version);

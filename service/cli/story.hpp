@@ -26,6 +26,7 @@ struct Story {
   storage::Version version;
   storage::Attempt attempt;
   std::vector<storage::Decision> decisions;
+  std::optional<storage::Hold> hold;  // of its equipment, now
   EquipmentModel model;
   bool digest_matches = false;
 };

@@ -22,6 +22,10 @@ using storage::EquipmentName;
 using storage::Registry;
 using storage::Version;
 
+std::string text(const EquipmentName& equipment) {
+  return equipment.spacecraft + "/" + equipment.equipment;
+}
+
 /// A command whose equipment is known.
 struct Order {
   const Command& command;
@@ -31,7 +35,7 @@ struct Order {
 
   const std::string& spacecraft() const { return equipment.spacecraft; }
   const std::string& name() const { return equipment.equipment; }
-  std::string full_name() const { return reident::full_name(equipment); }
+  std::string full_name() const { return text(equipment); }
   storage::NewDecision decision(DecisionKind kind) const {
     return {kind, command.actor, command.reason};
   }
@@ -241,7 +245,7 @@ constexpr std::array actions{
 
 std::string list(const std::set<EquipmentName>& equipment) {
   std::vector<std::string> names;
-  for (const EquipmentName& one : equipment) names.push_back(full_name(one));
+  for (const EquipmentName& one : equipment) names.push_back(text(one));
   return names.empty() ? "none" : joined(names);
 }
 
@@ -257,7 +261,7 @@ std::variant<EquipmentName, CommandOutcome> named_equipment(const Command& comma
     return refused(fmt::format("there is no equipment {}; known: {}",
                                command.spacecraft.empty()
                                    ? command.equipment
-                                   : full_name({command.spacecraft, command.equipment}),
+                                   : text(EquipmentName{command.spacecraft, command.equipment}),
                                list(known)));
   return refused(fmt::format("{} is the name of several equipment; name the spacecraft: {}",
                              command.equipment, list(meant)));
@@ -305,10 +309,6 @@ std::vector<EquipmentName> equipment_of(const Config& config) {
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       names.push_back({spacecraft.name, equipment.name});
   return names;
-}
-
-std::string full_name(const EquipmentName& equipment) {
-  return equipment.spacecraft + "/" + equipment.equipment;
 }
 
 }  // namespace reident

@@ -22,7 +22,4 @@ storage::CommandOutcome execute(const storage::Command& command, storage::Regist
 /// The equipment of a configuration.
 std::vector<storage::EquipmentName> equipment_of(const Config& config);
 
-/// "CBERS-4/BDR".
-std::string full_name(const storage::EquipmentName& equipment);
-
 }  // namespace reident

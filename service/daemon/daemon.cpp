@@ -1,6 +1,8 @@
 #include "service/daemon/daemon.hpp"
 
+#include <chrono>
 #include <limits>
+#include <thread>
 
 #include "service/daemon/commands.hpp"
 #include "service/support/log.hpp"
@@ -10,8 +12,20 @@
 namespace reident {
 namespace {
 
+/// A command that is carried out on the file holds its lock for a moment.
 storage::Database open_for_writing(const Config& config) {
-  return {config.database, storage::Database::Mode::read_write};
+  using namespace std::chrono_literals;
+  const auto deadline = std::chrono::steady_clock::now() + 1s;
+  while (true) {
+    try {
+      return {config.database, storage::Database::Mode::read_write};
+    } catch (const storage::Error& error) {
+      if (error.kind() != storage::Error::Kind::locked ||
+          std::chrono::steady_clock::now() >= deadline)
+        throw;
+    }
+    std::this_thread::sleep_for(20ms);
+  }
 }
 
 IdentificationReport report_of(const RefreshResult& result) {

@@ -15,6 +15,8 @@ import time
 import unittest
 from pathlib import Path
 
+import plant
+
 BIN = Path(os.environ["REIDENT_BIN"])  # folder of the programs under test
 DEADLINE_S = float(os.environ.get("REIDENT_E2E_DEADLINE", "60"))
 
@@ -150,7 +152,26 @@ class EndToEnd(unittest.TestCase):
         self.assertEqual(status, 0, text)
         return json.loads(text)
 
+    # -- the plant's telemetry, and what simulators make of it
+
+    def replay_rows(self, name, **keywords):
+        self.replay_all(plant.write(self.folder / f"{name}.csv", plant.rows(**keywords)))
+        return self.wait_idle()
+
+    def start_simulator(self, name):
+        return self.start("reident-simulator", "--spacecraft", "SAT", "--equipment", "PLANT",
+                          "--name", name, "--json", *self.endpoint(), name=name)
+
+    def runs(self, simulator):
+        """Versions that the simulator took up, in order."""
+        events = [json.loads(line) for line in simulator.out.read_text().splitlines() if line]
+        return [event["version"] for event in events if event.get("event") == "adopted"]
+
     # -- what is stored
+
+    def champion(self):
+        rows = self.query("SELECT version FROM champion")
+        return rows[0][0] if rows else None
 
     def query(self, sql, *values):
         connection = sqlite3.connect(f"file:{self.database}?mode=ro", uri=True, timeout=10)

@@ -17,23 +17,6 @@ class Loop(EndToEnd):
     def attempts(self):
         return self.query("SELECT * FROM attempt ORDER BY id")
 
-    def champion(self):
-        rows = self.query("SELECT version FROM champion")
-        return rows[0][0] if rows else None
-
-    def start_simulator(self, name):
-        return self.start("reident-simulator", "--spacecraft", "SAT", "--equipment", "PLANT",
-                          "--name", name, "--json", *self.endpoint(), name=name)
-
-    def runs(self, simulator):
-        """Versions that the simulator took up, in order."""
-        events = [json.loads(line) for line in simulator.out.read_text().splitlines() if line]
-        return [event["version"] for event in events if event.get("event") == "adopted"]
-
-    def replay_rows(self, name, **keywords):
-        self.replay_all(plant.write(self.folder / f"{name}.csv", plant.rows(**keywords)))
-        return self.wait_idle()
-
     def test_two_versions_reach_a_simulator_that_started_late(self):
         self.configure([plant.equipment()])
         daemon = self.start_daemon()

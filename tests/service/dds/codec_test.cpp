@@ -221,5 +221,20 @@ TEST(ReportCodec, refuses_negative_orders_and_windows_that_end_before_they_begin
   expect(report, S{"", [](auto& r) { r.outcome = null_text; }, "outcome is null"});
 }
 
+TEST(CommandCodec, refuses_what_cannot_be_answered_and_leaves_the_rest_to_the_answer) {
+  const CommandRequest good{{"console", 7, "hold", "SAT", "BDR", 0, "Ana", "training"}, "reident"};
+  using S = Spoil<reident_Command>;
+  expect(good, S{"", [](auto&) {}, ""});
+  expect(good, S{"", [](auto& c) { c.requester = text(""); }, "requester is empty"});
+  expect(good, S{"", [](auto& c) { c.requester = null_text; }, "requester is null"});
+  expect(good, S{"", [](auto& c) { c.reason = text("\xc3("); }, "reason is not UTF-8"});
+  expect(good, S{"", [](auto& c) { c.actor = text(""); }, ""});
+  expect(good, S{"", [](auto& c) { c.version = -1; }, ""});
+  const CommandReply reply{"console", 7, {false, "why"}};
+  using R = Spoil<reident_CommandReply>;
+  expect(reply, R{"", [](auto&) {}, ""});
+  expect(reply, R{"", [](auto& r) { r.requester = text("a\nb"); }, "control character"});
+}
+
 }  // namespace
 }  // namespace reident::test

@@ -1,0 +1,193 @@
+#include "service/cli/operate.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <pwd.h>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "service/cli/command_sender.hpp"
+#include "service/cli/config_choice.hpp"
+#include "service/daemon/commands.hpp"
+
+namespace reident::cli {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+using storage::Command;
+using storage::CommandOutcome;
+
+/// How long a service is waited for until the database is tried again.
+constexpr auto turn = std::chrono::milliseconds(300);
+
+struct Target {
+  std::optional<std::filesystem::path> database;
+  dds::Endpoint endpoint;
+  std::string service;
+  std::vector<storage::EquipmentName> configured;
+};
+
+std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
+  Target target;
+  if (options.database.database) {
+    target.database = *options.database.database;
+  } else {
+    auto chosen = chosen_config(options.database.config);
+    if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
+    if (const auto& config = std::get<std::optional<Config>>(chosen)) {
+      target = {config->database,
+                {config->domain, config->partition},
+                config->service_name,
+                equipment_of(*config)};
+    } else if (!options.domain && !options.partition) {
+      return Refusal{
+          fmt::format("there is no {} here; name the service's configuration with "
+                      "--config FILE, its database with --database FILE, or its DDS "
+                      "domain and partition",
+                      default_config_file)};
+    }
+  }
+  target.endpoint.domain = options.domain.value_or(target.endpoint.domain);
+  target.endpoint.partition = options.partition.value_or(target.endpoint.partition);
+  return target;
+}
+
+storage::Time utc_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Like no other's of any process on any machine.
+std::string requester_name() {
+  std::array<char, 256> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
+  return fmt::format("reident:{:.100}:{}:{}", host.data(), ::getpid(), utc_now());
+}
+
+struct Answer {
+  CommandOutcome outcome;
+  bool by_service = false;
+};
+/// Refused where no database of ours can be used.
+using Asked = std::variant<Answer, Refusal>;
+
+/// Absent where the database is not here or another process holds it; `why` says which.
+std::optional<Asked> execute_on_file(const Target& target, const Command& command,
+                                     std::string& why) {
+  std::error_code error;
+  if (!target.database || !std::filesystem::exists(*target.database, error)) {
+    why = target.database ? fmt::format("there is no database {}", target.database->string())
+                          : "no database was named";
+    return std::nullopt;
+  }
+  try {
+    storage::Database database(*target.database, storage::Database::Mode::read_write);
+    storage::Registry registry(database);
+    return Answer{execute(command, registry, target.configured, utc_now()), false};
+  } catch (const storage::Error& failure) {
+    why = failure.what();
+    using Kind = storage::Error::Kind;
+    if (failure.kind() == Kind::locked || failure.kind() == Kind::read_only) return std::nullopt;
+    if (failure.kind() == Kind::cannot_open || failure.kind() == Kind::newer_schema)
+      return Refusal{why};
+    throw;
+  }
+}
+
+/// Names the version that a rollback goes back to, where the database can be read: of two operators
+/// who roll back at once the second is then refused, and does not go back one more.
+void name_the_version(const Target& target, Command& command) {
+  if (command.action != "roll_back" || command.version != 0 || !target.database) return;
+  try {
+    storage::Database database(*target.database, storage::Database::Mode::read_only);
+    const storage::Registry registry(database);
+    std::vector<storage::EquipmentName> meant;
+    for (const storage::EquipmentName& one : registry.equipment())
+      if (one.equipment == command.equipment &&
+          (command.spacecraft.empty() || one.spacecraft == command.spacecraft))
+        meant.push_back(one);
+    if (meant.size() != 1) return;  // the reply says what is wrong
+    const auto previous = registry.previous_champion(meant[0].spacecraft, meant[0].equipment);
+    if (previous) command.version = previous->number;
+  } catch (const storage::Error&) {
+    // Not readable here: whoever executes the command finds the version.
+  }
+}
+
+/// Absent when the time ran out; `why` says what kept the file.
+std::optional<Asked> ask(const Target& target, const OperatorOptions& options,
+                         const Command& command, std::string& why) {
+  if (auto asked = execute_on_file(target, command, why)) return asked;
+  const auto deadline = SteadyClock::now() + std::chrono::duration_cast<SteadyClock::duration>(
+                                                 std::chrono::duration<double>(options.timeout_s));
+  CommandSender sender(target.endpoint, {command, target.service});
+  while (SteadyClock::now() < deadline) {
+    if (const auto outcome = sender.wait(turn)) return Answer{*outcome, true};
+    // The service may have ended; what it did already, the database knows by the request.
+    if (auto asked = execute_on_file(target, command, why)) return asked;
+  }
+  return std::nullopt;
+}
+
+int report_timeout(const Target& target, const OperatorOptions& options, const std::string& why) {
+  fmt::print(stderr,
+             "reident: no service answered on domain {}, partition {} within {:g} s, and {}; check "
+             "that the domain and the partition are the service's, and with 'reident history' that "
+             "nothing was done\n",
+             target.endpoint.domain, target.endpoint.partition, options.timeout_s, why);
+  return exit_timed_out;
+}
+
+void print_json(const Command& command, const Answer& answer) {
+  const nlohmann::ordered_json object = {
+      {"ok", answer.outcome.ok},
+      {"reply", answer.outcome.reply},
+      {"by", answer.by_service ? "service" : "file"},
+      {"action", command.action},
+      {"spacecraft", command.spacecraft},
+      {"equipment", command.equipment},
+      {"version",
+       command.version == 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(command.version)},
+      {"actor", command.actor},
+      {"reason", command.reason}};
+  fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+}  // namespace
+
+std::string login_name() {
+  const passwd* user = ::getpwuid(::geteuid());
+  return user ? user->pw_name : "";
+}
+
+int operate(const OperatorOptions& options, const OperatorOrder& order) {
+  const auto found = target_of(options);
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
+  const Target& target = std::get<Target>(found);
+  Command command{requester_name(), 1,
+                  order.action,     order.spacecraft,
+                  order.equipment,  order.version,
+                  options.actor,    options.reason};
+  name_the_version(target, command);
+  std::string why;
+  const auto asked = ask(target, options, command, why);
+  if (!asked) return report_timeout(target, options, why);
+  if (const auto* refusal = std::get_if<Refusal>(&*asked)) return refuse(*refusal);
+  const Answer& answer = std::get<Answer>(*asked);
+  if (options.json) {
+    print_json(command, answer);
+    return answer.outcome.ok ? exit_done : exit_impossible;
+  }
+  if (!answer.outcome.ok) return refuse({answer.outcome.reply});
+  fmt::print("{}{}\n", answer.outcome.reply,
+             answer.by_service ? "" : " (no service runs: done in its database)");
+  return exit_done;
+}
+
+}  // namespace reident::cli
