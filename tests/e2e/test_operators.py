@@ -92,7 +92,10 @@ class Operators(EndToEnd):
         self.assertEqual(self.champion(), before)
         self.assertEqual(self.runs(simulator)[-1], before)
         self.assertIn("is held already by Ana", self.refused("hold", "PLANT", actor="Bo"))
-        self.done("release", "PLANT")
+        # A console that has neither the configuration nor the database.
+        status, text = self.reident("release", "PLANT", "--actor", "Bo", *self.endpoint())
+        self.assertEqual(status, 0, text)
+        self.assertIn("it was held by Ana", text)
         self.replay_rows("released", count=1300, first=1300 * 4, gain=5.0)
         self.assertGreater(self.champion(), last)
         wait_until(lambda: self.runs(simulator)[-1] == self.champion(), "the next one runs")

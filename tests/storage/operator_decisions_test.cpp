@@ -120,6 +120,19 @@ TEST_F(OperatorDecisions, AVersionIsApprovedAgainstTheChampionThatItWasJudgedAga
   EXPECT_EQ(champion_at(std::nullopt), 3);
 }
 
+TEST_F(OperatorDecisions, ASummaryIsTheVersionWithoutItsModel) {
+  version(10, approve);
+  version(20, wait);
+  decide(1, withdraw, 30);
+  const auto summaries = registry.summaries("CB4", "BDR");
+  ASSERT_THAT(summaries, SizeIs(2));
+  for (const VersionSummary& summary : summaries) {
+    const auto version = registry.version("CB4", "BDR", summary.number);
+    EXPECT_EQ(summary.status, version->status);
+    EXPECT_EQ(summary.parent, version->parent);
+  }
+}
+
 TEST_F(OperatorDecisions, EquipmentIsNamedOnce) {
   version(10, approve);
   version(20, approve);
