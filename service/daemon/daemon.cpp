@@ -196,13 +196,17 @@ bool Daemon::conclude(RefreshResult&& result, const storage::Standing& standing,
 void Daemon::answer_operators() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Registry reader(database);
-  const std::vector<storage::EquipmentName> configured = equipment_of(config_);
+  const CommandContext context{
+      equipment_of(config_),
+      [this](const storage::EquipmentName& equipment, const std::string& cause) {
+        return feed_.ask(equipment.spacecraft, equipment.equipment, cause);
+      }};
   desk_.run([&](const storage::Command& command) -> std::optional<storage::CommandOutcome> {
     storage::CommandOutcome outcome;
     try {
       writer_
           .post([&](storage::Registry& registry, auto&) {
-            outcome = execute(command, registry, configured, clock_());
+            outcome = execute(command, registry, context, clock_());
           })
           .get();
     } catch (const std::future_error&) {  // the writer has ended
@@ -276,8 +280,8 @@ bool Daemon::stop() {
   if (stopping_.exchange(true)) return true;
   desk_.stop();
   if (desk_thread_.joinable()) desk_thread_.join();
-  if (monitor_thread_.joinable()) monitor_thread_.join();
   feed_.stop();
+  if (monitor_thread_.joinable()) monitor_thread_.join();
   ingest_->stop();
   if (ingest_thread_.joinable()) ingest_thread_.join();
   queue_.close();
