@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "identification/correction.hpp"
 
@@ -13,7 +15,9 @@ namespace {
 
 constexpr double worthwhile = 0.99;
 constexpr double full_rank = 1e-8;
+constexpr Index first_rows = 1000;
 constexpr Index most_rows = 5000;
+constexpr std::ptrdiff_t runs_on_all_rows = 12;
 constexpr int scales_per_decade = 10;
 constexpr int shortest_tau = -2;  // powers of two
 constexpr int longest_tau = 6;
@@ -92,6 +96,39 @@ std::variant<TrackingPlacement, Verdict> place_tracking_poles(const StateSpaceMo
   return result;
 }
 
+namespace {
+
+std::vector<TrackingSearch> every_placement(const StateSpaceModel& model,
+                                            const Vector& error_limit) {
+  const Poles poles = poles_of(model.A);
+  const std::size_t further = 2 * static_cast<std::size_t>(model.outputs());
+  std::vector<TrackingSearch> found;
+  for (int step = -scales_per_decade; step <= scales_per_decade; ++step)
+    for (int power = shortest_tau; power <= longest_tau; ++power) {
+      const double scale = std::pow(10, double(step) / scales_per_decade);
+      const double tau = std::exp2(power);
+      Poles wanted = scaled_poles(poles, scale);
+      wanted.resize(wanted.size() + further, std::exp(-1 / tau));
+      const auto placed = place_tracking_poles(model, wanted, error_limit);
+      const auto* placement = std::get_if<TrackingPlacement>(&placed);
+      if (!placement) continue;
+      TrackingSearch& one = found.emplace_back();
+      one.gain = placement->gain;
+      one.scale = scale;
+      one.tau_samples = tau;
+      one.uncontrollable = placement->uncontrollable;
+    }
+  return found;
+}
+
+void score_tracking(const StateSpaceModel& model, const Record& record, RowRange rows,
+                    TrackingSearch& one) {
+  one.tracking = score(record.y.middleRows(rows.begin, rows.size()),
+                       tracked_run(model, one.gain, record, rows));
+}
+
+}  // namespace
+
 std::variant<TrackingSearch, Verdict> search_tracking(const StateSpaceModel& model,
                                                       const Record& record, RowRange identify,
                                                       RowRange tune) {
@@ -103,31 +140,21 @@ std::variant<TrackingSearch, Verdict> search_tracking(const StateSpaceModel& mod
   if (auto verdict = obstacle(model, error_limit)) return *verdict;
 
   const RowRange rows{tune.begin, std::min(tune.end, tune.begin + most_rows)};
+  const RowRange few{rows.begin, std::min(rows.end, rows.begin + first_rows)};
+  std::vector<TrackingSearch> tried = every_placement(model, error_limit);
+  const auto by_error = [](const TrackingSearch& a, const TrackingSearch& b) {
+    return a.tracking.mrse() < b.tracking.mrse();
+  };
+  for (TrackingSearch& one : tried) score_tracking(model, record, few, one);
+  const auto kept = std::min(std::ssize(tried), runs_on_all_rows);
+  std::partial_sort(tried.begin(), tried.begin() + kept, tried.end(), by_error);
+  tried.resize(static_cast<std::size_t>(kept));
+  for (TrackingSearch& one : tried) score_tracking(model, record, rows, one);
+  const auto best = std::min_element(tried.begin(), tried.end(), by_error);
+
   const Matrix y = record.y.middleRows(rows.begin, rows.size());
-  const Poles poles = poles_of(model.A);
-  std::optional<TrackingSearch> best;
-  for (int step = -scales_per_decade; step <= scales_per_decade; ++step)
-    for (int power = shortest_tau; power <= longest_tau; ++power) {
-      const double scale = std::pow(10, double(step) / scales_per_decade);
-      const double tau = std::exp2(power);
-      Poles wanted = scaled_poles(poles, scale);
-      wanted.resize(wanted.size() + 2 * static_cast<std::size_t>(model.outputs()),
-                    std::exp(-1 / tau));
-      const auto placed = place_tracking_poles(model, wanted, error_limit);
-      const auto* placement = std::get_if<TrackingPlacement>(&placed);
-      if (!placement) continue;
-      const Score tracking = score(y, tracked_run(model, placement->gain, record, rows));
-      if (!std::isfinite(tracking.mrse())) continue;
-      if (best && !(tracking.mrse() < best->tracking.mrse())) continue;
-      if (!best) best.emplace();
-      best->gain = placement->gain;
-      best->scale = scale;
-      best->tau_samples = tau;
-      best->tracking = tracking;
-      best->uncontrollable = placement->uncontrollable;
-    }
   const Score free = score(y, free_run(model, record, rows));
-  if (!best || !(best->tracking.mrse() < worthwhile * free.mrse()))
+  if (best == tried.end() || !(best->tracking.mrse() < worthwhile * free.mrse()))
     return no_gain("no placement of the poles follows the output closer than the free run does");
   best->free_run = free;
   return *best;

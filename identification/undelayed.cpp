@@ -332,9 +332,8 @@ std::optional<Identified> Identification::realise(const Recipe& recipe) {
     result.warnings.push_back(
         "the model has no Kalman gain: its Riccati equation has no checked solution");
   if (recipe.operating_point == OperatingPoint::recent)
-    model.y0 += recent_operating_point(work().y.topRows(rows_.size()) -
-                                           free_run(model, work(), {0, rows_.size()}),
-                                       true);
+    model.y0 += recent_operating_point(
+        work().y.topRows(rows_.size()) - free_run(model, work(), {0, rows_.size()}), true);
   result.model = in_units(model, normalisation_);
   if (!is_well_formed(result.model)) return std::nullopt;
   result.recipe = recipe;

@@ -102,6 +102,10 @@ hold = "4s"
 window = "1h"
 slide = "1.5min"
 validation_share = 0.4
+tune_share = 0.25
+confidence = 95
+max_disagreement = 5
+min_interval = "3h"
 min_coverage = 0.75
 order = [2, 6]
 horizon = 12
@@ -140,6 +144,10 @@ horizon = "auto"
   EXPECT_EQ(x.window, 60 * min);
   EXPECT_EQ(x.slide, 90 * s);
   EXPECT_EQ(x.validation_share, 0.4);
+  EXPECT_EQ(x.tune_share, 0.25);
+  EXPECT_EQ(x.confidence_percent, 95);
+  EXPECT_EQ(x.max_disagreement_percent, 5);
+  EXPECT_EQ(x.min_interval, 180 * min);
   EXPECT_EQ(x.min_coverage, 0.75);
   EXPECT_EQ(x.min_order, 2);
   EXPECT_EQ(x.max_order, 6);
@@ -236,10 +244,10 @@ const Mistake values[] = {
     {"no_window", with(8, ""), "3: equipment BDR: window is missing"},
     {"short_window", with(8, "window = \"10s\""),
      "8: equipment BDR: window 10s holds 10 samples of 1s; orders up to 10 with 2 inputs and 1 "
-     "outputs need 210: make it at least 210s or lower the order"},
+     "outputs need 176: make it at least 176s or lower the order"},
     {"short_window_for_the_horizon", with(8, "window = \"3min\"\nhorizon = 50"),
      "8: equipment BDR: window 3min holds 180 samples of 1s; orders up to 10 with 2 inputs and 1 "
-     "outputs need 953: make it at least 953s"},
+     "outputs need 800: make it at least 800s"},
     {"window_below_period", with(8, "window = \"1s\"\nhold = \"1min\"") + "",
      "8: equipment BDR: window 1s holds 1 samples"},
     {"huge_window", with(8, "window = \"3650d\"\nslide = \"1d\""),
@@ -254,6 +262,13 @@ const Mistake values[] = {
      "9: equipment BDR: slide must be a duration"},
     {"short_hold", minimal + "hold = \"500ms\"",
      "9: equipment BDR: hold 500ms is shorter than sample_period 1s"},
+    {"shares_that_leave_nothing", minimal + "validation_share = 0.6\ntune_share = 0.35",
+     "10: equipment BDR: tune_share 0.35 and validation_share 0.6 leave less than a tenth of the "
+     "window to identify from; make their sum at most 0.9"},
+    {"certainty", minimal + "confidence = 100",
+     "9: equipment BDR: confidence must be a number from 50 to 99.99, not the number 100"},
+    {"interval_without_a_unit", minimal + "min_interval = 50",
+     "9: equipment BDR: min_interval must be a duration"},
     {"small_share", minimal + "validation_share = 0.01",
      "9: equipment BDR: validation_share must be a number from 0.05 to 0.8, not the number 0.01"},
     {"large_share", minimal + "validation_share = 1",
@@ -380,8 +395,8 @@ TEST(Config, AnInputMayFollowFromParameters) {
 }
 
 TEST(Config, AWindowThatJustHoldsEnoughIsAccepted) {
-  EXPECT_THAT(mistakes_of(with(8, "window = \"210s\"")), IsEmpty());
-  EXPECT_THAT(mistakes_of(with(8, "window = \"209s\"")), SizeIs(1));
+  EXPECT_THAT(mistakes_of(with(8, "window = \"176s\"")), IsEmpty());
+  EXPECT_THAT(mistakes_of(with(8, "window = \"175s\"")), SizeIs(1));
 }
 
 TEST(Config, TheDigestIsTheSha256OfTheBytes) {

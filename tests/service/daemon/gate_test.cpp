@@ -65,7 +65,7 @@ TEST_P(Gate, Decides) {
 }
 
 // Each reason, and the evidence that just misses it.
-const Case cases[] = {
+const Case of_the_candidate[] = {
     {"Good", [](auto&, auto&) {}, Outcome::approved},
     {"ByHand", [](auto&, auto& c) { c.approval = ApprovalPolicy::by_hand; }, Outcome::waiting},
     {"ConstantOutput", [](auto& e, auto&) { e.validation_moves = false; },
@@ -103,6 +103,9 @@ const Case cases[] = {
     {"MostlyOutsideTheRange", [](auto& e, auto&) { e.outside_share = 0.51; },
      Outcome::inputs_out_of_range},
     {"HalfOutsideTheRange", [](auto& e, auto&) { e.outside_share = 0.5; }, Outcome::approved},
+};
+
+const Case beside_its_rivals[] = {
     {"BetterByTheMarginAndNotSurely",
      [](auto& e, auto&) { e.champion->comparison->sure_percent = 5; },
      Outcome::not_better_than_champion},
@@ -179,8 +182,9 @@ const Case cases[] = {
      [](auto&, auto& c) { c.baseline_mrse_percent = 1; }, Outcome::approved},
 };
 
-INSTANTIATE_TEST_SUITE_P(Reasons, Gate, testing::ValuesIn(cases),
-                         [](const auto& one) { return one.param.name; });
+const auto name_of = [](const auto& one) { return one.param.name; };
+INSTANTIATE_TEST_SUITE_P(OfTheCandidate, Gate, testing::ValuesIn(of_the_candidate), name_of);
+INSTANTIATE_TEST_SUITE_P(BesideItsRivals, Gate, testing::ValuesIn(beside_its_rivals), name_of);
 
 TEST(GateReason, NamesTheFiguresThatDecided) {
   Evidence evidence = good();
