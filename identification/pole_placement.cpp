@@ -10,7 +10,7 @@
 namespace reident::identification {
 namespace {
 
-constexpr double negligible = 1e-10;
+constexpr double negligible = 1e-7;
 
 [[maybe_unused]] bool is_self_conjugate(const Poles& poles) {
   for (std::size_t i = 0; i < poles.size(); ++i) {

@@ -1,5 +1,6 @@
 // satcs-reference: the reference spacecraft, publishing its telemetry.
 
+#include <memory>
 #include <string>
 
 #include "service/satcs/csv_export.hpp"
@@ -17,7 +18,8 @@ constexpr const char* about =
     "Examples:\n"
     "  satcs-reference --duration 12h --speed 600\n"
     "  satcs-reference --start 2017-07-01T06:00:00Z --duration 3d --speed max --seed 7 --json\n"
-    "  satcs-reference --duration 6h --csv reference.csv\n\n"
+    "  satcs-reference --duration 6h --csv reference.csv\n"
+    "  satcs-reference --duration 12h --speed 600 --simulated\n\n"
     "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
     "missing\n"
     "or did not take everything; 128 + N stopped by signal N.\n";
@@ -39,6 +41,11 @@ void add_reference_options(CLI::App& app, ReferenceOptions& options) {
   app.add_option("--seed", options.seed, "Seed of noise and operations")->capture_default_str();
 }
 
+std::unique_ptr<FrameSource> source_of(const ReferenceOptions& options, bool simulated) {
+  if (simulated) return std::make_unique<HandwrittenSource>(options);
+  return std::make_unique<ReferenceSource>(options);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -48,15 +55,23 @@ int main(int argc, char** argv) {
   publisher.spacecraft = "REFERENCE";
   publisher.source = "reference";
   bool json = false;
+  bool simulated = false;
   std::string csv;
   add_reference_options(app, reference);
   app.add_option("--csv", csv, "Write the telemetry to this file and publish nothing")
       ->type_name("FILE");
+  app.add_flag("--simulated", simulated,
+               "The telemetry of a simplified, hand-written simulation of the same spacecraft and\n"
+               "operations instead, from source 'simulator' with origin 'simulated'");
   add_publisher_options(app, publisher, json);
   return run_program(app, argc, argv, [&]() -> int {
-    ReferenceSource source(reference);
-    if (csv.empty()) return publish_and_report(source, publisher, json);
-    write_csv(source, csv);
+    if (simulated) {
+      publisher.origin = reident::storage::Origin::simulated;
+      if (app.count("--source") == 0) publisher.source = "simulator";
+    }
+    const auto source = source_of(reference, simulated);
+    if (csv.empty()) return publish_and_report(*source, publisher, json);
+    write_csv(*source, csv);
     return exit_complete;
   });
 }

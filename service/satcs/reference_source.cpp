@@ -1,26 +1,39 @@
 #include "service/satcs/reference_source.hpp"
 
+#include <utility>
+
 namespace reident::satcs {
 
-ReferenceSource::ReferenceSource(const ReferenceOptions& options)
-    : spacecraft_(options.constants, options.start, options.seed),
+template <class Model>
+SecondsSource<Model>::SecondsSource(const ReferenceOptions& options,
+                                    std::vector<storage::ParameterDescriptor> descriptors)
+    : model_(options.constants, options.start, options.seed),
+      descriptors_(std::move(descriptors)),
       frames_(static_cast<std::uint64_t>((options.duration_ns + 999'999'999) / 1'000'000'000)) {}
 
-std::vector<storage::ParameterDescriptor> ReferenceSource::parameters() const {
-  return reference::telemetry_descriptors({});
-}
-
-bool ReferenceSource::next(storage::Time& generation_time, std::vector<storage::Sample>& samples) {
+template <class Model>
+bool SecondsSource<Model>::next(storage::Time& generation_time,
+                                std::vector<storage::Sample>& samples) {
   if (frames_done_ == frames_) return false;
-  if (frames_done_ > 0) spacecraft_.advance();
-  generation_time = spacecraft_.time();
-  spacecraft_.read(samples);
+  if (frames_done_ > 0) model_.advance();
+  generation_time = model_.time();
+  model_.read(samples);
   ++frames_done_;
   return true;
 }
 
-double ReferenceSource::progress() const {
+template <class Model>
+double SecondsSource<Model>::progress() const {
   return static_cast<double>(frames_done_) / static_cast<double>(frames_);
 }
+
+template class SecondsSource<reference::Spacecraft>;
+template class SecondsSource<HandwrittenEps>;
+
+ReferenceSource::ReferenceSource(const ReferenceOptions& options)
+    : SecondsSource(options, reference::telemetry_descriptors({})) {}
+
+HandwrittenSource::HandwrittenSource(const ReferenceOptions& options)
+    : SecondsSource(options, handwritten_descriptors({})) {}
 
 }  // namespace reident::satcs

@@ -1,6 +1,7 @@
-// The reference spacecraft as a source of frames.
+// The reference spacecraft, and its hand-written simulation, as sources of frames at 1 Hz.
 #pragma once
 
+#include "service/satcs/handwritten_eps.hpp"
 #include "service/satcs/publisher.hpp"
 #include "service/satcs/reference_spacecraft.hpp"
 
@@ -13,18 +14,33 @@ struct ReferenceOptions {
   std::uint64_t seed = 1;
 };
 
-class ReferenceSource : public FrameSource {
+/// `Model` is read and advanced second by second.
+template <class Model>
+class SecondsSource : public FrameSource {
  public:
-  explicit ReferenceSource(const ReferenceOptions& options);
-
-  std::vector<storage::ParameterDescriptor> parameters() const override;
+  std::vector<storage::ParameterDescriptor> parameters() const override { return descriptors_; }
   bool next(storage::Time& generation_time, std::vector<storage::Sample>& samples) override;
   double progress() const override;
 
+ protected:
+  SecondsSource(const ReferenceOptions& options,
+                std::vector<storage::ParameterDescriptor> descriptors);
+
  private:
-  reference::Spacecraft spacecraft_;
+  Model model_;
+  std::vector<storage::ParameterDescriptor> descriptors_;
   std::uint64_t frames_;
   std::uint64_t frames_done_ = 0;
+};
+
+class ReferenceSource : public SecondsSource<reference::Spacecraft> {
+ public:
+  explicit ReferenceSource(const ReferenceOptions& options);
+};
+
+class HandwrittenSource : public SecondsSource<HandwrittenEps> {
+ public:
+  explicit HandwrittenSource(const ReferenceOptions& options);
 };
 
 }  // namespace reident::satcs

@@ -92,12 +92,12 @@ constexpr std::array points = {
                    {}},
 };
 
+}  // namespace
+
 storage::Time whole_seconds(storage::Time time) {
   using namespace std::chrono;
   return nanoseconds(floor<seconds>(nanoseconds(time))).count();
 }
-
-}  // namespace
 
 std::span<const TelemetryPoint> telemetry_points() {
   return points;

@@ -30,6 +30,9 @@ std::span<const TelemetryPoint> telemetry_points();
 /// Their descriptors; the limits are the ends of the sensors' ranges.
 std::vector<storage::ParameterDescriptor> telemetry_descriptors(std::string_view spacecraft);
 
+/// `time` rounded down to a second.
+storage::Time whole_seconds(storage::Time time);
+
 class Spacecraft {
  public:
   /// The first reading is of `start`, rounded down to a second.

@@ -1,4 +1,5 @@
 // The programs as an operator starts them, with a reader of their telemetry in the test.
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <fstream>
@@ -338,6 +339,28 @@ TEST_F(Programs, reference_written_as_a_file_is_replayed_to_the_same_telemetry) 
       EXPECT_EQ(direct[f].samples[s].value, replayed[f].samples[s].value);
     }
   }
+}
+
+TEST_F(Programs, the_hand_written_simulation_is_sent_as_a_simulator) {
+  dds::Participant participant(endpoint_);
+  dds::Reader<TelemetryFrame> frames(participant);
+  Child child(command(SATCS_REFERENCE, "--duration 1min --speed max --simulated"));
+  const auto received = take_all(frames, 60);
+  EXPECT_EQ(child.wait(), 0) << errors();
+  ASSERT_EQ(received.size(), 60U);
+  EXPECT_EQ(received[0].source, "simulator");
+  EXPECT_EQ(received[0].origin, storage::Origin::simulated);
+  EXPECT_EQ(received[0].spacecraft, "REFERENCE");
+  EXPECT_EQ(received[0].generation_time, 1'498'867'200 * second);
+  EXPECT_EQ(received[0].samples.size(), 17U);
+}
+
+TEST_F(Programs, the_hand_written_simulation_is_written_to_a_file) {
+  ASSERT_EQ(Child(command(SATCS_REFERENCE, "--duration 1min --csv t.csv --simulated")).wait(), 0);
+  const std::string text = text_of(folder_ / "t.csv");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 61);
+  EXPECT_THAT(text, testing::StartsWith("unix_s,I_BDRIN1,I_BDRIN2,I_BDROUT,I_BAT1,"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("V_MEA")));
 }
 
 }  // namespace

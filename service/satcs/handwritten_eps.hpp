@@ -1,0 +1,79 @@
+// The simulator's own model of the reference spacecraft's power subsystem, as a project writes it
+// before launch from data sheets and the power budget. It is what identified models replace, and it
+// is tuned to nothing that the spacecraft has sent.
+//
+//   I_SG2    = min(loads, array),  I_BDROUT = loads - I_SG2,  V_BUS constant
+//   V_BAT I_BDRIN = V_BUS I_BDROUT / efficiency, half for each battery
+//   V_BAT    = open circuit + R I_BAT, the open circuit a straight line over charge
+//
+// The orbit and the operations plan are the spacecraft's own: operators know both. There is no
+// temperature, no dynamics but the charge, no noise, no sensor and no V_MEA (REFERENCE.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "service/satcs/reference_constants.hpp"
+#include "service/satcs/reference_loads.hpp"
+#include "service/satcs/reference_orbit.hpp"
+#include "storage/telemetry.hpp"
+
+namespace reident::satcs {
+
+struct HandwrittenConstants {
+  double bus_V = 28;
+  double bus_array_A = 45;      // SAG2 in sunlight: 90 strings of 0.5 A
+  double charge_array_A = 6.5;  // SAG1A, SAG1B each: 13 strings of 0.5 A
+  double platform_W = 600;
+  double payload_standby_W = 45;
+  double payload_W = 330;
+  double transmitter_W = 230;
+  double heaters_W = 92.5;  // all of them, half of the time
+  double bdr_efficiency = 0.90;
+  double capacity_Ah = 50;
+  double initial_charge = 0.95;  // share of the capacity
+  double empty_V = 38 * 1.10;    // 38 cells in series, without current
+  double full_V = 38 * 1.40;
+  double battery_ohm = 0.05;
+};
+
+class HandwrittenEps {
+ public:
+  /// From `start`, rounded down to a second, with the operations plan of `seed`.
+  HandwrittenEps(const reference::Constants& spacecraft, storage::Time start, std::uint64_t seed);
+
+  storage::Time time() const { return time_; }
+  /// One sample for each of handwritten_descriptors(), now.
+  void read(std::vector<storage::Sample>& samples) const;
+  /// Goes on by one second.
+  void advance();
+
+  struct Flows {
+    double load_A = 0, sg2_A = 0, shunt_A = 0, bdr_out_A = 0;
+    double section_A = 0;  // SAG1A, SAG1B: the same
+    // Of each battery; both are alike.
+    double charge_A = 0, bdr_in_A = 0, battery_A = 0, battery_V = 0;
+    double bus_V = 0;
+    reference::OperationsPlan::On on;
+  };
+  const Flows& flows() const { return flows_; }
+  double charge() const { return charge_; }
+
+ private:
+  void solve();
+
+  HandwrittenConstants constants_;
+  reference::Orbit orbit_;
+  reference::OperationsPlan plan_;
+  storage::Time time_;
+  double charge_;
+  Flows flows_;
+};
+
+/// Of the telemetry points that the model has, in the order of its samples; those of the spacecraft
+/// of the same names.
+std::vector<storage::ParameterDescriptor> handwritten_descriptors(std::string_view spacecraft);
+
+}  // namespace reident::satcs
