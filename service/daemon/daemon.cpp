@@ -276,8 +276,8 @@ bool Daemon::stop() {
   if (stopping_.exchange(true)) return true;
   desk_.stop();
   if (desk_thread_.joinable()) desk_thread_.join();
-  if (monitor_thread_.joinable()) monitor_thread_.join();
   feed_.stop();
+  if (monitor_thread_.joinable()) monitor_thread_.join();
   ingest_->stop();
   if (ingest_thread_.joinable()) ingest_thread_.join();
   queue_.close();
