@@ -38,7 +38,7 @@ void add_why(CLI::App& app, int& exit_code);
 void add_reproduce(CLI::App& app, int& exit_code);
 void add_backfill(CLI::App& app, int& exit_code);
 void add_at(CLI::App& app, int& exit_code);
-/// approve, reject, withdraw, hold, release and rollback.
+/// approve, reject, withdraw, hold, release, rollback and identify-now.
 void add_operator_commands(CLI::App& app, int& exit_code);
 void add_check_config(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);

@@ -28,11 +28,17 @@ struct Arguments {
   bool json = false;
 };
 
-/// What the registry says about the versions that attempts gave, and about their equipment.
+bool is_selected(const EquipmentName& equipment, const Arguments& arguments) {
+  return (arguments.spacecraft.empty() || arguments.spacecraft == equipment.spacecraft) &&
+         (arguments.equipment.empty() || arguments.equipment == equipment.equipment);
+}
+
+/// What the registry says about the versions of the chosen equipment, and about holds.
 class Decided {
  public:
-  explicit Decided(const Registry& registry) {
+  Decided(const Registry& registry, const Arguments& arguments) {
     for (const EquipmentName& equipment : registry.equipment()) {
+      if (!is_selected(equipment, arguments)) continue;
       const auto& [spacecraft, name] = equipment;
       for (VersionSummary& version : registry.summaries(spacecraft, name))
         versions_[{equipment, version.number}].summary = std::move(version);
@@ -79,13 +85,7 @@ std::string outcome_text(const Attempt& attempt, const Decided& decided) {
   return text;
 }
 
-bool is_selected(const EquipmentName& equipment, const Arguments& arguments) {
-  return (arguments.spacecraft.empty() || arguments.spacecraft == equipment.spacecraft) &&
-         (arguments.equipment.empty() || arguments.equipment == equipment.equipment);
-}
-
-void print_table(const std::vector<Attempt>& attempts, const Decided& decided,
-                 const Arguments& arguments) {
+void print_table(const std::vector<Attempt>& attempts, const Decided& decided) {
   Table table({{"equipment"},
                {"window (UTC)"},
                {"length"},
@@ -105,7 +105,7 @@ void print_table(const std::vector<Attempt>& attempts, const Decided& decided,
   fmt::print("{}", table.text(terminal_width()));
   fmt::print("* champion: what simulators run now; x withdrawn\n");
   for (const auto& [equipment, hold] : decided.holds())
-    if (is_selected(equipment, arguments)) fmt::print("{}\n", hold_text(equipment, hold));
+    fmt::print("{}\n", hold_text(equipment, hold));
 }
 
 ordered_json attempt_json(const Attempt& attempt, const Decided& decided) {
@@ -137,16 +137,14 @@ ordered_json attempt_json(const Attempt& attempt, const Decided& decided) {
   return json;
 }
 
-void print_json(const std::vector<Attempt>& attempts, const Decided& decided,
-                const Arguments& arguments) {
+void print_json(const std::vector<Attempt>& attempts, const Decided& decided) {
   ordered_json list = ordered_json::array();
   for (const Attempt& attempt : attempts) list.push_back(attempt_json(attempt, decided));
   ordered_json holds = ordered_json::array();
   for (const auto& [equipment, hold] : decided.holds())
-    if (is_selected(equipment, arguments))
-      holds.push_back({{"spacecraft", equipment.spacecraft},
-                       {"equipment", equipment.equipment},
-                       {"hold", hold_json(hold)}});
+    holds.push_back({{"spacecraft", equipment.spacecraft},
+                     {"equipment", equipment.equipment},
+                     {"hold", hold_json(hold)}});
   const ordered_json object = {{"attempts", list}, {"holds", holds}};
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
@@ -175,11 +173,11 @@ int run(const Arguments& arguments) {
     const bool filtered = !arguments.spacecraft.empty() || !arguments.equipment.empty();
     if (attempts.empty() && (filtered || !arguments.json))
       return refuse(nothing_selected(arguments, registry));
-    const Decided decided(registry);
+    const Decided decided(registry, arguments);
     if (arguments.json)
-      print_json(attempts, decided, arguments);
+      print_json(attempts, decided);
     else
-      print_table(attempts, decided, arguments);
+      print_table(attempts, decided);
     return static_cast<int>(exit_done);
   });
 }

@@ -29,7 +29,7 @@ struct Target {
   std::optional<std::filesystem::path> database;
   dds::Endpoint endpoint;
   std::string service;
-  std::vector<storage::EquipmentName> configured;
+  CommandContext context;
 };
 
 std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
@@ -43,7 +43,7 @@ std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
       target = {config->database,
                 {config->domain, config->partition},
                 config->service_name,
-                equipment_of(*config)};
+                {equipment_of(*config), {}}};
     } else if (!options.domain && !options.partition) {
       return Refusal{
           fmt::format("there is no {} here; name the service's configuration with "
@@ -89,7 +89,7 @@ std::optional<Asked> execute_on_file(const Target& target, const Command& comman
   try {
     storage::Database database(*target.database, storage::Database::Mode::read_write);
     storage::Registry registry(database);
-    return Answer{execute(command, registry, target.configured, utc_now()), false};
+    return Answer{execute(command, registry, target.context, utc_now()), false};
   } catch (const storage::Error& failure) {
     why = failure.what();
     using Kind = storage::Error::Kind;

@@ -68,10 +68,10 @@ void add_decision(CLI::App& app, int& exit_code, const std::string& name,
   footer(*command, fmt::format("CBERS-4/BDR 7 --reason \"{}\"", reason));
 }
 
-void add_hold(CLI::App& app, int& exit_code, const std::string& name,
-              const std::string& description, const std::string& reason) {
+void add_order(CLI::App& app, int& exit_code, const std::string& name, const std::string& action,
+               const std::string& description, const std::string& reason) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = add(app, exit_code, arguments, name, name, description);
+  CLI::App* command = add(app, exit_code, arguments, name, action, description);
   command->add_option("--reason", arguments->options.reason, "why, kept with it");
   footer(*command, fmt::format("CBERS-4/BDR --reason \"{}\"", reason));
 }
@@ -84,9 +84,12 @@ void add_operator_commands(CLI::App& app, int& exit_code) {
   add_decision(app, exit_code, "reject", "Refuse a waiting version", "a heater test fell into it");
   add_decision(app, exit_code, "withdraw",
                "Take a version that is or was champion out of use for ever", "wrong sensor");
-  add_hold(app, exit_code, "hold", "Keep the champion, whatever new windows give",
-           "training until Friday");
-  add_hold(app, exit_code, "release", "End a hold", "training is over");
+  add_order(app, exit_code, "hold", "hold", "Keep the champion, whatever new windows give",
+            "training until Friday");
+  add_order(app, exit_code, "release", "release", "End a hold", "training is over");
+  add_order(app, exit_code, "identify-now", "identify_now",
+            "Try the window that ends where telemetry ends, without waiting for the next slide",
+            "after the manoeuvre");
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* rollback =
       add(app, exit_code, arguments, "rollback", "roll_back", "Return to an earlier champion");

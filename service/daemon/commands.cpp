@@ -30,6 +30,7 @@ std::string text(const EquipmentName& equipment) {
 struct Order {
   const Command& command;
   Registry& registry;
+  const CommandContext& context;
   const EquipmentName& equipment;
   const storage::Time now;
 
@@ -233,15 +234,35 @@ CommandOutcome release(const Order& order) {
                           held->actor, time_text(held->since)));
 }
 
+CommandOutcome identify_now(const Order& order) {
+  if (!order.context.ask_for_window)
+    return refused(
+        "no service runs that could identify: 'reident backfill' tries the windows of "
+        "telemetry that is archived");
+  const auto end = order.context.ask_for_window(order.equipment, "asked by " + order.command.actor);
+  if (!end)
+    return refused(
+        fmt::format("no telemetry of {} has come to the service: 'reident check-config' "
+                    "shows whether it is configured",
+                    order.full_name()));
+  return done(
+      fmt::format("the window of {} that ends at {} is due now: 'reident history' shows what "
+                  "comes of it",
+                  order.full_name(), time_text(*end)));
+}
+
 struct Action {
   std::string_view name;
   CommandOutcome (*carry_out)(const Order&);
   bool needs_reason;
 };
-constexpr std::array actions{
-    Action{"approve", approve, true},      Action{"reject", reject, true},
-    Action{"roll_back", roll_back, false}, Action{"withdraw", withdraw, true},
-    Action{"hold", hold, false},           Action{"release", release, false}};
+constexpr std::array actions{Action{"approve", approve, true},
+                             Action{"reject", reject, true},
+                             Action{"roll_back", roll_back, false},
+                             Action{"withdraw", withdraw, true},
+                             Action{"hold", hold, false},
+                             Action{"release", release, false},
+                             Action{"identify_now", identify_now, false}};
 
 std::string list(const std::set<EquipmentName>& equipment) {
   std::vector<std::string> names;
@@ -275,8 +296,8 @@ dds::Fault fault_of_texts(const Command& command) {
   return texts.fault();
 }
 
-CommandOutcome carry_out(const Command& command, Registry& registry,
-                         const std::vector<EquipmentName>& configured, storage::Time now) {
+CommandOutcome carry_out(const Command& command, Registry& registry, const CommandContext& context,
+                         storage::Time now) {
   const auto action = std::find_if(actions.begin(), actions.end(),
                                    [&](const Action& one) { return one.name == command.action; });
   if (action == actions.end()) {
@@ -288,19 +309,18 @@ CommandOutcome carry_out(const Command& command, Registry& registry,
     return refused(*fault + ": every decision names who made it and why");
   if (action->needs_reason && command.reason.empty())
     return refused(fmt::format("{} needs a reason", command.action));
-  std::set<EquipmentName> known(configured.begin(), configured.end());
+  std::set<EquipmentName> known(context.configured.begin(), context.configured.end());
   for (EquipmentName& one : registry.equipment()) known.insert(std::move(one));
   const auto equipment = named_equipment(command, known);
   if (const auto* refusal = std::get_if<CommandOutcome>(&equipment)) return *refusal;
-  return action->carry_out({command, registry, std::get<EquipmentName>(equipment), now});
+  return action->carry_out({command, registry, context, std::get<EquipmentName>(equipment), now});
 }
 
 }  // namespace
 
-CommandOutcome execute(const Command& command, Registry& registry,
-                       const std::vector<EquipmentName>& configured, storage::Time now) {
-  return registry.execute(command, now,
-                          [&] { return carry_out(command, registry, configured, now); });
+CommandOutcome execute(const Command& command, Registry& registry, const CommandContext& context,
+                       storage::Time now) {
+  return registry.execute(command, now, [&] { return carry_out(command, registry, context, now); });
 }
 
 std::vector<EquipmentName> equipment_of(const Config& config) {

@@ -4,6 +4,9 @@
 // the command line executes them on the file while no daemon holds it.
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "service/daemon/config.hpp"
@@ -11,13 +14,23 @@
 
 namespace reident {
 
+/// What commands need beside the registry.
+struct CommandContext {
+  /// Known beside the equipment that the registry has.
+  std::vector<storage::EquipmentName> configured;
+  /// Makes the window of an equipment due that ends where its telemetry ends, and returns that
+  /// time; absent where no telemetry of it has come. Empty where no service runs.
+  std::function<std::optional<storage::Time>(const storage::EquipmentName& equipment,
+                                             const std::string& cause)>
+      ask_for_window;
+};
+
 /// Decides and records in one transaction. The outcome is one sentence: what was done, or why
 /// nothing was and what would mend it. A command that was executed before gets the outcome that it
 /// got then. A command that names no spacecraft means the only one that has the equipment.
-/// `configured` are known beside the equipment that the registry has. Throws storage::Error.
+/// Throws storage::Error.
 storage::CommandOutcome execute(const storage::Command& command, storage::Registry& registry,
-                                const std::vector<storage::EquipmentName>& configured,
-                                storage::Time now);
+                                const CommandContext& context, storage::Time now);
 
 /// The equipment of a configuration.
 std::vector<storage::EquipmentName> equipment_of(const Config& config);

@@ -196,13 +196,17 @@ bool Daemon::conclude(RefreshResult&& result, const storage::Standing& standing,
 void Daemon::answer_operators() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Registry reader(database);
-  const std::vector<storage::EquipmentName> configured = equipment_of(config_);
+  const CommandContext context{
+      equipment_of(config_),
+      [this](const storage::EquipmentName& equipment, const std::string& cause) {
+        return feed_.ask(equipment.spacecraft, equipment.equipment, cause);
+      }};
   desk_.run([&](const storage::Command& command) -> std::optional<storage::CommandOutcome> {
     storage::CommandOutcome outcome;
     try {
       writer_
           .post([&](storage::Registry& registry, auto&) {
-            outcome = execute(command, registry, configured, clock_());
+            outcome = execute(command, registry, context, clock_());
           })
           .get();
     } catch (const std::future_error&) {  // the writer has ended

@@ -100,6 +100,20 @@ class Operators(EndToEnd):
         self.assertGreater(self.champion(), last)
         wait_until(lambda: self.runs(simulator)[-1] == self.champion(), "the next one runs")
 
+    def test_an_operator_asks_for_the_window_that_ends_where_telemetry_ends(self):
+        self.configure([plant.equipment()])
+        self.start_daemon()
+        self.replay_rows("first", count=1300)
+        windows = self.query("SELECT window_end FROM attempt ORDER BY id")
+        self.assertIn("is due now", self.done("identify-now", "PLANT")["reply"])
+        self.wait_idle()
+        after = self.query("SELECT window_end, cause FROM attempt ORDER BY id")
+        self.assertEqual([end for end, _ in after[:-1]], [end for end, in windows])
+        end, cause = after[-1]
+        self.assertGreater(end, windows[-1][0])
+        self.assertLess(end - windows[-1][0], 300 * 10**9, "it ends between two slides")
+        self.assertEqual(cause, "asked by Ana")
+
     def test_without_any_champion_late_simulators_get_none_and_running_ones_go_on(self):
         self.configure([plant.equipment()])
         daemon = self.start_daemon()

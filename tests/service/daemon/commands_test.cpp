@@ -20,6 +20,7 @@ class Commands : public DaemonTest {
   storage::Registry registry_{database_};
   storage::Time now_ = day;
   std::uint64_t requests_ = 0;
+  CommandContext context_{{{"SAT", "PLANT"}, {"SAT", "PUMP"}}, {}};
 
   /// The next version of an equipment; the window ends at the minute given.
   std::int64_t version(DecisionKind kind, std::int64_t window_end = 0,
@@ -36,8 +37,7 @@ class Commands : public DaemonTest {
     return {"console", ++requests_, action, "SAT", "PLANT", version, "Ana", "training"};
   }
   CommandOutcome execute(const Command& command) {
-    return reident::execute(command, registry_, {{"SAT", "PLANT"}, {"SAT", "PUMP"}},
-                            now_ += second);
+    return reident::execute(command, registry_, context_, now_ += second);
   }
   CommandOutcome order(const std::string& action, std::int64_t version = 0) {
     return execute(command(action, version));
@@ -105,7 +105,7 @@ TEST_F(Commands, an_unknown_action_or_equipment_is_answered_with_those_there_are
   version(wait, 0, "OLD", "TANK");
   Command unknown = command("aprove", 1);
   expect_refused(unknown,
-                 {"no action aprove", "approve, reject, roll_back, withdraw, hold, release"});
+                 {"no action aprove", "approve, reject, roll_back, withdraw, hold, release, "});
   unknown = command("hold");
   unknown.equipment = "PLAN";
   expect_refused(unknown, {"no equipment SAT/PLAN", "known: OLD/TANK, SAT/PLANT, SAT/PUMP"});
@@ -254,6 +254,25 @@ TEST_F(Commands, a_hold_and_a_release_each_count_once) {
   expect_refused(command("release"), {"SAT/PLANT is not held"});
   version(approve);
   expect_done(order("hold"), "keeps version 1 until");
+}
+
+TEST_F(Commands, a_window_is_asked_for_once_and_only_of_a_service) {
+  expect_refused(command("identify_now"), {"no service runs", "reident backfill"});
+  std::vector<std::string> asked;
+  context_.ask_for_window = [&](const storage::EquipmentName& equipment,
+                                const std::string& cause) -> std::optional<storage::Time> {
+    asked.push_back(equipment.equipment + ": " + cause);
+    if (equipment.equipment == "PUMP") return std::nullopt;
+    return day;
+  };
+  const Command once = command("identify_now");
+  expect_done(execute(once),
+              "the window of SAT/PLANT that ends at 2022-01-08T00:00:00Z is due now");
+  expect_done(execute(once), "is due now");
+  EXPECT_THAT(asked, testing::ElementsAre("PLANT: asked by Ana"));
+  Command without = command("identify_now");
+  without.equipment = "PUMP";
+  expect_refused(without, {"no telemetry of SAT/PUMP has come"});
 }
 
 TEST_F(Commands, of_two_operators_the_second_is_told_what_the_first_decided) {
