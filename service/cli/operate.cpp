@@ -162,6 +162,8 @@ void print_json(const Command& command, const Answer& answer) {
 }  // namespace
 
 std::string login_name() {
+  std::array<char, 256> name{};
+  if (::getlogin_r(name.data(), name.size()) == 0) return name.data();
   const passwd* user = ::getpwuid(::geteuid());
   return user ? user->pw_name : "";
 }

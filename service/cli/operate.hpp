@@ -30,7 +30,8 @@ struct OperatorOrder {
   std::int64_t version = 0;
 };
 
-/// The name that this process's user logs in with; empty where the system has none.
+/// The name that was logged in with on this terminal, also under another user's rights, or without
+/// a terminal that of this process's user; empty where the system has none.
 std::string login_name();
 
 /// Has the order carried out, prints the reply and returns the exit status. It is executed here if

@@ -34,12 +34,14 @@ void CommandDesk::answer(const CommandRequest& request, const Execute& execute) 
     outcome = {false, error.what()};
   }
   if (!outcome) return;
-  log::info("command", outcome->ok ? "done" : "refused",
-            {{"action", command.action},
-             {"equipment", command.spacecraft + "/" + command.equipment},
-             {"version", command.version},
-             {"actor", command.actor},
-             {"reply", outcome->reply}});
+  log::info(
+      "command", outcome->ok ? "done" : "refused",
+      {{"action", command.action},
+       {"equipment", command.spacecraft.empty() ? command.equipment
+                                                : command.spacecraft + "/" + command.equipment},
+       {"version", command.version},
+       {"actor", command.actor},
+       {"reply", outcome->reply}});
   replies_.write({command.requester, command.request, *std::move(outcome)});
 }
 

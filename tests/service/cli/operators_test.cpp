@@ -120,9 +120,9 @@ TEST_F(OperatorCommands, HistoryAndShowTellWhatWasDecided) {
   reident(on_file({"hold", "BDR", "--reason", "training"}));
   const testing::Ran history = reident({"history", "--database", "reident.db"});
   EXPECT_THAT(history.out, HasSubstr("  2x  "));
-  EXPECT_THAT(history.out, HasSubstr("approved: Good.; withdraw by Ana at 2"));
+  EXPECT_THAT(history.out, HasSubstr("approved: Good. Then withdraw by Ana at 2"));
   EXPECT_THAT(history.out, HasSubstr("roll_back by Ana at 2"));
-  EXPECT_THAT(history.out, HasSubstr("(version 2 was withdrawn: wrong sensor)"));
+  EXPECT_THAT(history.out, HasSubstr("(version 2 was withdrawn: wrong sensor)."));
   EXPECT_THAT(history.out, HasSubstr("* champion: what simulators run now; x withdrawn\n"
                                      "CBERS-4/BDR is held by Ana since 2"));
   const json attempts = json_of({"history", "--database", "reident.db"});
