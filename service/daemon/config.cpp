@@ -148,12 +148,12 @@ void read_derived(TableReader& reader, ConfigDocument& document, EquipmentConfig
   for (const toml::table* table : reader.sections("derived")) {
     TableReader derived(*table, fmt::format("{} derived input:", reader.title()), document);
     derived.require("name", "\"P_IN\"");
+    const auto name = derived.text("name");
+    if (name) derived.set_title(fmt::format("{} derived input {}:", reader.title(), *name));
     derived.require("expression", "\"U_IN * I_IN\"");
     derived.require("unit", "\"W\"");
-    const auto name = derived.text("name");
     const auto expression = derived.text("expression");
     const auto unit = derived.text("unit");
-    if (name) derived.set_title(fmt::format("{} derived input {}:", reader.title(), *name));
     derived.refuse_unknown_keys();
     if (!name || !expression || !unit) continue;
     equipment.derived.push_back({*name, *expression, *unit});

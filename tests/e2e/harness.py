@@ -109,6 +109,10 @@ class EndToEnd(unittest.TestCase):
         """Writes the configuration; `equipment` are tables of [[spacecraft.equipment]]."""
 
         def toml(value):
+            if isinstance(value, list):
+                return f"[{', '.join(map(toml, value))}]"
+            if isinstance(value, dict):
+                return f"{{{', '.join(f'{key} = {toml(one)}' for key, one in value.items())}}}"
             return json.dumps(value)
 
         lines = ["[service]", 'log_level = "debug"', "[archive]", 'database = "reident.db"',

@@ -68,6 +68,27 @@ class Loop(EndToEnd):
         self.assertIsNone(self.champion())
         self.assertEqual(self.runs(simulator), [])
 
+    def test_a_model_of_a_derived_input_is_published_and_run(self):
+        derived = [{"name": "both", "expression": "0.3 * drive + load / 2", "unit": "V"}]
+        self.configure([plant.equipment(inputs=["both", "load"], derived=derived,
+                                        margin=100.0)])
+        self.start_daemon()
+        self.replay_rows("first", count=1900)
+        champion = self.champion()
+        self.assertIsNotNone(champion, self.history())
+        status, text = self.reident("show", "SAT/PLANT", "--database", self.database)
+        self.assertEqual(status, 0, text)
+        self.assertIn("both = 0.3 * drive + load / 2", text)
+
+        simulator = self.start_simulator("derived")
+        wait_until(lambda: self.runs(simulator) == [champion], "the simulator runs the champion")
+        self.replay_rows("second", count=1900, first=1900)
+        self.assertEqual(simulator.terminate()[0], 0, simulator.text())
+        events = [json.loads(line) for line in simulator.out.read_text().splitlines() if line]
+        last = [event for event in events if event.get("event") == "finished"][-1]
+        self.assertGreater(last["ticks"], 1000, last)
+        self.assertLess(last["mrse_percent"][0], 5, "the simulator computes what the service did")
+
     def test_by_hand_a_candidate_waits(self):
         self.configure([plant.equipment(approval="by_hand")])
         self.start_daemon()

@@ -55,7 +55,7 @@ EquipmentModel any_model() {
   model.equipment = any_text();
   model.inputs = any_signals(m);
   for (Signal& input : model.inputs)
-    if (any_of(0, 2) == 0) input.expression = any_text();
+    if (any_of(0, 2) == 0) input.expression = "V_BUS*" + std::to_string(any_of(0, 1000));
   model.outputs = any_signals(p);
   model.dynamics = {any_matrix(n, n), any_matrix(n, m), any_matrix(p, n),  any_matrix(p, m), {},
                     any_vector(m),    any_vector(p),    any_of(1, 9) / 8.0};
