@@ -5,8 +5,8 @@
 namespace reident::identification {
 namespace {
 
-constexpr int most_response_ticks = 100000;
-constexpr double settled = 1e-12;
+constexpr int response_ticks = 2000;
+constexpr double settled = 1e-9;
 
 void clamp(Vector& values, const Vector& limit) {
   values = values.cwiseMax(-limit).cwiseMin(limit);
@@ -54,25 +54,28 @@ Tracker::Tracker(const StateSpaceModel& model, const TrackingGain& gain, const V
 }
 
 /// Sums |response| to an impulse of error_limit in each difference between telemetry and free run.
+/// What is left of it at the end is counted as its envelope, which decays by the slowest pole.
 void Tracker::set_limits() {
-  const Index n = model_.order(), p = model_.outputs();
-  const Matrix loop = closed_loop(model_, gain_);
-  Matrix feedback(model_.inputs(), loop.rows()), response = Matrix::Zero(loop.rows(), p);
-  feedback << gain_.state, gain_.integral;
+  const Index n = model_.order(), m = model_.inputs(), p = model_.outputs(), size = n + 2 * p;
+  Matrix loop(size + m, size);  // the next state, and v
+  loop.topRows(size) = closed_loop(model_, gain_);
+  loop.bottomRows(m) << gain_.state, gain_.integral;
+  Matrix response = Matrix::Zero(size, p), next(size + m, p);
   response.middleRows(n, p) = gain_.error_limit.asDiagonal();
-  Vector sums = Vector::Zero(loop.rows());
-  v_limit_ = Vector::Zero(model_.inputs());
-  const auto add = [](const Matrix& values, Vector& sum) {
-    sum += values.cwiseAbs().rowwise().sum();
-  };
-  for (int tick = 0; tick < most_response_ticks; ++tick) {
-    add(response, sums);
-    add(feedback * response, v_limit_);
-    response = (loop * response).eval();
-    if ((response.cwiseAbs().rowwise().sum().array() <= settled * sums.array()).all()) break;
+  Vector sums = Vector::Zero(size + m), envelope = sums;
+  sums.head(size) = response.cwiseAbs().rowwise().sum();
+  for (int tick = 0; tick < response_ticks; ++tick) {
+    next.noalias() = loop * response;
+    response = next.topRows(size);
+    const Vector now = next.cwiseAbs().rowwise().sum();
+    sums += now;
+    envelope = now.cwiseMax(fading_ * envelope);
+    if ((envelope.array() <= settled * sums.array()).all()) break;
   }
+  sums += envelope * (fading_ / (1 - fading_));
+  v_limit_ = sums.tail(m);
   xi1_limit_ = sums.segment(n, p);
-  xi2_limit_ = sums.tail(p);
+  xi2_limit_ = sums.segment(n + p, p);
 }
 
 void Tracker::predict(const Eigen::Ref<const Vector>& u) {

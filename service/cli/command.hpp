@@ -41,6 +41,8 @@ void add_at(CLI::App& app, int& exit_code);
 /// approve, reject, withdraw, hold, release, rollback and identify-now.
 void add_operator_commands(CLI::App& app, int& exit_code);
 void add_check_config(CLI::App& app, int& exit_code);
+void add_compare(CLI::App& app, int& exit_code);
+void add_plot(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_version(CLI::App& app, int& exit_code);
 

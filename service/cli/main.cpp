@@ -25,6 +25,8 @@ int run(int argc, char** argv) {
   add_backfill(app, exit_code);
   add_at(app, exit_code);
   add_operator_commands(app, exit_code);
+  add_compare(app, exit_code);
+  add_plot(app, exit_code);
   add_check_config(app, exit_code);
   add_status(app, exit_code);
   add_version(app, exit_code);

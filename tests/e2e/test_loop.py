@@ -3,9 +3,13 @@
 import json
 import sys
 import unittest
+from xml.etree import ElementTree
 
 import plant
 from harness import EndToEnd, wait_until
+
+
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 class Loop(EndToEnd):
@@ -88,6 +92,47 @@ class Loop(EndToEnd):
         last = [event for event in events if event.get("event") == "finished"][-1]
         self.assertGreater(last["ticks"], 1000, last)
         self.assertLess(last["mrse_percent"][0], 5, "the simulator computes what the service did")
+
+    def test_two_versions_are_compared_and_drawn(self):
+        self.configure([plant.equipment()])
+        self.start_daemon()
+        self.replay_rows("first", count=1900)
+        first = self.champion()
+        self.replay_rows("second", count=1900, first=1900, gain=2.0)
+        second = self.champion()
+        status, text = self.reident("compare", "SAT/PLANT", first, second, "--database",
+                                    self.database, "--json")
+        self.assertEqual(status, 0, text)
+        compared = json.loads(text)
+        old, new = compared["versions"]
+        self.assertEqual((old["version"], new["version"]), (first, second))
+        self.assertLess(new["errors"]["mrse_percent"][0], old["errors"]["mrse_percent"][0])
+        self.assertEqual(compared["input_differences"], [])
+        for channel in compared["channels"]:
+            gains, steps = channel["static_gain"], channel["step_response"]
+            self.assertAlmostEqual(gains[1] / gains[0], 2, delta=0.1, msg="the other satellite")
+            for gain, step in zip(gains, steps):
+                self.assertAlmostEqual(step[-1], gain, delta=0.02 * abs(gain))
+        status, text = self.reident("compare", "SAT/PLANT", first, second, "--database",
+                                    self.database)
+        self.assertEqual(status, 0, text)
+        self.assertIn("inputs: the same", text)
+
+        drawing = self.folder / "plant.svg"
+        status, text = self.reident("plot", f"SAT/PLANT@{second}", "-o", drawing, "--database",
+                                    self.database)
+        self.assertEqual(status, 0, text)
+        self.assertLess(drawing.stat().st_size, 500_000)
+        root = ElementTree.parse(drawing).getroot()
+        groups = {group.get("id"): group for group in root.iter(f"{SVG}g")}
+        self.assertEqual(set(groups), {"output-1-real", "output-1-simulated", "output-1-error",
+                                       "singular-values", "poles"})
+        for name in ("real", "simulated", "error"):
+            points = "".join(line.get("points") for line in groups[f"output-1-{name}"])
+            self.assertGreater(len(points.split()), 400, name)
+        shaded = {rect.get("class") for rect in root.iter(f"{SVG}rect")}
+        self.assertLessEqual({"identify", "tune", "validate"}, shaded)
+        self.assertEqual(len(list(groups["poles"])), new["order"])
 
     def test_by_hand_a_candidate_waits(self):
         self.configure([plant.equipment(approval="by_hand")])

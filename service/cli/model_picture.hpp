@@ -1,0 +1,32 @@
+// A published model as one picture: what was measured and what the model says, their difference,
+// the singular values that its order was chosen by, and its poles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/cli/model_run.hpp"
+#include "service/model/model_version.hpp"
+
+namespace reident::cli {
+
+struct PicturePart {
+  std::string name;  // "identify", "tune" or "validate": its class in the style sheet too
+  storage::TimeRange range;
+};
+
+struct PictureData {
+  std::string title;
+  std::string subtitle;
+  const EquipmentModel& model;
+  const ModelRun& run;  // of the model over `range`
+  storage::TimeRange range;
+  std::vector<PicturePart> parts;
+  std::vector<double> singular_values;  // descending; empty where they are not known
+};
+
+/// A self-contained SVG document. However many rows there are it stays below 500 kB: a pixel column
+/// shows the least and the greatest of its values.
+std::string model_picture(const PictureData& data);
+
+}  // namespace reident::cli

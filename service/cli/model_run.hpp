@@ -1,0 +1,38 @@
+// A stored model on archived telemetry.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "service/cli/command.hpp"
+#include "service/daemon/window_data.hpp"
+#include "service/model/model_version.hpp"
+#include "storage/archive.hpp"
+
+namespace reident::cli {
+
+/// --begin and --end of a stretch of telemetry.
+struct RangeOptions {
+  std::optional<std::string> begin, end;
+};
+
+void add_range_options(CLI::App& command, RangeOptions& options, const std::string& otherwise);
+
+/// The stretch that was asked for; a bound that is left out is that of `otherwise`.
+std::variant<storage::TimeRange, Refusal> range_of(const RangeOptions& options,
+                                                   storage::TimeRange otherwise);
+
+struct ModelRun {
+  WindowData data;               // at least one row
+  identification::Matrix y_hat;  // free run, N x p
+  identification::Score score;
+};
+
+/// The model's free run over the telemetry in `range`, the state at the beginning of each stretch
+/// without holes estimated from its first rows; or the reason why there is none.
+std::variant<ModelRun, std::string> run_model(const storage::Archive& archive,
+                                              const EquipmentModel& model,
+                                              storage::TimeRange range);
+
+}  // namespace reident::cli
