@@ -99,6 +99,8 @@ ordered_json version_json(const Story& story, const std::vector<Pole>& poles,
   json["errors"] = {{"rows", score.rows},
                     {"mrse_percent", to_json(score.mrse_percent)},
                     {"fit_percent", to_json(score.fit_percent)}};
+  if (const auto& tracked = std::get<ModelRun>(run).tracked)
+    json["errors"]["tracking_mrse_percent"] = to_json(tracked->score.mrse_percent);
   return json;
 }
 
@@ -182,7 +184,8 @@ void print_errors(const Outcome& outcome) {
                {"output"},
                {"rows", Table::Align::right},
                {"MRSE %", Table::Align::right},
-               {"fit %", Table::Align::right}});
+               {"fit %", Table::Align::right},
+               {"following telemetry: MRSE %", Table::Align::right}});
   std::string reasons;
   for (const auto& [story, run] :
        {std::pair(&outcome.a, &outcome.run_a), std::pair(&outcome.b, &outcome.run_b)}) {
@@ -190,12 +193,13 @@ void print_errors(const Outcome& outcome) {
       reasons += fmt::format("{} cannot be run there: {}\n", heading(*story), *reason);
       continue;
     }
-    const identification::Score& score = std::get<ModelRun>(*run).score;
+    const auto& [data, y_hat, score, tracked] = std::get<ModelRun>(*run);
     for (std::size_t q = 0; q < story->model.outputs.size(); ++q) {
       const auto at = static_cast<identification::Index>(q);
       table.add({fmt::format("{}", story->version.number), story->model.outputs[q].name,
                  fmt::format("{}", score.rows), fmt::format("{:.4g}", score.mrse_percent(at)),
-                 fmt::format("{:.4g}", score.fit_percent(at))});
+                 fmt::format("{:.4g}", score.fit_percent(at)),
+                 tracked ? fmt::format("{:.4g}", tracked->score.mrse_percent(at)) : "-"});
     }
   }
   fmt::print("free run from {} to {}:\n{}{}", time_text(outcome.range.begin),

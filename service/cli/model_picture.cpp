@@ -23,7 +23,7 @@ constexpr double left = 84, right = 980;  // of the panels over time
 constexpr double run_height = 180, error_height = 90, panel_gap = 12, output_gap = 52;
 constexpr double top = 104;
 constexpr double bottom_height = 240;
-// Three lines of two points of some 12 bytes for each column and output.
+// Four lines of two points of some 12 bytes for each column and output.
 constexpr double max_trace_bytes = 400'000;
 
 constexpr std::string_view style = R"(text{font:12px sans-serif;fill:#333}
@@ -40,6 +40,7 @@ constexpr std::string_view style = R"(text{font:12px sans-serif;fill:#333}
 .real{fill:none;stroke:#222;stroke-width:1.2}
 .simulated{fill:none;stroke:#d1480a;stroke-width:1.2;stroke-opacity:.85}
 .error{fill:none;stroke:#2456b8;stroke-width:1}
+.following{fill:none;stroke:#1c8a4a;stroke-width:1.2}
 .value{fill:#2456b8}
 .stem{stroke:#2456b8;stroke-opacity:.4;stroke-width:1.5}
 .order{stroke:#d1480a;stroke-width:1.2;stroke-dasharray:5 4}
@@ -79,7 +80,9 @@ void draw_head(Svg& svg, const PictureData& data) {
   double x = left;
   for (const auto& [css_class, label] :
        {std::pair("real", "measured"), std::pair("simulated", "free run of the model"),
-        std::pair("error", "measured less simulated")}) {
+        std::pair("error", "error of the free run"),
+        std::pair("following", "error when it follows telemetry")}) {
+    if (std::string_view(css_class) == "following" && !data.run.tracked) continue;
     svg.line({x, 72}, {x + 24, 72}, css_class);
     svg.text({x + 30, 76}, label, "small");
     x += 50 + 6.2 * static_cast<double>(std::string_view(label).size());
@@ -122,12 +125,21 @@ void draw_value_marks(Svg& svg, const Box& box, const Scale& y, int most) {
 void draw_line(Svg& svg, const PictureData& data, const std::string& id, const Vector& values,
                const Scale& y, std::string_view css_class) {
   const double room =
-      max_trace_bytes / static_cast<double>(data.model.outputs.size()) / (3 * 2 * 12);
+      max_trace_bytes / static_cast<double>(data.model.outputs.size()) / (4 * 2 * 12);
   const double column = std::max(1.0, (right - left) / room);
   svg.begin_group(id);
   for (const auto& line : trace(stretches_of(data, values), time_scale(data), y, column))
     svg.polyline(line, css_class);
   svg.end_group();
+}
+
+std::string scores_text(const EquipmentModel& model, Index q) {
+  std::string text = fmt::format("validation: MRSE {:.3g} %, fit {:.1f} %",
+                                 model.validation.mrse_percent(q), model.validation.fit_percent(q));
+  if (model.tracking)
+    text += fmt::format("; following telemetry: MRSE {:.3g} %",
+                        model.tracking->validation.mrse_percent(q));
+  return text;
 }
 
 void draw_output(Svg& svg, const PictureData& data, Index q, double y) {
@@ -146,10 +158,7 @@ void draw_output(Svg& svg, const PictureData& data, Index q, double y) {
   draw_line(svg, data, id + "-real", real, scale, "real");
   draw_line(svg, data, id + "-simulated", simulated, scale, "simulated");
   svg.text({left, y - 7}, output.name + unit, "heading");
-  svg.text({right, y - 7},
-           fmt::format("validation: MRSE {:.3g} %, fit {:.1f} %",
-                       data.model.validation.mrse_percent(q), data.model.validation.fit_percent(q)),
-           "small", "end");
+  svg.text({right, y - 7}, scores_text(data.model, q), "small", "end");
 
   const Box box{left, run.bottom() + panel_gap, right - left, error_height};
   draw_time_frame(svg, data, box, true);
@@ -160,6 +169,9 @@ void draw_output(Svg& svg, const PictureData& data, Index q, double y) {
   draw_value_marks(svg, box, error_scale, 4);
   svg.line({left, error_scale(0)}, {right, error_scale(0)}, "zero");
   draw_line(svg, data, id + "-error", error, error_scale, "error");
+  if (data.run.tracked)
+    draw_line(svg, data, id + "-following", real - data.run.tracked->y_hat.col(q), error_scale,
+              "following");
   svg.turned_text({22, box.y + box.height / 2}, "error" + unit, "small");
 }
 

@@ -57,7 +57,13 @@ std::variant<ModelRun, std::string> run_model(const storage::Archive& archive,
     return fmt::format("the archive has no row with every parameter valid from {} to {}",
                        time_text(range.begin), time_text(range.end));
   run.y_hat = free_run(model.dynamics, run.data.record, run.data.record.all());
-  run.score = identification::score(run.data.record.y, run.y_hat);
+  const identification::Record& record = run.data.record;
+  run.score = identification::score(record.y, run.y_hat);
+  if (model.tracking && is_stabilising(model.dynamics, model.tracking->gain)) {
+    ModelRun::Tracked& tracked = run.tracked.emplace();
+    tracked.y_hat = tracked_run(model.dynamics, model.tracking->gain, record, record.all());
+    tracked.score = identification::score(record.y, tracked.y_hat);
+  }
   return run;
 }
 

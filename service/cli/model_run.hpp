@@ -27,6 +27,12 @@ struct ModelRun {
   WindowData data;               // at least one row
   identification::Matrix y_hat;  // free run, N x p
   identification::Score score;
+  /// The same while it follows the measured outputs; absent without a tracking gain.
+  struct Tracked {
+    identification::Matrix y_hat;
+    identification::Score score;
+  };
+  std::optional<Tracked> tracked;
 };
 
 /// The model's free run over the telemetry in `range`, the state at the beginning of each stretch

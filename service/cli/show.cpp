@@ -89,11 +89,16 @@ std::string signals_text(const EquipmentModel& model) {
 }
 
 std::string scores_text(const EquipmentModel& model) {
-  Table table({{"output"}, {"MRSE %", Table::Align::right}, {"fit %", Table::Align::right}});
+  Table table({{"output"},
+               {"MRSE %", Table::Align::right},
+               {"fit %", Table::Align::right},
+               {"following telemetry: MRSE %", Table::Align::right}});
   for (std::size_t q = 0; q < model.outputs.size(); ++q) {
     const auto at = static_cast<Eigen::Index>(q);
     table.add({model.outputs[q].name, fmt::format("{:.4g}", model.validation.mrse_percent(at)),
-               fmt::format("{:.4g}", model.validation.fit_percent(at))});
+               fmt::format("{:.4g}", model.validation.fit_percent(at)),
+               model.tracking ? fmt::format("{:.4g}", model.tracking->validation.mrse_percent(at))
+                              : "-"});
   }
   return table.text(0);
 }

@@ -12,15 +12,6 @@ bool sizes_agree(const EquipmentModel& model) {
          dynamics.outputs() == static_cast<identification::Index>(model.outputs.size());
 }
 
-bool is_sound(const identification::TrackingGain& gain,
-              const identification::StateSpaceModel& dynamics) {
-  return gain.state.rows() == dynamics.inputs() && gain.state.cols() == dynamics.order() &&
-         gain.integral.rows() == dynamics.inputs() &&
-         gain.integral.cols() == 2 * dynamics.outputs() &&
-         gain.error_limit.size() == dynamics.outputs() && gain.state.allFinite() &&
-         gain.integral.allFinite() && gain.error_limit.allFinite();
-}
-
 std::optional<std::string> fault_in_expressions(const std::vector<Signal>& inputs) {
   for (const DerivedInput& input : derived_inputs(inputs)) {
     const auto parsed = Expression::parse(input.expression);
@@ -37,9 +28,6 @@ std::optional<std::string> damage(const ModelVersion& version) {
   if (!sizes_agree(version.model)) {
     return "its matrices, signals and period do not fit together, or are not finite";
   }
-  if (version.model.tracking && !is_sound(version.model.tracking->gain, version.model.dynamics)) {
-    return "its tracking gain does not fit its matrices, or is not finite";
-  }
   if (auto reason = fault_in_expressions(version.model.inputs)) return reason;
   if (const std::string digest = model_digest(version.model); digest != version.digest) {
     return "its content has the digest " + digest + " and it says " + version.digest +
@@ -48,6 +36,10 @@ std::optional<std::string> damage(const ModelVersion& version) {
   if (const double radius = identification::spectral_radius(version.model.dynamics);
       !(radius < 1)) {
     return "it is unstable: the spectral radius is " + std::to_string(radius);
+  }
+  if (version.model.tracking &&
+      !is_stabilising(version.model.dynamics, version.model.tracking->gain)) {
+    return "its tracking gain does not fit its matrices, is not finite or does not stabilise it";
   }
   return std::nullopt;
 }

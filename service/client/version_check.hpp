@@ -8,10 +8,9 @@
 
 namespace reident {
 
-/// Why the version must not run: a digest that does not match its content, sizes that disagree
-/// or numbers that are not finite in the model or its tracking gain, an
-/// expression that cannot be evaluated, an unstable A. Empty when it
-/// is sound.
+/// Why the version must not run: a digest that does not match its content, sizes that disagree or
+/// numbers that are not finite, an expression that cannot be evaluated, an unstable A, a tracking
+/// gain that does not stabilise the model. Empty when it is sound.
 std::optional<std::string> damage(const ModelVersion& version);
 
 enum class Succession {

@@ -125,8 +125,8 @@ class Loop(EndToEnd):
         self.assertLess(drawing.stat().st_size, 500_000)
         root = ElementTree.parse(drawing).getroot()
         groups = {group.get("id"): group for group in root.iter(f"{SVG}g")}
-        self.assertEqual(set(groups), {"output-1-real", "output-1-simulated", "output-1-error",
-                                       "singular-values", "poles"})
+        self.assertLessEqual({"output-1-real", "output-1-simulated", "output-1-error",
+                              "singular-values", "poles"}, set(groups))
         for name in ("real", "simulated", "error"):
             points = "".join(line.get("points") for line in groups[f"output-1-{name}"])
             self.assertGreater(len(points.split()), 400, name)

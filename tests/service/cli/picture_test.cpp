@@ -144,6 +144,15 @@ TEST(Picture, shows_each_series_the_parts_the_singular_values_and_the_poles) {
   EXPECT_THAT(picture, Not(HasSubstr("inf")));
 }
 
+TEST(Picture, of_a_model_that_can_follow_telemetry_shows_that_error_too) {
+  Example example(1, 600);
+  EXPECT_THAT(example.picture(), Not(HasSubstr("output-1-following")));
+  example.run.tracked = ModelRun::Tracked{example.run.data.record.y * 0.99, {}};
+  example.model.tracking = EquipmentModel::Tracking{{}, example.model.validation};
+  EXPECT_THAT(example.picture(), HasSubstr("<g id=\"output-1-following\">"));
+  EXPECT_THAT(example.picture(), HasSubstr("following telemetry: MRSE 2.5 %"));
+}
+
 TEST(Picture, of_many_rows_and_outputs_stays_small) {
   EXPECT_LT(Example(1, 200'000).picture().size(), 100'000U);
   EXPECT_LT(Example(12, 20'000).picture().size(), 500'000U);

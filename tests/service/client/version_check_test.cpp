@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "identification/tracking_search.hpp"
 #include "tests/service/model/example_model.hpp"
 
 namespace reident::test {
@@ -21,7 +22,11 @@ void PrintTo(const Case& one, std::ostream* out) {
 }
 
 identification::TrackingGain& gain(ModelVersion& version) {
-  version.model.tracking = full_example_model().tracking;
+  const identification::Poles poles = {0.5, 0.6, 0.7, 0.8};
+  const auto placed = identification::place_tracking_poles(version.model.dynamics, poles,
+                                                           identification::Vector::Constant(1, 10));
+  const auto& gain = std::get<identification::TrackingPlacement>(placed).gain;
+  version.model.tracking = EquipmentModel::Tracking{gain, version.model.validation};
   return version.model.tracking->gain;
 }
 
@@ -60,6 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"integral gain", [](auto& v) { gain(v).integral.resize(2, 1); }, true,
              "tracking gain"},
         Case{"error limit", [](auto& v) { gain(v).error_limit.resize(0); }, true, "tracking gain"},
+        Case{"gain turned round", [](auto& v) { gain(v).integral *= -1; }, true, "stabilise"},
         Case{"gain not finite",
              [](auto& v) { gain(v).integral(0, 0) = std::numeric_limits<double>::infinity(); },
              true, "tracking gain"},
