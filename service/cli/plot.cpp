@@ -24,19 +24,6 @@ struct Arguments {
   RangeOptions range;
 };
 
-/// The rows that chose, as the version's provenance says them; versions from before do not.
-std::optional<storage::TimeRange> tuned_on(const storage::Version& version) {
-  const ordered_json provenance = ordered_json::parse(version.provenance_json, nullptr, false);
-  const ordered_json::json_pointer tune("/parts/tune");
-  if (!provenance.is_object() || !provenance.contains(tune)) return std::nullopt;
-  const ordered_json& part = provenance[tune];
-  const auto begin = part.find("begin_ns"), end = part.find("end_ns");
-  if (begin == part.end() || end == part.end() || !begin->is_number_integer() ||
-      !end->is_number_integer())
-    return std::nullopt;
-  return storage::TimeRange{begin->get<storage::Time>(), end->get<storage::Time>()};
-}
-
 /// Those of which something is in the picture.
 std::vector<PicturePart> parts_of(const Story& story, storage::TimeRange shown) {
   std::vector<PicturePart> parts = {{"identify", story.model.identified_from}};

@@ -119,12 +119,6 @@ std::string decisions_text(const std::vector<Decision>& decisions) {
   return table.text(terminal_width());
 }
 
-std::string provenance_text(const storage::Version& version) {
-  if (version.provenance_json.empty()) return "";
-  return fmt::format("samples         {}\nprovenance      {}\n", version.samples_digest,
-                     version.provenance_json);
-}
-
 void print_continuous(
     const std::variant<identification::ContinuousModel, identification::Verdict>& continuous) {
   fmt::print("{}", continuous_text(continuous));
@@ -140,6 +134,8 @@ void print_story(const Story& story) {
              story.version.number, story.version.status);
   fmt::print("window          {}\n", range_text(story.version.window));
   fmt::print("identified from {}\n", range_text(model.identified_from));
+  if (const auto tune = tuned_on(story.version))
+    fmt::print("chosen by       {}\n", range_text(*tune));
   fmt::print("validated on    {}\n", range_text(model.validated_on));
   fmt::print("trigger         {}\n", story.attempt.trigger);
   fmt::print("judged against  {}\n", story.version.parent
@@ -150,8 +146,10 @@ void print_story(const Story& story) {
              spectral_radius(dynamics));
   fmt::print("digest          {}{}\n", story.version.digest,
              story.digest_matches ? "" : " DOES NOT MATCH the stored model");
-  fmt::print("configuration   {}\nprogram         {}\n{}", story.attempt.configuration_digest,
-             story.attempt.program_version, provenance_text(story.version));
+  if (!story.version.samples_digest.empty())
+    fmt::print("samples         {}\n", story.version.samples_digest);
+  fmt::print("configuration   {}\nprogram         {}\n", story.attempt.configuration_digest,
+             story.attempt.program_version);
   fmt::print("\n{}\n", signals_text(model));
   fmt::print("free run over {} rows that the identification did not use:\n{}{}\n",
              model.validation.rows, scores_text(model), champion_text(evidence_of(story.attempt)));

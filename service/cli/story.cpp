@@ -81,4 +81,17 @@ std::variant<Story, Refusal> find_story(const Registry& registry, const Subject&
   return story;
 }
 
+std::optional<storage::TimeRange> tuned_on(const storage::Version& version) {
+  const nlohmann::ordered_json provenance =
+      nlohmann::ordered_json::parse(version.provenance_json, nullptr, false);
+  const nlohmann::ordered_json::json_pointer tune("/parts/tune");
+  if (!provenance.is_object() || !provenance.contains(tune)) return std::nullopt;
+  const nlohmann::ordered_json& part = provenance[tune];
+  const auto begin = part.find("begin_ns"), end = part.find("end_ns");
+  if (begin == part.end() || end == part.end() || !begin->is_number_integer() ||
+      !end->is_number_integer())
+    return std::nullopt;
+  return storage::TimeRange{begin->get<storage::Time>(), end->get<storage::Time>()};
+}
+
 }  // namespace reident::cli

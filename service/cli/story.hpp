@@ -31,6 +31,10 @@ struct Story {
   bool digest_matches = false;
 };
 
+/// The stretch whose samples chose, as the version's provenance says it; absent in versions from
+/// before schema 2.
+std::optional<storage::TimeRange> tuned_on(const storage::Version& version);
+
 /// The version that the subject names, or the champion of its equipment. A spacecraft that is left
 /// out is found by the equipment's name.
 std::variant<Story, Refusal> find_story(const storage::Registry& registry, const Subject& subject);
