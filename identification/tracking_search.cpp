@@ -121,6 +121,21 @@ std::vector<TrackingSearch> every_placement(const StateSpaceModel& model,
   return found;
 }
 
+/// Of the consecutive stretches of `first_rows` those rows in which the outputs move most: a
+/// stretch at rest cannot tell one placement from another.
+RowRange liveliest(const Record& record, RowRange rows, const Vector& error_limit) {
+  RowRange best{rows.begin, std::min(rows.end, rows.begin + first_rows)};
+  double most = -1;
+  for (Index begin = rows.begin; begin + first_rows <= rows.end; begin += first_rows) {
+    const Matrix y =
+        record.y.middleRows(begin, first_rows) * error_limit.cwiseInverse().asDiagonal();
+    const double movement = (y.rowwise() - y.colwise().mean()).squaredNorm();
+    if (movement > most) best = {begin, begin + first_rows};
+    most = std::max(most, movement);
+  }
+  return best;
+}
+
 void score_tracking(const StateSpaceModel& model, const Record& record, RowRange rows,
                     TrackingSearch& one) {
   one.tracking = score(record.y.middleRows(rows.begin, rows.size()),
@@ -140,7 +155,7 @@ std::variant<TrackingSearch, Verdict> search_tracking(const StateSpaceModel& mod
   if (auto verdict = obstacle(model, error_limit)) return *verdict;
 
   const RowRange rows{tune.begin, std::min(tune.end, tune.begin + most_rows)};
-  const RowRange few{rows.begin, std::min(rows.end, rows.begin + first_rows)};
+  const RowRange few = liveliest(record, rows, error_limit);
   std::vector<TrackingSearch> tried = every_placement(model, error_limit);
   const auto by_error = [](const TrackingSearch& a, const TrackingSearch& b) {
     return a.tracking.mrse() < b.tracking.mrse();

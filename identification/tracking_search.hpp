@@ -40,7 +40,8 @@ struct TrackingSearch {
 
 /// Tries the 21 scales 10^-1, 10^-0.9, ... 10^1 with tau of 1/4, 1/2, 1, ... 64 samples and takes
 /// the pair of least MRSE of the tracked run over at most the first 5,000 rows of `tune`, which
-/// start there: the loop forgets where it started. The first 1,000 of them choose 12 pairs.
+/// start there: the loop forgets where it started. The 1,000 of them in which the outputs move most
+/// choose 12 pairs.
 /// error_limit is the span of each output over the rows `identify`. The verdict no_gain where
 /// nothing can be placed or nothing lowers the error of the free run over the same rows by more
 /// than 1 %. Requires a stable, well-formed model, finite rows, and neither range empty.

@@ -63,6 +63,23 @@ TEST(TrackingSearch, FollowsADriftThatNoInputTells) {
   }
 }
 
+TEST(TrackingSearch, IsNotMisledByRowsAtRest) {
+  testing::Noise noise(8);
+  StateSpaceModel model = testing::random_system(noise, 3, 2, 1, 0.9);
+  model.y0.setConstant(10);
+  Record record = drifting(model, 5, 6000);
+  const auto lively =
+      std::get<TrackingSearch>(search_tracking(model, record, {0, 2000}, {3000, 6000}));
+  record.u.middleRows(2000, 1000).setZero();
+  record.y.middleRows(2000, 1000).setConstant(10);
+  const auto rested =
+      std::get<TrackingSearch>(search_tracking(model, record, {0, 2000}, {2000, 6000}));
+  const auto error = [&](const TrackingGain& gain) {
+    return score(record.y.bottomRows(3000), tracked_run(model, gain, record, {3000, 6000})).mrse();
+  };
+  EXPECT_LT(error(rested.gain), 1.05 * error(lively.gain));
+}
+
 std::string refusal(const StateSpaceModel& model, const Record& record) {
   const auto found = search_tracking(model, record, {0, 500}, {500, 1000});
   const auto* verdict = std::get_if<Verdict>(&found);
