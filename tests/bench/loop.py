@@ -57,12 +57,12 @@ def table(attempts):
 
 
 def every_model(attempts):
-    """The median error of all models of each equipment, whatever the gate said of them."""
+    """The median error of the models of each slide, whatever the gate said of them."""
     errors = collections.defaultdict(list)
     for attempt in attempts:
-        if attempt.get("mrse_percent") is not None:
+        if attempt["trigger"] == "slide" and attempt.get("mrse_percent") is not None:
             errors[attempt["equipment"]].append(attempt["mrse_percent"])
-    return "Every model, median MRSE on unseen data: " + ", ".join(
+    return "The model of every slide, median MRSE on unseen data: " + ", ".join(
         f"{name} {statistics.median(some):.2f} % of {len(some)}" for name, some in errors.items())
 
 
