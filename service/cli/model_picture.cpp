@@ -23,6 +23,7 @@ constexpr double left = 84, right = 980;  // of the panels over time
 constexpr double run_height = 180, error_height = 90, panel_gap = 12, output_gap = 52;
 constexpr double top = 104;
 constexpr double bottom_height = 240;
+constexpr double character_width = 5.8;  // of small text, about
 // Four lines of two points of some 12 bytes for each column and output.
 constexpr double max_trace_bytes = 400'000;
 
@@ -77,20 +78,20 @@ Scale time_scale(const PictureData& data) {
 void draw_head(Svg& svg, const PictureData& data) {
   svg.text({20, 30}, data.title, "title");
   svg.text({20, 50}, data.subtitle, "small");
-  double x = left;
+  double x = 20;
   for (const auto& [css_class, label] :
        {std::pair("real", "measured"), std::pair("simulated", "free run of the model"),
         std::pair("error", "error of the free run"),
-        std::pair("following", "error when it follows telemetry")}) {
+        std::pair("following", "error following telemetry")}) {
     if (std::string_view(css_class) == "following" && !data.run.tracked) continue;
     svg.line({x, 72}, {x + 24, 72}, css_class);
     svg.text({x + 30, 76}, label, "small");
-    x += 50 + 6.2 * static_cast<double>(std::string_view(label).size());
+    x += 44 + character_width * static_cast<double>(std::string_view(label).size());
   }
   for (const PicturePart& part : data.parts) {
     svg.rectangle({x, 65, 16, 14}, part.name);
     svg.text({x + 22, 76}, part.name, "small");
-    x += 44 + 6.2 * static_cast<double>(part.name.size());
+    x += 36 + character_width * static_cast<double>(part.name.size());
   }
 }
 

@@ -56,6 +56,16 @@ def table(attempts):
     return "\n".join(lines)
 
 
+def every_model(attempts):
+    """The median error of the models of each slide, whatever the gate said of them."""
+    errors = collections.defaultdict(list)
+    for attempt in attempts:
+        if attempt["trigger"] == "slide" and attempt.get("mrse_percent") is not None:
+            errors[attempt["equipment"]].append(attempt["mrse_percent"])
+    return "The model of every slide, median MRSE on unseen data: " + ", ".join(
+        f"{name} {statistics.median(some):.2f} % of {len(some)}" for name, some in errors.items())
+
+
 def main():
     programs, configurations, files = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3:]
     environment = {k: v for k, v in os.environ.items() if k != "CYCLONEDDS_URI"}
@@ -106,6 +116,7 @@ def main():
               f"files; {len(history['attempts'])} windows decided {seconds:.0f} s after the start; "
               f"the simulator took {len(adopted)} versions.\n")
         print(table(history["attempts"]))
+        print("\n" + every_model(history["attempts"]))
         return 0 if same else 1
 
 

@@ -134,6 +134,20 @@ class Loop(EndToEnd):
         self.assertLessEqual({"identify", "tune", "validate"}, shaded)
         self.assertEqual(len(list(groups["poles"])), new["order"])
 
+        for status, says, *words in [
+                (2, "99", "plot", "SAT/PLANT@99"),
+                (2, "no row with every parameter valid", "plot", "SAT/PLANT", "--begin",
+                 "2030-01-01", "--end", "2030-01-02"),
+                (2, "ends later", "plot", "SAT/PLANT", "--end", "2001-01-01"),
+                (2, "is no time", "plot", "SAT/PLANT", "--begin", "soon"),
+                (1, "cannot be written", "plot", "SAT/PLANT", "-o", self.folder / "no" / "x.svg"),
+                (2, "x is no version", "compare", "SAT/PLANT", first, "x"),
+                (2, "nothing is known about SAT/NONE", "compare", "SAT/NONE", 1, 2)]:
+            with self.subTest(words=words):
+                done, text = self.reident(*words, "--database", self.database)
+                self.assertEqual((done, text.count("\n")), (status, 1), text)
+                self.assertIn(says, text)
+
     def test_by_hand_a_candidate_waits(self):
         self.configure([plant.equipment(approval="by_hand")])
         self.start_daemon()
