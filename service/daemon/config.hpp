@@ -40,7 +40,7 @@ struct EquipmentConfig {
   double confidence_percent = 99;        // how sure: of the lower bound of the reduction
   double max_disagreement_percent = 10;  // from the champion where the window was not, of the
                                          // output's range
-  Duration min_interval = 0;             // between the windows of two versions; default: the slide
+  Duration min_interval = 0;             // between the windows of two versions; a quarter of slide
   std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where its
                                                 // telemetry does not tell it
   ApprovalPolicy approval = ApprovalPolicy::automatic;
