@@ -261,7 +261,9 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
   const auto share_ticks =
       static_cast<std::int64_t>(equipment.validation_share * static_cast<double>(ticks));
   equipment.slide = slide.value_or(std::max<std::int64_t>(1, share_ticks) * *period);
-  equipment.min_interval = reader.duration("min_interval", 0, 3650 * day).value_or(equipment.slide);
+  // Shorter than it takes to notice that a champion drifts.
+  equipment.min_interval =
+      reader.duration("min_interval", 0, 3650 * day).value_or(equipment.slide / 4);
   if (slide || !reader.has("slide")) check_slide(reader, equipment);
 }
 

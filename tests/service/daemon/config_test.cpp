@@ -394,6 +394,12 @@ TEST(Config, AnInputMayFollowFromParameters) {
   EXPECT_THAT(bdr.derived, ElementsAre(DerivedInput{"P", "U * I_BDRIN1", "W"}));
 }
 
+TEST(Config, VersionsAreAQuarterOfTheSlideApart) {
+  const EquipmentConfig bdr =
+      config_of(minimal + "slide = \"40min\"").spacecraft.at(0).equipment.at(0);
+  EXPECT_EQ(bdr.min_interval, 10 * min);
+}
+
 TEST(Config, AWindowThatJustHoldsEnoughIsAccepted) {
   EXPECT_THAT(mistakes_of(with(8, "window = \"176s\"")), IsEmpty());
   EXPECT_THAT(mistakes_of(with(8, "window = \"175s\"")), SizeIs(1));
