@@ -101,6 +101,13 @@ Decision read_decision(const sqlite::Query& row) {
   return decision;
 }
 
+std::string attempt_sql(std::string_view rest) {
+  return "SELECT attempt.id, attempt.spacecraft, attempt.equipment, window_begin, window_end, "
+         "cause, time, outcome, reason, evidence_json, configuration_digest, program_version, "
+         "number FROM attempt LEFT JOIN version ON version.attempt = attempt.id " +
+         std::string(rest);
+}
+
 Attempt read_attempt(const sqlite::Query& row) {
   Attempt attempt;
   attempt.id = row.integer(0);
@@ -301,17 +308,20 @@ Standing Registry::standing(const std::string& spacecraft, const std::string& eq
   return {row.integer(0), row.integer(1)};
 }
 
+std::optional<Attempt> Registry::attempt(std::int64_t id) const {
+  sqlite::Query row = connection(database_).query(attempt_sql("WHERE attempt.id = ?"), id);
+  return row.step() ? std::optional(read_attempt(row)) : std::nullopt;
+}
+
 std::vector<Attempt> Registry::attempts(const HistoryFilter& filter) const {
   std::vector<Attempt> attempts;
   std::optional<Time> begin, end;
   if (filter.window) begin = filter.window->begin, end = filter.window->end;
   sqlite::Query row = connection(database_).query(
-      "SELECT attempt.id, attempt.spacecraft, attempt.equipment, window_begin, window_end, cause, "
-      "time, outcome, reason, evidence_json, configuration_digest, program_version, number "
-      "FROM attempt LEFT JOIN version ON version.attempt = attempt.id "
-      "WHERE (?1 = '' OR attempt.spacecraft = ?1) AND (?2 = '' OR attempt.equipment = ?2) "
-      "AND (?3 IS NULL OR (window_begin < ?4 AND window_end > ?3)) "
-      "AND (NOT ?5 OR number IS NOT NULL) ORDER BY attempt.id DESC LIMIT ?6",
+      attempt_sql(
+          "WHERE (?1 = '' OR attempt.spacecraft = ?1) AND (?2 = '' OR attempt.equipment = ?2) "
+          "AND (?3 IS NULL OR (window_begin < ?4 AND window_end > ?3)) "
+          "AND (NOT ?5 OR number IS NOT NULL) ORDER BY attempt.id DESC LIMIT ?6"),
       filter.spacecraft, filter.equipment, begin, end, filter.versions_only,
       filter.last ? static_cast<std::int64_t>(*filter.last) : -1);
   while (row.step()) attempts.push_back(read_attempt(row));

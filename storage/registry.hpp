@@ -196,6 +196,7 @@ class Registry {
   std::vector<EquipmentName> equipment() const;
   std::optional<Hold> hold(const std::string& spacecraft, const std::string& equipment) const;
   Standing standing(const std::string& spacecraft, const std::string& equipment) const;
+  std::optional<Attempt> attempt(std::int64_t id) const;
   /// Ascending by id.
   std::vector<Attempt> attempts(const HistoryFilter& filter = {}) const;
   /// End of the latest window that was tried for an equipment.

@@ -1,5 +1,6 @@
 #include "service/cli/story.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,20 +10,44 @@
 
 namespace reident::cli {
 
-using storage::Attempt;
 using storage::Registry;
 
 namespace {
 
-std::string versions_text(const std::vector<Attempt>& attempts, const Registry& registry) {
-  std::string text;
-  for (const Attempt& attempt : attempts) {
-    if (!attempt.version) continue;
-    const auto version = registry.version(attempt.spacecraft, attempt.equipment, *attempt.version);
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", *attempt.version,
-                        version ? version->status : "unknown");
+std::string versions_text(const Registry& registry, const std::string& spacecraft,
+                          const std::string& equipment) {
+  constexpr std::size_t most = 5;
+  const std::vector<storage::VersionSummary> versions = registry.summaries(spacecraft, equipment);
+  if (versions.empty()) return "none yet";
+  std::string text = versions.size() > most
+                         ? fmt::format("{} to {}, the last of them ", versions.front().number,
+                                       versions.back().number)
+                         : "";
+  for (std::size_t i = versions.size() - std::min(most, versions.size()); i < versions.size(); ++i)
+    text += fmt::format("{} ({}){}", versions[i].number, versions[i].status,
+                        i + 1 < versions.size() ? ", " : "");
+  return text;
+}
+
+/// The equipment that a subject means.
+std::variant<storage::EquipmentName, Refusal> find_equipment(const Registry& registry,
+                                                             const Subject& subject) {
+  std::optional<storage::EquipmentName> found;
+  for (const storage::EquipmentName& one : registry.equipment()) {
+    if (one.equipment != subject.equipment) continue;
+    if (!subject.spacecraft.empty() && one.spacecraft != subject.spacecraft) continue;
+    if (found)
+      return Refusal{fmt::format("{} is on {} and on {}; name the spacecraft, as in {}",
+                                 subject.equipment, found->spacecraft, one.spacecraft,
+                                 full_name(found->spacecraft, subject.equipment))};
+    found = one;
   }
-  return text.empty() ? "none yet" : text;
+  if (found) return *found;
+  return Refusal{fmt::format("nothing is known about {}; the database has {}",
+                             subject.spacecraft.empty()
+                                 ? subject.equipment
+                                 : full_name(subject.spacecraft, subject.equipment),
+                             equipment_in(registry))};
 }
 
 }  // namespace
@@ -45,36 +70,20 @@ std::variant<Subject, Refusal> parse_subject(const std::string& text) {
 }
 
 std::variant<Story, Refusal> find_story(const Registry& registry, const Subject& subject) {
-  storage::HistoryFilter filter;
-  filter.spacecraft = subject.spacecraft;
-  filter.equipment = subject.equipment;
-  const std::vector<Attempt> attempts = registry.attempts(filter);
-  if (attempts.empty())
-    return Refusal{fmt::format("nothing is known about {}; the database has {}",
-                               subject.spacecraft.empty()
-                                   ? subject.equipment
-                                   : full_name(subject.spacecraft, subject.equipment),
-                               equipment_in(registry))};
-  const std::string& spacecraft = attempts.front().spacecraft;
-  for (const Attempt& attempt : attempts)
-    if (attempt.spacecraft != spacecraft)
-      return Refusal{fmt::format("{} is on {} and on {}; name the spacecraft, as in {}",
-                                 subject.equipment, spacecraft, attempt.spacecraft,
-                                 full_name(spacecraft, subject.equipment))};
-  auto version = subject.version ? registry.version(spacecraft, subject.equipment, *subject.version)
-                                 : registry.champion(spacecraft, subject.equipment);
-  const std::string name = full_name(spacecraft, subject.equipment);
+  const auto found = find_equipment(registry, subject);
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
+  const auto& [spacecraft, equipment] = std::get<storage::EquipmentName>(found);
+  auto version = subject.version ? registry.version(spacecraft, equipment, *subject.version)
+                                 : registry.champion(spacecraft, equipment);
   if (!version)
-    return Refusal{subject.version
-                       ? fmt::format("{} has no version {}; versions: {}", name, *subject.version,
-                                     versions_text(attempts, registry))
-                       : fmt::format("{} has no approved version; versions: {}", name,
-                                     versions_text(attempts, registry))};
+    return Refusal{fmt::format(
+        "{} has no {}; versions: {}", full_name(spacecraft, equipment),
+        subject.version ? fmt::format("version {}", *subject.version) : "approved version",
+        versions_text(registry, spacecraft, equipment))};
   Story story;
-  for (const Attempt& attempt : attempts)
-    if (attempt.id == version->attempt) story.attempt = attempt;
-  story.decisions = registry.decisions(spacecraft, subject.equipment, version->number);
-  story.hold = registry.hold(spacecraft, subject.equipment);
+  story.attempt = registry.attempt(version->attempt).value();
+  story.decisions = registry.decisions(spacecraft, equipment, version->number);
+  story.hold = registry.hold(spacecraft, equipment);
   story.model = equipment_model_from_json(version->model_json);
   story.digest_matches = model_digest(story.model) == version->digest;
   story.version = *std::move(version);

@@ -42,6 +42,10 @@ TEST_F(RegistryTest, GivesAnAttemptWithoutAModelBack) {
   EXPECT_EQ(found.configuration_digest, tried.configuration_digest);
   EXPECT_EQ(found.program_version, tried.program_version);
   EXPECT_THAT(registry.champions(), IsEmpty());
+  ASSERT_TRUE(registry.attempt(id));
+  EXPECT_EQ(registry.attempt(id)->evidence_json, tried.evidence_json);
+  EXPECT_EQ(registry.attempt(id)->version, std::nullopt);
+  EXPECT_FALSE(registry.attempt(id + 1));
 }
 
 TEST_F(RegistryTest, GivesAVersionBack) {
