@@ -75,11 +75,9 @@ int run(const Arguments& arguments) {
       print(story, again, arguments.json);
       return static_cast<int>(again.same_model ? exit_done : exit_no_model);
     } catch (const std::invalid_argument& error) {
-      return refuse(
-          {fmt::format("{} version {} cannot be identified again: {}; versions from "
-                       "before schema 2 do not say it",
-                       full_name(story.version.spacecraft, story.version.equipment),
-                       story.version.number, error.what())});
+      return refuse({fmt::format("{} version {} cannot be identified again: {}",
+                                 full_name(story.version.spacecraft, story.version.equipment),
+                                 story.version.number, error.what())});
     }
   });
 }

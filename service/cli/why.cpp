@@ -85,6 +85,10 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
   if (const ordered_json* baseline = member(evidence, "baseline"))
     sentences.push_back(
         fmt::format("Beside the simulator's own telemetry: {}.", comparison_text(*baseline)));
+  if (member(evidence, "baseline_mrse_percent"))
+    sentences.push_back(
+        fmt::format("The simulator's own model errs by {} %, as the configuration says.",
+                    figure(evidence, "baseline_mrse_percent")));
   const ordered_json* champion = member(evidence, "champion");
   if (!champion) {
     sentences.push_back("There was no champion.");
@@ -94,6 +98,9 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
   if (const ordered_json* comparison = member(*champion, "comparison"))
     sentences.push_back(
         fmt::format("Beside champion {}: {}.", version, comparison_text(*comparison)));
+  else if (member(*champion, "mrse_percent"))  // of a program before comparisons were kept
+    sentences.push_back(fmt::format("Champion {} errs by {} % on the same rows.", version,
+                                    figure(*champion, "mrse_percent")));
   else
     sentences.push_back(fmt::format("Champion {} cannot run on these samples.", version));
   if (const ordered_json* elsewhere = member(*champion, "elsewhere"))
@@ -121,7 +128,7 @@ Sentences sentences_of(const Story& story) {
   rival_sentences(evidence, sentences);
   hold_and_warning_sentences(evidence, sentences);
   sentences.push_back(
-      fmt::format("The gate: {} ({}).", story.attempt.reason, story.attempt.outcome));
+      fmt::format("The gate's outcome: {}. {}", story.attempt.outcome, story.attempt.reason));
   for (const storage::Decision& decision : story.decisions)
     sentences.push_back(fmt::format("{} {} by {}: {}", time_text(decision.time),
                                     name(decision.kind), decision.actor, decision.reason));

@@ -119,6 +119,8 @@ storage::NewVersion version_of(const RefreshRequest& request, const PreparedWind
 
 Reproduction reproduce(const storage::Archive& archive, const storage::Version& version,
                        const identification::ForEach& for_each) {
+  if (version.provenance_json.empty())
+    throw std::invalid_argument("it is from before schema 2 and does not say where it comes from");
   Reproduction result;
   RefreshRequest request;
   try {

@@ -113,6 +113,8 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
   if (prepared.candidate) {
     result.evidence = evidence_of(archive, registry, request, prepared);
     describe(result.evidence, prepared.evidence);
+    if (!result.evidence.baseline && request.equipment.baseline_mrse_percent)
+      prepared.evidence["baseline_mrse_percent"] = *request.equipment.baseline_mrse_percent;
     const GateDecision decision = decide(result.evidence, request.equipment);
     prepared.attempt.outcome = name(decision.outcome);
     prepared.attempt.reason = decision.reason;

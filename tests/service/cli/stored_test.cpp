@@ -11,6 +11,7 @@ namespace {
 using nlohmann::json;
 using storage::DecisionKind;
 using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -202,6 +203,36 @@ TEST_F(Stored, ShowAsksWhichSpacecraftWhereTwoHaveTheEquipment) {
   registry_.record(other);
   EXPECT_THAT(refusal_of(command({"show", "BDR"})),
               AllOf(HasSubstr("name the spacecraft"), HasSubstr("AMAZONIA-1")));
+}
+
+TEST_F(Stored, OfManyVersionsARefusalNamesTheLast) {
+  for (int slide = 0; slide < 8; ++slide)
+    record_version("BDR", slide, DecisionKind::reject, "error_above_limit");
+  EXPECT_THAT(refusal_of(command({"show", "BDR@9"})),
+              EndsWith("versions: 1 to 8, the last of them 4 (rejected), 5 (rejected), 6 "
+                       "(rejected), 7 (rejected), 8 (rejected)\n"));
+}
+
+TEST_F(Stored, WhyTellsTheBaselineOfTheConfigurationAndTheChampionOfOlderPrograms) {
+  const EquipmentModel model = model_of("BDR");
+  const storage::NewVersion version{to_json(model).dump(), model_digest(model)};
+  registry_.record(
+      attempt_of("BDR", 0, "approved", R"({"mrse_percent": 2.5, "baseline_mrse_percent": 16.4})"),
+      version, {DecisionKind::approve, "gate", "Good."});
+  EXPECT_THAT(reident(command({"why", "BDR@1"})).out,
+              AllOf(HasSubstr("The simulator's own model errs by 16.4 %, as the configuration"),
+                    HasSubstr("There was no champion."),
+                    HasSubstr("The gate's outcome: approved. The reason of approved.\n")));
+  record_version("BDR", 30, DecisionKind::approve, "approved");
+  EXPECT_THAT(reident(command({"why", "BDR@2"})).out,
+              HasSubstr("Champion 1 errs by 3.75 % on the same rows."));
+}
+
+TEST_F(Stored, AVersionFromBeforeProvenanceCannotBeReproduced) {
+  fill();
+  EXPECT_THAT(refusal_of(command({"reproduce", "BDR@1"})),
+              HasSubstr("CBERS-4/BDR version 1 cannot be identified again: it is from before "
+                        "schema 2 and does not say where it comes from"));
 }
 
 class WithoutDatabase : public testing::CliTest {};

@@ -55,6 +55,14 @@ TEST_F(Refresh, ApprovesAGoodFirstVersionAndExplainsIt) {
   EXPECT_TRUE(evidence["timing_ms"].contains("load"));
 }
 
+TEST_F(Refresh, KeepsTheConfiguredBaselineThatTheGateSaw) {
+  archive.append(telemetry(day, 601));
+  EquipmentConfig equipment = plant();
+  equipment.baseline_mrse_percent = 16.4;
+  const RefreshResult result = run(day + 10 * minute, equipment);
+  EXPECT_EQ(nlohmann::json::parse(result.attempt.evidence_json)["baseline_mrse_percent"], 16.4);
+}
+
 TEST_F(Refresh, ScoresTheChampionOnTheSameSamples) {
   archive.append(telemetry(day, 1201));
   record(run(day + 10 * minute));
