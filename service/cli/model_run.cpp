@@ -23,6 +23,13 @@ std::optional<Refusal> read_time(std::string_view flag, const std::optional<std:
   return std::nullopt;
 }
 
+identification::Index rows_before(const identification::Record& record, storage::Time time,
+                                  Duration period) {
+  identification::Index row = 0;
+  while (row < record.rows() && time_of_row(record, row, period) < time) ++row;
+  return row;
+}
+
 }  // namespace
 
 void add_range_options(CLI::App& command, RangeOptions& options, const std::string& otherwise) {
@@ -45,24 +52,30 @@ std::variant<storage::TimeRange, Refusal> range_of(const RangeOptions& options,
 }
 
 std::variant<ModelRun, std::string> run_model(const storage::Archive& archive,
-                                              const EquipmentModel& model,
-                                              storage::TimeRange range) {
+                                              const EquipmentModel& model, storage::TimeRange range,
+                                              storage::Time scored_from) {
   if (!is_well_formed(model.dynamics)) return "the stored model is damaged";
-  auto loaded = load_window(archive, request_of(model), range);
+  const WindowRequest request = request_of(model);
+  auto loaded = load_window(archive, request, range);
   if (const auto* unknown = std::get_if<UnknownParameter>(&loaded))
     return fmt::format("the archive has no parameter {}", unknown->name);
   ModelRun run;
   run.data = std::get<WindowData>(std::move(loaded));
-  if (run.data.record.rows() == 0)
+  const identification::Index scored =
+      run.data.record.rows() - rows_before(run.data.record, scored_from, request.period);
+  if (scored == 0)
     return fmt::format("the archive has no row with every parameter valid from {} to {}",
-                       time_text(range.begin), time_text(range.end));
+                       time_text(scored_from), time_text(range.end));
   run.y_hat = free_run(model.dynamics, run.data.record, run.data.record.all());
   const identification::Record& record = run.data.record;
-  run.score = identification::score(record.y, run.y_hat);
+  const auto score = [&](const identification::Matrix& y_hat) {
+    return identification::score(record.y.bottomRows(scored), y_hat.bottomRows(scored));
+  };
+  run.score = score(run.y_hat);
   if (model.tracking && is_stabilising(model.dynamics, model.tracking->gain)) {
     ModelRun::Tracked& tracked = run.tracked.emplace();
     tracked.y_hat = tracked_run(model.dynamics, model.tracking->gain, record, record.all());
-    tracked.score = identification::score(record.y, tracked.y_hat);
+    tracked.score = score(tracked.y_hat);
   }
   return run;
 }

@@ -36,9 +36,10 @@ struct ModelRun {
 };
 
 /// The model's free run over the telemetry in `range`, the state at the beginning of each stretch
-/// without holes estimated from its first rows; or the reason why there is none.
+/// without holes estimated from its first rows; or the reason why there is none. The scores are of
+/// the rows at `scored_from` or later.
 std::variant<ModelRun, std::string> run_model(const storage::Archive& archive,
-                                              const EquipmentModel& model,
-                                              storage::TimeRange range);
+                                              const EquipmentModel& model, storage::TimeRange range,
+                                              storage::Time scored_from);
 
 }  // namespace reident::cli

@@ -51,7 +51,7 @@ std::variant<std::string, Refusal> picture_of(storage::Database& database, const
   const auto range = range_of(options, story.version.window);
   if (const auto* refusal = std::get_if<Refusal>(&range)) return *refusal;
   const auto& shown = std::get<storage::TimeRange>(range);
-  const auto run = run_model(storage::Archive(database), story.model, shown);
+  const auto run = run_model(storage::Archive(database), story.model, shown, shown.begin);
   if (const auto* reason = std::get_if<std::string>(&run)) return Refusal{*reason};
   const storage::Version& version = story.version;
   const PictureData data{

@@ -107,6 +107,14 @@ class Loop(EndToEnd):
         old, new = compared["versions"]
         self.assertEqual((old["version"], new["version"]), (first, second))
         self.assertLess(new["errors"]["mrse_percent"][0], old["errors"]["mrse_percent"][0])
+        ((evidence,),) = self.query(
+            "SELECT evidence_json FROM attempt JOIN version ON version.attempt = attempt.id "
+            "WHERE number = ?", second)
+        gate = json.loads(evidence)
+        self.assertAlmostEqual(new["errors"]["mrse_percent"][0], gate["mrse_percent"], places=3)
+        if gate["champion"]["version"] == first:
+            self.assertAlmostEqual(old["errors"]["mrse_percent"][0],
+                                   gate["champion"]["mrse_percent"], places=3)
         self.assertEqual(compared["input_differences"], [])
         for channel in compared["channels"]:
             gains, steps = channel["static_gain"], channel["step_response"]
