@@ -162,7 +162,12 @@ Refusal nothing_selected(const Arguments& arguments, const Registry& registry) {
                       equipment_in(registry))};
 }
 
-int run(const Arguments& arguments) {
+int run(Arguments arguments) {
+  if (const auto slash = arguments.equipment.find('/');
+      arguments.spacecraft.empty() && slash != std::string::npos) {
+    arguments.spacecraft = arguments.equipment.substr(0, slash);
+    arguments.equipment.erase(0, slash + 1);
+  }
   return with_registry(arguments.database, [&](const Registry& registry) {
     HistoryFilter filter;
     filter.spacecraft = arguments.spacecraft;
@@ -190,7 +195,8 @@ void add_history(CLI::App& app, int& exit_code) {
       "history", "List every window that was tried, what came out and why, the latest last");
   add_database_options(*command, arguments->database);
   command->add_option("--spacecraft", arguments->spacecraft, "of this spacecraft alone");
-  command->add_option("--equipment", arguments->equipment, "of this equipment alone");
+  command->add_option("--equipment", arguments->equipment,
+                      "of this EQUIPMENT or SPACECRAFT/EQUIPMENT alone");
   command->add_option("--last", arguments->last, "the newest so many")->check(CLI::PositiveNumber);
   command->add_flag("--versions-only", arguments->versions_only,
                     "leave out windows that gave no model");

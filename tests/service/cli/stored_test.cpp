@@ -120,6 +120,9 @@ TEST_F(Stored, HistoryInJsonHasTheEvidence) {
 TEST_F(Stored, HistoryCanBeFiltered) {
   fill();
   EXPECT_THAT(json_of(command({"history", "--equipment", "MEA"}))["attempts"], SizeIs(1));
+  EXPECT_THAT(json_of(command({"history", "--equipment", "CBERS-4/MEA"}))["attempts"], SizeIs(1));
+  EXPECT_THAT(refusal_of(command({"history", "--equipment", "ISS/MEA"})),
+              HasSubstr("no attempt of ISS/MEA; "));
   EXPECT_THAT(json_of(command({"history", "--spacecraft", "CBERS-4"}))["attempts"], SizeIs(5));
   EXPECT_THAT(json_of(command({"history", "--versions-only"}))["attempts"], SizeIs(4));
   const json last = json_of(command({"history", "--equipment", "BDR", "--last", "2"}))["attempts"];
