@@ -30,7 +30,10 @@ std::string explanation(const Reproduction& again) {
     text = fmt::format("the samples are the same; program {} made it and this is {}",
                        again.program_version, program_version());
   else
-    text = "the samples and the program are the same and the model is not: report it";
+    text = fmt::format(
+        "the samples are the same and the model is not, though program {} made it, as this is: "
+        "another build of {} made it, or else report it",
+        again.program_version, again.program_version);
   if (again.model_digest.empty()) text += "; the window now gives no model: " + again.reason;
   return text;
 }
