@@ -91,7 +91,7 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
                     figure(evidence, "baseline_mrse_percent")));
   const ordered_json* champion = member(evidence, "champion");
   if (!champion) {
-    sentences.push_back("There was no champion.");
+    sentences.push_back("There was no champion with these outputs.");
     return;
   }
   const std::string version = figure(*champion, "version");

@@ -102,10 +102,12 @@ Refusal against_baseline(const Evidence& e, const EquipmentConfig& limits) {
   return std::nullopt;
 }
 
+bool has_run(const std::optional<Evidence::Champion>& champion) {
+  return champion && champion->comparison &&
+         std::isfinite(champion->comparison->rival_mrse_percent);
+}
+
 Refusal against_comparison(const Evidence::Champion& champion, const EquipmentConfig& limits) {
-  // One that cannot run here, or runs astray, loses to any candidate that holds the rest.
-  if (!champion.comparison || !std::isfinite(champion.comparison->rival_mrse_percent))
-    return std::nullopt;
   const Evidence::Comparison& comparison = *champion.comparison;
   if (!comparison.sure_percent)
     return GateDecision{
@@ -145,7 +147,9 @@ Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
     return GateDecision{
         Outcome::older_than_champion,
         fmt::format("Champion {} was identified from newer telemetry.", champion.version)};
-  if (auto refusal = against_comparison(champion, limits)) return refusal;
+  // One that cannot run here, or runs astray, loses to any candidate that holds the rest.
+  if (has_run(champion))
+    if (auto refusal = against_comparison(champion, limits)) return refusal;
   if (auto refusal = against_elsewhere(champion, limits)) return refusal;
   const Duration since = e.window_end - champion.window_end;
   if (since < limits.min_interval)
@@ -178,9 +182,10 @@ std::string_view name(Outcome outcome) {
 GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {
   if (auto refusal = against_model(evidence)) return *refusal;
   if (auto refusal = against_scores(evidence, limits)) return *refusal;
-  if (auto refusal = evidence.champion ? against_champion(evidence, limits)
-                                       : against_baseline(evidence, limits))
-    return *refusal;
+  if (evidence.champion)
+    if (auto refusal = against_champion(evidence, limits)) return *refusal;
+  if (!has_run(evidence.champion))
+    if (auto refusal = against_baseline(evidence, limits)) return *refusal;
   if (evidence.hold)
     return {Outcome::held,
             praise(evidence) + fmt::format(" Waits: {} holds the equipment ({}).",

@@ -88,6 +88,16 @@ ordered_json to_json(const Evidence::Champion& champion) {
   return json;
 }
 
+ordered_json limits_json(const EquipmentConfig& limits) {
+  return {{"max_mrse_percent", limits.max_mrse_percent},
+          {"min_fit_percent", limits.min_fit_percent},
+          {"margin_percent", limits.margin_percent},
+          {"confidence_percent", limits.confidence_percent},
+          {"max_disagreement_percent", limits.max_disagreement_percent},
+          {"min_interval_ns", limits.min_interval},
+          {"approval", limits.approval == ApprovalPolicy::by_hand ? "by_hand" : "automatic"}};
+}
+
 void describe(const Evidence& evidence, ordered_json& json) {
   json["residual_over_span"] = evidence.residual_over_span;
   json["outside_share"] = evidence.outside_share;
@@ -113,6 +123,7 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
   if (prepared.candidate) {
     result.evidence = evidence_of(archive, registry, request, prepared);
     describe(result.evidence, prepared.evidence);
+    prepared.evidence["limits"] = limits_json(request.equipment);
     if (!result.evidence.baseline && request.equipment.baseline_mrse_percent)
       prepared.evidence["baseline_mrse_percent"] = *request.equipment.baseline_mrse_percent;
     const GateDecision decision = decide(result.evidence, request.equipment);

@@ -178,7 +178,13 @@ const Case beside_its_rivals[] = {
      },
      Outcome::approved},
     {"FirstWithoutBaseline", [](auto& e, auto&) { e.champion.reset(); }, Outcome::approved},
-    {"BaselineNoLongerCountsOnceThereIsAChampion",
+    {"ChampionCannotRunAndTheBaselineIsBetter",
+     [](auto& e, auto&) {
+       e.champion->comparison.reset();
+       e.baseline = {500, 5, 4, -25, -30.0};
+     },
+     Outcome::not_better_than_baseline},
+    {"BaselineNoLongerCountsOnceThereIsAChampionThatRuns",
      [](auto&, auto& c) { c.baseline_mrse_percent = 1; }, Outcome::approved},
 };
 
