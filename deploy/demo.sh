@@ -50,8 +50,11 @@ pids+=($!)
 tail -n +1 -F "$folder/simulator.log" 2>/dev/null | sed -un 's/^/  > /p' &
 pids+=($!)
 
-"$bin/satcs/satcs-reference" --spacecraft CBERS-4 --duration 2406min --speed 1500 \
-  --wait-readers 2 "${endpoint[@]}" 2>"$folder/reference.log"
+flight=(--spacecraft CBERS-4 --duration 2406min --speed 1500 --wait-readers 2 "${endpoint[@]}")
+# What the hand-written simulator says of the same flight: the baseline of the first versions.
+"$bin/satcs/satcs-reference" --simulated "${flight[@]}" 2>"$folder/simulated.log" &
+pids+=($!)
+"$bin/satcs/satcs-reference" "${flight[@]}" 2>"$folder/reference.log"
 "$bin/cli/reident" status --wait idle --timeout 60 "${endpoint[@]}" >"$folder/status.log"
 trap - EXIT
 cleanup
