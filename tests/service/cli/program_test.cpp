@@ -30,7 +30,8 @@ TEST_F(Program, EveryCommandHasHelpWithAnExample) {
 }
 
 TEST_F(Program, VersionIsPrinted) {
-  EXPECT_THAT(reident({"version"}).out, MatchesRegex("reident [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(reident({"version"}).out,
+              MatchesRegex("reident [0-9]+\\.[0-9]+\\.[0-9]+(\\+[0-9a-f]+(-dirty)?)?\n"));
 }
 
 TEST_F(Program, WithoutACommandAndWithAnUnknownOneItIsRefused) {
