@@ -18,6 +18,10 @@ Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange row
 /// Rows that the estimate of an initial state looks at: three times the order, at least one.
 Index initial_rows(const StateSpaceModel& model);
 
+/// Rows that the state at the beginning of a run is estimated from where there is no hurry; more
+/// would say little of it.
+constexpr Index state_rows = 500;
+
 /// Least-squares initial state at `segment.begin` from the outputs of the segment's first `rows`
 /// rows (all of them where the segment is shorter), minimum norm where they do not determine it.
 Vector estimate_initial_state(const StateSpaceModel& model, const Record& record,

@@ -9,7 +9,4 @@ namespace reident::identification {
 IdentifyResult identify_undelayed(const Record& record, RowRange rows,
                                   const IdentifyOptions& options, LagSums* kept);
 
-/// Rows that the first state of a model is estimated from; more would say little of it.
-constexpr Index state_rows = 500;
-
 }  // namespace reident::identification

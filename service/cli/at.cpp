@@ -5,6 +5,7 @@
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {
@@ -48,7 +49,7 @@ void print_table(const std::vector<Reign>& reigns) {
   Table table(
       {{"equipment"}, {"version", Table::Align::right}, {"since (UTC)"}, {"by"}, {"what and why"}});
   for (const auto& [equipment, made] : reigns) {
-    const std::string name = full_name(equipment.spacecraft, equipment.equipment);
+    const std::string name = full_name(equipment);
     if (made)
       table.add({name, fmt::format("{}", made->version), time_text(made->time), made->actor,
                  fmt::format("{}: {}", storage::name(made->kind), made->reason)});

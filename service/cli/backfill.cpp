@@ -1,6 +1,5 @@
 #include "service/daemon/backfill.hpp"
 
-#include <chrono>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -9,9 +8,12 @@
 #include "service/cli/command.hpp"
 #include "service/cli/config_choice.hpp"
 #include "service/cli/story.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident::cli {
 namespace {
@@ -23,12 +25,6 @@ struct Arguments {
   bool json = false;
 };
 
-storage::Time now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 std::optional<Refusal> read_time(const char* flag, const std::optional<std::string>& text,
                                  storage::Time& time) {
   if (!text) return std::nullopt;
@@ -39,18 +35,10 @@ std::optional<Refusal> read_time(const char* flag, const std::optional<std::stri
   return std::nullopt;
 }
 
-std::string equipment_of(const Config& config) {
-  std::string text;
-  for (const SpacecraftConfig& spacecraft : config.spacecraft)
-    for (const EquipmentConfig& equipment : spacecraft.equipment)
-      text += fmt::format("{}{}/{}", text.empty() ? "" : ", ", spacecraft.name, equipment.name);
-  return text;
-}
-
 std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
                                                   const Config& config) {
   BackfillRequest request;
-  request.range = {0, now()};
+  request.range = {0, utc_now()};
   if (auto refusal = read_time("--from", arguments.from, request.range.begin)) return *refusal;
   if (auto refusal = read_time("--to", arguments.to, request.range.end)) return *refusal;
   if (request.range.end <= request.range.begin)
@@ -60,13 +48,15 @@ std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return *refusal;
   request.spacecraft = std::get<Subject>(subject).spacecraft;
   request.equipment = std::get<Subject>(subject).equipment;
-  for (const SpacecraftConfig& spacecraft : config.spacecraft)
-    for (const EquipmentConfig& equipment : spacecraft.equipment)
-      if (equipment.name == request.equipment &&
-          (request.spacecraft.empty() || request.spacecraft == spacecraft.name))
-        return request;
+  std::vector<std::string> names;
+  for (const storage::EquipmentName& one : equipment_of(config)) {
+    if (one.equipment == request.equipment &&
+        (request.spacecraft.empty() || request.spacecraft == one.spacecraft))
+      return request;
+    names.push_back(full_name(one));
+  }
   return Refusal{fmt::format("the configuration has no equipment {}; it has {}", arguments.subject,
-                             equipment_of(config))};
+                             joined(names))};
 }
 
 void print(const BackfillProgress& progress, bool json) {
@@ -97,7 +87,7 @@ int run(const Arguments& arguments) {
     WorkerPool workers(usable_cores());
     Progress bar;
     const BackfillProgress progress =
-        backfill(database, *config, std::get<BackfillRequest>(request), workers, now,
+        backfill(database, *config, std::get<BackfillRequest>(request), workers, utc_now,
                  [&](const BackfillProgress& at) {
                    bar.update(static_cast<double>(at.done) / static_cast<double>(at.windows),
                               fmt::format("{}/{} {} {} approved {}", at.done, at.windows,

@@ -9,6 +9,7 @@
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/time_text.hpp"
 
@@ -216,7 +217,7 @@ void print_errors(const Outcome& outcome) {
 void print_text(const Outcome& outcome) {
   for (const Story* story : {&outcome.a, &outcome.b})
     fmt::print("{} {} ({}): {}, sample period {:g} s\n",
-               full_name(story->version.spacecraft, story->version.equipment), heading(*story),
+               full_name({story->version.spacecraft, story->version.equipment}), heading(*story),
                story->version.status, story->model.method, story->model.dynamics.period_s);
   if (outcome.models.input_differences.empty()) fmt::print("inputs: the same\n");
   for (const std::string& sentence : outcome.models.input_differences)

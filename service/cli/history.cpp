@@ -5,6 +5,7 @@
 
 #include "service/cli/stored.hpp"
 #include "service/cli/table.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {
@@ -96,7 +97,7 @@ void print_table(const std::vector<Attempt>& attempts, const Decided& decided) {
                {"outcome and reason"}});
   for (const Attempt& attempt : attempts) {
     const ordered_json evidence = evidence_of(attempt);
-    table.add({full_name(attempt.spacecraft, attempt.equipment), time_text(attempt.window.begin),
+    table.add({full_name({attempt.spacecraft, attempt.equipment}), time_text(attempt.window.begin),
                duration_text(attempt.window.end - attempt.window.begin),
                version_text(attempt, decided), evidence_number(evidence, "order"),
                evidence_number(evidence, "mrse_percent"), evidence_number(evidence, "fit_percent"),
@@ -158,7 +159,7 @@ Refusal nothing_selected(const Arguments& arguments, const Registry& registry) {
   const auto or_any = [](const std::string& name) { return name.empty() ? "(any)" : name; };
   return {fmt::format("no {} of {}; the database has {}",
                       arguments.versions_only ? "version" : "attempt",
-                      full_name(or_any(arguments.spacecraft), or_any(arguments.equipment)),
+                      full_name({or_any(arguments.spacecraft), or_any(arguments.equipment)}),
                       equipment_in(registry))};
 }
 

@@ -14,6 +14,7 @@
 #include "service/cli/command_sender.hpp"
 #include "service/cli/config_choice.hpp"
 #include "service/daemon/commands.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident::cli {
 namespace {
@@ -55,12 +56,6 @@ std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
   target.endpoint.domain = options.domain.value_or(target.endpoint.domain);
   target.endpoint.partition = options.partition.value_or(target.endpoint.partition);
   return target;
-}
-
-storage::Time utc_now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 /// Like no other's of any process on any machine.

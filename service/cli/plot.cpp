@@ -10,6 +10,7 @@
 #include "service/cli/model_picture.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {
@@ -55,7 +56,7 @@ std::variant<std::string, Refusal> picture_of(storage::Database& database, const
   if (const auto* reason = std::get_if<std::string>(&run)) return Refusal{*reason};
   const storage::Version& version = story.version;
   const PictureData data{
-      .title = fmt::format("{} version {}", full_name(version.spacecraft, version.equipment),
+      .title = fmt::format("{} version {}", full_name({version.spacecraft, version.equipment}),
                            version.number),
       .subtitle = fmt::format("{}; {}; {} to {}", version.status, story.model.method,
                               time_text(shown.begin), time_text(shown.end)),

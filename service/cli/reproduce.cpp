@@ -5,6 +5,7 @@
 
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/daemon/provenance.hpp"
 #include "service/support/parallel.hpp"
 #include "service/support/version.hpp"
@@ -54,7 +55,7 @@ void print(const Story& story, const Reproduction& again, bool json) {
     fmt::print("{}\n", object.dump(2));
     return;
   }
-  fmt::print("{} version {}: {}\n", full_name(version.spacecraft, version.equipment),
+  fmt::print("{} version {}: {}\n", full_name({version.spacecraft, version.equipment}),
              version.number, explanation(again));
   fmt::print("samples {}, now {}\nmodel   {}, now {}\n", version.samples_digest,
              again.samples_digest, version.digest,
@@ -79,7 +80,7 @@ int run(const Arguments& arguments) {
       return static_cast<int>(again.same_model ? exit_done : exit_no_model);
     } catch (const std::invalid_argument& error) {
       return refuse({fmt::format("{} version {} cannot be identified again: {}",
-                                 full_name(story.version.spacecraft, story.version.equipment),
+                                 full_name({story.version.spacecraft, story.version.equipment}),
                                  story.version.number, error.what())});
     }
   });

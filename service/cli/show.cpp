@@ -7,6 +7,7 @@
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/time_text.hpp"
@@ -130,7 +131,7 @@ void print_continuous(
 void print_story(const Story& story) {
   const EquipmentModel& model = story.model;
   const identification::StateSpaceModel& dynamics = model.dynamics;
-  fmt::print("{} version {}: {}\n", full_name(model.spacecraft, model.equipment),
+  fmt::print("{} version {}: {}\n", full_name({model.spacecraft, model.equipment}),
              story.version.number, story.version.status);
   fmt::print("window          {}\n", range_text(story.version.window));
   fmt::print("identified from {}\n", range_text(model.identified_from));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/config_choice.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
@@ -56,25 +57,11 @@ int with_registry(const DatabaseOptions& options,
       options, [&work](storage::Database& database) { return work(storage::Registry(database)); });
 }
 
-std::string full_name(const std::string& spacecraft, const std::string& equipment) {
-  return spacecraft + "/" + equipment;
-}
-
 std::string equipment_in(const storage::Registry& registry) {
   std::vector<std::string> names;
   for (const auto& [spacecraft, equipment] : registry.equipment())
-    names.push_back(full_name(spacecraft, equipment));
+    names.push_back(full_name({spacecraft, equipment}));
   return names.empty() ? "nothing yet" : joined(names);
-}
-
-std::string reason_text(const std::string& reason) {
-  return reason.empty() ? "" : fmt::format(" ({})", reason);
-}
-
-std::string hold_text(const storage::EquipmentName& equipment, const storage::Hold& hold) {
-  return fmt::format("{} is held by {} since {}{}",
-                     full_name(equipment.spacecraft, equipment.equipment), hold.actor,
-                     time_text(hold.since), reason_text(hold.reason));
 }
 
 ordered_json hold_json(const storage::Hold& hold) {

@@ -29,16 +29,9 @@ int with_database(const DatabaseOptions& options,
 int with_registry(const DatabaseOptions& options,
                   const std::function<int(const storage::Registry&)>& work);
 
-/// Name of an equipment with its spacecraft, such as "CBERS-4/BDR".
-std::string full_name(const std::string& spacecraft, const std::string& equipment);
-
 /// The equipment of the database for messages, such as "CBERS-4/BDR, CBERS-4/MEA".
 std::string equipment_in(const storage::Registry& registry);
 
-/// " (why)", or nothing where no reason was given.
-std::string reason_text(const std::string& reason);
-/// "CBERS-4/BDR is held by Ana since 2026-11-21T15:00:00Z (why)".
-std::string hold_text(const storage::EquipmentName& equipment, const storage::Hold& hold);
 nlohmann::ordered_json hold_json(const storage::Hold& hold);
 nlohmann::ordered_json decisions_json(const std::vector<storage::Decision>& decisions);
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/stored.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/model/model_json.hpp"
 
 namespace reident::cli {
@@ -39,14 +40,14 @@ std::variant<storage::EquipmentName, Refusal> find_equipment(const Registry& reg
     if (found)
       return Refusal{fmt::format("{} is on {} and on {}; name the spacecraft, as in {}",
                                  subject.equipment, found->spacecraft, one.spacecraft,
-                                 full_name(found->spacecraft, subject.equipment))};
+                                 full_name({found->spacecraft, subject.equipment}))};
     found = one;
   }
   if (found) return *found;
   return Refusal{fmt::format("nothing is known about {}; the database has {}",
                              subject.spacecraft.empty()
                                  ? subject.equipment
-                                 : full_name(subject.spacecraft, subject.equipment),
+                                 : full_name({subject.spacecraft, subject.equipment}),
                              equipment_in(registry))};
 }
 
@@ -77,7 +78,7 @@ std::variant<Story, Refusal> find_story(const Registry& registry, const Subject&
                                  : registry.champion(spacecraft, equipment);
   if (!version)
     return Refusal{fmt::format(
-        "{} has no {}; versions: {}", full_name(spacecraft, equipment),
+        "{} has no {}; versions: {}", full_name({spacecraft, equipment}),
         subject.version ? fmt::format("version {}", *subject.version) : "approved version",
         versions_text(registry, spacecraft, equipment))};
   Story story;

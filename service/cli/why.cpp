@@ -7,6 +7,7 @@
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
+#include "service/daemon/commands.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {
@@ -149,7 +150,7 @@ int print(const Story& story, bool json) {
     fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
     return exit_done;
   }
-  fmt::print("{} version {}: {}\n", full_name(story.version.spacecraft, story.version.equipment),
+  fmt::print("{} version {}: {}\n", full_name({story.version.spacecraft, story.version.equipment}),
              story.version.number, story.version.status);
   for (const std::string& sentence : sentences)
     fmt::print("{}\n", fmt::join(wrapped(sentence, terminal_width()), "\n  "));

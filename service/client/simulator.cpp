@@ -1,5 +1,7 @@
 #include "service/client/simulator.hpp"
 
+#include "service/support/utc_clock.hpp"
+
 namespace reident {
 namespace {
 
@@ -7,12 +9,6 @@ constexpr std::size_t take_at_most = 256;
 // What a simulator may lag behind before it loses telemetry: it must never slow the source, which
 // the archive depends on.
 constexpr std::int32_t frames_kept = 16384;
-
-storage::Time now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 
@@ -49,11 +45,11 @@ void Simulator::adopt(const ModelVersion& version) {
   const auto running = equipment_.find(name);
   std::optional<ModelRunner::Swap> swap;
   if (running == equipment_.end()) {
-    equipment_.emplace(name, Running{LiveEquipment(version), now(), 0});
+    equipment_.emplace(name, Running{LiveEquipment(version), utc_now(), 0});
   } else {
     report_.running(name, running->second.live, true);
     swap = running->second.live.adopt(version);
-    running->second.since = now();
+    running->second.since = utc_now();
     running->second.reported = 0;
   }
   Running& current = equipment_.at(name);

@@ -72,9 +72,9 @@ void choose_tracking(const identification::Record& record, const WindowParts& pa
 
 void place(const identification::Correction& best, const identification::Record& record,
            ChosenModel& chosen) {
-  constexpr Eigen::Index state_rows = 500;
   chosen.dynamics = best.model;
-  chosen.x0 = estimate_initial_state(best.model, record, record.segments.front(), state_rows);
+  chosen.x0 = estimate_initial_state(best.model, record, record.segments.front(),
+                                     identification::state_rows);
   chosen.method += fmt::format(", poles placed at scale {:.3g}{}", best.scale,
                                best.keeps_static_gain ? ", static gain kept" : "");
   chosen.pole_placement["tune_mrse_percent"] = best.error.mrse();

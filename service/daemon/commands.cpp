@@ -22,10 +22,6 @@ using storage::EquipmentName;
 using storage::Registry;
 using storage::Version;
 
-std::string text(const EquipmentName& equipment) {
-  return equipment.spacecraft + "/" + equipment.equipment;
-}
-
 /// A command whose equipment is known.
 struct Order {
   const Command& command;
@@ -36,7 +32,7 @@ struct Order {
 
   const std::string& spacecraft() const { return equipment.spacecraft; }
   const std::string& name() const { return equipment.equipment; }
-  std::string full_name() const { return text(equipment); }
+  std::string full_name() const { return reident::full_name(equipment); }
   storage::NewDecision decision(DecisionKind kind) const {
     return {kind, command.actor, command.reason};
   }
@@ -73,10 +69,6 @@ std::string_view past(DecisionKind kind) {
 std::string text(const Decision& decision) {
   return fmt::format("{} by {} at {}", past(decision.kind), decision.actor,
                      time_text(decision.time));
-}
-
-std::string reason_text(const std::string& reason) {
-  return reason.empty() ? "" : fmt::format(" ({})", reason);
 }
 
 std::string champion_text(const std::optional<Decision>& made) {
@@ -126,8 +118,7 @@ CommandOutcome approve(const Order& order) {
   const Version& version = std::get<Version>(named);
   if (auto refusal = refuse_what_does_not_wait(order, version)) return *refusal;
   if (const auto hold = order.registry.hold(order.spacecraft(), order.name()))
-    return refused(fmt::format("{} is held by {} since {}{}: release it first", order.full_name(),
-                               hold->actor, time_text(hold->since), reason_text(hold->reason)));
+    return refused(hold_text(order.equipment, *hold) + ": release it first");
   const auto made = order.registry.champion_decision(order.spacecraft(), order.name());
   if (version.parent != (made ? std::optional(made->version) : std::nullopt))
     return refused(fmt::format(
@@ -266,7 +257,7 @@ constexpr std::array actions{Action{"approve", approve, true},
 
 std::string list(const std::set<EquipmentName>& equipment) {
   std::vector<std::string> names;
-  for (const EquipmentName& one : equipment) names.push_back(text(one));
+  for (const EquipmentName& one : equipment) names.push_back(full_name(one));
   return names.empty() ? "none" : joined(names);
 }
 
@@ -282,7 +273,7 @@ std::variant<EquipmentName, CommandOutcome> named_equipment(const Command& comma
     return refused(fmt::format("there is no equipment {}; known: {}",
                                command.spacecraft.empty()
                                    ? command.equipment
-                                   : text(EquipmentName{command.spacecraft, command.equipment}),
+                                   : full_name({command.spacecraft, command.equipment}),
                                list(known)));
   return refused(fmt::format("{} is the name of several equipment; name the spacecraft: {}",
                              command.equipment, list(meant)));
@@ -329,6 +320,19 @@ std::vector<EquipmentName> equipment_of(const Config& config) {
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       names.push_back({spacecraft.name, equipment.name});
   return names;
+}
+
+std::string full_name(const EquipmentName& equipment) {
+  return equipment.spacecraft + "/" + equipment.equipment;
+}
+
+std::string reason_text(const std::string& reason) {
+  return reason.empty() ? "" : fmt::format(" ({})", reason);
+}
+
+std::string hold_text(const EquipmentName& equipment, const storage::Hold& hold) {
+  return fmt::format("{} is held by {} since {}{}", full_name(equipment), hold.actor,
+                     time_text(hold.since), reason_text(hold.reason));
 }
 
 }  // namespace reident

@@ -35,4 +35,13 @@ storage::CommandOutcome execute(const storage::Command& command, storage::Regist
 /// The equipment of a configuration.
 std::vector<storage::EquipmentName> equipment_of(const Config& config);
 
+/// "CBERS-4/BDR".
+std::string full_name(const storage::EquipmentName& equipment);
+
+/// " (why)", or nothing where no reason was given.
+std::string reason_text(const std::string& reason);
+
+/// "CBERS-4/BDR is held by Ana since 2026-11-21T15:00:00Z (why)".
+std::string hold_text(const storage::EquipmentName& equipment, const storage::Hold& hold);
+
 }  // namespace reident

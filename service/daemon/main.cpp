@@ -16,18 +16,13 @@
 #include "service/support/allocator.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/utc_clock.hpp"
 #include "service/support/version.hpp"
 
 namespace {
 
 constexpr int exit_failed = 1;
 constexpr int exit_bad_request = 2;
-
-reident::storage::Time utc_now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 /// Waits for a second, or until the stop is requested.
 void wait_a_second(const std::stop_token& stop) {
@@ -38,7 +33,7 @@ void wait_a_second(const std::stop_token& stop) {
 }
 
 int serve(const reident::Config& config, const reident::StopSignal& signal) {
-  reident::Daemon daemon(config, utc_now);
+  reident::Daemon daemon(config, reident::utc_now);
   daemon.start();
   reident::notify_service_manager("READY=1");
   while (!signal.token().stop_requested() && !daemon.failed()) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -194,17 +193,16 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
     return evidence;
   }
   if (!same_outputs(champion, candidate)) return std::nullopt;
+  const auto compare_over = [&](const Record& record) {
+    evidence.comparison = against_run(
+        prepared, record, free_run(champion.dynamics, record, record.all()), confidence_percent);
+  };
   const WindowRequest request = request_of(champion);
-  if (request == prepared.loaded) {
-    const Record& record = prepared.data.record;
-    evidence.comparison = against_run(
-        prepared, record, free_run(champion.dynamics, record, record.all()), confidence_percent);
-  } else if (const auto loaded = load_window(archive, request, prepared.attempt.window);
-             std::holds_alternative<WindowData>(loaded)) {
-    const Record& record = std::get<WindowData>(loaded).record;
-    evidence.comparison = against_run(
-        prepared, record, free_run(champion.dynamics, record, record.all()), confidence_percent);
-  }
+  if (request == prepared.loaded)
+    compare_over(prepared.data.record);
+  else if (const auto loaded = load_window(archive, request, prepared.attempt.window);
+           std::holds_alternative<WindowData>(loaded))
+    compare_over(std::get<WindowData>(loaded).record);
   evidence.elsewhere = elsewhere(archive, champion, candidate, prepared.loaded);
   return evidence;
 }

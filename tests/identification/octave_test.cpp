@@ -12,19 +12,6 @@
 namespace reident::identification {
 namespace {
 
-/// s = 1; z = zeros(rows, columns);
-/// for k = 1:rows, for j = 1:columns
-///   s = mod(16807*s, 2147483647); z(k,j) = s/2147483647 - 0.5;
-/// end, end
-Matrix generated(Index rows, Index columns) {
-  Matrix z(rows, columns);
-  double s = 1;
-  for (Index k = 0; k < rows; ++k)
-    for (Index j = 0; j < columns; ++j)
-      z(k, j) = (s = std::fmod(16807 * s, 2147483647)) / 2147483647 - 0.5;
-  return z;
-}
-
 /// filter(b, a, u) with a(1) = 1 and as many coefficients in both.
 Vector filter(const std::vector<double>& b, const std::vector<double>& a, const Vector& u) {
   Vector y = Vector::Zero(u.size());
@@ -54,7 +41,7 @@ void expect_markov_parameters(const StateSpaceModel& model, const Matrix& octave
   EXPECT_LT((testing::markov_parameters(model, 4) - octave).norm(), 0.02 * octave.norm());
 }
 
-/// pkg load control; z as above with 800 rows, 4 columns; u = z(:,1:2);
+/// pkg load control; z of generated() with 800 rows, 4 columns; u = z(:,1:2);
 /// x = filter([0 1], [1 -0.8], u(:,2));
 /// y = [filter([0 1 0.5], [1 -1.5 0.7], u(:,1)) + 0.3*x, 0.4*x + 0.5*u(:,1)] ...
 ///     + z(:,3:4)*diag([0.2 0.05]);
@@ -63,7 +50,7 @@ void expect_markov_parameters(const StateSpaceModel& model, const Matrix& octave
 /// b = sys.b./su; c = sys.c.*sy'; d = sys.d.*sy'./su;
 /// eig(sys.a), [d, c*b, c*sys.a*b, c*sys.a^2*b]
 TEST(Octave, AgreesOnTwoInputsAndTwoOutputs) {
-  const Matrix z = generated(800, 4);
+  const Matrix z = testing::generated(800, 4);
   const Vector x = filter({0, 1}, {1, -0.8}, z.col(1));
   Matrix y(800, 2);
   y.col(0) = filter({0, 1, 0.5}, {1, -1.5, 0.7}, z.col(0)) + 0.3 * x + 0.2 * z.col(2);
@@ -82,13 +69,13 @@ TEST(Octave, AgreesOnTwoInputsAndTwoOutputs) {
   expect_markov_parameters(model, octave);
 }
 
-/// pkg load control; z as above with 700 rows, 2 columns; u = z(:,1);
+/// pkg load control; z of generated() with 700 rows, 2 columns; u = z(:,1);
 /// y = filter([0.2 1 0.5], [1 -1.5 0.7], u) + 0.2*z(:,2); p = 1:300; q = 351:700;
 /// m = mean(u([p q])); my = mean(y([p q])); u = u - m; y = y - my;
 /// sys = n4sid(iddata({y(p); y(q)}, {u(p); u(q)}, 1), 'n', 2, 's', 10, 'alg', 'q');
 /// eig(sys.a), [sys.d, sys.c*sys.b, sys.c*sys.a*sys.b, sys.c*sys.a^2*sys.b]
 TEST(Octave, AgreesOnTwoSegments) {
-  const Matrix z = generated(700, 2);
+  const Matrix z = testing::generated(700, 2);
   const Matrix y = filter({0.2, 1, 0.5}, {1, -1.5, 0.7}, z.col(0)) + 0.2 * z.col(1);
   const Record record = testing::with_gap(contiguous_record(1, z.leftCols(1), y), 300, 350);
   const IdentifyResult result = identify(record, record.all(), as_octave(2, 10));

@@ -171,23 +171,10 @@ TEST(PolePlacement, RefusesAPairForASingleMode) {
   EXPECT_THAT(std::get<Verdict>(result).reason, ::testing::HasSubstr("a pair of poles is wanted"));
 }
 
-/// s = 1; z = zeros(rows, columns);
-/// for k = 1:rows, for j = 1:columns
-///   s = mod(16807*s, 2147483647); z(k,j) = s/2147483647 - 0.5;
-/// end, end
-Matrix generated(Index rows, Index columns) {
-  Matrix z(rows, columns);
-  double s = 1;
-  for (Index k = 0; k < rows; ++k)
-    for (Index j = 0; j < columns; ++j)
-      z(k, j) = (s = std::fmod(16807 * s, 2147483647)) / 2147483647 - 0.5;
-  return z;
-}
-
-/// Octave 7.3, control 3.4.0; z as above with 5 rows, 6 columns:
+/// Octave 7.3, control 3.4.0; z of generated() with 5 rows, 6 columns:
 /// pkg load control; place(z(:,1:5), z(:,6), [0.5 -0.3 0.1 0.2+0.4i 0.2-0.4i])
 TEST(PolePlacement, OfOneInputIsOctaves) {
-  const Matrix z = generated(5, 6);
+  const Matrix z = testing::generated(5, 6);
   Matrix octave(1, 5);
   octave << -1.049226195902698e+01, -3.765244517191847e-01, 8.033089587268925e+00,
       -3.280349379192905e-01, -1.045943869775614e+00;
@@ -207,7 +194,7 @@ TEST(PolePlacement, OfSeveralInputsIsOfTheSizeOfOctaves) {
   };
   for (const auto& [n, m, octave] : {Case{6, 2, 1.357486185157420}, Case{8, 3, 1.067926987391483},
                                      Case{12, 4, 2.611553998073886}}) {
-    const Matrix z = generated(n, n + m), A = z.leftCols(n), B = z.rightCols(m);
+    const Matrix z = testing::generated(n, n + m), A = z.leftCols(n), B = z.rightCols(m);
     Poles wanted;
     for (Index i = 0; i < n; ++i) wanted.push_back(-0.8 + 1.6 * double(i) / double(n - 1));
     const Matrix gain = placed(A, B, wanted).gain;

@@ -24,6 +24,15 @@ Matrix Noise::normal(Index rows, Index columns) {
   return result;
 }
 
+Matrix generated(Index rows, Index columns) {
+  Matrix z(rows, columns);
+  double s = 1;
+  for (Index k = 0; k < rows; ++k)
+    for (Index j = 0; j < columns; ++j)
+      z(k, j) = (s = std::fmod(16807 * s, 2147483647)) / 2147483647 - 0.5;
+  return z;
+}
+
 StateSpaceModel random_system(Noise& noise, Index order, Index inputs, Index outputs,
                               double max_modulus) {
   Matrix A = Matrix::Zero(order, order);

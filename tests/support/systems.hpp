@@ -28,6 +28,13 @@ class Noise {
   std::mt19937_64 generator_;
 };
 
+/// The numbers in [-0.5, 0.5) that Octave gives with
+/// s = 1; z = zeros(rows, columns);
+/// for k = 1:rows, for j = 1:columns
+///   s = mod(16807*s, 2147483647); z(k,j) = s/2147483647 - 0.5;
+/// end, end
+Matrix generated(Index rows, Index columns);
+
 /// A stable system of real and complex poles with moduli in [0.3, max_modulus], inputs and outputs
 /// of comparable gain, and an operating point of zero.
 StateSpaceModel random_system(Noise& noise, Index order, Index inputs, Index outputs,

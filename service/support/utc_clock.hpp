@@ -1,0 +1,16 @@
+// The machine's clock. What has to be tested takes a clock as an argument instead.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace reident {
+
+/// Nanoseconds since 1970-01-01T00:00:00 UTC.
+inline std::int64_t utc_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace reident
