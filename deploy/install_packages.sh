@@ -6,7 +6,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build ccache pkg-config
-  libeigen3-dev cyclonedds-dev cyclonedds-tools libsqlite3-dev libssl-dev
+  libeigen3-dev cyclonedds-dev cyclonedds-tools libsqlite3-dev libzstd-dev libssl-dev
   libcli11-dev libfmt-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev libmuparser-dev
 )
 for option in "$@"; do
