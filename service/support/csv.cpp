@@ -1,6 +1,7 @@
 #include "service/support/csv.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -52,6 +53,7 @@ struct Reader::Impl {
   std::uint64_t line = 0;       // of the last row
   std::uint64_t next_line = 1;  // of the first unread byte
   Error error;
+  bool only_row_is_bad = false;
 
   Step fail(std::uint64_t at_line, std::string_view what) {
     error.message = name + ":" + std::to_string(at_line) + ": " + std::string(what);
@@ -60,6 +62,7 @@ struct Reader::Impl {
   Error whole_file(std::string_view what) const { return {name + ": " + std::string(what)}; }
 
   Step read_row();
+  bool find_plain_row_end(std::size_t& row_end) const;
   Step find_row_end(std::size_t& row_end);
   Step fill();
   Step split(std::size_t row_end);
@@ -88,9 +91,20 @@ Reader::Step Reader::Impl::fill() {
   return count == 0 ? Step::end : Step::row;
 }
 
+/// The end of the row at `begin` when all of it is in the buffer and no quote is in it.
+bool Reader::Impl::find_plain_row_end(std::size_t& row_end) const {
+  const char* const first = buffer.data() + begin;
+  const void* const line_end = std::memchr(first, '\n', end - begin);
+  if (line_end == nullptr) return false;
+  const auto length = static_cast<std::size_t>(static_cast<const char*>(line_end) - first);
+  row_end = begin + length;
+  return std::memchr(first, '"', length) == nullptr;
+}
+
 /// Finds the line end that ends the row at `begin`, quoted line ends left aside; the end of the
 /// input stands for a missing last one.
 Reader::Step Reader::Impl::find_row_end(std::size_t& row_end) {
+  if (find_plain_row_end(row_end)) return Step::row;
   enum class At { cell_start, plain, quoted, closed } state = At::cell_start;
   std::size_t scanned = 0;  // from begin, which fill() moves
   while (true) {
@@ -160,6 +174,7 @@ Reader::Step Reader::Impl::split(std::size_t row_end) {
 
 /// The next row that is not empty, whatever its number of cells.
 Reader::Step Reader::Impl::read_row() {
+  only_row_is_bad = false;
   while (true) {
     std::size_t row_end = 0;
     const Step found = find_row_end(row_end);
@@ -172,6 +187,7 @@ Reader::Step Reader::Impl::read_row() {
                    buffer.begin() + static_cast<std::ptrdiff_t>(following), '\n'));
     const bool empty = row_end == begin;
     const Step step = empty ? Step::row : split(row_end);
+    only_row_is_bad = step == Step::error;
     consumed += following - begin;
     begin = following;
     if (!empty) return step;
@@ -181,9 +197,12 @@ Reader::Step Reader::Impl::read_row() {
 std::optional<Error> Reader::Impl::read_header() {
   if (fill() == Step::error) return error;
   const std::string_view head(buffer.data() + begin, end - begin);
-  if (head.starts_with("\xEF\xBB\xBF")) begin += 3;
+  if (head.starts_with("\xEF\xBB\xBF")) begin = consumed = 3;
   if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF")) {
     return whole_file("the text is UTF-16; save it as UTF-8 (iconv -f UTF-16 -t UTF-8)");
+  }
+  if (head.starts_with("\x1F\x8B") || head.find('\0') != std::string_view::npos) {
+    return whole_file("the file is packed or no text; unpack it, or convert it to text, first");
   }
   const Step step = read_row();
   if (step == Step::error) return error;
@@ -263,6 +282,7 @@ std::variant<std::size_t, Error> Reader::find(std::string_view column) const {
 Reader::Step Reader::next() {
   const Step step = impl_->read_row();
   if (step != Step::row || impl_->cells.size() == impl_->columns.size()) return step;
+  impl_->only_row_is_bad = true;
   return impl_->fail(impl_->line, "the row has " + std::to_string(impl_->cells.size()) +
                                       " cells, the header has " +
                                       std::to_string(impl_->columns.size()) +
@@ -278,11 +298,30 @@ std::uint64_t Reader::line() const {
 const Error& Reader::error() const {
   return impl_->error;
 }
+bool Reader::only_row_is_bad() const {
+  return impl_->only_row_is_bad;
+}
+std::uint64_t Reader::next_line() const {
+  return impl_->next_line;
+}
 std::uint64_t Reader::bytes_read() const {
   return impl_->consumed;
 }
 std::uint64_t Reader::size() const {
   return impl_->size;
+}
+
+std::optional<Error> Reader::go_on_at(std::uint64_t position, std::uint64_t line) {
+  Impl& at = *impl_;
+  assert(at.file);
+  if (fseeko(at.file.get(), static_cast<off_t>(position), SEEK_SET) != 0) {
+    return at.whole_file("cannot be read from its middle: " +
+                         std::error_code(errno, std::generic_category()).message());
+  }
+  at.begin = at.end = 0;
+  at.consumed = position;
+  at.next_line = line;
+  return std::nullopt;
 }
 
 Error Reader::error_here(std::string_view what) const {

@@ -51,13 +51,20 @@ class Reader {
   std::uint64_t line() const;
   /// After an error: what stopped the reading.
   const Error& error() const;
+  /// After an error: whether one row alone is bad, so that next() goes on behind it.
+  bool only_row_is_bad() const;
   /// The time in a cell of the row (see time_text.hpp), in nanoseconds since 1970 UTC.
   std::variant<std::int64_t, Error> time_at(std::size_t column) const;
   /// An error at the row that was just read: "FILE:LINE: what".
   Error error_here(std::string_view what) const;
 
   std::uint64_t bytes_read() const;  // up to the end of the last row
-  std::uint64_t size() const;        // bytes of the whole file; 0 where it cannot be known
+  std::uint64_t next_line() const;   // the one that follows it
+  /// Goes on `position` bytes into the file, where a row starts on line `line`: what bytes_read()
+  /// and next_line() said after a row. Not for from_text(). An error where the file cannot be read
+  /// from there.
+  std::optional<Error> go_on_at(std::uint64_t position, std::uint64_t line);
+  std::uint64_t size() const;  // bytes of the whole file; 0 where it cannot be known
 
  private:
   struct Impl;

@@ -142,6 +142,8 @@ TEST(CsvErrors, NameFileLineAndRemedy) {
                 "a",
                 "t.csv: the text is UTF-16; save it as UTF-8 (iconv -f UTF-16 -t "
                 "UTF-8)"},
+           Case{"\x1F\x8B\b",
+                "t.csv: the file is packed or no text; unpack it, or convert it to text, first"},
        }) {
     EXPECT_EQ(error_of(text), message) << text;
   }
@@ -194,6 +196,42 @@ TEST_F(CsvFile, LargerThanTheBufferIsReadAsWritten) {
   const auto result = all_rows(Reader::open(write(text)));
   ASSERT_TRUE(std::holds_alternative<Rows>(result)) << std::get<std::string>(result);
   EXPECT_TRUE(std::get<Rows>(result) == rows);
+}
+
+TEST_F(CsvFile, IsReadOnFromWhereARowEnded) {
+  const auto path = write(
+      "\xEF\xBB\xBF"
+      "a,b\r\n1,2\r\n\"3\n3\",4\r\n\r\n5,6\r\n7,8");
+  auto first = Reader::open(path);
+  auto& reader = std::get<Reader>(first);
+  for (int row = 0; row < 2; ++row) ASSERT_EQ(reader.next(), Reader::Step::row);
+  auto second = Reader::open(path);
+  auto& later = std::get<Reader>(second);
+  ASSERT_EQ(later.go_on_at(reader.bytes_read(), reader.next_line()), std::nullopt);
+  for (const char* cell : {"5", "7"}) {
+    ASSERT_EQ(reader.next(), Reader::Step::row);
+    ASSERT_EQ(later.next(), Reader::Step::row);
+    EXPECT_EQ(later.cells()[0], cell);
+    EXPECT_EQ(later.line(), reader.line());
+    EXPECT_EQ(later.bytes_read(), reader.bytes_read());
+  }
+  EXPECT_EQ(later.bytes_read(), later.size());
+  EXPECT_EQ(later.next(), Reader::Step::end);
+}
+
+TEST_F(CsvFile, GoesOnBehindARowThatAloneIsBad) {
+  const auto path = write("a,b\n1\n\"2\"x,2\n3,3\n4,\"4\n5,5\n");
+  auto opened = Reader::open(path);
+  auto& reader = std::get<Reader>(opened);
+  for (const int line : {2, 3}) {
+    ASSERT_EQ(reader.next(), Reader::Step::error);
+    EXPECT_TRUE(reader.only_row_is_bad());
+    EXPECT_THAT(reader.error().message, HasSubstr("t.csv:" + std::to_string(line) + ": "));
+  }
+  ASSERT_EQ(reader.next(), Reader::Step::row);
+  EXPECT_EQ(reader.cells()[0], "3");
+  ASSERT_EQ(reader.next(), Reader::Step::error);
+  EXPECT_FALSE(reader.only_row_is_bad()) << "nobody knows where a row with an open quote ends";
 }
 
 TEST_F(CsvFile, WithARowBeyondTheBoundIsRefused) {
