@@ -28,21 +28,14 @@ bool are_near(Time earlier, Time later) {
 
 AppendReport Append::run() {
   report_.frames = frames_.size();
-  frame_is_new_.assign(frames_.size(), false);
-  for (const TelemetryFrame& frame : frames_) frame_source_.push_back(source_of(frame));
-  sort_by_series();
-  for (SeriesState& series : series_) {
-    load(series);
-    store(series);
-    if (series.changed.empty()) continue;
-    save(series);
-    mark_late(series);
-    const auto [first, last] = std::minmax_element(series.changed.begin(), series.changed.end());
-    report_.touched.push_back({std::string(series.spacecraft),
-                               series.origin,
-                               series.parameter,
-                               {*first, just_after(*last)}});
+  frame_is_new_.assign(frames_.size(), 0);
+  frame_source_.reserve(frames_.size());
+  for (const TelemetryFrame& frame : frames_) {
+    frame_source_.push_back(source_of(frame));
+    sources_[frame_source_.back()].samples += frame.samples.size();
   }
+  sort_by_series();
+  for (const SeriesArrivals& series : series_) store(series);
   track_sequences();
   for (const Source& source : sources_) save(source);
   return std::move(report_);
@@ -50,20 +43,30 @@ AppendReport Append::run() {
 
 // Samples of one series lie side by side in the file; their order of arrival is kept.
 void Append::sort_by_series() {
-  std::map<std::pair<std::string_view, Origin>, std::unordered_map<std::uint32_t, std::size_t>>
-      streams;
+  std::map<std::pair<std::string_view, Origin>, Stream> streams;
   for (std::uint32_t f = 0; f < frames_.size(); ++f) {
     const TelemetryFrame& frame = frames_[f];
-    auto& index = streams[{frame.spacecraft, frame.origin}];
-    for (const Sample& sample : frame.samples) {
-      const auto [found, is_new] = index.try_emplace(sample.parameter, series_.size());
-      if (is_new)
-        series_.push_back({.spacecraft = frame.spacecraft,
-                           .origin = frame.origin,
-                           .parameter = sample.parameter});
-      series_[found->second].arrivals.push_back({&sample, f});
+    Stream& stream = streams[{frame.spacecraft, frame.origin}];
+    for (std::size_t i = 0; i < frame.samples.size(); ++i) {
+      const Sample& sample = frame.samples[i];
+      series_[series_of(stream, frame, i)].arrivals.push_back(
+          {sample.value, f, quality_of(sample)});
     }
   }
+}
+
+std::size_t Append::series_of(Stream& stream, const TelemetryFrame& frame, std::size_t position) {
+  const std::uint32_t parameter = frame.samples[position].parameter;
+  if (position < stream.last.size() && stream.last[position].first == parameter)
+    return stream.last[position].second;
+  const auto [found, is_new] = stream.index.try_emplace(parameter, series_.size());
+  if (is_new) {
+    series_.push_back({.first_frame = &frame, .parameter = parameter});
+    series_.back().arrivals.reserve(frames_.size());
+  }
+  if (stream.last.size() <= position) stream.last.resize(position + 1);
+  stream.last[position] = {parameter, found->second};
+  return found->second;
 }
 
 std::size_t Append::source_of(const TelemetryFrame& frame) {
@@ -96,93 +99,126 @@ std::size_t Append::source_of(const TelemetryFrame& frame) {
   return found->second;
 }
 
-void Append::load(SeriesState& series) {
-  sqlite::Query row = connection_.query(
-      "SELECT id, samples, first_time, last_time FROM series "
-      "WHERE spacecraft = ? AND origin = ? AND parameter = ?",
-      series.spacecraft, series.origin, series.parameter);
-  if (row.step()) {
-    series.id = row.integer(0);
-    series.samples = row.integer<std::uint64_t>(1);
-    series.first = row.integer(2);
-    series.last = row.integer(3);
-    return;
+void Append::store(const SeriesArrivals& series) {
+  const TelemetryFrame& of = *series.first_frame;
+  SeriesHead& head = writer_.recent().series(of.spacecraft, of.origin, series.parameter);
+  const auto not_above = [this](const Arrival& a, const Arrival& b) {
+    return time_of(a) >= time_of(b);
+  };
+  const bool is_all_new = (!head.last || time_of(series.arrivals.front()) > *head.last) &&
+                          std::adjacent_find(series.arrivals.begin(), series.arrivals.end(),
+                                             not_above) == series.arrivals.end();
+  SampleColumns landed = is_all_new ? all_new(series) : settled(series, head);
+  if (is_all_new) head.samples += landed.size();
+  if (landed.empty()) return;
+  mark_late(head.id, of.spacecraft, landed.time);
+  report_.touched.push_back({of.spacecraft,
+                             of.origin,
+                             series.parameter,
+                             {landed.time.front(), just_after(landed.time.back())}});
+  save(head, std::move(landed));
+}
+
+SampleColumns Append::all_new(const SeriesArrivals& series) {
+  SampleColumns landed;
+  landed.reserve(series.arrivals.size());
+  for (const Arrival& arrival : series.arrivals) {
+    Source& source = source_of(arrival);
+    if (!std::isfinite(arrival.value)) ++source.non_finite, ++report_.non_finite;
+    frame_is_new_[arrival.frame] = 1;
+    landed.time.push_back(time_of(arrival));
+    landed.value.push_back(arrival.value);
+    landed.quality.push_back(arrival.quality);
+    landed.source.push_back(source.tracker.source);
   }
-  connection_.query("INSERT INTO series (spacecraft, origin, parameter) VALUES (?, ?, ?)")
-      .run(series.spacecraft, series.origin, series.parameter);
-  series.id = connection_.last_id();
+  report_.stored += landed.size();
+  return landed;
 }
 
-void Append::store(SeriesState& series) {
-  sqlite::Query insert = connection_.query(
-      "INSERT INTO sample (series, time, value, quality, source) VALUES (?, ?, ?, ?, ?) "
-      "ON CONFLICT DO NOTHING");
-  for (const Arrival& arrival : series.arrivals)
-    if (store_one(series, arrival, insert))
-      series.changed.push_back(frames_[arrival.frame].generation_time);
-}
-
-// True when the archive holds something else than before.
-bool Append::store_one(SeriesState& series, const Arrival& arrival, sqlite::Query& insert) {
-  const Time time = frames_[arrival.frame].generation_time;
-  const double value = arrival.sample->value;
-  const Quality quality = quality_of(*arrival.sample);
-  Source& source = sources_[frame_source_[arrival.frame]];
-  ++source.samples;
-  if (!std::isfinite(value)) ++source.non_finite, ++report_.non_finite;
-  if (insert.run(series.id, time, value, quality, source.tracker.source) == 0)
-    return settle_collision(series, time, value, quality, source);
-  frame_is_new_[arrival.frame] = true;
-  ++report_.stored;
-  ++series.samples;
-  if (series.last && time < *series.last) ++source.late, ++report_.late;
-  series.first = std::min(series.first.value_or(time), time);
-  series.last = std::max(series.last.value_or(time), time);
-  return true;
-}
-
-bool Append::settle_collision(const SeriesState& series, Time time, double value, Quality quality,
-                              Source& source) {
-  bool same = false, better = false;
-  {
-    sqlite::Query kept = connection_.query(
-        "SELECT value, quality FROM sample WHERE series = ? AND time = ?", series.id, time);
-    kept.step();
-    same = kept.is_null(0) ? std::isnan(value) : same_value(kept.real(0), value);
-    better = quality < kept.integer<Quality>(1);
+SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head) {
+  std::vector<std::uint32_t> order(series.arrivals.size());
+  std::vector<std::uint8_t> is_late(series.arrivals.size());
+  std::optional<Time> newest = head.last;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    order[i] = i;
+    const Time time = time_of(series.arrivals[i]);
+    is_late[i] = newest && time < *newest;
+    newest = std::max(newest.value_or(time), time);
   }
-  ++(same ? source.duplicates : source.conflicts);
-  ++(same ? report_.duplicates : report_.conflicts);
-  if (better)
-    connection_
-        .query(
-            "UPDATE sample SET value = ?, quality = ?, source = ? "
-            "WHERE series = ? AND time = ?")
-        .run(value, quality, source.tracker.source, series.id, time);
-  return better;
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return time_of(series.arrivals[a]) < time_of(series.arrivals[b]);
+  });
+  SampleColumns landed;
+  for (std::size_t i = 0; i < order.size();) {
+    const Time time = time_of(series.arrivals[order[i]]);
+    std::optional<Held> kept = held(head, time);
+    bool changed = false;
+    for (; i < order.size() && time_of(series.arrivals[order[i]]) == time; ++i) {
+      const Arrival& arrival = series.arrivals[order[i]];
+      Source& source = source_of(arrival);
+      if (!std::isfinite(arrival.value)) ++source.non_finite, ++report_.non_finite;
+      const bool is_new = !kept;
+      if (is_new) {
+        frame_is_new_[arrival.frame] = 1;
+        ++report_.stored;
+        ++head.samples;
+        if (is_late[order[i]]) ++source.late, ++report_.late;
+      } else {
+        const bool same = same_value(kept->value, arrival.value);
+        ++(same ? source.duplicates : source.conflicts);
+        ++(same ? report_.duplicates : report_.conflicts);
+      }
+      if (!is_new && arrival.quality >= kept->quality) continue;
+      kept = {arrival.value, arrival.quality, source.tracker.source};
+      changed = true;
+    }
+    if (!changed) continue;
+    landed.time.push_back(time);
+    landed.value.push_back(kept->value);
+    landed.quality.push_back(kept->quality);
+    landed.source.push_back(kept->source);
+  }
+  return landed;
 }
 
-void Append::save(const SeriesState& series) {
+std::optional<Held> Append::held(const SeriesHead& head, Time time) {
+  if (!head.last || time > *head.last || time < *head.first) return std::nullopt;
+  if (const auto recent = RecentTier::find(head, time)) return recent;
+  return writer_.chunks().find(head.id, time);
+}
+
+void Append::save(SeriesHead& head, SampleColumns&& landed) {
+  head.first = std::min(head.first.value_or(landed.time.front()), landed.time.front());
+  head.last = std::max(head.last.value_or(landed.time.back()), landed.time.back());
   connection_.query("UPDATE series SET samples = ?, first_time = ?, last_time = ? WHERE id = ?")
-      .run(series.samples, series.first, series.last, series.id);
+      .run(head.samples, head.first, head.last, head.id);
+  std::int64_t batch = batch_;
+  for (std::size_t first = 0; first < landed.size(); first += most_samples) {
+    const std::size_t last = std::min(landed.size(), first + most_samples);
+    if (first == 0 && last == landed.size()) {
+      writer_.recent().add(head, batch, std::move(landed));
+      return;
+    }
+    SampleColumns piece;
+    piece.append(landed, first, last);
+    writer_.recent().add(head, batch++, std::move(piece));
+  }
 }
 
-void Append::mark_late(const SeriesState& series) {
-  std::vector<Time> late;
+void Append::mark_late(std::int64_t series, std::string_view spacecraft,
+                       const std::vector<Time>& changed) {
+  Time until = 0;
   {
     sqlite::Query seal =
-        connection_.query("SELECT until FROM seal WHERE spacecraft = ?", series.spacecraft);
+        connection_.query("SELECT until FROM seal WHERE spacecraft = ?", spacecraft);
     if (!seal.step()) return;
-    const Time until = seal.integer(0);
-    std::copy_if(series.changed.begin(), series.changed.end(), std::back_inserter(late),
-                 [&](Time time) { return time < until; });
+    until = seal.integer(0);
   }
-  std::sort(late.begin(), late.end());
-  for (std::size_t i = 0; i < late.size();) {
-    const Time begin = late[i];
-    while (i + 1 < late.size() && are_near(late[i], late[i + 1])) ++i;
-    add_late_range(series.id, {begin, just_after(late[i])});
-    ++i;
+  const auto end = std::lower_bound(changed.begin(), changed.end(), until);
+  for (auto time = changed.begin(); time != end; ++time) {
+    const Time begin = *time;
+    while (time + 1 != end && are_near(*time, *(time + 1))) ++time;
+    add_late_range(series, {begin, just_after(*time)});
   }
 }
 
@@ -211,7 +247,7 @@ void Append::track_sequences() {
     Source& source = sources_[frame_source_[f]];
     ++source.frames;
     source.tracker.observe(connection_, {frames_[f].sequence, frames_[f].generation_time},
-                           frame_is_new_[f]);
+                           frame_is_new_[f] != 0);
   }
 }
 

@@ -15,6 +15,7 @@
 #include "storage/archive.hpp"
 #include "storage/sequence.hpp"
 #include "storage/sqlite.hpp"
+#include "storage/writer.hpp"
 
 namespace reident::storage {
 
@@ -29,53 +30,60 @@ inline constexpr Time late_merge_distance = Time{600} * 1'000'000'000;
 /// Used once, within a transaction of the caller.
 class Append {
  public:
-  Append(sqlite::Connection& connection, std::span<const TelemetryFrame> frames)
-      : connection_(connection), frames_(frames) {}
+  Append(sqlite::Connection& connection, Writer& writer, std::span<const TelemetryFrame> frames)
+      : connection_(connection), writer_(writer), frames_(frames) {}
   AppendReport run();
 
  private:
   struct Arrival {
-    const Sample* sample;
+    double value;
     std::uint32_t frame;
+    Quality quality;
   };
   struct Source {
     std::uint64_t frames = 0, samples = 0, duplicates = 0, conflicts = 0, late = 0, non_finite = 0;
     SequenceTracker tracker;
   };
-  struct SeriesState {
-    std::string_view spacecraft;
-    Origin origin = Origin::real;
+  struct SeriesArrivals {
+    const TelemetryFrame* first_frame = nullptr;
     std::uint32_t parameter = 0;
     std::vector<Arrival> arrivals{};
-
-    std::int64_t id = 0;
-    std::uint64_t samples = 0;
-    std::optional<Time> first{}, last{};
-    std::vector<Time> changed{};  // times at which samples landed or changed
+  };
+  /// Series of one spacecraft and origin. Frames of a source mostly have the same parameters in the
+  /// same order: `last` has the series of the frame before.
+  struct Stream {
+    std::unordered_map<std::uint32_t, std::size_t> index;
+    std::vector<std::pair<std::uint32_t, std::size_t>> last;
   };
   using StreamKey = std::tuple<std::string_view, Origin, std::string_view>;
 
   void sort_by_series();
+  std::size_t series_of(Stream& stream, const TelemetryFrame& frame, std::size_t position);
   std::size_t source_of(const TelemetryFrame& frame);
-  void load(SeriesState& series);
-  void store(SeriesState& series);
-  bool store_one(SeriesState& series, const Arrival& arrival, sqlite::Query& insert);
-  bool settle_collision(const SeriesState& series, Time time, double value, Quality quality,
-                        Source& source);
-  void save(const SeriesState& series);
-  void mark_late(const SeriesState& series);
+  Time time_of(const Arrival& arrival) const { return frames_[arrival.frame].generation_time; }
+  Source& source_of(const Arrival& arrival) { return sources_[frame_source_[arrival.frame]]; }
+  void store(const SeriesArrivals& series);
+  /// Both give what landed or changed, ascending in time.
+  SampleColumns all_new(const SeriesArrivals& series);
+  SampleColumns settled(const SeriesArrivals& series, SeriesHead& head);
+  std::optional<Held> held(const SeriesHead& head, Time time);
+  void save(SeriesHead& head, SampleColumns&& landed);
+  void mark_late(std::int64_t series, std::string_view spacecraft,
+                 const std::vector<Time>& changed);
   void add_late_range(std::int64_t series, TimeRange range);
   void track_sequences();
   void save(const Source& source);
 
   sqlite::Connection& connection_;
+  Writer& writer_;
   std::span<const TelemetryFrame> frames_;
+  const std::int64_t batch_ = writer_.recent().next_batch();
   AppendReport report_;
   std::vector<Source> sources_;
   std::map<StreamKey, std::size_t> source_index_;
   std::vector<std::size_t> frame_source_;
-  std::vector<bool> frame_is_new_;  // brought a sample that was not known
-  std::vector<SeriesState> series_;
+  std::vector<std::uint8_t> frame_is_new_;  // brought a sample that was not known
+  std::vector<SeriesArrivals> series_;
 };
 
 }  // namespace reident::storage

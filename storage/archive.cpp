@@ -1,6 +1,7 @@
 #include "storage/archive.hpp"
 
-#include <limits>
+#include <cassert>
+#include <utility>
 
 #include "storage/append.hpp"
 #include "storage/connection.hpp"
@@ -12,23 +13,8 @@ sqlite::Connection& connection(Database& database) {
   return *database.impl().connection;
 }
 
-// Greatest time in the range; absent for an empty one.
-std::optional<Time> last_in(TimeRange range) {
-  if (range.end == std::numeric_limits<Time>::max()) return range.end;
-  if (range.begin >= range.end) return std::nullopt;
-  return range.end - 1;
-}
-
 std::optional<double> optional_real(const sqlite::Query& row, int column) {
   return row.is_null(column) ? std::nullopt : std::optional(row.real(column));
-}
-
-// Bound to spacecraft, origin and parameter, then to what `condition` asks for.
-std::string of_series(const std::string& columns, const std::string& condition) {
-  return "SELECT " + columns +
-         " FROM sample WHERE series = (SELECT id FROM series "
-         "WHERE spacecraft = ? AND origin = ? AND parameter = ?) AND " +
-         condition;
 }
 
 constexpr std::string_view descriptor_columns =
@@ -47,13 +33,31 @@ ParameterDescriptor descriptor(const sqlite::Query& row) {
 
 }  // namespace
 
-Archive::Archive(Database& database) : database_(database) {}
+Archive::Archive(Database& database, const ArchiveOptions& options)
+    : database_(database), options_(options) {
+  assert(options.chunk_samples >= 16 && options.chunk_samples <= 65536);
+}
 
 AppendReport Archive::append(std::span<const TelemetryFrame> frames) {
   sqlite::Transaction transaction(connection(database_));
-  AppendReport report = Append(connection(database_), frames).run();
-  transaction.commit();
-  return report;
+  return database_.impl().write(options_, [&](Writer& writer) {
+    AppendReport report = Append(connection(database_), writer, frames).run();
+    writer.compact_some(report.stored);
+    report.damages = writer.take_damages();
+    transaction.commit();
+    return report;
+  });
+}
+
+void Archive::compact() {
+  for (bool more = true; more;) {
+    sqlite::Transaction transaction(connection(database_));
+    more = database_.impl().write(options_, [&](Writer& writer) {
+      const bool is_more = writer.compact_all_step();
+      transaction.commit();
+      return is_more;
+    });
+  }
 }
 
 void Archive::describe(std::span<const ParameterDescriptor> descriptors) {
@@ -130,33 +134,36 @@ std::optional<ParameterDescriptor> Archive::parameter(const std::string& spacecr
 
 Series Archive::read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
                      TimeRange range) const {
-  Series series;
-  const std::optional<Time> last = last_in(range);
-  if (!last) return series;
-  sqlite::Query row = connection(database_).query(
-      of_series("time, value, quality", "time BETWEEN ? AND ? ORDER BY time"), spacecraft, origin,
-      parameter, range.begin, *last);
-  while (row.step()) {
-    series.time.push_back(row.integer(0));
-    series.value.push_back(row.is_null(1) ? std::numeric_limits<double>::quiet_NaN() : row.real(1));
-    series.quality.push_back(row.integer<Quality>(2));
-  }
-  return series;
+  return read(spacecraft, origin, parameter, range, false);
+}
+
+Series Archive::read_with_sources(const std::string& spacecraft, Origin origin,
+                                  std::uint32_t parameter, TimeRange range) const {
+  return read(spacecraft, origin, parameter, range, true);
+}
+
+Series Archive::read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
+                     TimeRange range, bool with_sources) const {
+  SeriesReader& reader = database_.impl().reader();
+  const auto series = reader.find(spacecraft, origin, parameter);
+  if (!series) return {};
+  SampleColumns samples = reader.read(*series, range, {.source = with_sources});
+  return {std::move(samples.time), std::move(samples.value), std::move(samples.quality),
+          std::move(samples.source)};
 }
 
 std::optional<Time> Archive::first_at_or_after(const std::string& spacecraft, Origin origin,
                                                std::uint32_t parameter, Time time) const {
-  sqlite::Query row = connection(database_).query(
-      of_series("time", "time >= ? ORDER BY time LIMIT 1"), spacecraft, origin, parameter, time);
-  return row.step() ? std::optional(row.integer(0)) : std::nullopt;
+  SeriesReader& reader = database_.impl().reader();
+  const auto series = reader.find(spacecraft, origin, parameter);
+  return series ? reader.first_at_or_after(*series, time) : std::nullopt;
 }
 
 std::optional<Time> Archive::last_at_or_before(const std::string& spacecraft, Origin origin,
                                                std::uint32_t parameter, Time time) const {
-  sqlite::Query row =
-      connection(database_).query(of_series("time", "time <= ? ORDER BY time DESC LIMIT 1"),
-                                  spacecraft, origin, parameter, time);
-  return row.step() ? std::optional(row.integer(0)) : std::nullopt;
+  SeriesReader& reader = database_.impl().reader();
+  const auto series = reader.find(spacecraft, origin, parameter);
+  return series ? reader.last_at_or_before(*series, time) : std::nullopt;
 }
 
 std::optional<TimeRange> Archive::extent(const std::string& spacecraft, Origin origin) const {

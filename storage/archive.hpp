@@ -34,13 +34,24 @@ struct AppendReport {
     TimeRange range;
   };
   std::vector<Touched> touched;
+
+  /// Samples that were found damaged in the file and set aside (SCHEMA.md), in words.
+  std::vector<std::string> damages;
+};
+
+/// How the writer arranges samples; the defaults suit any archive.
+struct ArchiveOptions {
+  std::size_t chunk_samples = 8192;  // of a chunk that is filled in order of time; 16 to 65536
+  std::size_t recent_samples = 1'000'000;  // that wait for a place in chunks; at most twice as many
+  std::size_t recent_batches = 256;        // appends that wait
 };
 
 /// Samples of one series, ascending in time.
 struct Series {
   std::vector<Time> time;
-  std::vector<double> value;  // NaN where none could be stored
+  std::vector<double> value;
   std::vector<Quality> quality;
+  std::vector<std::int64_t> source;  // ids of the sources; where they were asked for
 };
 
 /// Counts of one source since the archive was made. Of its samples,
@@ -84,11 +95,15 @@ struct LateRange {
 
 class Archive {
  public:
-  /// The database must outlive the archive.
-  explicit Archive(Database& database);
+  /// The database must outlive the archive. The options are the writer's: those of the archive that
+  /// appends first hold for the database.
+  explicit Archive(Database& database, const ArchiveOptions& options = {});
 
-  /// One transaction: all of it is stored, or (Error thrown) none.
+  /// One transaction: all of it is stored, or (Error thrown) none. A bounded share of moving older
+  /// samples into chunks is part of it.
   AppendReport append(std::span<const TelemetryFrame> frames);
+  /// Moves all samples into chunks, in many bounded transactions. Never needed: it saves room.
+  void compact();
   /// Adds descriptors, or replaces those of the same spacecraft and id. One transaction.
   void describe(std::span<const ParameterDescriptor> descriptors);
 
@@ -113,6 +128,9 @@ class Archive {
   /// Samples with a generation time in `range`.
   Series read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
               TimeRange range) const;
+  /// The same, with the ids of the sources.
+  Series read_with_sources(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
+                           TimeRange range) const;
   /// Generation time of the series' nearest sample on one side of `time`, itself included.
   std::optional<Time> first_at_or_after(const std::string& spacecraft, Origin origin,
                                         std::uint32_t parameter, Time time) const;
@@ -128,7 +146,11 @@ class Archive {
   std::vector<SequenceGap> sequence_gaps() const;
 
  private:
+  Series read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
+              TimeRange range, bool with_sources) const;
+
   Database& database_;
+  ArchiveOptions options_;
 };
 
 }  // namespace reident::storage

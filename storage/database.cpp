@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "storage/connection.hpp"
+#include "storage/migration.hpp"
 #include "storage/schema.hpp"
 
 namespace reident::storage {
@@ -110,8 +111,9 @@ void bring_up_to_date(Connection& connection) {
   sqlite::Transaction transaction(connection);
   if (is_empty(connection))
     connection.execute(schema::creation());
-  else if (pragma(connection, "user_version") == 1)
-    connection.execute(schema::migration_from_1());
+  else if (const std::int64_t version = pragma(connection, "user_version");
+           version < schema::version)
+    migrate(connection, version);
   transaction.commit();
 }
 

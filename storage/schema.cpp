@@ -6,7 +6,7 @@
 namespace reident::storage::schema {
 namespace {
 
-// A value has no declared type: a column of type REAL would turn -0.0 into 0.
+// Limits and bounds have no declared type: a column of type REAL would turn -0.0 into 0.
 constexpr std::string_view telemetry_tables = R"sql(
 CREATE TABLE parameter (
   spacecraft TEXT NOT NULL, id INTEGER NOT NULL, name TEXT NOT NULL, unit TEXT NOT NULL,
@@ -38,14 +38,45 @@ CREATE TABLE series (
   spacecraft TEXT NOT NULL, origin INTEGER NOT NULL CHECK (origin IN (0, 1)),
   parameter INTEGER NOT NULL,
   samples INTEGER NOT NULL DEFAULT 0, first_time INTEGER, last_time INTEGER,
+  moved INTEGER NOT NULL DEFAULT 0,
   UNIQUE (spacecraft, origin, parameter));
+)sql";
 
-CREATE TABLE sample (
-  series INTEGER NOT NULL, time INTEGER NOT NULL,
-  value CHECK (typeof(value) IN ('real', 'null')),
-  quality INTEGER NOT NULL CHECK (quality BETWEEN 0 AND 3), source INTEGER NOT NULL,
-  PRIMARY KEY (series, time)) WITHOUT ROWID;
+constexpr std::string_view sample_tables = R"sql(
+CREATE TABLE recent (
+  batch INTEGER NOT NULL, series INTEGER NOT NULL REFERENCES series,
+  samples INTEGER NOT NULL, first_time INTEGER NOT NULL, last_time INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY (batch, series)) WITHOUT ROWID;
 
+CREATE TABLE chunk_data (id INTEGER PRIMARY KEY, bytes BLOB NOT NULL);
+
+CREATE TABLE chunk (
+  series INTEGER NOT NULL REFERENCES series, first_time INTEGER NOT NULL,
+  last_time INTEGER NOT NULL, samples INTEGER NOT NULL,
+  step INTEGER NOT NULL, gap_limit INTEGER NOT NULL, least, greatest,
+  data INTEGER NOT NULL REFERENCES chunk_data,
+  PRIMARY KEY (series, first_time)) WITHOUT ROWID;
+
+CREATE TABLE sample_gap (
+  series INTEGER NOT NULL REFERENCES series,
+  begin_time INTEGER NOT NULL, end_time INTEGER NOT NULL,
+  PRIMARY KEY (series, begin_time)) WITHOUT ROWID;
+
+CREATE TABLE removal (
+  id INTEGER PRIMARY KEY,
+  series INTEGER NOT NULL REFERENCES series,
+  begin_time INTEGER NOT NULL, end_time INTEGER NOT NULL, samples INTEGER NOT NULL,
+  cause TEXT NOT NULL, time INTEGER NOT NULL);
+
+CREATE TABLE damaged_chunk (
+  id INTEGER PRIMARY KEY,
+  series INTEGER NOT NULL REFERENCES series,
+  first_time INTEGER NOT NULL, last_time INTEGER NOT NULL, samples INTEGER NOT NULL,
+  bytes BLOB NOT NULL, reason TEXT NOT NULL, time INTEGER NOT NULL);
+)sql";
+
+constexpr std::string_view late_tables = R"sql(
 CREATE TABLE seal (spacecraft TEXT PRIMARY KEY, until INTEGER NOT NULL) WITHOUT ROWID;
 
 CREATE TABLE late_range (
@@ -101,26 +132,7 @@ CREATE TABLE command (
   UNIQUE (requester, request));
 )sql";
 
-// CROSS JOIN keeps SQLite from reading all samples first: a question about one parameter finds its
-// series, then a stretch of the sample table.
 constexpr std::string_view telemetry_views = R"sql(
-CREATE VIEW telemetry AS
-  SELECT series.spacecraft,
-         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
-         iif(series.origin, 'simulated', 'real') AS origin, source.name AS source,
-         sample.time,
-         strftime('%Y-%m-%dT%H:%M:%S',
-                  sample.time / 1000000000 - (sample.time % 1000000000 < 0), 'unixepoch')
-           || printf('.%09dZ', (sample.time % 1000000000 + 1000000000) % 1000000000) AS utc,
-         sample.value,
-         CASE sample.quality WHEN 0 THEN 'good' WHEN 1 THEN 'out of limits' WHEN 2 THEN 'suspect'
-                             ELSE 'invalid' END AS quality
-  FROM series
-  LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
-                      AND parameter.id = series.parameter
-  CROSS JOIN sample ON sample.series = series.id
-  LEFT JOIN source ON source.id = sample.source;
-
 CREATE VIEW telemetry_series AS
   SELECT series.spacecraft,
          coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
@@ -259,8 +271,8 @@ std::string user_version() {
 }  // namespace
 
 std::string creation() {
-  return joined({telemetry_tables, registry_tables, decision_table, operator_tables,
-                 telemetry_views, registry_views}) +
+  return joined({telemetry_tables, sample_tables, late_tables, registry_tables, decision_table,
+                 operator_tables, telemetry_views, registry_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
@@ -271,7 +283,7 @@ std::string creation() {
 
 // A CHECK cannot be altered, so the decisions move to a new table. Dropping the old one drops its
 // triggers; indexes go first because their names are taken again.
-std::string migration_from_1() {
+std::string from_1_to_2() {
   constexpr std::string_view before = R"sql(
 DROP VIEW model_version;
 DROP VIEW champion;
@@ -289,7 +301,19 @@ INSERT INTO decision (id, spacecraft, equipment, version, kind, actor, reason, t
 DROP TABLE decision_of_1;
 )sql";
   return joined({before, decision_table, move, operator_tables, registry_views}) +
-         append_only_decisions() + user_version();
+         append_only_decisions();
+}
+
+std::string from_2_to_3() {
+  constexpr std::string_view before = R"sql(
+DROP VIEW telemetry;
+ALTER TABLE series ADD COLUMN moved INTEGER NOT NULL DEFAULT 0;
+)sql";
+  return joined({before, sample_tables});
+}
+
+std::string without_samples_of_2() {
+  return "DROP TABLE sample;" + user_version();
 }
 
 }  // namespace reident::storage::schema

@@ -112,6 +112,15 @@ std::string Query::text(int column) const {
              : std::string();
 }
 
+std::span<const std::uint8_t> Query::bytes(int column) const {
+  const auto* bytes = static_cast<const std::uint8_t*>(sqlite3_column_blob(statement_, column));
+  return {bytes, bytes ? static_cast<std::size_t>(sqlite3_column_bytes(statement_, column)) : 0};
+}
+
+void Query::bind_one(int index, std::span<const std::uint8_t> bytes) {
+  check(sqlite3_bind_blob64(statement_, index, bytes.data(), bytes.size(), SQLITE_STATIC));
+}
+
 void Query::bind_one(int index, double value) {
   std::isnan(value) ? bind_null(index) : check(sqlite3_bind_double(statement_, index, value));
 }
@@ -136,6 +145,13 @@ Connection::Connection(const std::string& name, const std::filesystem::path& pat
   handle_.reset(handle);
   if (code != SQLITE_OK) fail_on(handle, code, path.string());
   sqlite3_busy_timeout(handle, busy_timeout_ms);
+  sqlite3_rollback_hook(
+      handle, [](void* count) { ++*static_cast<std::uint64_t*>(count); }, rollbacks_.get());
+}
+
+std::string Connection::path() const {
+  const char* path = sqlite3_db_filename(handle_.get(), "main");
+  return path ? path : "";
 }
 
 void Connection::execute(const std::string& sql) {
@@ -153,6 +169,20 @@ sqlite3_stmt* Connection::prepared(std::string_view sql) {
     if (code != SQLITE_OK) fail(handle_.get(), code);
   }
   return kept.get();
+}
+
+ReadTransaction::ReadTransaction(Connection& connection)
+    : connection_(connection), is_part_(connection.in_transaction()) {
+  if (!is_part_) connection_.query("BEGIN").run();
+}
+
+ReadTransaction::~ReadTransaction() {
+  if (is_part_ || !connection_.in_transaction()) return;
+  try {
+    connection_.query("COMMIT").run();
+  } catch (const Error&) {
+    // Nothing was written.
+  }
 }
 
 Transaction::Transaction(Connection& connection)

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -54,6 +55,8 @@ class Query {
   bool is_null(int column) const;
   double real(int column) const;
   std::string text(int column) const;
+  /// Valid until the next step.
+  std::span<const std::uint8_t> bytes(int column) const;
   template <typename T = std::int64_t>
   T integer(int column) const {
     return static_cast<T>(sqlite3_column_int64(statement_, column));
@@ -63,6 +66,7 @@ class Query {
   void bind_one(int index, double value);  // NaN becomes NULL: SQLite has no NaN
   void bind_one(int index, std::string_view text);
   void bind_one(int index, std::int64_t value);
+  void bind_one(int index, std::span<const std::uint8_t> bytes);  // not copied
   void bind_null(int index);
   template <typename T>
   void bind_one(int index, const std::optional<T>& value) {
@@ -94,6 +98,10 @@ class Connection {
   }
   std::int64_t last_id() const { return sqlite3_last_insert_rowid(handle_.get()); }
   bool is_read_only() const { return sqlite3_db_readonly(handle_.get(), "main") == 1; }
+  std::string path() const;
+  /// Grows with each transaction that was rolled back: what is known of the file by then may be
+  /// wrong.
+  std::uint64_t rollbacks() const { return *rollbacks_; }
   bool in_transaction() const { return sqlite3_get_autocommit(handle_.get()) == 0; }
 
  private:
@@ -106,8 +114,22 @@ class Connection {
   using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
   sqlite3_stmt* prepared(std::string_view sql);
 
+  std::unique_ptr<std::uint64_t> rollbacks_ = std::make_unique<std::uint64_t>(0);
   std::unique_ptr<sqlite3, Close> handle_;
   std::unordered_map<std::string, Statement> statements_;
+};
+
+/// One snapshot for all that is read until it ends; within another transaction, that one's.
+class ReadTransaction {
+ public:
+  explicit ReadTransaction(Connection& connection);
+  ~ReadTransaction();
+  ReadTransaction(const ReadTransaction&) = delete;
+  ReadTransaction& operator=(const ReadTransaction&) = delete;
+
+ private:
+  Connection& connection_;
+  const bool is_part_;
 };
 
 /// Rolls back unless it was committed. Within another one on the same connection it is a part of

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -115,10 +116,18 @@ void same_contents(const Archive& archive, const std::map<Identity, Kept>& expec
   }
 }
 
+/// From compacting with each append to hardly ever.
+rc::Gen<ArchiveOptions> options() {
+  return rc::gen::build<ArchiveOptions>(
+      rc::gen::set(&ArchiveOptions::chunk_samples, rc::gen::inRange<std::size_t>(16, 40)),
+      rc::gen::set(&ArchiveOptions::recent_samples, rc::gen::inRange<std::size_t>(1, 60)),
+      rc::gen::set(&ArchiveOptions::recent_batches, rc::gen::inRange<std::size_t>(1, 8)));
+}
+
 RC_GTEST_PROP(AppendProperty, HoldsWhatTheModelHolds, ()) {
   const TemporaryFolder folder;
   Database database(folder / "a.db", Database::Mode::read_write);
-  Archive archive(database);
+  Archive archive(database, *options());
   Model model;
   const auto batches = *few(few(frames()));
   for (const std::vector<TelemetryFrame>& batch : batches) {
@@ -129,8 +138,48 @@ RC_GTEST_PROP(AppendProperty, HoldsWhatTheModelHolds, ()) {
     RC_ASSERT(got.conflicts == expected.conflicts);
     RC_ASSERT(got.late == expected.late);
     RC_ASSERT(got.non_finite == expected.non_finite);
+    same_contents(archive, model.samples);
   }
+  archive.compact();
   same_contents(archive, model.samples);
+  RC_ASSERT(rows(folder / "a.db", "SELECT count(*) FROM recent") == std::vector<std::string>{"0"});
+}
+
+// Long stretches in few series, which fill, split and join chunks.
+RC_GTEST_PROP(AppendProperty, LongStretchesInAnyOrderStayWhatTheyAre, ()) {
+  const TemporaryFolder folder;
+  const ArchiveOptions some = *options();
+  auto database = std::make_unique<Database>(folder / "a.db", Database::Mode::read_write);
+  auto archive = std::make_unique<Archive>(*database, some);
+  Model model;
+  const auto stretches = *rc::gen::container<std::vector<std::pair<Time, Time>>>(
+      rc::gen::pair(rc::gen::inRange<Time>(0, 300), rc::gen::inRange<Time>(1, 90)));
+  for (const auto& [begin, length] : stretches) {
+    std::vector<TelemetryFrame> batch;
+    for (Time t = begin; t < begin + length; ++t)
+      batch.push_back(frame(static_cast<std::uint64_t>(t), t,
+                            {{1, static_cast<Quality>(length % 4), static_cast<double>(length)},
+                             {2, Quality::good, static_cast<double>(t % 7)}}));
+    if (length % 3 == 0) std::reverse(batch.begin(), batch.end());
+    archive->append(batch);
+    model.append(batch);
+    if (length % 5 == 0) {
+      archive.reset();
+      database.reset();
+      database = std::make_unique<Database>(folder / "a.db", Database::Mode::read_write);
+      archive = std::make_unique<Archive>(*database, some);
+    }
+  }
+  same_contents(*archive, model.samples);
+  archive->compact();
+  same_contents(*archive, model.samples);
+  RC_ASSERT(rows(folder / "a.db",
+                 "SELECT count(*) FROM chunk AS a JOIN chunk AS b USING (series) WHERE "
+                 "a.first_time < b.first_time AND a.last_time >= b.first_time;"
+                 "SELECT sum(chunk.samples) FROM chunk; "
+                 "SELECT count(*) FROM chunk_data WHERE id NOT IN (SELECT data FROM chunk)") ==
+            (std::vector<std::string>{
+                "0", model.samples.empty() ? "NULL" : std::to_string(model.samples.size()), "0"}));
 }
 
 RC_GTEST_PROP(AppendProperty, DistinctSamplesMayArriveInAnyOrderAndAnyBatches, ()) {

@@ -1,7 +1,10 @@
-// A file that a program of schema version 1 made becomes one of this version, with all that is in
-// it.
+// A file that a program of an older schema version made becomes one of this version, with all that
+// is in it.
+#include <cmath>
+
 #include "registry_fixture.hpp"
 #include "schema_1.hpp"
+#include "schema_2.hpp"
 
 namespace reident::storage::testing {
 namespace {
@@ -46,10 +49,13 @@ class Migration : public ::testing::Test {
 };
 
 TEST_F(Migration, KeepsEveryRowAndItsMeaning) {
-  const char* tables[] = {"attempt", "decision", "series", "sample"};
+  const char* tables[] = {"attempt", "decision"};
   std::vector<std::vector<std::string>> before;
   for (const std::string table : tables) before.push_back(rows(path, "SELECT * FROM " + table));
   Database database(path, Mode::read_write);
+  EXPECT_THAT(rows(path, "SELECT id, spacecraft, parameter, samples FROM series"),
+              ElementsAre("1|CB4|7|1"));
+  EXPECT_THAT(Archive(database).read("CB4", Origin::real, 7, {0, 100}).value, ElementsAre(28.5));
   for (std::size_t i = 0; i < std::size(tables); ++i)
     EXPECT_THAT(rows(path, "SELECT * FROM " + std::string(tables[i])), ElementsAreArray(before[i]))
         << tables[i];
@@ -59,7 +65,7 @@ TEST_F(Migration, KeepsEveryRowAndItsMeaning) {
               ElementsAre("BDR|1|approved|NULL|d1|{\"a\":1}||", "BDR|2|superseded|1|d2|{\"a\":2}||",
                           "MEA|1|waiting|NULL|d3|{\"a\":3}||"));
   EXPECT_THAT(rows(path, "PRAGMA user_version; PRAGMA integrity_check; PRAGMA foreign_key_check"),
-              ElementsAre("2", "ok"));
+              ElementsAre("3", "ok"));
 }
 
 TEST_F(Migration, GoesOnWhereTheOldProgramStopped) {
@@ -80,13 +86,15 @@ TEST_F(Migration, GivesTheSameSchemaAsANewFile) {
   { const Database made(folder / "new.db", Mode::read_write); }
   // A column that was added stands behind the others, in words of its own.
   const char* same =
-      "SELECT type, name, sql FROM sqlite_master WHERE name != 'version' "
+      "SELECT type, name, sql FROM sqlite_master WHERE name NOT IN ('series', 'version') "
       "ORDER BY type, name";
   EXPECT_THAT(rows(path, same), ElementsAreArray(rows(folder / "new.db", same)));
-  const char* columns =
-      "SELECT name, type, \"notnull\", dflt_value, pk FROM "
-      "pragma_table_info('version') ORDER BY name";
-  EXPECT_THAT(rows(path, columns), ElementsAreArray(rows(folder / "new.db", columns)));
+  for (const std::string table : {"series", "version"}) {
+    const std::string columns =
+        "SELECT name, type, \"notnull\", dflt_value, pk FROM pragma_table_info('" + table +
+        "') ORDER BY name";
+    EXPECT_THAT(rows(path, columns), ElementsAreArray(rows(folder / "new.db", columns)));
+  }
 }
 
 TEST_F(Migration, IsWholeOrNotAtAll) {
@@ -109,6 +117,44 @@ TEST_F(Migration, IsLeftToAWriterAndAReaderSaysSo) {
   EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre("1"));
   { const Database writer(path, Mode::read_write); }
   EXPECT_EQ(error_of(reading), "no error");
+}
+
+// Three series of several chunks each: a ramp of unusual values, one sample, a long one.
+TEST(MigrationFrom2, PutsEverySampleIntoAChunk) {
+  const TemporaryFolder folder;
+  const auto path = folder / "old.db";
+  rows(path, schema_2);
+  rows(path, R"sql(
+PRAGMA journal_mode = WAL;
+INSERT INTO source (id, spacecraft, name, origin) VALUES (4, 'CB4', 'station', 0);
+INSERT INTO series VALUES (1, 'CB4', 0, 7, 20000, 0, 19999000), (2, 'CB4', 1, 7, 1, -5, -5),
+                          (3, 'CB4', 0, 8, 3, 1, 9);
+WITH RECURSIVE n(i) AS (VALUES (0) UNION ALL SELECT i + 1 FROM n WHERE i < 19999)
+INSERT INTO sample SELECT 1, i * 1000, i / 8.0, i % 1000 = 0, 4 FROM n;
+INSERT INTO sample VALUES (2, -5, -0.0, 3, 4), (3, 1, NULL, 3, 4), (3, 4, 9e999, 3, 4),
+                          (3, 9, 0.1, 2, 4);
+)sql");
+  Database database(path, Mode::read_write);
+  const Archive archive(database);
+  const Series ramp = archive.read_with_sources("CB4", Origin::real, 7, {0, 20'000'000});
+  ASSERT_EQ(ramp.time.size(), 20000U);
+  for (std::size_t i = 0; i < ramp.time.size(); ++i) {
+    ASSERT_EQ(ramp.time[i], static_cast<Time>(i) * 1000);
+    ASSERT_EQ(ramp.value[i], static_cast<double>(i) / 8);
+    ASSERT_EQ(ramp.quality[i], i % 1000 == 0 ? Quality::out_of_limits : Quality::good);
+    ASSERT_EQ(ramp.source[i], 4);
+  }
+  EXPECT_TRUE(std::signbit(archive.read("CB4", Origin::simulated, 7, {-9, 0}).value.at(0)));
+  const Series odd = archive.read("CB4", Origin::real, 8, {0, 10});
+  ASSERT_EQ(odd.value.size(), 3U);
+  EXPECT_TRUE(std::isnan(odd.value[0]));
+  EXPECT_TRUE(std::isinf(odd.value[1]));
+  EXPECT_EQ(odd.value[2], 0.1);
+  EXPECT_EQ(odd.quality[2], Quality::suspect);
+  EXPECT_THAT(rows(path,
+                   "SELECT series, count(*), sum(samples), max(samples) FROM chunk GROUP BY series;"
+                   "SELECT count(*) FROM sample_gap; PRAGMA integrity_check"),
+              ElementsAre("1|3|20000|8192", "2|1|1|1", "3|1|3|3", "0", "ok"));
 }
 
 }  // namespace

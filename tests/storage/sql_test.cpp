@@ -7,9 +7,7 @@ namespace reident::storage::testing {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 
 class SqlTest : public ArchiveTest {
  protected:
@@ -39,44 +37,6 @@ class SqlTest : public ArchiveTest {
   }
   std::vector<std::string> ask(const std::string& sql) const { return rows(path, sql); }
 };
-
-TEST_F(SqlTest, TelemetryHasARowForEachSample) {
-  TelemetryFrame simulated = frame(1, -1, {{1, Quality::suspect, 27}});
-  simulated.origin = Origin::simulated;
-  simulated.source = "simcbers";
-  append({frame(1, 1'500'000'000, {{1, Quality::good, 28.5}, {2, Quality::out_of_limits, 0}}),
-          frame(2, 1'511'222'333'444'555'666,
-                {{1, Quality::good, std::numeric_limits<double>::quiet_NaN()}}),
-          simulated});
-  EXPECT_THAT(
-      ask("SELECT * FROM telemetry ORDER BY origin, parameter, time"),
-      ElementsAre(
-          "CB4|2|real|station|1500000000|1970-01-01T00:00:01.500000000Z|0.0|out of limits",
-          "CB4|V_BUS|real|station|1500000000|1970-01-01T00:00:01.500000000Z|28.5|good",
-          "CB4|V_BUS|real|station|1511222333444555666|2017-11-20T23:58:53.444555666Z|NULL|invalid",
-          "CB4|V_BUS|simulated|simcbers|-1|1969-12-31T23:59:59.999999999Z|27.0|suspect"));
-}
-
-TEST_F(SqlTest, AParameterWithoutADescriptorIsNamedByItsId) {
-  append({frame(1, 10, {{7, Quality::good, 5}})});
-  EXPECT_THAT(ask("SELECT value FROM telemetry WHERE parameter = '7'"), ElementsAre("5.0"));
-}
-
-TEST_F(SqlTest, TelemetryShowsTheExtremesOfTime) {
-  append({frame(1, std::numeric_limits<Time>::min(), {{1, Quality::good, 1}}),
-          frame(2, std::numeric_limits<Time>::max(), {{1, Quality::good, 2}})});
-  EXPECT_THAT(ask("SELECT utc FROM telemetry ORDER BY time"),
-              ElementsAre("1677-09-21T00:12:43.145224192Z", "2262-04-11T23:47:16.854775807Z"));
-}
-
-TEST_F(SqlTest, AQuestionAboutOneParameterSearchesItsSamplesAlone) {
-  append({frame(1, 10, {{1, Quality::good, 28}, {2, Quality::good, 5}})});
-  const std::string plan = ::testing::PrintToString(
-      ask("EXPLAIN QUERY PLAN SELECT avg(value) FROM telemetry "
-          "WHERE spacecraft = 'CB4' AND parameter = 'V_BUS' AND time >= 0 AND time < 100"));
-  EXPECT_THAT(plan, HasSubstr("SEARCH sample USING PRIMARY KEY (series=? AND time>? AND time<?)"));
-  EXPECT_THAT(plan, Not(HasSubstr("SCAN sample")));
-}
 
 TEST_F(SqlTest, SeriesSourcesAndGapsHaveViews) {
   append({frame(1, 10, {{1, Quality::good, 28}}), frame(4, 20, {{1, Quality::good, 29}}),

@@ -1,0 +1,24 @@
+#include "storage/sample_columns.hpp"
+
+namespace reident::storage {
+
+void SampleColumns::append(const SampleColumns& other, std::size_t first, std::size_t last) {
+  const auto copy = [first, last](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(first),
+              from.begin() + static_cast<std::ptrdiff_t>(last));
+  };
+  copy(other.time, time);
+  copy(other.value, value);
+  copy(other.quality, quality);
+  copy(other.source, source);
+}
+
+void SampleColumns::reserve(std::size_t count, WantedColumns wanted) {
+  time.reserve(count);
+  if (wanted.value) value.reserve(count);
+  if (wanted.quality) quality.reserve(count);
+  if (wanted.source) source.reserve(count);
+}
+
+}  // namespace reident::storage

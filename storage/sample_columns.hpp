@@ -1,0 +1,46 @@
+// Samples of one series in columns, as chunks and recent runs hold them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "storage/chunk.hpp"
+#include "storage/telemetry.hpp"
+
+namespace reident::storage {
+
+/// Beside the times; what is not wanted is not decoded, and its column stays empty.
+struct WantedColumns {
+  bool value = true;
+  bool quality = true;
+  bool source = true;
+};
+
+/// Times strictly ascend; the other columns are as long as the times, or empty where they are not
+/// wanted.
+struct SampleColumns {
+  std::vector<Time> time;
+  std::vector<double> value;
+  std::vector<Quality> quality;
+  std::vector<std::int64_t> source;  // id of the source that brought the sample
+
+  std::size_t size() const { return time.size(); }
+  bool empty() const { return time.empty(); }
+  ChunkSamples samples() const { return {time, value, quality, source}; }
+  ChunkTarget target(WantedColumns wanted = {}) {
+    return {&time, wanted.value ? &value : nullptr, wanted.quality ? &quality : nullptr,
+            wanted.source ? &source : nullptr};
+  }
+  /// Appends the samples [first, last) of `other`, in its wanted columns.
+  void append(const SampleColumns& other, std::size_t first, std::size_t last);
+  void reserve(std::size_t count, WantedColumns wanted = {});
+};
+
+/// What the archive holds at one time of a series.
+struct Held {
+  double value = 0;
+  Quality quality = Quality::good;
+  std::int64_t source = 0;
+};
+
+}  // namespace reident::storage
