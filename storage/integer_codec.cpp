@@ -170,11 +170,15 @@ bool IntegerDecoder::get_planes(ByteReader& in, std::size_t count,
                                 std::vector<std::uint64_t>& words) {
   const std::size_t width = in.byte();
   if (in.failed() || width > 8) return false;
-  words.assign(count, 0);
-  if (width == 0) return true;
+  words.resize(count);
+  if (width == 0) {
+    std::fill(words.begin(), words.end(), 0);
+    return true;
+  }
   planes_.resize(width * count);
   if (!decompressor_.get(in, planes_)) return false;
-  for (std::size_t plane = 0; plane < width; ++plane) {
+  for (std::size_t i = 0; i < count; ++i) words[i] = planes_[i];
+  for (std::size_t plane = 1; plane < width; ++plane) {
     const std::uint8_t* bytes = planes_.data() + plane * count;
     for (std::size_t i = 0; i < count; ++i) words[i] |= std::uint64_t{bytes[i]} << (8 * plane);
   }
@@ -194,6 +198,12 @@ bool IntegerDecoder::get(ByteReader& in, std::size_t count, std::size_t first,
   if (order == 2) start.slope = bits_of(from_zigzag(in.varint()));
   if (in.failed() || order >= orders || form > (order_bits | runs_bit) || heads > count)
     return false;
+  const bool is_constant = !runs && order == 0 && in.next() == std::uint8_t{0};
+  if (is_constant) {
+    in.byte();
+    std::fill(out.begin(), out.end(), static_cast<std::int64_t>(base));
+    return true;
+  }
   if (!get_planes(in, heads, words_)) return false;
   if (runs && !get_planes(in, heads, lengths_)) return false;
   const std::size_t end = first + out.size();

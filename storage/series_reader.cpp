@@ -30,6 +30,15 @@ Stretch stretch_of(std::int64_t series, const sqlite::Query& row) {
   return {series, row.integer(0), row.integer(1), row.integer<std::size_t>(2)};
 }
 
+// In [first, last], at the rate of this chunk: so that vectors are made once, not grown by copying.
+std::size_t samples_expected(const Stretch& chunk, Time first, Time last) {
+  constexpr double most = 1 << 22;
+  const double rate = static_cast<double>(chunk.samples) /
+                      (static_cast<double>(chunk.last) - static_cast<double>(chunk.first) + 1);
+  const double expected = rate * (static_cast<double>(last) - static_cast<double>(first));
+  return static_cast<std::size_t>(std::min(expected * 1.01 + 16, most));
+}
+
 }  // namespace
 
 std::optional<std::int64_t> SeriesReader::find(std::string_view spacecraft, Origin origin,
@@ -66,9 +75,12 @@ SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedCol
   sqlite::ReadTransaction snapshot(connection_);
   {
     sqlite::Query row = connection_.query(chunks_in_range, series, range.begin, last);
-    while (row.step())
+    while (row.step()) {
+      const Stretch chunk = stretch_of(series, row);
+      if (samples.empty()) samples.reserve(samples_expected(chunk, range.begin, last), wanted);
       if (const auto error = decoder_.decode(row.bytes(3), range, samples.target(wanted)))
-        throw damage(connection_, stretch_of(series, row), *error);
+        throw damage(connection_, chunk, *error);
+    }
   }
   std::vector<SampleColumns> recent;
   each_recent(series, range.begin, last, [&](const sqlite::Query& row) {
