@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <string>
+
+#include "storage/revision.hpp"
 
 namespace reident::storage {
 namespace {
@@ -108,10 +111,16 @@ void Append::store(const SeriesArrivals& series) {
   const bool is_all_new = (!head.last || time_of(series.arrivals.front()) > *head.last) &&
                           std::adjacent_find(series.arrivals.begin(), series.arrivals.end(),
                                              not_above) == series.arrivals.end();
-  SampleColumns landed = is_all_new ? all_new(series) : settled(series, head);
+  SampleColumns replaced;
+  SampleColumns landed = is_all_new ? all_new(series) : settled(series, head, replaced);
   if (is_all_new) head.samples += landed.size();
   if (landed.empty()) return;
-  mark_late(head.id, of.spacecraft, landed.time);
+  if (const auto until = sealed_until(of.spacecraft); until && landed.time.front() < *until) {
+    const auto end = std::lower_bound(landed.time.begin(), landed.time.end(), *until);
+    const std::span<const Time> sealed(landed.time.begin(), end);
+    mark_late(head.id, sealed);
+    keep_what_was(head.id, sealed, replaced);
+  }
   report_.touched.push_back({of.spacecraft,
                              of.origin,
                              series.parameter,
@@ -126,16 +135,14 @@ SampleColumns Append::all_new(const SeriesArrivals& series) {
     Source& source = source_of(arrival);
     if (!std::isfinite(arrival.value)) ++source.non_finite, ++report_.non_finite;
     frame_is_new_[arrival.frame] = 1;
-    landed.time.push_back(time_of(arrival));
-    landed.value.push_back(arrival.value);
-    landed.quality.push_back(arrival.quality);
-    landed.source.push_back(source.tracker.source);
+    landed.push_back(time_of(arrival), {arrival.value, arrival.quality, source.tracker.source});
   }
   report_.stored += landed.size();
   return landed;
 }
 
-SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head) {
+SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head,
+                              SampleColumns& replaced) {
   std::vector<std::uint32_t> order(series.arrivals.size());
   std::vector<std::uint8_t> is_late(series.arrivals.size());
   std::optional<Time> newest = head.last;
@@ -152,6 +159,7 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head) {
   for (std::size_t i = 0; i < order.size();) {
     const Time time = time_of(series.arrivals[order[i]]);
     std::optional<Held> kept = held(head, time);
+    const std::optional<Held> before = kept;
     bool changed = false;
     for (; i < order.size() && time_of(series.arrivals[order[i]]) == time; ++i) {
       const Arrival& arrival = series.arrivals[order[i]];
@@ -173,10 +181,8 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head) {
       changed = true;
     }
     if (!changed) continue;
-    landed.time.push_back(time);
-    landed.value.push_back(kept->value);
-    landed.quality.push_back(kept->quality);
-    landed.source.push_back(kept->source);
+    landed.push_back(time, *kept);
+    if (before) replaced.push_back(time, *before);
   }
   return landed;
 }
@@ -205,20 +211,37 @@ void Append::save(SeriesHead& head, SampleColumns&& landed) {
   }
 }
 
-void Append::mark_late(std::int64_t series, std::string_view spacecraft,
-                       const std::vector<Time>& changed) {
-  Time until = 0;
-  {
+std::optional<Time> Append::sealed_until(const std::string& spacecraft) {
+  const auto [known, is_new] = seals_.try_emplace(spacecraft);
+  if (is_new) {
     sqlite::Query seal =
         connection_.query("SELECT until FROM seal WHERE spacecraft = ?", spacecraft);
-    if (!seal.step()) return;
-    until = seal.integer(0);
+    if (seal.step()) known->second = seal.integer(0);
   }
-  const auto end = std::lower_bound(changed.begin(), changed.end(), until);
-  for (auto time = changed.begin(); time != end; ++time) {
-    const Time begin = *time;
-    while (time + 1 != end && are_near(*time, *(time + 1))) ++time;
-    add_late_range(series, {begin, just_after(*time)});
+  return known->second;
+}
+
+void Append::mark_late(std::int64_t series, std::span<const Time> changed) {
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const Time begin = changed[i];
+    while (i + 1 < changed.size() && are_near(changed[i], changed[i + 1])) ++i;
+    add_late_range(series, {begin, just_after(changed[i])});
+  }
+}
+
+void Append::keep_what_was(std::int64_t series, std::span<const Time> changed,
+                           const SampleColumns& replaced) {
+  std::int64_t batch = batch_;
+  for (std::size_t first = 0; first < changed.size(); first += most_samples) {
+    const std::span<const Time> part =
+        changed.subspan(first, std::min(most_samples, changed.size() - first));
+    Revision revision;
+    const auto begin = std::lower_bound(replaced.time.begin(), replaced.time.end(), part.front());
+    const auto end = std::upper_bound(begin, replaced.time.end(), part.back());
+    revision.replaced.append(replaced, static_cast<std::size_t>(begin - replaced.time.begin()),
+                             static_cast<std::size_t>(end - replaced.time.begin()));
+    std::set_difference(part.begin(), part.end(), begin, end, std::back_inserter(revision.landed));
+    keep_revision(connection_, writer_.chunks().encoder(), series, batch++, revision);
   }
 }
 

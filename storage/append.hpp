@@ -63,13 +63,15 @@ class Append {
   Time time_of(const Arrival& arrival) const { return frames_[arrival.frame].generation_time; }
   Source& source_of(const Arrival& arrival) { return sources_[frame_source_[arrival.frame]]; }
   void store(const SeriesArrivals& series);
-  /// Both give what landed or changed, ascending in time.
+  /// Both give what landed or changed, ascending in time; `replaced` gets what was there before.
   SampleColumns all_new(const SeriesArrivals& series);
-  SampleColumns settled(const SeriesArrivals& series, SeriesHead& head);
+  SampleColumns settled(const SeriesArrivals& series, SeriesHead& head, SampleColumns& replaced);
   std::optional<Held> held(const SeriesHead& head, Time time);
   void save(SeriesHead& head, SampleColumns&& landed);
-  void mark_late(std::int64_t series, std::string_view spacecraft,
-                 const std::vector<Time>& changed);
+  std::optional<Time> sealed_until(const std::string& spacecraft);
+  void mark_late(std::int64_t series, std::span<const Time> changed);
+  void keep_what_was(std::int64_t series, std::span<const Time> changed,
+                     const SampleColumns& replaced);
   void add_late_range(std::int64_t series, TimeRange range);
   void track_sequences();
   void save(const Source& source);
@@ -84,6 +86,7 @@ class Append {
   std::vector<std::size_t> frame_source_;
   std::vector<std::uint8_t> frame_is_new_;  // brought a sample that was not known
   std::vector<SeriesArrivals> series_;
+  std::map<std::string, std::optional<Time>> seals_;
 };
 
 }  // namespace reident::storage

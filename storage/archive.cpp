@@ -147,9 +147,26 @@ Series Archive::read(const std::string& spacecraft, Origin origin, std::uint32_t
   SeriesReader& reader = database_.impl().reader();
   const auto series = reader.find(spacecraft, origin, parameter);
   if (!series) return {};
-  SampleColumns samples = reader.read(*series, range, {.source = with_sources});
+  SampleColumns samples = reader.read(*series, range, {.source = with_sources}, as_of_);
   return {std::move(samples.time), std::move(samples.value), std::move(samples.quality),
           std::move(samples.source)};
+}
+
+std::vector<std::int64_t> Archive::revisions(const std::string& spacecraft, Origin origin,
+                                             std::uint32_t parameter, TimeRange range) const {
+  std::vector<std::int64_t> batches;
+  sqlite::Query row = connection(database_).query(
+      "SELECT batch FROM revision WHERE series = (SELECT id FROM series WHERE spacecraft = ? AND "
+      "origin = ? AND parameter = ?) AND first_time < ? AND last_time >= ? ORDER BY batch DESC",
+      spacecraft, origin, parameter, range.end, range.begin);
+  while (row.step()) batches.push_back(row.integer(0));
+  return batches;
+}
+
+Archive Archive::before(std::int64_t batch) const {
+  Archive earlier = *this;
+  earlier.as_of_ = batch - 1;
+  return earlier;
 }
 
 std::optional<Time> Archive::first_at_or_after(const std::string& spacecraft, Origin origin,

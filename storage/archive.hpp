@@ -131,6 +131,12 @@ class Archive {
   /// The same, with the ids of the sources.
   Series read_with_sources(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
                            TimeRange range) const;
+  /// Batches that changed samples of the series in `range` after that time was sealed, the latest
+  /// first.
+  std::vector<std::int64_t> revisions(const std::string& spacecraft, Origin origin,
+                                      std::uint32_t parameter, TimeRange range) const;
+  /// The same archive, whose read() gives sealed time as it was before this batch.
+  Archive before(std::int64_t batch) const;
   /// Generation time of the series' nearest sample on one side of `time`, itself included.
   std::optional<Time> first_at_or_after(const std::string& spacecraft, Origin origin,
                                         std::uint32_t parameter, Time time) const;
@@ -151,6 +157,7 @@ class Archive {
 
   Database& database_;
   ArchiveOptions options_;
+  std::optional<std::int64_t> as_of_{};  // the last batch that read() knows of
 };
 
 }  // namespace reident::storage

@@ -38,6 +38,8 @@ class ChunkStore {
   /// What a chunk holds at `time`. The chunk that was looked into last stays decoded.
   std::optional<Held> find(std::int64_t series, Time time);
 
+  ChunkEncoder& encoder() { return encoder_; }
+
   /// Appends a chunk's samples; `row.samples` of them, or none where it is damaged and set aside.
   void take(const ChunkRow& row, SampleColumns& samples);
 

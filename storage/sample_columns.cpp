@@ -2,6 +2,13 @@
 
 namespace reident::storage {
 
+void SampleColumns::push_back(Time at, const Held& sample) {
+  time.push_back(at);
+  value.push_back(sample.value);
+  quality.push_back(sample.quality);
+  source.push_back(sample.source);
+}
+
 void SampleColumns::append(const SampleColumns& other, std::size_t first, std::size_t last) {
   const auto copy = [first, last](const auto& from, auto& to) {
     if (from.empty()) return;

@@ -16,6 +16,13 @@ struct WantedColumns {
   bool source = true;
 };
 
+/// What the archive holds at one time of a series.
+struct Held {
+  double value = 0;
+  Quality quality = Quality::good;
+  std::int64_t source = 0;
+};
+
 /// Times strictly ascend; the other columns are as long as the times, or empty where they are not
 /// wanted.
 struct SampleColumns {
@@ -31,16 +38,10 @@ struct SampleColumns {
     return {&time, wanted.value ? &value : nullptr, wanted.quality ? &quality : nullptr,
             wanted.source ? &source : nullptr};
   }
+  void push_back(Time at, const Held& sample);
   /// Appends the samples [first, last) of `other`, in its wanted columns.
   void append(const SampleColumns& other, std::size_t first, std::size_t last);
   void reserve(std::size_t count, WantedColumns wanted = {});
-};
-
-/// What the archive holds at one time of a series.
-struct Held {
-  double value = 0;
-  Quality quality = Quality::good;
-  std::int64_t source = 0;
 };
 
 }  // namespace reident::storage

@@ -63,6 +63,12 @@ CREATE TABLE sample_gap (
   begin_time INTEGER NOT NULL, end_time INTEGER NOT NULL,
   PRIMARY KEY (series, begin_time)) WITHOUT ROWID;
 
+CREATE TABLE revision (
+  series INTEGER NOT NULL REFERENCES series, batch INTEGER NOT NULL,
+  first_time INTEGER NOT NULL, last_time INTEGER NOT NULL,
+  landed BLOB, replaced BLOB,
+  PRIMARY KEY (series, batch)) WITHOUT ROWID;
+
 CREATE TABLE removal (
   id INTEGER PRIMARY KEY,
   series INTEGER NOT NULL REFERENCES series,

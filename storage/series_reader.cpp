@@ -7,6 +7,7 @@
 #include "storage/damage.hpp"
 #include "storage/overlay.hpp"
 #include "storage/recent_run.hpp"
+#include "storage/revision.hpp"
 
 namespace reident::storage {
 namespace {
@@ -68,7 +69,8 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
       use(row);
 }
 
-SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedColumns wanted) {
+SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedColumns wanted,
+                                 std::optional<std::int64_t> as_of) {
   SampleColumns samples;
   if (range.begin >= range.end && range.end != latest) return samples;
   const Time last = range.end == latest ? latest : range.end - 1;
@@ -91,6 +93,7 @@ SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedCol
   std::vector<const SampleColumns*> newer;
   for (const SampleColumns& run : recent) newer.push_back(&run);
   overlay(samples, newer);
+  if (as_of) undo_revisions(connection_, decoder_, series, *as_of, range, wanted, samples);
   return samples;
 }
 

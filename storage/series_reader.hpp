@@ -17,8 +17,9 @@ class SeriesReader {
   std::optional<std::int64_t> find(std::string_view spacecraft, Origin origin,
                                    std::uint32_t parameter);
 
-  /// Samples with a time in `range`.
-  SampleColumns read(std::int64_t series, TimeRange range, WantedColumns wanted = {});
+  /// Samples with a time in `range`; with a batch, as it was after that one.
+  SampleColumns read(std::int64_t series, TimeRange range, WantedColumns wanted = {},
+                     std::optional<std::int64_t> as_of = std::nullopt);
 
   std::optional<Time> first_at_or_after(std::int64_t series, Time time);
   std::optional<Time> last_at_or_before(std::int64_t series, Time time);

@@ -23,10 +23,18 @@ struct Arguments {
 };
 
 std::string explanation(const Reproduction& again) {
+  if (again.same_model && again.revisions > 0)
+    return fmt::format(
+        "the same model to the last bit, from the telemetry as it was then: {} late arrivals since "
+        "are left out",
+        again.revisions);
   if (again.same_model) return "the same model to the last bit";
   std::string text;
   if (!again.same_samples)
-    text = "the telemetry of its window has changed since (late samples, or samples removed)";
+    text =
+        "the telemetry of its window has changed since and it cannot be read as it was (samples "
+        "removed, "
+        "damaged, or brought by an older program)";
   else if (again.program_version != program_version())
     text = fmt::format("the samples are the same; program {} made it and this is {}",
                        again.program_version, program_version());
@@ -47,6 +55,7 @@ void print(const Story& story, const Reproduction& again, bool json) {
                                  {"version", version.number},
                                  {"same_samples", again.same_samples},
                                  {"same_model", again.same_model},
+                                 {"late_arrivals_left_out", again.revisions},
                                  {"samples_digest", version.samples_digest},
                                  {"samples_digest_now", again.samples_digest},
                                  {"digest", version.digest},

@@ -1,7 +1,9 @@
 #include "service/daemon/provenance.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -92,6 +94,45 @@ RefreshRequest request_from(const ordered_json& provenance) {
   return request;
 }
 
+std::string digest_of_window(const storage::Archive& archive, const RefreshRequest& request) {
+  const WindowRequest wanted = request_of(request.spacecraft, request.equipment);
+  const auto loaded = load_window(archive, wanted, request.window);
+  const auto* data = std::get_if<WindowData>(&loaded);
+  return data ? digest_of_samples(data->record, wanted) : "";
+}
+
+/// Batches that changed telemetry of the window after it was sealed, the latest first.
+std::vector<std::int64_t> revisions_of(const storage::Archive& archive,
+                                       const RefreshRequest& request) {
+  std::vector<std::int64_t> batches;
+  const storage::TimeRange range{request.window.begin - request.equipment.hold, request.window.end};
+  for (const std::string& name : parameters_of(request.equipment))
+    if (const auto parameter = archive.parameter(request.spacecraft, name)) {
+      const auto of_one =
+          archive.revisions(request.spacecraft, storage::Origin::real, parameter->id, range);
+      batches.insert(batches.end(), of_one.begin(), of_one.end());
+    }
+  std::sort(batches.begin(), batches.end(), std::greater<>());
+  batches.erase(std::unique(batches.begin(), batches.end()), batches.end());
+  return batches;
+}
+
+/// The archive before as many of the revisions as give the samples their digest; all of it where
+/// none does.
+storage::Archive as_it_was(const storage::Archive& archive, const RefreshRequest& request,
+                           const std::string& digest, std::size_t& taken_back) {
+  taken_back = 0;
+  if (digest_of_window(archive, request) == digest) return archive;
+  for (const std::int64_t batch : revisions_of(archive, request)) {
+    ++taken_back;
+    if (storage::Archive earlier = archive.before(batch);
+        digest_of_window(earlier, request) == digest)
+      return earlier;
+  }
+  taken_back = 0;
+  return archive;
+}
+
 }  // namespace
 
 std::string digest_of_samples(const identification::Record& record, const WindowRequest& request) {
@@ -132,8 +173,10 @@ Reproduction reproduce(const storage::Archive& archive, const storage::Version& 
                                 error.what());
   }
   KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
+  const storage::Archive then =
+      as_it_was(archive, request, version.samples_digest, result.revisions);
   const PreparedWindow prepared =
-      prepare_window(archive, request, kept, for_each, [] { return false; });
+      prepare_window(then, request, kept, for_each, [] { return false; });
   result.samples_digest = digest_of_samples(prepared.data.record, prepared.loaded);
   result.same_samples = result.samples_digest == version.samples_digest;
   if (!prepared.candidate) {

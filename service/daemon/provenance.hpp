@@ -19,15 +19,17 @@ storage::NewVersion version_of(const RefreshRequest& request, const PreparedWind
 std::string digest_of_samples(const identification::Record& record, const WindowRequest& request);
 
 struct Reproduction {
-  std::string samples_digest;   // of the samples that are in the archive now
+  std::string samples_digest;   // of the samples that it was identified from this time
   std::string model_digest;     // empty where the window gives no model
   std::string reason;           // why it gives none
   std::string program_version;  // that made the version
   bool same_samples = false;
+  std::size_t revisions = 0;  // changes of the window's telemetry since, that were taken back
   bool same_model = false;  // to the last bit
 };
 
-/// Identifies a version again. Throws std::invalid_argument where its provenance cannot be read.
+/// Identifies a version again, from the telemetry as it was then: what came late since is taken back
+/// until the samples have the digest that the version names. Throws std::invalid_argument where its provenance cannot be read.
 Reproduction reproduce(const storage::Archive& archive, const storage::Version& version,
                        const identification::ForEach& for_each);
 

@@ -249,5 +249,32 @@ RC_GTEST_PROP(AppendProperty, EveryChangeBelowTheSealLiesInAMark, ()) {
   }
 }
 
+RC_GTEST_PROP(AppendProperty, SealedTimeCanBeReadAsItWasBeforeAnyBatch, ()) {
+  const TemporaryFolder folder;
+  Database database(folder / "a.db", Database::Mode::read_write);
+  Archive archive(database, *options());
+  for (const char* spacecraft : {"CB4", "CB4A"})
+    archive.seal(spacecraft, std::numeric_limits<Time>::max());
+  std::vector<std::pair<std::int64_t, std::map<Identity, Kept>>> states;
+  auto batches = *few(few(frames()));
+  for (std::vector<TelemetryFrame>& batch : batches) {
+    std::erase_if(batch, [](const TelemetryFrame& f) {  // a seal ends before it
+      return f.generation_time == std::numeric_limits<Time>::max();
+    });
+    const std::map<Identity, Kept> was = contents(archive);
+    if (archive.append(batch).touched.empty()) continue;
+    const auto last = rows(folder / "a.db", "SELECT max(batch) FROM revision");
+    states.emplace_back(std::stoll(last.at(0)), was);
+  }
+  for (const auto& [batch, was] : states) {
+    const std::map<Identity, Kept> found = contents(archive.before(batch));
+    RC_ASSERT(found.size() == was.size());
+    for (const auto& [identity, kept] : was) {
+      RC_ASSERT(bits(found.at(identity).value) == bits(kept.value));
+      RC_ASSERT(found.at(identity).quality == kept.quality);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace reident::storage::testing

@@ -1,10 +1,10 @@
 // Recent samples over older ones.
+#include "storage/overlay.hpp"
+
 #include <map>
 #include <random>
 
 #include <gtest/gtest.h>
-
-#include "storage/overlay.hpp"
 
 namespace reident::storage::testing {
 namespace {
@@ -41,8 +41,7 @@ TEST(Overlay, OfSeveralSamplesAtOneTimeTheLastLaidOnStays) {
   SampleColumns base = run_of({1, 2, 3, 4}, 1);
   const SampleColumns first = run_of({0, 2, 3}, 2), second = run_of({3, 5}, 3);
   overlay(base, {&first, &second});
-  EXPECT_EQ(as_map(base),
-            (std::map<Time, double>{{0, 2}, {1, 1}, {2, 2}, {3, 3}, {4, 1}, {5, 3}}));
+  EXPECT_EQ(as_map(base), (std::map<Time, double>{{0, 2}, {1, 1}, {2, 2}, {3, 3}, {4, 1}, {5, 3}}));
 }
 
 TEST(Overlay, KeepsColumnsThatAreNotWantedEmpty) {

@@ -1,11 +1,12 @@
 // Recent runs: every bit comes back, and damage is told.
+#include "storage/recent_run.hpp"
+
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "chunk_fixture.hpp"
-#include "storage/recent_run.hpp"
 
 namespace reident::storage::testing {
 namespace {

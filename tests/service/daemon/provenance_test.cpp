@@ -52,6 +52,24 @@ TEST_F(Provenance, IsEnoughToIdentifyTheVersionAgainToTheLastBit) {
   EXPECT_TRUE(again.same_model);
 }
 
+TEST_F(Provenance, ReadsTheWindowAsItWasWhenTelemetryCameLate) {
+  KeptWindow kept = kept_window_of("SAT", plant());
+  archive.seal("SAT", day + 10 * minute);
+  const storage::Version version = record(day + 10 * minute, kept);
+  const std::span<const storage::TelemetryFrame> frames(late);
+  archive.append(frames.first(10));
+  std::vector<storage::TelemetryFrame> worse(frames.begin(), frames.end());
+  for (storage::TelemetryFrame& frame : worse)
+    for (storage::Sample& sample : frame.samples) sample.quality = storage::Quality::suspect;
+  archive.append(std::span(worse).subspan(10));
+  archive.append(frames.subspan(10));  // better ones in their place
+  archive.compact();
+  const Reproduction again = reproduce(archive, version, {});
+  EXPECT_EQ(again.revisions, 3U);
+  EXPECT_TRUE(again.same_samples);
+  EXPECT_TRUE(again.same_model);
+}
+
 TEST_F(Provenance, TellsThatTheTelemetryOfTheWindowHasChangedSince) {
   KeptWindow kept = kept_window_of("SAT", plant());
   const storage::Version version = record(day + 10 * minute, kept);
