@@ -15,6 +15,13 @@
 #                                         feedback, on the reference spacecraft and, with
 #                                         DATA_FOLDER, on BUPT-1's files (bupt1_eps_*.csv) in it.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh archive [DATA_FOLDER] [--billion | --samples N] [--folder FOLDER]
+#                                         the archive beside a plain SQLite table: bytes a sample,
+#                                         appending, reading, SQL; and two publishers over DDS into
+#                                         it. With DATA_FOLDER also the size of BUPT-1's telemetry
+#                                         (bupt1_eps_*.csv). The large archive has 100 million
+#                                         samples, or N, or a billion, and is made in FOLDER.
+#                                         The last line is one JSON object
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 usage() {
@@ -41,6 +48,12 @@ case $what in
     arguments=(build/release "$@")
     targets=(reident_paper_bench satcs-reference)
     ;;
+  archive)
+    [ $# -eq 0 ] || [[ $1 == --* ]] || [ -d "$1" ] ||
+      { echo "$1 is no folder of telemetry" >&2; exit 2; }
+    arguments=(build/release "$@")
+    targets=(reident_archive_bench reident_bench_publisher reidentd)
+    ;;
   *)
     usage
     ;;
@@ -52,6 +65,10 @@ if [ "$what" = identification ]; then
   if cmake --build --preset release --target help | grep '^slicot_n4sid:' >/dev/null; then
     targets+=(slicot_n4sid)
   fi
+fi
+if [ "$what" = archive ] &&
+  cmake --build --preset release --target help | grep '^reident_telemetry:' >/dev/null; then
+  targets+=(reident_telemetry)
 fi
 cmake --build --preset release --target "${targets[@]}" >/dev/null
 exec python3 "tests/bench/$what.py" "${arguments[@]}"

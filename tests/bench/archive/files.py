@@ -1,0 +1,196 @@
+"""Size, appending and reading: the archive's file beside a plain table's."""
+
+import statistics
+from dataclasses import dataclass
+from pathlib import Path
+
+from programs import spread, table
+
+PARAMETERS = 629  # of the mission's frames
+BATCH = 512  # frames of a transaction, as in the service's default
+
+
+@dataclass
+class Scale:
+    reference_s: int  # telemetry of the reference spacecraft
+    large_frames: int
+    small_frames: int  # of 24 parameters
+    step_frames: int  # of an append measurement
+    repeats: int
+    windows: int
+    rows: int  # samples of a window
+    month_days: int
+    month_parameters: int
+    end_to_end_samples: int
+
+
+def scale(samples):
+    return Scale(reference_s=86_400, large_frames=max(16_384, round(samples / PARAMETERS)),
+                 small_frames=41_667, step_frames=16_384, repeats=3, windows=40, rows=15_000,
+                 month_days=30, month_parameters=4, end_to_end_samples=10_000_000)
+
+
+QUICK = Scale(reference_s=600, large_frames=300, small_frames=300, step_frames=100, repeats=1,
+              windows=3, rows=200, month_days=1, month_parameters=1, end_to_end_samples=20_000)
+
+
+def sizes(programs, folder, data, scale):
+    """Bytes of the pages in use, all columns and indexes counted, after compaction."""
+    rows, archive, plain, samples = [], 0, 0, 0
+    recorded = sorted(Path(data).glob("bupt1_eps_*.csv")) if data else []
+    for file in recorded:
+        result = programs.measure("size", folder, "--csv", file)
+        rows.append(size_row(file.stem, result))
+        archive += result["archive_bytes"]
+        plain += result["plain_bytes"]
+        samples += result["samples"]
+    if not recorded:
+        print("BUPT-1 is left out: no DATA_FOLDER with bupt1_eps_*.csv was given\n")
+    reference = programs.measure("size", folder, "--reference", scale.reference_s)
+    rows.append(size_row(f"reference spacecraft, {scale.reference_s} s", reference))
+    print("Size, bytes in use a sample\n")
+    table(["telemetry", "samples", "archive", "plain table", "ratio"], rows)
+    return {"bytes_per_sample_bupt": archive / samples if samples else None,
+            "bytes_per_sample_plain_bupt": plain / samples if samples else None,
+            "bytes_per_sample_reference": reference["archive_bytes"] / reference["samples"],
+            "bytes_per_sample_plain": reference["plain_bytes"] / reference["samples"]}
+
+
+def size_row(name, result):
+    archive, plain = (result[key] / result["samples"] for key in ("archive_bytes", "plain_bytes"))
+    return name, result["samples"], f"{archive:.3f}", f"{plain:.1f}", f"{plain / archive:.0f}"
+
+
+def rate(result):
+    """Samples a second, with all the work that they make: compaction, folding the log in."""
+    return result["samples"] / (result["append_s"] + result["settle_s"])
+
+
+def remove(file):
+    for name in (file, Path(f"{file}-wal"), Path(f"{file}-shm"), Path(f"{file}.lock")):
+        name.unlink(missing_ok=True)
+
+
+def appends_and_reads(programs, folder, scale):
+    large = {kind: folder / f"large-{kind}.db" for kind in ("archive", "plain")}
+    for kind, file in large.items():
+        programs.measure("append", kind, file, "--frames", scale.large_frames, "--load")
+    # The newest measurement is behind the windows that are read: both files hold the same.
+    figures = reads(programs, folder, scale, large)
+    figures |= appends(programs, folder, scale, large)
+    for file in large.values():
+        remove(file)
+    return figures
+
+
+def appends(programs, folder, scale, large):
+    """Interleaved, so that what else the machine does falls on all alike."""
+    def into(kind, file):
+        return programs.measure("append", kind, file, "--frames", scale.step_frames, "--batch",
+                                BATCH)
+
+    empty = {kind: [] for kind in large}
+    full = {kind: [] for kind in large}
+    for _ in range(scale.repeats):
+        for kind, file in large.items():
+            fresh = folder / f"fresh-{kind}.db"
+            empty[kind].append(into(kind, fresh))
+            remove(fresh)
+            full[kind].append(into(kind, file))
+    print(f"Appending {scale.step_frames} frames of {PARAMETERS} samples, {BATCH} frames a commit, "
+          "synchronous = FULL, compaction and the last checkpoint included; median (least to "
+          f"greatest) of {scale.repeats}\n")
+    rows = []
+    for kind in large:
+        for name, results in (("empty", empty[kind]),
+                              (f"{scale.large_frames * PARAMETERS:.3g} samples", full[kind])):
+            rows.append([kind, name, spread([rate(r) / 1e6 for r in results]),
+                         spread([r["longest_append_ms"] for r in results], "{:.0f}"),
+                         spread([r["peak_mib"] for r in results], "{:.0f}")])
+    table(["file", "begins with", "million samples a second", "longest append, ms",
+           "writer's memory at most, MiB"], rows)
+    median = {(kind, name): statistics.median(map(rate, results))
+              for name, group in (("empty", empty), ("large", full))
+              for kind, results in group.items()}
+    return {"append_per_s": median["archive", "empty"],
+            "append_plain_per_s": median["plain", "empty"],
+            "append_vs_plain": median["archive", "empty"] / median["plain", "empty"],
+            "append_large_vs_plain": median["archive", "large"] / median["plain", "large"],
+            "append_large_over_empty": median["archive", "large"] / median["archive", "empty"],
+            "longest_append_ms": max(r["longest_append_ms"]
+                                     for group in (empty, full) for r in group["archive"]),
+            "writer_peak_mib": max(r["peak_mib"] for r in full["archive"]),
+            "writer_peak_small_mib": max(r["peak_mib"] for r in empty["archive"])}
+
+
+def reads(programs, folder, scale, large):
+    small = {kind: folder / f"small-{kind}.db" for kind in large}
+    for kind, file in small.items():
+        programs.measure("append", kind, file, "--frames", scale.small_frames, "--parameters", 24,
+                         "--load")
+    common = ["--windows", scale.windows, "--rows", scale.rows]
+    places = [("small", small, ["--parameters", 24]), ("large", large, []),
+              ("large, nothing of the file in memory", large, ["--cold"])]
+    rows, median = [], {}
+    for name, files, more in places:
+        found = {kind: [] for kind in large}
+        digests = {kind: set() for kind in large}
+        for _ in range(scale.repeats):
+            for kind in large:
+                result = programs.measure("read", kind, files[kind], *common, *more)
+                found[kind] += result["window_ms"]
+                digests[kind].add(result["digest"])
+        if digests["archive"] != digests["plain"]:
+            raise SystemExit(f"the {name} archive and the plain table differ")
+        for kind in large:
+            median[kind, name] = statistics.median(found[kind])
+        rows.append([name, spread(found["archive"]), spread(found["plain"]),
+                     f"{median['plain', name] / median['archive', name]:.1f}"])
+    tail = live_tail(programs, folder, scale, common)
+    rows.append(["newest samples, the last of them not compacted", spread(tail), "", ""])
+    for file in small.values():
+        remove(file)
+    print(f"Reading a window of {scale.rows} samples of 5 parameters into arrays, ms\n")
+    table(["samples", "archive", "plain table", "ratio"], rows)
+    return {"window_read_vs_plain": median["plain", "large"] / median["archive", "large"],
+            "window_read_small_vs_plain": median["plain", "small"] / median["archive", "small"],
+            "window_read_large_over_small": median["archive", "large"] / median["archive", "small"],
+            "window_read_ms": median["archive", "large"],
+            "window_read_tail_ms": statistics.median(tail)}
+
+
+def live_tail(programs, folder, scale, common):
+    """Windows that end with the newest sample, of an archive that is being written."""
+    file = folder / "tail.db"
+    programs.measure("append", "archive", file, "--frames", scale.rows + scale.rows // 3,
+                     "--parameters", 24, "--batch", BATCH)
+    programs.measure("append", "archive", file, "--frames", scale.rows // 5, "--parameters", 24,
+                     "--batch", 16, "--leave")
+    result = programs.measure("read", "archive", file, *common, "--parameters", 24, "--newest")
+    remove(file)
+    return result["window_ms"]
+
+
+def month(programs, folder, scale):
+    """The average of one parameter over a month, through the loadable extension."""
+    key = "sql_month_vs_plain"
+    if not programs.extension:
+        print("SQL over a month is left out: the loadable extension was not built\n")
+        return {key: None}
+    files = {kind: folder / f"month-{kind}.db" for kind in ("archive", "plain")}
+    for kind, file in files.items():
+        programs.measure("append", kind, file, "--frames", (scale.month_days + 2) * 86_400,
+                         "--parameters", scale.month_parameters, "--load")
+    found = {kind: [] for kind in files}
+    averages = set()
+    for _ in range(scale.repeats):
+        for kind, file in files.items():
+            more = ["--extension", programs.extension] if kind == "archive" else []
+            result = programs.measure("average", kind, file, "--days", scale.month_days, *more)
+            found[kind].append(result["seconds"] * 1e3)
+            averages.add(round(result["average"], 9))
+    if len(averages) != 1:
+        raise SystemExit(f"the averages of the month differ: {averages}")
+    print(f"avg(value) of one parameter over {scale.month_days} days at 1 Hz, ms: archive, through "
+          f"the extension, {spread(found['archive'])}; plain table {spread(found['plain'])}\n")
+    return {key: statistics.median(found["plain"]) / statistics.median(found["archive"])}

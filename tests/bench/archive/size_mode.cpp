@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <filesystem>
+#include <variant>
+
+#include "service/satcs/reference_source.hpp"
+#include "service/satcs/replay.hpp"
+#include "tests/bench/archive/modes.hpp"
+
+namespace reident::bench {
+namespace {
+
+struct SizeOptions {
+  std::string folder;
+  std::string csv;
+  std::int64_t reference_s = 0;
+  std::size_t batch = 512;
+};
+
+std::unique_ptr<satcs::FrameSource> source_of(const SizeOptions& options) {
+  if (!options.csv.empty()) {
+    satcs::ReplayOptions replay;
+    replay.file = options.csv;
+    auto plan = satcs::plan_replay(replay);
+    if (const auto* error = std::get_if<csv::Error>(&plan))
+      throw std::runtime_error(error->message);
+    return std::make_unique<satcs::ReplaySource>(std::get<satcs::ReplayPlan>(std::move(plan)));
+  }
+  satcs::ReferenceOptions reference;
+  reference.duration_ns = options.reference_s * 1'000'000'000;
+  return std::make_unique<satcs::ReferenceSource>(reference);
+}
+
+/// All of the source in one file of each kind; returns how many samples there were.
+std::uint64_t store_all(satcs::FrameSource& source, TelemetryStore& archive, TelemetryStore& plain,
+                        std::size_t batch_frames) {
+  auto descriptors = source.parameters();
+  for (auto& descriptor : descriptors) descriptor.spacecraft = mission;
+  archive.describe(descriptors);
+  std::vector<storage::TelemetryFrame> batch;
+  std::uint64_t samples = 0, sequence = 0;
+  bool more = true;
+  while (more) {
+    batch.resize(batch_frames);
+    std::size_t count = 0;
+    while (count < batch.size() &&
+           (more = source.next(batch[count].generation_time, batch[count].samples))) {
+      auto& frame = batch[count];
+      frame.spacecraft = mission;
+      frame.source = "bench";
+      frame.sequence = ++sequence;
+      frame.reception_time = frame.generation_time;
+      samples += frame.samples.size();
+      ++count;
+    }
+    batch.resize(count);
+    if (batch.empty()) break;
+    archive.append(batch);
+    plain.append(batch);
+  }
+  archive.settle();
+  return samples;
+}
+
+void run(const SizeOptions& options) {
+  const std::filesystem::path folder(options.folder);
+  const auto archive_file = folder / "size-archive.db", plain_file = folder / "size-plain.db";
+  const auto source = source_of(options);
+  std::uint64_t samples = 0;
+  {
+    const auto archive = open_store(StoreKind::archive, archive_file, Access::write);
+    const auto plain = open_store(StoreKind::plain, plain_file, Access::write);
+    samples = store_all(*source, *archive, *plain, options.batch);
+  }
+  const auto archive_bytes = bytes_in_use(archive_file), plain_bytes = bytes_in_use(plain_file);
+  for (const auto& file : {archive_file, plain_file}) std::filesystem::remove(file);
+  print({{"samples", samples}, {"archive_bytes", archive_bytes}, {"plain_bytes", plain_bytes}});
+}
+
+}  // namespace
+
+void add_size(CLI::App& app) {
+  auto options = std::make_shared<SizeOptions>();
+  CLI::App* mode = app.add_subcommand("size", "Bytes in use of files with the same telemetry");
+  mode->add_option("folder", options->folder, "For the files")->required();
+  mode->add_option("--csv", options->csv, "All columns of a file of recorded telemetry");
+  mode->add_option("--reference", options->reference_s, "Or so many seconds of the reference");
+  mode->callback([options] { run(*options); });
+}
+
+}  // namespace reident::bench
