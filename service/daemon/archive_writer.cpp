@@ -9,12 +9,17 @@ namespace reident {
 namespace {
 
 using namespace std::chrono_literals;
-using SteadyClock = std::chrono::steady_clock;
 
 constexpr auto idle_wait = 500ms;  // for the first event of a batch; post() ends it earlier
 constexpr auto retry_wait = 1s;    // between two tries of a batch that the disk refused
 
 }  // namespace
+
+std::size_t QueuedBytes<TelemetryEvent>::operator()(const TelemetryEvent& event) const {
+  const auto* frame = std::get_if<storage::TelemetryFrame>(&event);
+  return sizeof(TelemetryEvent) +
+         (frame ? frame->samples.capacity() * sizeof(storage::Sample) : std::size_t{0});
+}
 
 ArchiveWriter::ArchiveWriter(storage::Database&& database, BoundedQueue<TelemetryEvent>& queue,
                              std::size_t batch_frames, Duration batch_delay,
@@ -57,14 +62,7 @@ void ArchiveWriter::run_tasks() {
 
 std::vector<TelemetryEvent> ArchiveWriter::next_batch() {
   std::vector<TelemetryEvent> batch;
-  if (queue_.pop(batch, batch_frames_, idle_wait) == 0) return batch;
-  in_hand_ = batch.size();
-  const auto deadline = SteadyClock::now() + std::chrono::nanoseconds(batch_delay_);
-  while (batch.size() < batch_frames_ && !queue_.drained()) {
-    const auto left = deadline - SteadyClock::now();
-    if (left <= 0ns || queue_.pop(batch, batch_frames_ - batch.size(), left) == 0) break;
-    in_hand_ = batch.size();
-  }
+  in_hand_ = queue_.pop(batch, batch_frames_, idle_wait, std::chrono::nanoseconds(batch_delay_));
   return batch;
 }
 

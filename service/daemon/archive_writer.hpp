@@ -19,6 +19,12 @@ namespace reident {
 
 using TelemetryEvent = std::variant<storage::TelemetryFrame, storage::ParameterDescriptor>;
 
+/// A frame's samples are nearly all of it.
+template <>
+struct QueuedBytes<TelemetryEvent> {
+  std::size_t operator()(const TelemetryEvent& event) const;
+};
+
 /// Told, on the writer's thread, what has been committed.
 class ArchiveListener {
  public:
@@ -62,7 +68,8 @@ class ArchiveWriter {
   using Task = std::packaged_task<void(storage::Registry&, storage::Archive&)>;
 
   void run_tasks();
-  /// Pops until the batch is full or `batch_delay` has passed since its first event.
+  /// Waits until the batch is full, the queue is, or `batch_delay` has passed since its first
+  /// event.
   std::vector<TelemetryEvent> next_batch();
   void store(std::vector<TelemetryEvent>&& batch, const std::atomic<bool>& give_up);
   void commit(const std::vector<storage::TelemetryFrame>& frames,

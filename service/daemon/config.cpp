@@ -111,6 +111,7 @@ void read_dds(const toml::table& table, ConfigDocument& document, Config& config
 void read_limits(const toml::table& table, ConfigDocument& document, Config& config) {
   TableReader reader(table, "[limits]", document);
   assign(config.queue_frames, reader.integer("queue_frames", 1, 10'000'000));
+  assign(config.queue_mib, reader.integer("queue_mib", 1, 1'000'000));
   assign(config.max_frame_samples, reader.integer("max_frame_samples", 1, 10'000'000));
   assign(config.max_clock_lead, reader.duration("max_clock_lead", 0, 365 * day));
   assign(config.settle, reader.duration("settle", 0, day));

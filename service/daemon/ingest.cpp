@@ -10,6 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t take_at_most = 256;  // messages of one topic in a turn
+constexpr std::size_t push_together = 64;  // the archive's thread is woken for so many at once
 constexpr auto look_around = 500ms;        // for stop(); data and wake() end the wait earlier
 
 dds::ReaderOptions options_of(const Config& config) {
@@ -48,12 +49,21 @@ Ingest::Ingest(dds::Participant& participant, const Config& config,
 }
 
 void Ingest::queue(storage::ParameterDescriptor&& descriptor) {
-  queue_.push(std::move(descriptor));
+  queue(TelemetryEvent(std::move(descriptor)));
 }
 
 void Ingest::queue(storage::TelemetryFrame&& frame) {
   ++frames_received_;
-  queue_.push(std::move(frame));
+  queue(TelemetryEvent(std::move(frame)));
+}
+
+void Ingest::queue(TelemetryEvent&& event) {
+  taken_.push_back(std::move(event));
+  if (taken_.size() >= push_together) push_taken();
+}
+
+void Ingest::push_taken() {
+  if (!taken_.empty()) queue_.push(taken_);
 }
 
 void Ingest::count_rejected() {
@@ -70,6 +80,7 @@ std::size_t Ingest::take() {
       frames_.take(take_at_most, [this](storage::TelemetryFrame&& one) { queue(std::move(one)); });
   taken += acknowledgements_.take(
       take_at_most, [](ModelAcknowledgement&& message) { log_acknowledgement(message); });
+  push_taken();
   count_rejected();
   return taken;
 }
@@ -83,6 +94,7 @@ void Ingest::run() {
   participant_.stop_hearing();
   descriptors_.drain([this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });
   frames_.drain([this](storage::TelemetryFrame&& one) { queue(std::move(one)); });
+  push_taken();
   count_rejected();
 }
 

@@ -31,6 +31,9 @@ class Ingest {
   std::size_t take();
   void queue(storage::ParameterDescriptor&& descriptor);
   void queue(storage::TelemetryFrame&& frame);
+  void queue(TelemetryEvent&& event);
+  /// Pushes what was taken; waits for room.
+  void push_taken();
   void count_rejected();
 
   dds::Participant& participant_;
@@ -39,6 +42,7 @@ class Ingest {
   dds::Reader<storage::TelemetryFrame> frames_;
   dds::Reader<ModelAcknowledgement> acknowledgements_;
   dds::WaitSet ready_;
+  std::vector<TelemetryEvent> taken_;  // and not pushed yet
   std::atomic<bool> stopping_ = false;
   std::atomic<std::uint64_t> frames_received_ = 0;
   std::atomic<std::uint64_t> frames_rejected_ = 0;

@@ -146,10 +146,12 @@ void WindowFeed::stored(const std::vector<storage::TelemetryFrame>& frames,
     }
     if (frame.origin != storage::Origin::real) continue;
     newest_ = std::max(newest_, frame.generation_time);
+    const auto watched = membership_.find(frame.spacecraft);
+    if (watched == membership_.end()) continue;
     equipment.clear();
     for (const storage::Sample& sample : frame.samples)
-      if (const EquipmentIds* ids = members(frame.spacecraft, sample.parameter))
-        equipment.insert(ids->begin(), ids->end());
+      if (const auto found = watched->second.find(sample.parameter); found != watched->second.end())
+        equipment.insert(found->second.begin(), found->second.end());
     for (const std::size_t i : equipment) {
       scheduler_.reached(i, frame.generation_time);
       const auto fresh = news.find(i);

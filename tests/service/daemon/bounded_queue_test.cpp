@@ -1,11 +1,18 @@
 #include "service/daemon/bounded_queue.hpp"
 
 #include <numeric>
+#include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 namespace reident {
+
+template <>
+struct QueuedBytes<std::string> {
+  std::size_t operator()(const std::string& text) const { return text.size(); }
+};
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -56,6 +63,50 @@ TEST(BoundedQueue, ReleasesAProducerThatWaitsWhenItIsClosed) {
   while (queue.waits() == 0) std::this_thread::yield();
   queue.close();
   producer.join();
+}
+
+TEST(BoundedQueue, HoldsTheProducerBackAtItsBoundInBytesTooButTakesASingleItemThatExceedsIt) {
+  BoundedQueue<std::string> queue(100, 10);
+  EXPECT_TRUE(queue.push(std::string(25, 'a')));
+  std::thread producer([&] {
+    for (const std::size_t size : {6U, 4U, 1U}) queue.push(std::string(size, 'b'));
+  });
+  std::vector<std::string> out;
+  EXPECT_EQ(queue.pop(out, 100, 60s, 60s), 1U) << "it gathers until the producer has to wait";
+  EXPECT_EQ(queue.pop(out, 100, 60s, 60s), 2U);
+  producer.join();
+  EXPECT_EQ(queue.pop(out, 100, 60s), 1U);
+}
+
+TEST(BoundedQueue, TakesManyItemsInOneGoAndWaitsForRoomForThemToo) {
+  BoundedQueue<int> queue(3);
+  std::vector<int> items{0, 1, 2, 3, 4, 5, 6};
+  std::thread producer([&] {
+    EXPECT_TRUE(queue.push(items));
+    EXPECT_TRUE(items.empty());
+    queue.close();
+  });
+  std::vector<int> out;
+  while (!queue.drained()) queue.pop(out, 2, 60s);
+  producer.join();
+  EXPECT_EQ(out, (std::vector{0, 1, 2, 3, 4, 5, 6}));
+}
+
+TEST(BoundedQueue, GathersUntilThereAreEnough) {
+  BoundedQueue<int> queue(100);
+  std::thread producer([&] {
+    for (int i = 0; i < 10; ++i) queue.push(int{i});
+  });
+  std::vector<int> out;
+  EXPECT_EQ(queue.pop(out, 10, 60s, 60s), 10U);
+  producer.join();
+}
+
+TEST(BoundedQueue, GivesWhatItHasWhenTheTimeToGatherIsOver) {
+  BoundedQueue<int> queue(100);
+  queue.push(1);
+  std::vector<int> out;
+  EXPECT_EQ(queue.pop(out, 10, 60s, 1ms), 1U);
 }
 
 TEST(BoundedQueue, EndsAWaitWhenItIsWoken) {

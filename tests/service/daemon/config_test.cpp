@@ -88,6 +88,7 @@ domain = 42
 partition = "training"
 [limits]
 queue_frames = 64
+queue_mib = 3
 max_frame_samples = 1000
 max_clock_lead = "10s"
 settle = "300ms"
@@ -132,6 +133,7 @@ horizon = "auto"
   EXPECT_EQ(config.domain, 42u);
   EXPECT_EQ(config.partition, "training");
   EXPECT_EQ(config.queue_frames, 64u);
+  EXPECT_EQ(config.queue_mib, 3u);
   EXPECT_EQ(config.max_frame_samples, 1000u);
   EXPECT_EQ(config.max_clock_lead, 10 * s);
   EXPECT_EQ(config.settle, 300 * ms);
