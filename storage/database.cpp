@@ -1,11 +1,10 @@
 #include "storage/database.hpp"
 
-#include <cstring>
-#include <fstream>
 #include <unistd.h>
 #include <utility>
 
 #include "storage/connection.hpp"
+#include "storage/file_guard.hpp"
 #include "storage/migration.hpp"
 #include "storage/schema.hpp"
 
@@ -45,32 +44,30 @@ bool has_content(const fs::path& file) {
   return !error && size > 0;
 }
 
-// SQLite reads what is missing of a last page as zeros, and it deletes the log of an empty file. A
-// file that has a log or journal beside it may be shorter than its first page says.
-void refuse_what_was_cut_short(const fs::path& path) {
-  const auto cut_short = [&](const std::string& found) {
-    return Error(Error::Kind::corrupt, "database " + path.string() + " was cut short: " + found +
-                                           "; restore a backup, or save what can be read with "
-                                           "'sqlite3 FILE .recover'");
-  };
-  const fs::path log = path.string() + "-wal";
-  if (has_content(log)) {
-    if (!has_content(path)) throw cut_short("it is empty, and its log " + log.string() + " is not");
+// SQLite deletes the log of an empty file.
+void refuse_an_emptied_file(const fs::path& path, const std::optional<WriterLock>& lock) {
+  if (has_content(path) || !fs::exists(path) || has_content(path.string() + "-journal")) return;
+  std::string found;
+  if (const std::string log = path.string() + "-wal"; has_content(log))
+    found = "it is empty, and its log " + log + " is not; restore a backup";
+  else if (lock && lock->had_tables())
+    found =
+        "it is empty, and was not when it was written last; restore a backup, or remove it to "
+        "begin anew";
+  else
     return;
-  }
-  constexpr std::size_t header_size = 32;
-  unsigned char header[header_size] = {};
-  std::ifstream file(path, std::ios::binary);
-  if (has_content(path.string() + "-journal") ||
-      !file.read(reinterpret_cast<char*>(header), header_size) ||
-      std::memcmp(header, "SQLite format 3", 16) != 0)
-    return;
-  const std::uint64_t page_size = header[16] * 256U + header[17];
-  std::uint64_t pages = 0;
-  for (std::size_t i = 28; i < 32; ++i) pages = pages * 256 + header[i];
-  if (fs::file_size(path) < pages * page_size)
-    throw cut_short("it has " + std::to_string(fs::file_size(path)) + " of " +
-                    std::to_string(pages * page_size) + " bytes");
+  throw Error(Error::Kind::corrupt, "database " + path.string() + " was cut short: " + found);
+}
+
+// SQLite keeps the log beside the name by which a file was opened: two names, two logs.
+void refuse_a_second_name(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t names = fs::hard_link_count(path, error);
+  if (error || names <= 1) return;
+  throw Error(Error::Kind::cannot_open,
+              "database " + path.string() + " has " + std::to_string(names) +
+                  " names (hard links), and programs that open it by different ones would damage "
+                  "it: remove the others, which 'find FOLDER -samefile FILE' lists");
 }
 
 std::int64_t pragma(Connection& connection, std::string_view name) {
@@ -117,18 +114,23 @@ void bring_up_to_date(Connection& connection) {
   transaction.commit();
 }
 
-Connection open_writer(const fs::path& path) {
+Connection open_writer(const fs::path& path, Durability durability) {
   Connection connection(path.string(), path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  refuse_damaged_files(connection, path, true, durability);
   connection.execute("PRAGMA foreign_keys = ON; PRAGMA cache_size = -65536");
   if (connection.is_read_only())
     throw Error(Error::Kind::read_only,
                 "database " + path.string() + " cannot be written: check its permissions");
   if (!is_empty(connection)) refuse_what_is_not_ours(connection, path);
   if (pragma(connection, "user_version") != schema::version) bring_up_to_date(connection);
-  // FULL: the log is on the disk before a commit returns. SCHEMA.md, "What survives".
   connection.execute(
-      "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
+      "PRAGMA journal_mode = WAL;"
       "PRAGMA wal_autocheckpoint = 4096; PRAGMA journal_size_limit = 67108864");
+  // FULL flushes the log before a commit returns, NORMAL before it is folded into the file.
+  connection.execute(durability == Durability::power_cut ? "PRAGMA synchronous = FULL"
+                                                         : "PRAGMA synchronous = NORMAL");
+  pragma(connection, "user_version");  // the first read opens the log
+  connection.guard_files(path);
   return connection;
 }
 
@@ -162,6 +164,7 @@ Connection open_sealed(const fs::path& path) {
 
 Connection open_reader(const fs::path& path) {
   const auto checked = [&](Connection connection) {
+    refuse_damaged_files(connection, path, false, Durability::power_cut);
     refuse_what_is_not_ours(connection, path);
     refuse_older_schema(connection, path);
     return connection;
@@ -179,13 +182,18 @@ Connection open_reader(const fs::path& path) {
 
 }  // namespace
 
-Database::Database(const std::filesystem::path& path, Mode mode) : impl_(std::make_unique<Impl>()) {
+Database::Database(const std::filesystem::path& path, Mode mode, Durability durability)
+    : impl_(std::make_unique<Impl>()) {
   impl_->path = resolved(path);
   refuse_what_is_no_file(impl_->path, mode);
-  if (mode == Mode::read_write) impl_->lock.emplace(impl_->path);
-  refuse_what_was_cut_short(impl_->path);
   if (mode == Mode::read_write) {
-    impl_->connection.emplace(open_writer(impl_->path));
+    refuse_a_second_name(impl_->path);
+    impl_->lock.emplace(impl_->path);
+  }
+  refuse_an_emptied_file(impl_->path, impl_->lock);
+  if (mode == Mode::read_write) {
+    impl_->connection.emplace(open_writer(impl_->path, durability));
+    impl_->lock->note_tables();
   } else {
     impl_->connection.emplace(open_reader(impl_->path));
   }

@@ -26,6 +26,7 @@ class Error : public std::runtime_error {
     corrupt,       // damaged or cut short
     full,          // no room on the disk, in the quota or in the file size limit
     read_only,     // the file, its folder or the connection cannot be written
+    displaced,     // deleted, moved or replaced while it was open
     failed         // anything else; the message has SQLite's own words
   };
   Error(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
@@ -35,13 +36,21 @@ class Error : public std::runtime_error {
   Kind kind_;
 };
 
+/// What a commit survives once it returned; SCHEMA.md, "What survives which failure", says what a
+/// power cut takes at most otherwise.
+enum class Durability {
+  power_cut,  // the log is on the disk before a commit returns
+  kill        // the log is in the hands of the system; it is put on the disk now and then
+};
+
 class Database {
  public:
   enum class Mode { read_only, read_write };
 
   /// read_write creates the file and its tables where they do not exist, and brings the tables of
-  /// an older schema up to date, in one transaction.
-  Database(const std::filesystem::path& path, Mode mode);
+  /// an older schema up to date, in one transaction. `durability` matters to read_write alone.
+  Database(const std::filesystem::path& path, Mode mode,
+           Durability durability = Durability::power_cut);
   ~Database();
   Database(Database&&) noexcept;
   Database& operator=(Database&&) noexcept;

@@ -1,5 +1,6 @@
 #include "storage/sqlite.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -171,6 +172,30 @@ sqlite3_stmt* Connection::prepared(std::string_view sql) {
   return kept.get();
 }
 
+sqlite3_file* Connection::file() const {
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  return file;
+}
+
+std::int64_t Connection::raw_size() const {
+  sqlite3_int64 size = 0;
+  const int code = file()->pMethods->xFileSize(file(), &size);
+  if (code != SQLITE_OK) fail(handle_.get(), code);
+  return size;
+}
+
+std::size_t Connection::read_raw(std::span<unsigned char> bytes) const {
+  const std::size_t count = std::min(bytes.size(), static_cast<std::size_t>(raw_size()));
+  const int code = file()->pMethods->xRead(file(), bytes.data(), static_cast<int>(count), 0);
+  if (code != SQLITE_OK) fail(handle_.get(), code);
+  return count;
+}
+
+void Connection::keep_log() {
+  sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+}
+
 ReadTransaction::ReadTransaction(Connection& connection)
     : connection_(connection), is_part_(connection.in_transaction()) {
   if (!is_part_) connection_.query("BEGIN").run();
@@ -187,6 +212,7 @@ ReadTransaction::~ReadTransaction() {
 
 Transaction::Transaction(Connection& connection)
     : connection_(connection), is_part_(connection.in_transaction()) {
+  if (!is_part_) connection_.check_files();
   if (!is_part_) connection_.query("BEGIN IMMEDIATE").run();
 }
 

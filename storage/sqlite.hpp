@@ -17,6 +17,7 @@
 #include <sqlite3.h>
 
 #include "storage/database.hpp"
+#include "storage/file_guard.hpp"
 
 namespace reident::storage::sqlite {
 
@@ -104,6 +105,20 @@ class Connection {
   std::uint64_t rollbacks() const { return *rollbacks_; }
   bool in_transaction() const { return sqlite3_get_autocommit(handle_.get()) == 0; }
 
+  /// The first bytes of the file as they are on the disk, past cache and log; the number of those
+  /// that there are. Through SQLite's own handle of the file: closing any other one would take
+  /// away the locks that this process's connections hold on it.
+  std::size_t read_raw(std::span<unsigned char> bytes) const;
+  std::int64_t raw_size() const;
+
+  /// From now on Transaction checks the files before it begins.
+  void guard_files(const std::filesystem::path& database) { guard_.emplace(database); }
+  void check_files() {
+    if (guard_) guard_->check(*this);
+  }
+  /// The log is left beside the file when the connection closes.
+  void keep_log();
+
  private:
   struct Close {
     void operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
@@ -113,9 +128,11 @@ class Connection {
   };
   using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
   sqlite3_stmt* prepared(std::string_view sql);
+  sqlite3_file* file() const;
 
   std::unique_ptr<std::uint64_t> rollbacks_ = std::make_unique<std::uint64_t>(0);
   std::unique_ptr<sqlite3, Close> handle_;
+  std::optional<FileGuard> guard_;
   std::unordered_map<std::string, Statement> statements_;
 };
 

@@ -7,8 +7,7 @@
 namespace reident::storage {
 namespace {
 
-// Twice what comes would do; more ends a round sooner. The least amount is a few milliseconds.
-constexpr std::size_t least_step = 65536;
+// Twice what comes would do; more ends a round sooner.
 constexpr std::size_t step_for_each_sample = 4;
 
 std::int64_t last_damage(sqlite::Connection& connection) {
@@ -32,7 +31,7 @@ void Writer::compact_some(std::size_t samples_appended) {
   const bool is_due =
       recent_.samples() >= options_.recent_samples || recent_.batches() >= options_.recent_batches;
   if (!compaction_.is_under_way() && is_due) compaction_.begin();
-  const std::size_t step = std::max(least_step, step_for_each_sample * samples_appended);
+  const std::size_t step = std::max(options_.step_samples, step_for_each_sample * samples_appended);
   if (compaction_.is_under_way()) compaction_.step(step);
   while (recent_.samples() > 2 * options_.recent_samples) {
     if (!compaction_.is_under_way()) compaction_.begin();
@@ -45,7 +44,7 @@ bool Writer::compact_all_step() {
     if (recent_.batches() == 0) return false;
     compaction_.begin();
   }
-  compaction_.step(least_step);
+  compaction_.step(options_.step_samples);
   return true;
 }
 

@@ -1,10 +1,12 @@
 #include "storage/writer_lock.hpp"
 
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 
 #include <sys/file.h>
@@ -15,12 +17,24 @@
 namespace reident::storage {
 namespace {
 
+// The lock file has the pid of its last holder in a line of this many bytes, and behind it a line
+// that tells that the database has tables. Where a full disk keeps them from being written the lock
+// holds all the same.
+constexpr std::size_t pid_line = 16;
+constexpr std::string_view tables_line = "has tables\n";
+
+bool tells_of_tables(int descriptor) {
+  std::array<char, tables_line.size()> text{};
+  return ::pread(descriptor, text.data(), text.size(), pid_line) == ssize_t{text.size()} &&
+         std::string_view(text.data(), text.size()) == tables_line;
+}
+
 // The pid that the holder wrote; empty in the moment before it did.
 std::string holder(int descriptor) {
   std::array<char, 32> text{};
   const ssize_t length = ::pread(descriptor, text.data(), text.size(), 0);
   std::string pid;
-  for (ssize_t i = 0; i < length && text[static_cast<std::size_t>(i)] != '\n'; ++i)
+  for (ssize_t i = 0; i < length && std::isdigit(text[static_cast<std::size_t>(i)]); ++i)
     pid += text[static_cast<std::size_t>(i)];
   return pid.empty() ? "another process" : "process " + pid;
 }
@@ -56,9 +70,18 @@ WriterLock::WriterLock(const std::filesystem::path& database) {
     throw Error(Error::Kind::locked, "database " + database.string() + " is in use by " + who +
                                          "; stop it or use another database");
   }
-  // The pid is for messages alone: the lock holds on a full disk too, where it cannot be written.
-  const std::string pid = std::to_string(::getpid()) + "\n";
-  if (::pwrite(descriptor_, pid.data(), pid.size(), 0) < 0) return;
+  // Whoever removed the database begins anew.
+  had_tables_ = std::filesystem::exists(database) && tells_of_tables(descriptor_);
+  if (!had_tables_ && ::ftruncate(descriptor_, 0) != 0) cannot_lock(file, errno);
+  std::string pid = std::to_string(::getpid());
+  pid.resize(pid_line - 1, ' ');
+  if (::pwrite(descriptor_, (pid + "\n").data(), pid_line, 0) < 0) return;
+}
+
+void WriterLock::note_tables() {
+  if (had_tables_) return;
+  had_tables_ = ::pwrite(descriptor_, tables_line.data(), tables_line.size(), pid_line) ==
+                ssize_t{tables_line.size()};
 }
 
 WriterLock::~WriterLock() {

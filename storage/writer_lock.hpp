@@ -15,7 +15,13 @@ class WriterLock {
   WriterLock(const WriterLock&) = delete;
   WriterLock& operator=(const WriterLock&) = delete;
 
+  /// Whether a writer before this one had tables in the file.
+  bool had_tables() const { return had_tables_; }
+  /// To be called when the file has its tables.
+  void note_tables();
+
  private:
+  bool had_tables_ = false;
   int descriptor_ = -1;
 };
 

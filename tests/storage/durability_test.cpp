@@ -1,13 +1,11 @@
-// What survives a kill, a full disk and a cut log, tested by doing it.
+// What survives a full disk and a cut log, tested by doing it. kill_test and power_cut_test have
+// the rest.
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <random>
 #include <thread>
-#include <unistd.h>
 
 #include <sys/resource.h>
-#include <sys/wait.h>
 
 #include "fixture.hpp"
 #include "storage/connection.hpp"
@@ -65,72 +63,6 @@ std::uint64_t whole_batches(const Archive& archive) {
   return batches;
 }
 
-/// Appends for ever from batch `next` on and writes a byte after each append that returned. Opens
-/// anew now and then, so that a kill may also hit the folding of the log into the file.
-[[noreturn]] void append_until_killed(const fs::path& path, std::uint64_t next, int reports) {
-  for (;;) {
-    Database database(path, Mode::read_write);
-    Archive archive(database);
-    for (int i = 0; i < 7; ++i) {
-      archive.append(batch(next++));
-      if (::write(reports, "+", 1) != 1) ::_exit(1);
-    }
-  }
-}
-
-struct Killed {
-  pid_t process;
-  int reports;
-};
-
-Killed start_appending(const fs::path& path, std::uint64_t next) {
-  int ends[2];
-  if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::close(ends[0]);
-    try {
-      append_until_killed(path, next, ends[1]);
-    } catch (...) {
-      ::_exit(2);
-    }
-  }
-  ::close(ends[1]);
-  return {child, ends[0]};
-}
-
-TEST(Durability, KeepsEveryReportedBatchWhenItsWriterIsKilled) {
-  const TemporaryFolder folder(fs::temp_directory_path());
-  const fs::path path = folder / "a.db";
-  std::mt19937 random(20170717);
-  std::uint64_t stored = 0;
-  for (int round = 0; round < 30; ++round) {
-    SCOPED_TRACE("round " + std::to_string(round));
-    const Killed writer = start_appending(path, stored);
-    std::uint64_t reported = 0;
-    char report = 0;
-    const std::uint64_t until = random() % 12;
-    while (reported < until && ::read(writer.reports, &report, 1) == 1) ++reported;
-    const auto moment =
-        std::chrono::steady_clock::now() + std::chrono::microseconds(random() % 6000);
-    while (std::chrono::steady_clock::now() < moment) {
-    }
-    ::kill(writer.process, SIGKILL);
-    int status = 0;
-    ::waitpid(writer.process, &status, 0);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "the writer ended by itself: " << status;
-    while (::read(writer.reports, &report, 1) == 1) ++reported;
-    ::close(writer.reports);
-
-    Database database(path, Mode::read_write);
-    const std::uint64_t found = whole_batches(Archive(database));
-    EXPECT_GE(found, stored + reported) << "a reported batch is lost";
-    EXPECT_LE(found, stored + reported + 1) << "only one batch can be on its way";
-    stored = found;
-  }
-  EXPECT_GT(stored, 30U);
-}
-
 TEST(Durability, ALogThatIsCutAnywhereLeavesWholeBatches) {
   const TemporaryFolder folder(fs::temp_directory_path());
   Database database(folder / "a.db", Mode::read_write);
@@ -153,12 +85,15 @@ TEST(Durability, ALogThatIsCutAnywhereLeavesWholeBatches) {
   EXPECT_EQ(most, 6U);
 }
 
-TEST(Durability, ACommitWaitsForTheDisk) {
+TEST(Durability, ACommitWaitsForTheDiskUnlessToldOtherwise) {
   const TemporaryFolder folder;
-  const Database database(folder / "a.db", Mode::read_write);
-  sqlite::Query synchronous = database.impl().connection->query("PRAGMA synchronous");
-  ASSERT_TRUE(synchronous.step());
-  EXPECT_EQ(synchronous.integer(0), 2) << "FULL: the log is flushed before a commit returns";
+  const auto synchronous = [&](Durability durability) {
+    const Database database(folder / "a.db", Mode::read_write, durability);
+    sqlite::Query row = database.impl().connection->query("PRAGMA synchronous");
+    return row.step() ? row.integer(0) : -1;
+  };
+  EXPECT_EQ(synchronous(Durability::power_cut), 2) << "FULL: each commit flushes the log";
+  EXPECT_EQ(synchronous(Durability::kill), 1) << "NORMAL: folding it into the file does";
 }
 
 void limit_files_to(rlim_t bytes) {

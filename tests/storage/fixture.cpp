@@ -30,6 +30,8 @@ std::string name(Error::Kind kind) {
       return "full";
     case Error::Kind::read_only:
       return "read_only";
+    case Error::Kind::displaced:
+      return "displaced";
     case Error::Kind::failed:
       break;
   }
