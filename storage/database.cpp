@@ -134,21 +134,6 @@ Connection open_writer(const fs::path& path, Durability durability) {
   return connection;
 }
 
-std::string immutable_uri(const fs::path& path) {
-  std::string uri = "file:";
-  for (const char c : path.string()) {
-    if (c == '%')
-      uri += "%25";
-    else if (c == '?')
-      uri += "%3f";
-    else if (c == '#')
-      uri += "%23";
-    else
-      uri += c;
-  }
-  return uri + "?immutable=1";
-}
-
 // In a folder that cannot be written SQLite cannot make the shared memory that a log needs.
 // Without a log the file is complete, and a file that nobody can write beside does not change.
 Connection open_sealed(const fs::path& path) {
@@ -159,7 +144,7 @@ Connection open_sealed(const fs::path& path) {
                     log.string() +
                     ", which cannot be read in a folder without write permission; "
                     "copy both to a folder that can be written");
-  return Connection(immutable_uri(path), path, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+  return Connection(sqlite::immutable_uri(path), path, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
 }
 
 Connection open_reader(const fs::path& path) {

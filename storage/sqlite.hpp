@@ -24,6 +24,9 @@ namespace reident::storage::sqlite {
 /// Throws the Error that fits `code`, which a call on `connection` returned.
 [[noreturn]] void fail(sqlite3* connection, int code);
 
+/// Name of a file, for SQLITE_OPEN_URI, that is read as one that does not change: no log, no locks.
+std::string immutable_uri(const std::filesystem::path& path);
+
 /// A statement in use: bound by position, stepped, read. It is reset when the Query ends.
 class Query {
  public:
@@ -104,6 +107,7 @@ class Connection {
   /// wrong.
   std::uint64_t rollbacks() const { return *rollbacks_; }
   bool in_transaction() const { return sqlite3_get_autocommit(handle_.get()) == 0; }
+  sqlite3* handle() { return handle_.get(); }
 
   /// The first bytes of the file as they are on the disk, past cache and log; the number of those
   /// that there are. Through SQLite's own handle of the file: closing any other one would take

@@ -256,6 +256,33 @@ TEST(Database, ReadersWorkWhetherOrNotAWriterRuns) {
   EXPECT_EQ(reader_finds(other), "1") << "after the writer was killed";
 }
 
+// The last program to close a database takes its log away, and file locks tell it whether it is the
+// last. They are the process's: whoever closes any descriptor of the file drops them.
+TEST(Database, KeepsItsLogWhenAnotherProgramOpensAndClosesTheFile) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.db";
+  { const Database made(path, Mode::read_write); }
+  int wake[2];
+  ASSERT_EQ(::pipe(wake), 0);
+  const pid_t other = ::fork();  // before this process has the file open
+  if (other == 0) {
+    char byte = 0;
+    ::close(wake[1]);
+    if (::read(wake[0], &byte, 1) < 0) ::_exit(1);
+    ::_exit(rows(path, "SELECT count(*) FROM series").size() == 1 ? 0 : 1);
+  }
+  Database writer(path, Mode::read_write);
+  const Database reader(path, Mode::read_only);
+  Archive(writer).append(std::vector{frame(1, 1, {{1, Quality::good, 1.5}})});
+  ::close(wake[1]);
+  int status = 0;
+  ::waitpid(other, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(fs::exists(path.string() + "-wal"));
+  Archive(writer).append(std::vector{frame(2, 2, {{1, Quality::good, 2.5}})});
+  EXPECT_THAT(rows(path, "SELECT sum(samples) FROM series"), ::testing::ElementsAre("2"));
+}
+
 TEST(Database, AUserWhoMayOnlyReadFollowsARunningWriter) {
   const TemporaryFolder folder;
   const RunningWriter writer(folder / "a.db");
