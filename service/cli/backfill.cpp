@@ -7,6 +7,7 @@
 
 #include "service/cli/command.hpp"
 #include "service/cli/config_choice.hpp"
+#include "service/cli/file_errors.hpp"
 #include "service/cli/story.hpp"
 #include "service/daemon/commands.hpp"
 #include "service/support/progress.hpp"
@@ -82,7 +83,7 @@ int run(const Arguments& arguments) {
   const auto request = request_of(arguments, *config);
   if (const auto* refusal = std::get_if<Refusal>(&request)) return refuse(*refusal);
   const StopSignal stop;
-  try {
+  return refusing_what_cannot_be([&] {
     storage::Database database(config->database, storage::Database::Mode::read_write);
     WorkerPool workers(usable_cores());
     Progress bar;
@@ -97,12 +98,7 @@ int run(const Arguments& arguments) {
     bar.clear();
     print(progress, arguments.json);
     return progress.done == progress.windows ? exit_done : exit_failed;
-  } catch (const storage::Error& error) {
-    using Kind = storage::Error::Kind;
-    const Kind kind = error.kind();
-    if (kind == Kind::full || kind == Kind::corrupt || kind == Kind::failed) throw;
-    return refuse({error.what()});
-  }
+  });
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ void add_show(CLI::App& app, int& exit_code);
 void add_why(CLI::App& app, int& exit_code);
 void add_reproduce(CLI::App& app, int& exit_code);
 void add_backfill(CLI::App& app, int& exit_code);
+void add_backup(CLI::App& app, int& exit_code);
 void add_at(CLI::App& app, int& exit_code);
 /// approve, reject, withdraw, hold, release, rollback and identify-now.
 void add_operator_commands(CLI::App& app, int& exit_code);

@@ -1,0 +1,77 @@
+#include "storage/backup.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/command.hpp"
+#include "service/cli/file_errors.hpp"
+#include "service/support/progress.hpp"
+#include "service/support/stop_signal.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+struct Arguments {
+  std::string file, copy;
+  storage::BackupOptions options;
+  bool json = false;
+};
+
+void print(const storage::BackupReport& report, bool json) {
+  const std::optional<std::string> newest =
+      report.newest ? std::optional(time_text(*report.newest)) : std::nullopt;
+  if (json) {
+    nlohmann::ordered_json object = {{"copy", report.copy.string()},
+                                     {"bytes", report.bytes},
+                                     {"samples", report.samples},
+                                     {"versions", report.versions},
+                                     {"newest", nullptr}};
+    if (newest) object["newest"] = *newest;
+    fmt::print("{}\n", object.dump());
+    return;
+  }
+  fmt::print("{}: {} bytes, {} samples{}, {} versions of models\n", report.copy.string(),
+             report.bytes, report.samples, newest ? " up to " + *newest : "", report.versions);
+}
+
+int run(const Arguments& arguments) {
+  const StopSignal stop;
+  return refusing_what_cannot_be([&] {
+    storage::Database source(arguments.file, storage::Database::Mode::read_only);
+    Progress bar;
+    const auto report =
+        back_up(source, arguments.copy, arguments.options, [&](const auto& progress) {
+          bar.update(static_cast<double>(progress.done) / static_cast<double>(progress.pages),
+                     fmt::format("{} of {} pages", progress.done, progress.pages));
+          return !stop.token().stop_requested();
+        });
+    bar.clear();
+    if (!report) {
+      fmt::print(stderr, "reident: stopped; nothing of the copy was kept\n");
+      return exit_failed;
+    }
+    print(*report, arguments.json);
+    return exit_done;
+  });
+}
+
+}  // namespace
+
+void add_backup(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("backup", "Copy the database while the service writes it");
+  command->add_option("file", arguments->file, "database of the service")->required();
+  command->add_option("copy", arguments->copy, "file to make")->required();
+  command->add_flag("--replace", arguments->options.replace,
+                    "put the copy in the place of a file that exists");
+  command->add_flag("--json", arguments->json, "one JSON object with what was copied");
+  command->footer(
+      "The copy holds one moment, and takes its name when it is whole and on the disk.\n"
+      "Example:\n  reident backup reident.db /backup/reident-2026-03-01.db");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,16 @@
+// How the commands that care for a database file tell a request that cannot be met from a machine
+// that fails.
+#pragma once
+
+#include <functional>
+
+#include "service/cli/command.hpp"
+#include "storage/database.hpp"
+
+namespace reident::cli {
+
+/// What `work` returns. An Error that names a wrong file, a lock or a permission is refused; a full
+/// disk, damage and what else no other request would mend is thrown on.
+int refusing_what_cannot_be(const std::function<int()>& work);
+
+}  // namespace reident::cli
