@@ -166,7 +166,7 @@ std::optional<BackupReport> back_up(Database& source, const fs::path& named,
   PartialFile partial(copy, permissions_of(source.path()));
 
   Connection& from = *source.impl().connection;
-  const sqlite::Snapshot snapshot(from);
+  const sqlite::ReadTransaction snapshot(from);
   const std::string schema = schema_text(from);
   const std::int64_t pages = number(from, "PRAGMA page_count");
   {
