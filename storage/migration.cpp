@@ -4,13 +4,14 @@
 #include <limits>
 #include <vector>
 
+#include "storage/archive.hpp"
 #include "storage/chunk_store.hpp"
 #include "storage/schema.hpp"
 
 namespace reident::storage {
 namespace {
 
-constexpr std::size_t chunk_samples = 8192;
+constexpr std::size_t chunk_samples = ArchiveOptions().chunk_samples;
 
 void put(ChunkStore& chunks, std::int64_t series, SampleColumns& samples) {
   const std::size_t end = samples.size();
