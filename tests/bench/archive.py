@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).parent / "archive"))
 import end_to_end  # noqa: E402: found in the folder above
 import files  # noqa: E402
 import machine  # noqa: E402
+import sql  # noqa: E402
 from programs import Programs  # noqa: E402
 
 
@@ -43,7 +44,7 @@ def main():
         figures |= files.sizes(programs, folder, arguments.data, scale)
         figures |= end_to_end.measure(programs, folder, scale)
         figures |= files.appends_and_reads(programs, folder, scale)
-        figures |= files.month(programs, folder, scale)
+        figures |= sql.month(programs, folder, scale)
     print(json.dumps(figures))
 
 

@@ -16,7 +16,7 @@ struct AppendOptions {
 };
 
 struct Times {
-  double append = 0, longest = 0;
+  double append = 0, longest = 0, processor = 0;
 };
 
 // The frames of a batch are made before its time begins. Of several spacecraft they alternate.
@@ -30,9 +30,10 @@ Times append_batches(TelemetryStore& store, const MissionTelemetry& telemetry, s
     for (std::size_t i = 0; i < batch.size(); ++i)
       telemetry.fill(first + (done + i) / options.spacecraft.size(),
                      options.spacecraft[(done + i) % options.spacecraft.size()], batch[i]);
-    const double begin = seconds_now();
+    const double begin = seconds_now(), processor = processor_seconds();
     store.append(batch);
     const double took = seconds_now() - begin;
+    times.processor += processor_seconds() - processor;
     times.append += took;
     times.longest = std::max(times.longest, took);
   }
@@ -53,14 +54,16 @@ void run(const AppendOptions& options) {
     store->load(telemetry, first, options.frames);
   else
     times = append_batches(*store, telemetry, first, options);
-  const double appended = seconds_now();
+  const double appended = seconds_now(), processor = processor_seconds();
   if (!options.leave) store->settle();
   store.reset();  // folds the log into the file
   const double end = seconds_now();
+  times.processor += processor_seconds() - processor;
   if (options.load) times.append = appended - begin;
   print({{"samples", options.frames * options.spacecraft.size() * options.parameters},
          {"append_s", times.append},
          {"settle_s", end - appended},
+         {"processor_s", times.processor},
          {"longest_append_ms", times.longest * 1e3},
          {"peak_mib", peak_mib()},
          {"own_mib", own_mib}});

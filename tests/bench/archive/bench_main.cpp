@@ -4,6 +4,7 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <time.h>
 
 #include "tests/bench/archive/modes.hpp"
 
@@ -11,6 +12,12 @@ namespace reident::bench {
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 // getrusage() counts what the process was before exec(), too.
@@ -36,8 +43,8 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the archive, or a plain table of samples", "reident_archive_bench");
   app.require_subcommand(1);
   reident::bench::add_append(app);
+  reident::bench::add_ask(app);
   reident::bench::add_read(app);
-  reident::bench::add_average(app);
   reident::bench::add_size(app);
   reident::bench::add_content(app);
   try {

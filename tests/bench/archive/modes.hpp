@@ -9,12 +9,12 @@
 namespace reident::bench {
 
 void add_append(CLI::App& app);
+void add_ask(CLI::App& app);
 void add_read(CLI::App& app);
-void add_average(CLI::App& app);
 void add_size(CLI::App& app);
 void add_content(CLI::App& app);
 
-/// The kind and the file, which every mode but `size` begins with.
+/// The kind and the file that a mode begins with.
 struct StoreChoice {
   StoreKind kind = StoreKind::archive;
   std::string file;
@@ -30,6 +30,8 @@ struct StoreChoice {
 
 /// Seconds of a clock that only goes forward.
 double seconds_now();
+/// Processor time of this process so far, in seconds.
+double processor_seconds();
 /// Greatest resident memory of this process so far, in MiB.
 double peak_mib();
 void print(const nlohmann::json& result);

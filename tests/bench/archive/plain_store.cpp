@@ -73,16 +73,6 @@ void PlainStore::read(std::uint32_t parameter, storage::TimeRange range,
   sqlite3_reset(statement);
 }
 
-double PlainStore::average(std::uint32_t parameter, storage::TimeRange range) const {
-  const SqliteStatement query = prepare(
-      handle_, "SELECT avg(value) FROM sample WHERE parameter = ? AND time >= ? AND time < ?");
-  sqlite3_bind_int64(query.get(), 1, parameter);
-  sqlite3_bind_int64(query.get(), 2, range.begin);
-  sqlite3_bind_int64(query.get(), 3, range.end);
-  check(handle_.get(), sqlite3_step(query.get()));
-  return sqlite3_column_double(query.get(), 0);
-}
-
 // That of the first parameter: all are sampled together.
 std::optional<storage::TimeRange> PlainStore::extent() const {
   const auto end = [&](const std::string& which) {

@@ -17,7 +17,6 @@ class PlainStore : public TelemetryStore {
   void load(const MissionTelemetry& telemetry, std::uint64_t first, std::uint64_t count) override;
   void read(std::uint32_t parameter, storage::TimeRange range,
             storage::Series& series) const override;
-  double average(std::uint32_t parameter, storage::TimeRange range) const override;
   std::optional<storage::TimeRange> extent() const override;
 
  private:

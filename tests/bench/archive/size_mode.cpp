@@ -11,33 +11,38 @@ namespace {
 
 struct SizeOptions {
   std::string folder;
-  std::string csv;
+  std::vector<std::string> csv;
   std::int64_t reference_s = 0;
   std::size_t batch = 512;
 };
 
-std::unique_ptr<satcs::FrameSource> source_of(const SizeOptions& options) {
-  if (!options.csv.empty()) {
+std::vector<std::unique_ptr<satcs::FrameSource>> sources_of(const SizeOptions& options) {
+  std::vector<std::unique_ptr<satcs::FrameSource>> sources;
+  for (const std::string& file : options.csv) {
     satcs::ReplayOptions replay;
-    replay.file = options.csv;
+    replay.file = file;
     auto plan = satcs::plan_replay(replay);
     if (const auto* error = std::get_if<csv::Error>(&plan))
       throw std::runtime_error(error->message);
-    return std::make_unique<satcs::ReplaySource>(std::get<satcs::ReplayPlan>(std::move(plan)));
+    sources.push_back(
+        std::make_unique<satcs::ReplaySource>(std::get<satcs::ReplayPlan>(std::move(plan))));
   }
-  satcs::ReferenceOptions reference;
-  reference.duration_ns = options.reference_s * 1'000'000'000;
-  return std::make_unique<satcs::ReferenceSource>(reference);
+  if (options.reference_s > 0) {
+    satcs::ReferenceOptions reference;
+    reference.duration_ns = options.reference_s * 1'000'000'000;
+    sources.push_back(std::make_unique<satcs::ReferenceSource>(reference));
+  }
+  return sources;
 }
 
-/// All of the source in one file of each kind; returns how many samples there were.
+/// All of the source in both files; returns how many samples there were.
 std::uint64_t store_all(satcs::FrameSource& source, TelemetryStore& archive, TelemetryStore& plain,
-                        std::size_t batch_frames) {
+                        std::size_t batch_frames, std::uint64_t& sequence) {
   auto descriptors = source.parameters();
   for (auto& descriptor : descriptors) descriptor.spacecraft = mission;
   archive.describe(descriptors);
   std::vector<storage::TelemetryFrame> batch;
-  std::uint64_t samples = 0, sequence = 0;
+  std::uint64_t samples = 0;
   bool more = true;
   while (more) {
     batch.resize(batch_frames);
@@ -57,19 +62,19 @@ std::uint64_t store_all(satcs::FrameSource& source, TelemetryStore& archive, Tel
     archive.append(batch);
     plain.append(batch);
   }
-  archive.settle();
   return samples;
 }
 
 void run(const SizeOptions& options) {
   const std::filesystem::path folder(options.folder);
   const auto archive_file = folder / "size-archive.db", plain_file = folder / "size-plain.db";
-  const auto source = source_of(options);
-  std::uint64_t samples = 0;
+  std::uint64_t samples = 0, sequence = 0;
   {
     const auto archive = open_store(StoreKind::archive, archive_file, Access::write);
     const auto plain = open_store(StoreKind::plain, plain_file, Access::write);
-    samples = store_all(*source, *archive, *plain, options.batch);
+    for (const auto& source : sources_of(options))
+      samples += store_all(*source, *archive, *plain, options.batch, sequence);
+    archive->settle();
   }
   const auto archive_bytes = bytes_in_use(archive_file), plain_bytes = bytes_in_use(plain_file);
   for (const auto& file : {archive_file, plain_file}) std::filesystem::remove(file);
@@ -82,7 +87,7 @@ void add_size(CLI::App& app) {
   auto options = std::make_shared<SizeOptions>();
   CLI::App* mode = app.add_subcommand("size", "Bytes in use of files with the same telemetry");
   mode->add_option("folder", options->folder, "For the files")->required();
-  mode->add_option("--csv", options->csv, "All columns of a file of recorded telemetry");
+  mode->add_option("--csv", options->csv, "All columns of files of recorded telemetry");
   mode->add_option("--reference", options->reference_s, "Or so many seconds of the reference");
   mode->callback([options] { run(*options); });
 }

@@ -26,8 +26,6 @@ class TelemetryStore {
                     std::uint64_t count) = 0;
   virtual void read(std::uint32_t parameter, storage::TimeRange range,
                     storage::Series& series) const = 0;
-  /// Average over a stretch of one parameter, by SQL.
-  virtual double average(std::uint32_t parameter, storage::TimeRange range) const = 0;
   /// Absent for an empty one.
   virtual std::optional<storage::TimeRange> extent() const = 0;
 };
@@ -35,16 +33,14 @@ class TelemetryStore {
 enum class StoreKind { archive, plain };
 enum class Access { read, write };
 
-/// The spacecraft whose samples `read`, `average` and `extent` mean. The plain table has no column
+/// The spacecraft whose samples `read` and `extent` mean. The plain table has no column
 /// for it.
 inline const std::string mission = "MISSION";
 
-/// Creates the file where it does not exist. `extension` is SQLite's loadable module that shows the
-/// samples of an archive as a table; without one the archive has no average(). Both kinds have the
-/// same page size, log, checkpoints, cache and durability: what storage/database.cpp sets.
+/// Creates the file where it does not exist. Both kinds have the same page size, log, checkpoints,
+/// cache and durability: what storage/database.cpp sets.
 std::unique_ptr<TelemetryStore> open_store(StoreKind kind, const std::filesystem::path& file,
-                                           Access access,
-                                           const std::filesystem::path& extension = {});
+                                           Access access);
 
 /// Bytes of the pages that hold something: all tables and indexes, and nothing that was freed.
 std::int64_t bytes_in_use(const std::filesystem::path& file);
