@@ -44,7 +44,14 @@ void RecentTier::load_runs() {
       const std::int64_t batch = row.integer(0);
       last_batch_ = std::max(last_batch_, batch);
       ++rows_[batch];
-      SeriesHead& head = series_.at(row.integer(1));
+      const auto known = series_.find(row.integer(1));
+      if (known == series_.end())
+        throw Error(Error::Kind::corrupt,
+                    "database " + connection_.path() + " has recent samples of series " +
+                        std::to_string(row.integer(1)) +
+                        ", which it does not know; restore a backup, or save what can be read "
+                        "with 'sqlite3 FILE .recover'");
+      SeriesHead& head = known->second;
       if (batch <= head.moved) continue;
       SeriesHead::Run run{batch, {}};
       if (const auto error = decode_run(row.bytes(5), all_times, run.samples.target())) {

@@ -132,7 +132,11 @@ std::optional<Time> SeriesReader::last_at_or_before(std::int64_t series, Time ti
     found = std::max(found.value_or(earliest), known);
   });
   if (!found) return std::nullopt;
-  return read(series, from_to(*found, time), {false, false, false}).time.back();
+  const SampleColumns samples = read(series, from_to(*found, time), {false, false, false});
+  if (samples.empty())
+    throw damage(connection_, {series, *found, time, 0},
+                 {ChunkError::Kind::damaged, "holds other samples than its row says"});
+  return samples.time.back();
 }
 
 }  // namespace reident::storage

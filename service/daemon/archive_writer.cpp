@@ -74,6 +74,8 @@ void ArchiveWriter::commit(const std::vector<storage::TelemetryFrame>& frames,
   }
   if (frames.empty()) return;
   const storage::AppendReport report = archive_.append(frames);
+  for (const std::string& damage : report.damages)
+    log::error("archive", "set damaged samples aside", {{"error", damage}});
   std::uint64_t missing = 0;
   for (const storage::SourceCounts& source : archive_.sources()) missing += source.missing;
   {
@@ -83,6 +85,7 @@ void ArchiveWriter::commit(const std::vector<storage::TelemetryFrame>& frames,
     counts_.conflicts += report.conflicts;
     counts_.late += report.late;
     counts_.sequence_missing = missing;
+    if (!report.damages.empty()) counts_.last_damage = report.damages.back();
   }
   listener_.stored(frames, report);
 }
@@ -105,7 +108,6 @@ void ArchiveWriter::store(std::vector<TelemetryEvent>&& batch, const std::atomic
       counts_.last_error.clear();
       return;
     } catch (const storage::Error& error) {
-      if (error.kind() == storage::Error::Kind::corrupt) throw;
       MutexLock lock(mutex_);
       if (counts_.last_error.empty())
         log::error("archive", "cannot store telemetry; it is kept and tried again each second",

@@ -41,10 +41,10 @@ class ArchiveWriter {
   ArchiveWriter(storage::Database&& database, BoundedQueue<TelemetryEvent>& queue,
                 std::size_t batch_frames, Duration batch_delay, ArchiveListener& listener);
 
-  /// The thread's body: until the queue is closed and drained. While the disk refuses a batch
-  /// (full, read-only, I/O error) it is kept and tried again each second, and the queue's bound
-  /// holds the sources back; `give_up` ends that, and the frames that then stay behind are counted
-  /// in lost(). Throws storage::Error for a damaged file.
+  /// The thread's body: until the queue is closed and drained. While a batch cannot be stored (no
+  /// room, an I/O error, a file that was taken away or is damaged) it is kept and tried again each
+  /// second, and the queue's bound holds the sources back; `give_up` ends that, and the frames that
+  /// then stay behind are counted in lost().
   void run(const std::atomic<bool>& give_up);
 
   /// Runs `task` on the writer's thread before the next batch; the future holds its exception. A
@@ -59,6 +59,7 @@ class ArchiveWriter {
     std::uint64_t lost = 0;              // frames given up at the end
     std::uint64_t sequence_missing = 0;  // of all sources, since the archive was made
     std::string last_error;              // empty when the last batch was stored
+    std::string last_damage;             // what the archive set aside last since the start
   };
   Counts counts() const;
   /// Events queued or taken from the queue and not yet committed.

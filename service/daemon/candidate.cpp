@@ -214,6 +214,11 @@ KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& 
   return {request_of(spacecraft, equipment), block_rows_needed(options_of(equipment))};
 }
 
+void refuse_damaged(PreparedWindow& prepared, const storage::Error& error) {
+  prepared.candidate.reset();
+  refuse(prepared, name(Outcome::telemetry_damaged), error.what());
+}
+
 PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
                               KeptWindow& kept, const identification::ForEach& for_each,
                               const std::function<bool()>& stop) {
@@ -226,7 +231,15 @@ PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequ
   prepared.attempt.program_version = program_version();
   prepared.loaded = kept.request();
   prepared.timer.begin("load");
-  auto outcome = kept.load(archive, request.window);
+  std::variant<WindowData, UnknownParameter> outcome = UnknownParameter{};
+  try {
+    outcome = kept.load(archive, request.window);
+  } catch (const storage::Error& error) {
+    if (error.kind() != storage::Error::Kind::corrupt) throw;
+    refuse_damaged(prepared, error);
+    prepared.timer.end();
+    return prepared;
+  }
   if (const auto* unknown = std::get_if<UnknownParameter>(&outcome)) {
     refuse(prepared, name(Outcome::unknown_parameter),
            fmt::format("Parameter {} has not been described by telemetry yet; check its name in "

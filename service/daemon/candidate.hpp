@@ -53,6 +53,9 @@ struct PreparedWindow {
   PhaseTimer timer;
 };
 
+/// Gives the attempt the verdict that telemetry which it needs is damaged, and no candidate.
+void refuse_damaged(PreparedWindow& prepared, const storage::Error& error);
+
 /// Thrown when `stop` answered true; nothing was decided.
 class Stopped : public std::exception {};
 

@@ -69,7 +69,12 @@ identification::Matrix ChampionMonitor::run(const identification::Record& record
 std::optional<double> ChampionMonitor::log_error(const storage::Archive& archive,
                                                  storage::TimeRange block) {
   const WindowRequest request = request_of(model_);
-  const auto loaded = load_window(archive, request, block);
+  std::variant<WindowData, UnknownParameter> loaded = UnknownParameter{};
+  try {
+    loaded = load_window(archive, request, block);
+  } catch (const storage::Error& error) {
+    if (error.kind() != storage::Error::Kind::corrupt) throw;
+  }
   const auto* data = std::get_if<WindowData>(&loaded);
   if (!data) return std::nullopt;
   const identification::Record& record = data->record;

@@ -37,7 +37,7 @@ class ChampionMonitor {
  private:
   void watch(const storage::Archive& archive, const storage::Version& version);
   /// Runs the champion over a block. Logarithm of its error there; absent where telemetry covers
-  /// less than half of it.
+  /// less than half of it or is damaged.
   std::optional<double> log_error(const storage::Archive& archive, storage::TimeRange block);
   /// Outputs over a segment, from where the run is or, after a gap, anew.
   identification::Matrix run(const identification::Record& record,

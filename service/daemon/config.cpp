@@ -87,6 +87,8 @@ void read_archive(const toml::table& table, ConfigDocument& document, Config& co
       reader.mistake("database", "database must be the path of a file, such as \"reident.db\"");
     config.database = *path;
   }
+  read_choice(reader, "durability", config.durability,
+              {{"power_cut", storage::Durability::power_cut}, {"kill", storage::Durability::kill}});
   assign(config.batch_frames, reader.integer("batch_frames", 1, 1'000'000));
   assign(config.batch_delay, reader.duration("batch_delay", millisecond, minute));
   reader.refuse_unknown_keys();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "service/model/derived_inputs.hpp"
+#include "storage/database.hpp"
 
 namespace reident {
 
@@ -54,6 +55,7 @@ struct SpacecraftConfig {
 struct Config {
   std::string service_name = "reident";
   std::filesystem::path database;
+  storage::Durability durability = storage::Durability::power_cut;
   std::uint32_t domain = 0;
   std::string partition = "operations";
   std::size_t queue_frames = 8192;  // bound of the queue between DDS and the archive

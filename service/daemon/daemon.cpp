@@ -3,6 +3,7 @@
 #include <chrono>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "service/daemon/commands.hpp"
 #include "service/support/log.hpp"
@@ -18,7 +19,7 @@ storage::Database open_for_writing(const Config& config) {
   const auto deadline = std::chrono::steady_clock::now() + 1s;
   while (true) {
     try {
-      return {config.database, storage::Database::Mode::read_write};
+      return {config.database, storage::Database::Mode::read_write, config.durability};
     } catch (const storage::Error& error) {
       if (error.kind() != storage::Error::Kind::locked ||
           std::chrono::steady_clock::now() >= deadline)
@@ -119,14 +120,17 @@ void Daemon::identify_windows() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Archive archive(database);
   const storage::Registry registry(database);
+  std::string last_error;  // said once, not at each try
   while (const auto job = feed_.next()) {
     bool completed = false;
     try {
       completed = identify(*job, archive, registry);
+      last_error.clear();
     } catch (const storage::Error& error) {
-      log::error(
-          "identify", "window put off",
-          {{"equipment", *job->spacecraft + "/" + job->equipment->name}, {"error", error.what()}});
+      if (error.what() != std::exchange(last_error, error.what()))
+        log::error("identify", "window put off; it is tried again",
+                   {{"equipment", *job->spacecraft + "/" + job->equipment->name},
+                    {"error", error.what()}});
     }
     feed_.finished(*job, completed);
     if (completed)
@@ -234,13 +238,20 @@ void Daemon::watch_champions() {
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       watched.push_back({&spacecraft.name, &equipment, {spacecraft.name, equipment.name}});
   std::uint64_t seen = 0;
+  std::string last_error;  // said once, not at each look
   while (feed_.wait_for_telemetry(seen))
     for (std::size_t i = 0; i < watched.size() && !stopping_; ++i) {
       const storage::Time reached = feed_.reached(i);
       if (reached == INT64_MIN) continue;  // none of its telemetry has come
       auto& [spacecraft, equipment, monitor] = watched[i];
-      const auto drift =
-          monitor.look(archive, registry, reached - config_.settle, equipment->window);
+      std::optional<ChampionMonitor::Drift> drift;
+      try {
+        drift = monitor.look(archive, registry, reached - config_.settle, equipment->window);
+      } catch (const storage::Error& error) {
+        if (error.what() != std::exchange(last_error, error.what()))
+          log::error("monitor", "the champion cannot be looked at; it is tried again",
+                     {{"equipment", *spacecraft + "/" + equipment->name}, {"error", error.what()}});
+      }
       if (!drift) continue;
       feed_.ask(*spacecraft, equipment->name, "drift", drift->end);
       log::warning("monitor", "the champion drifts; its equipment is identified anew",
@@ -272,7 +283,7 @@ void Daemon::heartbeat() {
   status.attempts = attempts_;
   status.approvals = approvals_;
   status.newest_telemetry = feed_.newest_telemetry();
-  status.last_error = stored.last_error;
+  status.last_error = stored.last_error.empty() ? stored.last_damage : stored.last_error;
   publisher_.status(status);
 }
 

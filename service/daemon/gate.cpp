@@ -23,6 +23,7 @@ constexpr std::array names{
     std::pair{Outcome::waiting, std::string_view("waiting")},
     std::pair{Outcome::held, std::string_view("held")},
     std::pair{Outcome::unknown_parameter, std::string_view("unknown_parameter")},
+    std::pair{Outcome::telemetry_damaged, std::string_view("telemetry_damaged")},
     std::pair{Outcome::low_coverage, std::string_view("low_coverage")},
     std::pair{Outcome::validation_says_nothing, std::string_view("validation_says_nothing")},
     std::pair{Outcome::not_finite, std::string_view("not_finite")},

@@ -20,6 +20,7 @@ enum class Outcome {
   waiting,            // good enough; the policy leaves the decision to an operator
   held,               // good enough; an operator holds the equipment's version
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
+  telemetry_damaged,  // samples that the attempt needs cannot be decoded any more
   low_coverage,
   validation_says_nothing,
   not_finite,

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <mutex>
@@ -52,6 +53,7 @@ int serve(const reident::Config& config, const reident::StopSignal& signal) {
 
 int main(int argc, char** argv) {
   reident::keep_freed_memory();
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond a file size limit a write fails, as on a full disk
   const reident::StopSignal signal;
   CLI::App app(
       "Identifies the equipment models of a satellite simulator again and again from telemetry,\n"

@@ -121,7 +121,14 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
   RefreshResult result;
   prepared.timer.begin("judge");
   if (prepared.candidate) {
-    result.evidence = evidence_of(archive, registry, request, prepared);
+    try {
+      result.evidence = evidence_of(archive, registry, request, prepared);
+    } catch (const storage::Error& error) {  // the champion is run on telemetry of its own
+      if (error.kind() != storage::Error::Kind::corrupt) throw;
+      refuse_damaged(prepared, error);
+    }
+  }
+  if (prepared.candidate) {
     describe(result.evidence, prepared.evidence);
     prepared.evidence["limits"] = limits_json(request.equipment);
     if (!result.evidence.baseline && request.equipment.baseline_mrse_percent)

@@ -7,6 +7,7 @@
 
 #include "service/daemon/window_data.hpp"
 #include "service/support/floor_divide.hpp"
+#include "service/support/log.hpp"
 
 namespace reident {
 namespace {
@@ -62,12 +63,26 @@ const WindowFeed::EquipmentIds* WindowFeed::members(const std::string& spacecraf
 void WindowFeed::touch_stored(std::size_t equipment, const std::string& spacecraft,
                               std::uint32_t parameter, storage::TimeRange range,
                               const storage::Archive& archive) {
+  try {
+    touch_each_slide(equipment, spacecraft, parameter, range, archive);
+  } catch (const storage::Error& error) {
+    log::error("windows", "stored telemetry cannot be looked at; windows of it may not be tried",
+               {{"equipment", spacecraft + "/" + equipment_[equipment].config->name},
+                {"error", error.what()}});
+  }
+}
+
+void WindowFeed::touch_each_slide(std::size_t equipment, const std::string& spacecraft,
+                                  std::uint32_t parameter, storage::TimeRange range,
+                                  const storage::Archive& archive) {
   const storage::Time now = clock_();
   const Duration slide = equipment_[equipment].config->slide;
   const auto last = archive.last_at_or_before(spacecraft, storage::Origin::real, parameter,
                                               std::min(range.end - 1, now + max_clock_lead_));
   if (!last) return;
   scheduler_.reached(equipment, *last);
+  // First, because what lies before may be damaged.
+  if (*last >= range.begin) scheduler_.touched(equipment, *last, now);
   newest_ = std::max(newest_, *last);
   for (auto time = range.begin; time <= *last;) {
     const auto sample =

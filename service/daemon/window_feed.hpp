@@ -87,10 +87,14 @@ class WindowFeed : public ArchiveListener {
   /// stored before it was described.
   void join(const storage::ParameterDescriptor& descriptor, const storage::Archive& archive)
       REIDENT_REQUIRES(mutex_);
-  /// Touches each stretch of `slide` in `range` that holds a stored sample of the parameter.
+  /// Touches each stretch of `slide` in `range` that holds a stored sample of the parameter. Where
+  /// the archive cannot be read the log says so: neither start nor ingest depends on it.
   void touch_stored(std::size_t equipment, const std::string& spacecraft, std::uint32_t parameter,
                     storage::TimeRange range, const storage::Archive& archive)
       REIDENT_REQUIRES(mutex_);
+  void touch_each_slide(std::size_t equipment, const std::string& spacecraft,
+                        std::uint32_t parameter, storage::TimeRange range,
+                        const storage::Archive& archive) REIDENT_REQUIRES(mutex_);
   /// Remembers in few ranges, which may cover more than was stored.
   static void remember(std::vector<storage::TimeRange>& changed, storage::TimeRange range);
   bool is_jump(storage::Time time, storage::Time now) const {

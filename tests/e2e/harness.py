@@ -36,14 +36,15 @@ def wait_until(condition, what, deadline_s=DEADLINE_S):
 class Process:
     """A program under test; its output is in files, so that no pipe can fill."""
 
-    def __init__(self, folder, name, arguments):
+    def __init__(self, folder, name, arguments, user=None):
         self.log = folder / f"{name}.log"
         self.out = folder / f"{name}.out"
         environment = {key: value for key, value in os.environ.items() if key != "CYCLONEDDS_URI"}
         with open(self.log, "ab") as log, open(self.out, "ab") as out:
             self.process = subprocess.Popen(
                 [str(BIN / arguments[0]), *map(str, arguments[1:])], stdin=subprocess.DEVNULL,
-                stdout=out, stderr=log, env=environment, start_new_session=True)
+                stdout=out, stderr=log, env=environment, start_new_session=True, user=user,
+                group=user)
 
     def text(self):
         return self.out.read_text() + self.log.read_text()
@@ -92,9 +93,9 @@ class EndToEnd(unittest.TestCase):
 
     # -- programs
 
-    def start(self, *arguments, name=None):
+    def start(self, *arguments, name=None, user=None):
         name = name or f"{arguments[0]}-{len(self.processes)}"
-        process = Process(self.folder, name, arguments)
+        process = Process(self.folder, name, arguments, user)
         self.processes.append(process)
         return process
 
@@ -127,8 +128,8 @@ class EndToEnd(unittest.TestCase):
         path.write_text("\n".join(lines) + "\n")
         return path
 
-    def start_daemon(self):
-        daemon = self.start("reidentd", "--config", self.folder / "reident.toml")
+    def start_daemon(self, user=None):
+        daemon = self.start("reidentd", "--config", self.folder / "reident.toml", user=user)
         wait_until(lambda: "service: started" in daemon.text() or not daemon.running(),
                    "reidentd has started")
         self.assertTrue(daemon.running(), daemon.text())
