@@ -21,11 +21,11 @@ std::size_t QueuedBytes<TelemetryEvent>::operator()(const TelemetryEvent& event)
          (frame ? frame->samples.capacity() * sizeof(storage::Sample) : std::size_t{0});
 }
 
-ArchiveWriter::ArchiveWriter(storage::Database&& database, BoundedQueue<TelemetryEvent>& queue,
-                             std::size_t batch_frames, Duration batch_delay,
-                             ArchiveListener& listener)
+ArchiveWriter::ArchiveWriter(storage::Database&& database, const storage::ArchiveOptions& options,
+                             BoundedQueue<TelemetryEvent>& queue, std::size_t batch_frames,
+                             Duration batch_delay, ArchiveListener& listener)
     : database_(std::move(database)),
-      archive_(database_),
+      archive_(database_, options),
       registry_(database_),
       queue_(queue),
       batch_frames_(batch_frames),

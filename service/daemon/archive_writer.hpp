@@ -38,8 +38,9 @@ class ArchiveListener {
 class ArchiveWriter {
  public:
   /// The queue and the listener must outlive the writer.
-  ArchiveWriter(storage::Database&& database, BoundedQueue<TelemetryEvent>& queue,
-                std::size_t batch_frames, Duration batch_delay, ArchiveListener& listener);
+  ArchiveWriter(storage::Database&& database, const storage::ArchiveOptions& options,
+                BoundedQueue<TelemetryEvent>& queue, std::size_t batch_frames, Duration batch_delay,
+                ArchiveListener& listener);
 
   /// The thread's body: until the queue is closed and drained. While a batch cannot be stored (no
   /// room, an I/O error, a file that was taken away or is damaged) it is kept and tried again each

@@ -90,6 +90,7 @@ void read_archive(const toml::table& table, ConfigDocument& document, Config& co
   read_choice(reader, "durability", config.durability,
               {{"power_cut", storage::Durability::power_cut}, {"kill", storage::Durability::kill}});
   assign(config.batch_frames, reader.integer("batch_frames", 1, 1'000'000));
+  assign(config.recent_samples, reader.integer("recent_samples", 10'000, 100'000'000));
   assign(config.batch_delay, reader.duration("batch_delay", millisecond, minute));
   reader.refuse_unknown_keys();
 }

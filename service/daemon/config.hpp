@@ -58,10 +58,11 @@ struct Config {
   storage::Durability durability = storage::Durability::power_cut;
   std::uint32_t domain = 0;
   std::string partition = "operations";
-  std::size_t queue_frames = 8192;  // bound of the queue between DDS and the archive
-  std::size_t queue_mib = 64;       // its bound in memory, and that of the batch in hand
-  std::size_t batch_frames = 512;   // frames of one transaction, at most
-  Duration batch_delay = 0;         // a started batch is committed after this; default 100ms
+  std::size_t queue_frames = 8192;         // bound of the queue between DDS and the archive
+  std::size_t queue_mib = 64;              // its bound in memory, and that of the batch in hand
+  std::size_t batch_frames = 512;          // frames of one transaction, at most
+  std::size_t recent_samples = 1'000'000;  // that wait for chunks, in memory too
+  Duration batch_delay = 0;                // a started batch is committed after this; default 100ms
   std::size_t max_frame_samples = 65536;
   Duration max_clock_lead = 0;  // generation times further ahead of this clock are jumps; 1h
   Duration settle = 0;          // a window waits this long for stragglers; default 1s

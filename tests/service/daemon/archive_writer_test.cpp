@@ -66,7 +66,7 @@ class Writer : public DaemonTest {
   BoundedQueue<TelemetryEvent> queue{64};
   Listener listener;
   std::atomic<bool> give_up = false;
-  ArchiveWriter writer{open(), queue, 16, 5'000'000, listener};
+  ArchiveWriter writer{open(), {}, queue, 16, 5'000'000, listener};
   std::thread thread;
 };
 

@@ -83,6 +83,7 @@ workers = 4
 database = "/var/lib/archive.db"
 batch_frames = 100
 batch_delay = "250ms"
+recent_samples = 50000
 [dds]
 domain = 42
 partition = "training"
@@ -130,6 +131,7 @@ horizon = "auto"
   EXPECT_EQ(config.database, "/var/lib/archive.db");
   EXPECT_EQ(config.batch_frames, 100u);
   EXPECT_EQ(config.batch_delay, 250 * ms);
+  EXPECT_EQ(config.recent_samples, 50000u);
   EXPECT_EQ(config.domain, 42u);
   EXPECT_EQ(config.partition, "training");
   EXPECT_EQ(config.queue_frames, 64u);
