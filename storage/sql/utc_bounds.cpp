@@ -1,0 +1,25 @@
+#include "storage/sql/utc_bounds.hpp"
+
+#include <limits>
+#include <numeric>
+
+#include "storage/utc_text.hpp"
+
+namespace reident::storage::sql {
+
+std::optional<Time> first_time_from(std::string_view text) {
+  Time low = std::numeric_limits<Time>::min();  // the answer is in [low, high]
+  Time high = std::numeric_limits<Time>::max();
+  if (utc_text(high) < text) return std::nullopt;
+  while (low < high) {
+    const Time middle = std::midpoint(low, high);
+    if (utc_text(middle) < text) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+}  // namespace reident::storage::sql

@@ -1,0 +1,28 @@
+// A plain user of SQLite who loaded the extension.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <sqlite3.h>
+
+namespace reident::storage::testing {
+
+class SqlUser {
+ public:
+  /// Opens for reading and writing: temporary tables aside, nothing here writes.
+  explicit SqlUser(const std::filesystem::path& database);
+
+  /// One string a row, columns separated by '|', doubles with all their digits. An error is the
+  /// last string: "error CODE: message".
+  std::vector<std::string> ask(const std::string& sql) const;
+
+  sqlite3* handle() const { return handle_.get(); }
+
+ private:
+  std::unique_ptr<sqlite3, decltype(&sqlite3_close)> handle_{nullptr, &sqlite3_close};
+};
+
+}  // namespace reident::storage::testing
