@@ -12,7 +12,6 @@ import os
 import random
 import re
 import signal
-import sqlite3
 import statistics
 import subprocess
 import sys
@@ -30,11 +29,12 @@ def read_samples(path):
                 for row in rows for name, cell in zip(header[1:], row[1:])}
 
 
-def archived(database):
-    connection = sqlite3.connect(f"file:{database}?mode=ro", uri=True)
-    return {(name, at): value for name, at, value in connection.execute(
-        "SELECT parameter, time, value FROM telemetry WHERE quality = 'good'")}
-
+def archived(programs, database):
+    query = programs.parent / "tests/support/query"
+    lines = subprocess.run(
+        [query, database, "SELECT parameter, time, value FROM telemetry WHERE quality = 'good'"],
+        stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
+    return {(name, at): value for name, at, value in map(json.loads, lines)}
 
 
 def table(attempts):
@@ -108,7 +108,7 @@ def main():
                 child.send_signal(signal.SIGTERM)
             for child in children:
                 child.wait()
-        same = archived(folder / "bupt1.db") == expected
+        same = archived(programs, folder / "bupt1.db") == expected
         adopted = [json.loads(line) for line in (folder / "simulator.out").read_text().splitlines()
                    if '"adopted"' in line]
         print(f"{frames} frames replayed in {replay_s:.1f} s; archive "

@@ -1,0 +1,66 @@
+// query DATABASE SQL: the rows as a plain user who loaded the extension gets them, each a JSON
+// array on a line of its own. For tests whose language may not be allowed to load extensions.
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/storage/sql_user.hpp"
+
+namespace {
+
+std::string json_of(sqlite3_stmt* statement, int column) {
+  switch (sqlite3_column_type(statement, column)) {
+    case SQLITE_NULL:
+      return "null";
+    case SQLITE_INTEGER:
+      return std::to_string(sqlite3_column_int64(statement, column));
+    case SQLITE_FLOAT: {
+      const double value = sqlite3_column_double(statement, column);
+      if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";  // as Python reads it
+      char text[40];
+      std::snprintf(text, sizeof text, "%.17g", value);
+      return std::string(text).find_first_of(".e") == std::string::npos ? text + std::string(".0")
+                                                                        : text;
+    }
+    default:
+      return nlohmann::json(reinterpret_cast<const char*>(sqlite3_column_text(statement, column)))
+          .dump();
+  }
+}
+
+int print_rows(const reident::storage::testing::SqlUser& user, const char* sql) {
+  sqlite3_stmt* prepared = nullptr;
+  int code = sqlite3_prepare_v2(user.handle(), sql, -1, &prepared, nullptr);
+  const std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)> statement(prepared,
+                                                                             &sqlite3_finalize);
+  while (code == SQLITE_OK || code == SQLITE_ROW) {
+    code = sqlite3_step(prepared);
+    if (code != SQLITE_ROW) break;
+    std::string row;
+    for (int i = 0; i < sqlite3_column_count(prepared); ++i)
+      row += (i > 0 ? ", " : "") + json_of(prepared, i);
+    std::cout << '[' << row << "]\n";
+  }
+  if (code == SQLITE_DONE) return 0;
+  std::cerr << "query: " << sqlite3_errmsg(user.handle()) << '\n';
+  return 1;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 3) {
+    std::cerr << "usage: query DATABASE SQL\n";
+    return 2;
+  }
+  try {
+    return print_rows(reident::storage::testing::SqlUser(arguments[1]), arguments[2]);
+  } catch (const std::exception& error) {
+    std::cerr << "query: " << error.what() << '\n';
+    return 1;
+  }
+}
