@@ -11,6 +11,9 @@
 namespace reident::storage {
 namespace {
 
+// Of one series in one batch: frames may be many and of many series with a sample each.
+constexpr std::size_t reserved_arrivals = 4096;
+
 bool same_value(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
          (std::isnan(a) && std::isnan(b));
@@ -65,7 +68,7 @@ std::size_t Append::series_of(Stream& stream, const TelemetryFrame& frame, std::
   const auto [found, is_new] = stream.index.try_emplace(parameter, series_.size());
   if (is_new) {
     series_.push_back({.first_frame = &frame, .parameter = parameter});
-    series_.back().arrivals.reserve(frames_.size());
+    series_.back().arrivals.reserve(std::min(frames_.size(), reserved_arrivals));
   }
   if (stream.last.size() <= position) stream.last.resize(position + 1);
   stream.last[position] = {parameter, found->second};
@@ -90,7 +93,6 @@ std::size_t Append::source_of(const TelemetryFrame& frame) {
          {&source.frames, &source.samples, &source.duplicates, &source.conflicts, &source.late,
           &source.non_finite, &tracker.out_of_order, &tracker.restarts, &tracker.missing})
       *count = row.integer<std::uint64_t>(++column);
-    tracker.started = true;
     tracker.lowest = {from_column(row.integer(10)), row.integer(11)};
     tracker.highest = {from_column(row.integer(12)), row.integer(13)};
   } else {
@@ -269,6 +271,7 @@ void Append::track_sequences() {
   for (std::size_t f = 0; f < frames_.size(); ++f) {
     Source& source = sources_[frame_source_[f]];
     ++source.frames;
+    if (!frames_[f].numbered) continue;
     source.tracker.observe(connection_, {frames_[f].sequence, frames_[f].generation_time},
                            frame_is_new_[f] != 0);
   }

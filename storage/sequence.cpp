@@ -34,8 +34,7 @@ bool SequenceTracker::fill_gap(sqlite::Connection& connection, Mark frame) {
 }
 
 void SequenceTracker::observe(sqlite::Connection& connection, Mark frame, bool brings_new) {
-  if (!started) {
-    started = true;
+  if (lowest.sequence > highest.sequence) {
     lowest = highest = frame;
     return;
   }

@@ -32,8 +32,8 @@ class SequenceTracker {
   };
 
   std::int64_t source = 0;  // id in the table
-  bool started = false;
-  Mark lowest, highest;  // of the current run
+  // Of the current run. The lowest is above the highest until a frame with a number has come.
+  Mark lowest{1, 0}, highest{0, 0};
   std::uint64_t out_of_order = 0;
   std::uint64_t restarts = 0;  // also the number of the current run
   std::uint64_t missing = 0;   // modulo 2^64; exact below that

@@ -43,6 +43,7 @@ struct TelemetryFrame {
   Time generation_time = 0;    // on board
   Time reception_time = 0;     // on the ground
   std::vector<Sample> samples;
+  bool numbered = true;  // false: it has no sequence number, as one that comes from a file
 };
 
 enum class ParameterKind : std::uint8_t { analog = 0, digital = 1 };
