@@ -41,15 +41,22 @@ std::optional<ChunkRow> ChunkStore::after(std::int64_t series, Time time) {
   return one("> ? ORDER BY first_time", series, time);
 }
 
+// Chunks do not overlap: a time between the first and the last of one is in no other.
+bool ChunkStore::has_decoded(std::int64_t series, Time time) const {
+  return looked_into_ != 0 && decoded_series_ == series && decoded_.time.front() <= time &&
+         time <= decoded_.time.back();
+}
+
 std::optional<Held> ChunkStore::find(std::int64_t series, Time time) {
-  const std::optional<ChunkRow> row = at_or_before(series, time);
-  if (!row || row->last < time) return std::nullopt;
-  if (looked_into_ != row->data) {
+  if (!has_decoded(series, time)) {
+    const std::optional<ChunkRow> row = at_or_before(series, time);
+    if (!row || row->last < time) return std::nullopt;
     looked_into_ = 0;
     decoded_ = {};
     take(*row, decoded_);
     if (decoded_.empty()) return std::nullopt;
     looked_into_ = row->data;
+    decoded_series_ = series;
   }
   const auto found = std::lower_bound(decoded_.time.begin(), decoded_.time.end(), time);
   if (found == decoded_.time.end() || *found != time) return std::nullopt;

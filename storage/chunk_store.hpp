@@ -53,12 +53,14 @@ class ChunkStore {
   Sampling insert(std::int64_t series, const SampleColumns& samples, std::size_t begin,
                   std::size_t end);
   void remove(const ChunkRow& row);
+  bool has_decoded(std::int64_t series, Time time) const;
 
   sqlite::Connection& connection_;
   ChunkEncoder encoder_;
   ChunkDecoder decoder_;
   SamplingMeter meter_;
   std::int64_t looked_into_ = 0;  // id of the data that `decoded_` holds
+  std::int64_t decoded_series_ = 0;
   SampleColumns decoded_;
 };
 
