@@ -3,7 +3,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <cstdio>
 #include <limits>
 #include <system_error>
 
@@ -200,6 +199,13 @@ std::optional<std::int64_t> parse_calendar(std::string_view text) {
   return narrow(static_cast<Wide>(*days) * day_ns + of_day - east);
 }
 
+/// So many digits, with zeros in front. A large export writes millions of times.
+void append_digits(std::string& text, std::int64_t value, std::size_t digits) {
+  text.resize(text.size() + digits, '0');
+  for (auto at = text.rbegin(); value > 0; ++at, value /= 10)
+    *at = static_cast<char>('0' + value % 10);
+}
+
 }  // namespace
 
 std::optional<std::int64_t> parse_time(std::string_view text) {
@@ -228,17 +234,19 @@ std::string time_text(std::int64_t time_ns) {
   const std::int64_t rest_ns = time_ns % day_ns;
   const std::int64_t of_day_ns = rest_ns < 0 ? rest_ns + day_ns : rest_ns;
   const year_month_day date{sys_days{days{floor_divide(time_ns, day_ns)}}};
-  const hh_mm_ss clock{nanoseconds{of_day_ns}};
-  std::array<char, 64> text{};
-  const int length = std::snprintf(
-      text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%09d", static_cast<int>(date.year()),
-      static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-      static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
-      static_cast<int>(clock.seconds().count()), static_cast<int>(clock.subseconds().count()));
-  std::string result(text.data(), static_cast<std::size_t>(length));
-  result.erase(result.find_last_not_of('0') + 1);
-  if (result.back() == '.') result.pop_back();
-  return result + 'Z';
+  std::string text;
+  text.reserve(sizeof "2023-04-29T16:22:37.123456789Z");
+  append_digits(text, static_cast<int>(date.year()), 4);
+  append_digits(text += '-', static_cast<unsigned>(date.month()), 2);
+  append_digits(text += '-', static_cast<unsigned>(date.day()), 2);
+  append_digits(text += 'T', of_day_ns / hour_ns, 2);
+  append_digits(text += ':', of_day_ns % hour_ns / minute_ns, 2);
+  append_digits(text += ':', of_day_ns % minute_ns / second_ns, 2);
+  if (const std::int64_t fraction = of_day_ns % second_ns; fraction != 0) {
+    append_digits(text += '.', fraction, 9);
+    text.erase(text.find_last_not_of('0') + 1);
+  }
+  return text += 'Z';
 }
 
 std::string duration_text(std::int64_t duration_ns) {
