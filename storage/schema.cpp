@@ -176,6 +176,22 @@ CREATE VIEW telemetry_late AS
                       AND parameter.id = series.parameter;
 )sql";
 
+constexpr std::string_view hole_view = R"sql(
+CREATE VIEW telemetry_hole AS
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
+         iif(origin, 'simulated', 'real') AS origin, begin_time, end_time,
+         strftime('%Y-%m-%dT%H:%M:%S',
+                  begin_time / 1000000000 - (begin_time % 1000000000 < 0), 'unixepoch')
+           || printf('.%09dZ', (begin_time % 1000000000 + 1000000000) % 1000000000) AS begin_utc,
+         strftime('%Y-%m-%dT%H:%M:%S',
+                  end_time / 1000000000 - (end_time % 1000000000 < 0), 'unixepoch')
+           || printf('.%09dZ', (end_time % 1000000000 + 1000000000) % 1000000000) AS end_utc
+  FROM sample_gap JOIN series ON series.id = sample_gap.series
+  LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
+                      AND parameter.id = series.parameter;
+)sql";
+
 constexpr std::string_view registry_views = R"sql(
 -- Each version with the champion that it was judged against: the one before its first decision.
 CREATE VIEW lineage AS
@@ -280,7 +296,7 @@ std::string user_version() {
 
 std::string creation() {
   return joined({telemetry_tables, sample_tables, late_tables, registry_tables, decision_table,
-                 operator_tables, telemetry_views, registry_views}) +
+                 operator_tables, telemetry_views, hole_view, registry_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
@@ -317,7 +333,7 @@ std::string from_2_to_3() {
 DROP VIEW telemetry;
 ALTER TABLE series ADD COLUMN moved INTEGER NOT NULL DEFAULT 0;
 )sql";
-  return joined({before, sample_tables});
+  return joined({before, sample_tables, hole_view});
 }
 
 std::string without_samples_of_2() {

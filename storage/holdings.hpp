@@ -1,0 +1,53 @@
+// What is archived, series by series, and its samples in stretches: for those who take a whole
+// archive through their hands, such as an export.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "storage/archive.hpp"
+#include "storage/sample_columns.hpp"
+
+namespace reident::storage {
+
+struct SeriesInfo {
+  std::int64_t id = 0;
+  std::string spacecraft;
+  Origin origin = Origin::real;
+  std::uint32_t parameter = 0;
+  std::string name;  // the descriptor's; else the parameter's number
+  std::uint64_t samples = 0;
+  Time first = 0;
+  Time last = 0;
+};
+
+/// Those with samples, by spacecraft, origin and name.
+std::vector<SeriesInfo> all_series(const Database& database);
+
+/// Names of the sources by their ids.
+std::map<std::int64_t, std::string> source_names(const Database& database);
+
+/// Reads one series forward. Each stretch is a snapshot of its own.
+class SeriesStretches {
+ public:
+  /// `chunks` bounds the memory: a stretch has the samples of so many chunks, and what is recent.
+  /// The database must outlive this object.
+  SeriesStretches(const Database& database, std::int64_t series, TimeRange range,
+                  std::size_t chunks, WantedColumns wanted);
+
+  /// The next samples in place of those that `stretch` held; false, and none, at the end. Throws
+  /// Error (corrupt) where they cannot be decoded.
+  bool next(SampleColumns& stretch);
+
+ private:
+  const Database* database_;
+  std::int64_t series_;
+  TimeRange range_;  // what is left
+  std::size_t chunks_;
+  WantedColumns wanted_;
+  bool at_end_ = false;
+};
+
+}  // namespace reident::storage
