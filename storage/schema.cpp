@@ -94,6 +94,18 @@ CREATE TABLE late_range (
 CREATE INDEX late_range_by_time ON late_range (series, begin_time);
 )sql";
 
+constexpr std::string_view import_table = R"sql(
+CREATE TABLE import (
+  id INTEGER PRIMARY KEY,
+  file TEXT NOT NULL, request TEXT NOT NULL, started INTEGER NOT NULL, finished INTEGER,
+  position INTEGER NOT NULL DEFAULT 0, line INTEGER NOT NULL DEFAULT 1,
+  digest TEXT NOT NULL DEFAULT '',
+  rows INTEGER NOT NULL DEFAULT 0, bad_lines INTEGER NOT NULL DEFAULT 0,
+  samples INTEGER NOT NULL DEFAULT 0, stored INTEGER NOT NULL DEFAULT 0,
+  duplicates INTEGER NOT NULL DEFAULT 0, conflicts INTEGER NOT NULL DEFAULT 0);
+CREATE INDEX import_unfinished ON import (request) WHERE finished IS NULL;
+)sql";
+
 constexpr std::string_view registry_tables = R"sql(
 CREATE TABLE attempt (
   id INTEGER PRIMARY KEY,
@@ -295,8 +307,8 @@ std::string user_version() {
 }  // namespace
 
 std::string creation() {
-  return joined({telemetry_tables, sample_tables, late_tables, registry_tables, decision_table,
-                 operator_tables, telemetry_views, hole_view, registry_views}) +
+  return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
+                 decision_table, operator_tables, telemetry_views, hole_view, registry_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
@@ -333,7 +345,7 @@ std::string from_2_to_3() {
 DROP VIEW telemetry;
 ALTER TABLE series ADD COLUMN moved INTEGER NOT NULL DEFAULT 0;
 )sql";
-  return joined({before, sample_tables, hole_view});
+  return joined({before, sample_tables, import_table, hole_view});
 }
 
 std::string without_samples_of_2() {

@@ -9,6 +9,7 @@
 #include "service/cli/config_choice.hpp"
 #include "service/cli/file_errors.hpp"
 #include "service/cli/story.hpp"
+#include "service/cli/time_choice.hpp"
 #include "service/daemon/commands.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
@@ -22,28 +23,16 @@ namespace {
 struct Arguments {
   std::optional<std::string> config;
   std::string subject;
-  std::optional<std::string> from, to;
+  TimeChoice time;
   bool json = false;
 };
-
-std::optional<Refusal> read_time(const char* flag, const std::optional<std::string>& text,
-                                 storage::Time& time) {
-  if (!text) return std::nullopt;
-  const auto parsed = parse_time(*text);
-  if (!parsed)
-    return Refusal{fmt::format("{} {} is no time; write it as 2026-03-01T12:00:00Z", flag, *text)};
-  time = *parsed;
-  return std::nullopt;
-}
 
 std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
                                                   const Config& config) {
   BackfillRequest request;
-  request.range = {0, utc_now()};
-  if (auto refusal = read_time("--from", arguments.from, request.range.begin)) return *refusal;
-  if (auto refusal = read_time("--to", arguments.to, request.range.end)) return *refusal;
-  if (request.range.end <= request.range.begin)
-    return Refusal{"--to is not after --from; windows are those that end in between"};
+  const auto range = chosen_range(arguments.time, {0, utc_now()});
+  if (const auto* refusal = std::get_if<Refusal>(&range)) return *refusal;
+  request.range = std::get<storage::TimeRange>(range);
   if (arguments.subject.empty()) return request;
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return *refusal;
@@ -111,8 +100,7 @@ void add_backfill(CLI::App& app, int& exit_code) {
                       "SPACECRAFT/EQUIPMENT; without it every equipment of the configuration");
   command->add_option("--config", arguments->config,
                       fmt::format("configuration of the service ({})", default_config_file));
-  command->add_option("--from", arguments->from, "only windows that end at this time or later");
-  command->add_option("--to", arguments->to, "only windows that end before this time");
+  add_time_options(*command, arguments->time, "windows that end");
   command->add_flag("--json", arguments->json, "one JSON object with the counts");
   command->footer(
       "Works on the file, so reidentd must not run; it publishes the champions when it starts.\n"

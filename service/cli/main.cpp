@@ -23,6 +23,9 @@ int run(int argc, char** argv) {
   add_why(app, exit_code);
   add_reproduce(app, exit_code);
   add_backfill(app, exit_code);
+  add_import(app, exit_code);
+  add_export(app, exit_code);
+  add_completeness(app, exit_code);
   add_at(app, exit_code);
   add_operator_commands(app, exit_code);
   add_compare(app, exit_code);

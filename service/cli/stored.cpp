@@ -27,7 +27,7 @@ std::variant<std::filesystem::path, Refusal> database_path(const DatabaseOptions
 
 void add_database_options(CLI::App& command, DatabaseOptions& options) {
   CLI::Option* database =
-      command.add_option("--database", options.database, "database of the service");
+      command.add_option("--db,--database", options.database, "database of the service");
   command
       .add_option("--config", options.config,
                   fmt::format("configuration that names the database ({})", default_config_file))
@@ -46,6 +46,22 @@ int with_database(const DatabaseOptions& options,
     if (error.kind() != storage::Error::Kind::cannot_open &&
         error.kind() != storage::Error::Kind::newer_schema &&
         error.kind() != storage::Error::Kind::older_schema)
+      throw;
+    return refuse({error.what()});
+  }
+}
+
+int with_writable_database(const DatabaseOptions& options,
+                           const std::function<int(storage::Database&)>& work) {
+  const auto path = database_path(options);
+  if (const auto* refusal = std::get_if<Refusal>(&path)) return refuse(*refusal);
+  try {
+    storage::Database database(std::get<std::filesystem::path>(path),
+                               storage::Database::Mode::read_write);
+    return work(database);
+  } catch (const storage::Error& error) {
+    using Kind = storage::Error::Kind;
+    if (error.kind() == Kind::full || error.kind() == Kind::corrupt || error.kind() == Kind::failed)
       throw;
     return refuse({error.what()});
   }

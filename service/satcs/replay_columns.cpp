@@ -71,16 +71,21 @@ std::optional<Error> check_parameters(const csv::Reader& reader, const ReplayPla
 
 }  // namespace
 
+bool is_time(std::string_view, std::string_view cell) {
+  return parse_time(cell).has_value();
+}
+
 std::variant<std::size_t, Error> find_time_column(const csv::Reader& reader,
-                                                  const std::optional<std::string>& asked) {
+                                                  const std::optional<std::string>& asked,
+                                                  const IsTime& holds_time) {
   if (asked) return reader.find(*asked);
   const auto& columns = reader.columns();
   const auto cells = reader.cells();
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (named_like_a_time(columns[c]) && parse_time(cells[c])) return c;
+    if (named_like_a_time(columns[c]) && holds_time(columns[c], cells[c])) return c;
   }
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (!csv::to_number(cells[c]) && parse_time(cells[c])) return c;
+    if (!csv::to_number(cells[c]) && holds_time(columns[c], cells[c])) return c;
   }
   return reader.error_here("no column looks like a time; name it with --time (the columns are: " +
                            joined(columns) + ")");

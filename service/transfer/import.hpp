@@ -1,0 +1,49 @@
+// A CSV file into the archive: read as a stream, stored in batches, each with the place in the file
+// up to which it goes in one transaction. An import that was stopped or killed goes on there.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "service/support/csv.hpp"
+#include "service/transfer/import_rows.hpp"
+#include "storage/import_log.hpp"
+
+namespace reident::transfer {
+
+/// Bounds of one batch, and so of the memory: some 40 MiB.
+struct ImportLimits {
+  std::uint64_t samples = 262144;
+  std::size_t frames = 65536;
+};
+
+struct ImportProgress {
+  double fraction = 0;            // of the file's bytes
+  std::uint64_t samples = 0;      // of this run
+  storage::ImportPosition total;  // of all runs
+};
+
+struct ImportReport {
+  storage::ImportPosition total;  // of all runs, from the file's first row
+  std::uint64_t samples = 0;      // of this run
+  std::uint64_t new_parameters = 0;
+  std::uint64_t resumed_at = 0;              // line; 0 where it started at the first row
+  bool complete = false;                     // false: stopped before the end
+  std::vector<std::string> first_bad_lines;  // at most 5 messages
+};
+
+/// Called after each batch; false stops the import there.
+using ImportObserver = std::function<bool(const ImportProgress&)>;
+
+/// Rows before an error are in the archive: the same call goes on there when the line is mended.
+/// Throws storage::Error when the archive cannot be written.
+std::variant<ImportReport, csv::Error> import_file(storage::Database& database,
+                                                   const ImportOptions& options,
+                                                   const std::function<storage::Time()>& now,
+                                                   const ImportObserver& observer,
+                                                   const ImportLimits& limits = {});
+
+}  // namespace reident::transfer

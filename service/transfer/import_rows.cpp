@@ -1,0 +1,353 @@
+#include "service/transfer/import_rows.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "service/satcs/replay_columns.hpp"
+#include "service/support/text.hpp"
+#include "service/transfer/parameter_book.hpp"
+
+namespace reident::transfer {
+namespace {
+
+using csv::Error;
+using csv::Reader;
+using storage::TelemetryFrame;
+using Entry = ParameterBook::Entry;
+
+std::string shown(std::string_view cell) {
+  constexpr std::size_t most = 40;
+  return "'" + std::string(cell.substr(0, most)) + "'";
+}
+
+Error cell_error(const Reader& reader, std::size_t column, std::string_view what) {
+  return reader.error_here(fmt::format("{} in column '{}' {}", shown(reader.cells()[column]),
+                                       reader.columns()[column], what));
+}
+
+std::variant<storage::Time, Error> time_at(const Reader& reader, std::size_t column,
+                                           TimeUnit unit) {
+  if (const auto time = parse_time_in(unit, reader.cells()[column])) return *time;
+  if (unit == TimeUnit::any)
+    return cell_error(reader, column,
+                      "is no time; use 2023-04-29T16:22:37.5Z or seconds since 1970-01-01 UTC, or "
+                      "say with --time-unit what the numbers are");
+  return cell_error(reader, column, "is no number of the unit that --time-unit or the name says");
+}
+
+std::string source_of(const ImportOptions& options) {
+  return options.source.value_or("import:" + options.file.filename().string());
+}
+
+/// Those of --only without those of --leave-out; none named means all.
+std::variant<std::vector<std::string>, Error> taken_columns(const ImportOptions& options,
+                                                            const Reader& reader,
+                                                            std::size_t time_column) {
+  if (options.leave_out.empty()) return options.only;
+  for (const std::string& column : options.leave_out) {
+    const auto found = reader.find(column);
+    if (const auto* error = std::get_if<Error>(&found)) return *error;
+  }
+  std::vector<std::string> taken = options.only;
+  if (taken.empty())
+    for (const std::string& column : reader.columns())
+      if (!column.empty() && column != reader.columns()[time_column]) taken.push_back(column);
+  std::erase_if(taken, [&](const std::string& column) {
+    const auto& out = options.leave_out;
+    return std::find(out.begin(), out.end(), column) != out.end();
+  });
+  if (!taken.empty()) return taken;
+  return Error{options.file.string() +
+               ": --leave-out leaves no column; there is nothing to import"};
+}
+
+void describe_once(Entry& entry, ImportBatch& batch) {
+  if (entry.is_described) return;
+  batch.descriptors.push_back(entry.descriptor);
+  entry.is_described = true;
+}
+
+class WideRows : public ImportRows {
+ public:
+  WideRows(const ImportOptions& options, const storage::Archive& archive)
+      : spacecraft_(options.spacecraft.value_or("")),
+        source_(source_of(options)),
+        origin_(options.origin.value_or(storage::Origin::real)),
+        book_(archive, spacecraft_) {}
+
+  std::optional<Error> prepare(const ImportOptions& options, const Reader& reader);
+
+  std::optional<Error> add(const Reader& reader, ImportBatch& batch) override;
+
+ private:
+  struct Column {
+    std::size_t position;
+    Entry* entry;
+  };
+
+  std::optional<Error> find_parameters(const Reader& reader, const satcs::ReplayPlan& plan);
+
+  std::string spacecraft_, source_;
+  storage::Origin origin_;
+  ParameterBook book_;
+  std::size_t time_column_ = 0;
+  TimeUnit unit_ = TimeUnit::any;
+  std::vector<Column> columns_;
+};
+
+std::optional<Error> WideRows::prepare(const ImportOptions& options, const Reader& reader) {
+  const auto unit_of = [&](std::string_view column) {
+    return options.time_unit == TimeUnit::any ? unit_of_column(column) : options.time_unit;
+  };
+  const auto time = satcs::find_time_column(
+      reader, options.time_column, [&](std::string_view column, std::string_view cell) {
+        return parse_time_in(unit_of(column), cell).has_value();
+      });
+  if (const auto* error = std::get_if<Error>(&time)) return *error;
+  satcs::ReplayPlan plan;
+  plan.file = options.file;
+  plan.time_position = time_column_ = std::get<std::size_t>(time);
+  plan.time_column = reader.columns()[time_column_];
+  unit_ = unit_of(plan.time_column);
+  satcs::ReplayOptions columns;
+  columns.mappings = options.mappings;
+  columns.keep_names = options.keep_names;
+  auto taken = taken_columns(options, reader, plan.time_position);
+  if (auto* error = std::get_if<Error>(&taken)) return std::move(*error);
+  columns.only = std::get<std::vector<std::string>>(std::move(taken));
+  // Which columns hold numbers is seen on the way: a file may be too large to read it twice.
+  const std::vector<std::uint64_t> numbers(reader.columns().size(), 1);
+  if (const auto error = satcs::choose_columns(columns, reader, numbers, plan)) {
+    const std::string file = options.file.string() + ": ";
+    return error->message.starts_with(file) ? *error : Error{file + error->message};
+  }
+  return find_parameters(reader, plan);
+}
+
+std::optional<Error> WideRows::add(const Reader& reader, ImportBatch& batch) {
+  const auto time = time_at(reader, time_column_, unit_);
+  if (const auto* error = std::get_if<Error>(&time)) return *error;
+  TelemetryFrame& frame = batch.next();
+  const auto cells = reader.cells();
+  for (const Column& column : columns_) {
+    const std::string_view cell = cells[column.position];
+    const auto value = parse_value(cell);
+    if (value) {
+      frame.samples.push_back({column.entry->descriptor.id, storage::Quality::good, *value});
+    } else if (!trimmed(cell).empty()) {
+      return cell_error(reader, column.position,
+                        "is no number; mend it, or leave out the column (--leave-out) or such "
+                        "lines (--skip-bad-lines)");
+    }
+  }
+  if (frame.samples.empty()) return std::nullopt;
+  for (const Column& column : columns_)
+    if (!column.entry->is_described && parse_value(cells[column.position]))
+      describe_once(*column.entry, batch);
+  frame.spacecraft = spacecraft_;
+  frame.source = source_;
+  frame.origin = origin_;
+  frame.generation_time = frame.reception_time = std::get<storage::Time>(time);
+  batch.keep();
+  return std::nullopt;
+}
+
+std::optional<Error> WideRows::find_parameters(const Reader& reader,
+                                               const satcs::ReplayPlan& plan) {
+  for (const auto& column : plan.columns) {
+    const auto& wanted = column.parameter;
+    const auto found = book_.find(wanted.name, wanted.unit, wanted.description);
+    if (const auto* refusal = std::get_if<std::string>(&found))
+      return Error{fmt::format("{}: column '{}': {}; give it another name with --map {}=NAME",
+                               plan.file.string(), reader.columns()[column.position], *refusal,
+                               reader.columns()[column.position])};
+    columns_.push_back({column.position, std::get<Entry*>(found)});
+  }
+  return std::nullopt;
+}
+
+class LongRows : public ImportRows {
+ public:
+  LongRows(const ImportOptions& options, const Reader& reader, const storage::Archive& archive);
+
+  bool knows_spacecraft() const { return spacecraft_ || options_.spacecraft; }
+
+  std::optional<Error> add(const Reader& reader, ImportBatch& batch) override;
+
+ private:
+  std::optional<Error> read_quality(const Reader& reader, storage::Quality& quality) const;
+
+  /// Takes over what the row says of spacecraft, source and origin, where it says something new.
+  std::optional<Error> read_stream(const Reader& reader);
+
+  std::optional<Error> read_parameter(const Reader& reader);
+
+  /// Into the last frame if it is of the same stream and time, else into one of its own.
+  void place(const storage::Sample& sample, storage::Time time, ImportBatch& batch);
+
+  const ImportOptions& options_;
+  const storage::Archive& archive_;
+  const std::string own_source_;
+  std::size_t parameter_ = 0, time_ = 0, value_ = 0;
+  std::optional<std::size_t> spacecraft_, source_, origin_, quality_, unit_;
+  std::map<std::string, ParameterBook> books_;
+
+  // Of the row before: most rows differ from it in time and value alone.
+  std::string cell_of_spacecraft_, cell_of_source_, cell_of_origin_;
+  std::optional<TelemetryFrame> stream_;
+  ParameterBook* book_ = nullptr;
+  Entry* entry_ = nullptr;
+};
+
+LongRows::LongRows(const ImportOptions& options, const Reader& reader,
+                   const storage::Archive& archive)
+    : options_(options), archive_(archive), own_source_(source_of(options)) {
+  const auto column = [&](std::string_view name, bool is_asked_for) {
+    const auto found = reader.find(name);
+    const auto* at = std::get_if<std::size_t>(&found);
+    return at && !is_asked_for ? std::optional(*at) : std::nullopt;
+  };
+  parameter_ = *column("parameter", false);
+  time_ = *column("time", false);
+  value_ = *column("value", false);
+  spacecraft_ = column("spacecraft", options.spacecraft.has_value());
+  source_ = column("source", options.source.has_value());
+  origin_ = column("origin", options.origin.has_value());
+  quality_ = column("quality", false);
+  unit_ = column("unit", false);
+}
+
+std::optional<Error> LongRows::add(const Reader& reader, ImportBatch& batch) {
+  const auto cells = reader.cells();
+  storage::Sample sample;
+  const auto value = parse_value(cells[value_]);
+  if (!value) {
+    if (trimmed(cells[value_]).empty()) return std::nullopt;
+    return cell_error(reader, value_,
+                      "is no number; mend it or leave out such lines with "
+                      "--skip-bad-lines");
+  }
+  sample.value = *value;
+  if (auto error = read_quality(reader, sample.quality)) return error;
+  const auto time = time_at(reader, time_, options_.time_unit);
+  if (const auto* error = std::get_if<Error>(&time)) return *error;
+  if (auto error = read_stream(reader)) return error;
+  if (auto error = read_parameter(reader)) return error;
+  sample.parameter = entry_->descriptor.id;
+  describe_once(*entry_, batch);
+  place(sample, std::get<storage::Time>(time), batch);
+  return std::nullopt;
+}
+
+std::optional<Error> LongRows::read_quality(const Reader& reader, storage::Quality& quality) const {
+  if (!quality_ || trimmed(reader.cells()[*quality_]).empty()) return std::nullopt;
+  const auto read = parse_quality(reader.cells()[*quality_]);
+  if (!read)
+    return cell_error(reader, *quality_,
+                      "is no quality; use good, out of limits, suspect or invalid");
+  quality = *read;
+  return std::nullopt;
+}
+
+std::optional<Error> LongRows::read_stream(const Reader& reader) {
+  const auto cells = reader.cells();
+  const auto text = [&](std::optional<std::size_t> column) {
+    return column ? trimmed(cells[*column]) : std::string_view();
+  };
+  if (stream_ && text(spacecraft_) == cell_of_spacecraft_ && text(source_) == cell_of_source_ &&
+      text(origin_) == cell_of_origin_)
+    return std::nullopt;
+  TelemetryFrame stream;
+  stream.origin = options_.origin.value_or(storage::Origin::real);
+  if (!text(origin_).empty()) {
+    const auto origin = parse_origin(text(origin_));
+    if (!origin) return cell_error(reader, *origin_, "is no origin; use real or simulated");
+    stream.origin = *origin;
+  }
+  stream.spacecraft = options_.spacecraft.value_or(std::string(text(spacecraft_)));
+  if (stream.spacecraft.empty())
+    return cell_error(reader, *spacecraft_, "names no spacecraft; name it with --spacecraft");
+  stream.source = text(source_).empty() ? own_source_ : std::string(text(source_));
+  book_ = &books_.try_emplace(stream.spacecraft, archive_, stream.spacecraft).first->second;
+  entry_ = nullptr;
+  cell_of_spacecraft_ = text(spacecraft_);
+  cell_of_source_ = text(source_);
+  cell_of_origin_ = text(origin_);
+  stream_ = std::move(stream);
+  return std::nullopt;
+}
+
+std::optional<Error> LongRows::read_parameter(const Reader& reader) {
+  const std::string_view name = trimmed(reader.cells()[parameter_]);
+  if (entry_ && entry_->descriptor.name == name) return std::nullopt;
+  if (name.empty()) return cell_error(reader, parameter_, "names no parameter; mend the line");
+  const auto found = book_->find(name, unit_ ? trimmed(reader.cells()[*unit_]) : std::string_view(),
+                                 "imported from " + options_.file.filename().string());
+  if (const auto* refusal = std::get_if<std::string>(&found))
+    return reader.error_here(*refusal + "; give it another name in the file");
+  entry_ = std::get<Entry*>(found);
+  return std::nullopt;
+}
+
+void LongRows::place(const storage::Sample& sample, storage::Time time, ImportBatch& batch) {
+  if (TelemetryFrame* last = batch.last();
+      last && last->generation_time == time && last->spacecraft == stream_->spacecraft &&
+      last->source == stream_->source && last->origin == stream_->origin) {
+    batch.add(*last, sample);
+    return;
+  }
+  TelemetryFrame& frame = batch.next();
+  frame.spacecraft = stream_->spacecraft;
+  frame.source = stream_->source;
+  frame.origin = stream_->origin;
+  frame.generation_time = frame.reception_time = time;
+  frame.samples.push_back(sample);
+  batch.keep();
+}
+
+}  // namespace
+
+TelemetryFrame& ImportBatch::next() {
+  if (count_ == frames_.size()) frames_.emplace_back().numbered = false;
+  frames_[count_].samples.clear();
+  return frames_[count_];
+}
+
+void ImportBatch::keep() {
+  samples_ += frames_[count_].samples.size();
+  ++count_;
+}
+
+void ImportBatch::clear() {
+  count_ = 0;
+  samples_ = 0;
+  descriptors.clear();
+}
+
+std::variant<std::unique_ptr<ImportRows>, Error> import_rows(const ImportOptions& options,
+                                                             const Reader& reader,
+                                                             const storage::Archive& archive) {
+  const auto needs_spacecraft = [&] {
+    return Error{options.file.string() +
+                 ": the file does not say which spacecraft it is of; name it with --spacecraft"};
+  };
+  if (is_long_layout(reader.columns())) {
+    if (options.time_column || !options.mappings.empty() || !options.only.empty() ||
+        !options.leave_out.empty() || options.keep_names)
+      return Error{options.file.string() +
+                   ": the file has one sample a row (columns parameter, time and value); --time, "
+                   "--map, --only, --leave-out and --keep-names are for files with a column for "
+                   "each parameter"};
+    auto rows = std::make_unique<LongRows>(options, reader, archive);
+    if (!rows->knows_spacecraft()) return needs_spacecraft();
+    return rows;
+  }
+  if (!options.spacecraft) return needs_spacecraft();
+  auto rows = std::make_unique<WideRows>(options, archive);
+  if (auto error = rows->prepare(options, reader)) return *std::move(error);
+  return rows;
+}
+
+}  // namespace reident::transfer

@@ -1,0 +1,41 @@
+// Which number a parameter has that a file knows by its name.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+#include "storage/archive.hpp"
+
+namespace reident::transfer {
+
+/// The parameters of one spacecraft.
+class ParameterBook {
+ public:
+  ParameterBook(const storage::Archive& archive, std::string spacecraft);
+
+  struct Entry {
+    storage::ParameterDescriptor descriptor;
+    bool is_described = false;  // the archive has a descriptor, or `take_new` gave it
+  };
+
+  /// The entry of a parameter by its name: the one that the archive has; else a new one, whose
+  /// number follows from the name as satcs-replay makes it. A whole number that names no parameter
+  /// is the number of one without a descriptor. The text of a refusal where `unit` is not empty and
+  /// not the archive's, or where the number belongs to another name. Entries stay where they are.
+  std::variant<Entry*, std::string> find(std::string_view name, std::string_view unit,
+                                         std::string_view description);
+
+ private:
+  std::variant<Entry*, std::string> add(std::string_view name, std::string_view unit,
+                                        std::string_view description);
+
+  std::string spacecraft_;
+  std::map<std::string, Entry, std::less<>> by_name_;
+  std::unordered_map<std::uint32_t, std::string> name_of_;  // of described parameters
+};
+
+}  // namespace reident::transfer

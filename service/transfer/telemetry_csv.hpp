@@ -1,0 +1,49 @@
+// Telemetry as CSV text: what `reident export` writes and `reident import` takes.
+//
+// Long layout, one sample a row, columns in any order:
+//
+//   spacecraft,parameter,origin,source,time,value,quality
+//
+// Wide layout, one time a row: a column with the time and one for each parameter. A file is long
+// when it has the columns parameter, time and value.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "storage/telemetry.hpp"
+
+namespace reident::transfer {
+
+inline constexpr std::array<std::string_view, 7> long_columns = {
+    "spacecraft", "parameter", "origin", "source", "time", "value", "quality"};
+
+bool is_long_layout(const std::vector<std::string>& columns);
+
+/// The number in a cell, with blanks around it and a sign; "nan" and "inf" too. Empty for anything
+/// else.
+std::optional<double> parse_value(std::string_view cell);
+
+/// The words that storage::name gives, with '_' or a blank between them.
+std::optional<storage::Quality> parse_quality(std::string_view cell);
+std::optional<storage::Origin> parse_origin(std::string_view cell);
+
+/// What a number is that stands for a time. `any`: seconds, but whole numbers of 17 digits and more
+/// are nanoseconds; a date and time as parse_time() takes them.
+enum class TimeUnit { any, s, ms, us, ns };
+std::optional<TimeUnit> parse_time_unit(std::string_view text);
+/// By the end of a column's name, as in time_ms; else `any`.
+TimeUnit unit_of_column(std::string_view column);
+std::optional<storage::Time> parse_time_in(TimeUnit unit, std::string_view cell);
+
+/// Each appends to `line`. A value has the fewest digits that give its bits back, a time as many
+/// decimals of a second as it needs, a text quotes where CSV needs them.
+void append_value(std::string& line, double value);
+void append_time(std::string& line, storage::Time time);
+void append_text(std::string& line, std::string_view text);
+
+}  // namespace reident::transfer
