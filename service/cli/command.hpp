@@ -13,7 +13,8 @@ namespace reident::cli {
 /// Exit statuses of `reident`.
 enum ExitCode : int {
   exit_done = 0,
-  exit_failed = 1,      // the machine would not: a file that cannot be written, a full disk
+  exit_failed = 1,      // the machine would not: a file that cannot be written, a full disk; or
+                        // verify found damage
   exit_impossible = 2,  // the request cannot be met; one line says what would mend it
   exit_no_model = 3,    // the data give no model; the reason is printed
   exit_timed_out = 4,
@@ -48,6 +49,7 @@ void add_check_config(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_plot(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
+void add_verify(CLI::App& app, int& exit_code);
 void add_version(CLI::App& app, int& exit_code);
 
 }  // namespace reident::cli

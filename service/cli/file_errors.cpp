@@ -8,7 +8,9 @@ int refusing_what_cannot_be(const std::function<int()>& work) {
   } catch (const storage::Error& error) {
     using Kind = storage::Error::Kind;
     const Kind kind = error.kind();
-    if (kind == Kind::full || kind == Kind::corrupt || kind == Kind::failed) throw;
+    if (kind == Kind::full || kind == Kind::corrupt || kind == Kind::failed ||
+        kind == Kind::displaced)
+      throw;
     return refuse({error.what()});
   }
 }

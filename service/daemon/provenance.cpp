@@ -158,6 +158,28 @@ storage::NewVersion version_of(const RefreshRequest& request, const PreparedWind
           .samples_digest = digest_of_samples(prepared.data.record, prepared.loaded)};
 }
 
+std::optional<std::string> mistake_in(const storage::Version& version) {
+  try {
+    const EquipmentModel model = equipment_model_from_json(version.model_json);
+    if (model.spacecraft != version.spacecraft || model.equipment != version.equipment)
+      return "its model is one of " + model.spacecraft + "/" + model.equipment;
+    if (model_digest(model) != version.digest)
+      return "its model is not the one that its digest was made of";
+  } catch (const std::invalid_argument& error) {
+    return std::string("its model cannot be read: ") + error.what();
+  }
+  if (version.provenance_json.empty()) return std::nullopt;  // from before schema 2
+  try {
+    const RefreshRequest request = request_from(ordered_json::parse(version.provenance_json));
+    if (request.spacecraft == version.spacecraft && request.equipment.name == version.equipment &&
+        request.window == version.window)
+      return std::nullopt;
+    return "its provenance is that of another equipment or window";
+  } catch (const nlohmann::json::exception& error) {
+    return std::string("its provenance cannot be read: ") + error.what();
+  }
+}
+
 Reproduction reproduce(const storage::Archive& archive, const storage::Version& version,
                        const identification::ForEach& for_each) {
   if (version.provenance_json.empty())

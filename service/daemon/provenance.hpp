@@ -2,6 +2,7 @@
 // digests that tell whether it came out the same.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,16 @@ struct Reproduction {
   std::string program_version;  // that made the version
   bool same_samples = false;
   std::size_t revisions = 0;  // changes of the window's telemetry since, that were taken back
-  bool same_model = false;  // to the last bit
+  bool same_model = false;    // to the last bit
 };
 
-/// Identifies a version again, from the telemetry as it was then: what came late since is taken back
-/// until the samples have the digest that the version names. Throws std::invalid_argument where its provenance cannot be read.
+/// What is wrong with what the registry keeps of a version, by itself: its model is not that of its
+/// digest or of its equipment, or its provenance says something else than its row.
+std::optional<std::string> mistake_in(const storage::Version& version);
+
+/// Identifies a version again, from the telemetry as it was then: what came late since is taken
+/// back until the samples have the digest that the version names. Throws std::invalid_argument
+/// where its provenance cannot be read.
 Reproduction reproduce(const storage::Archive& archive, const storage::Version& version,
                        const identification::ForEach& for_each);
 
