@@ -100,6 +100,9 @@ class Archive {
   /// appends first hold for the database.
   explicit Archive(Database& database, const ArchiveOptions& options = {});
 
+  Database& database() { return database_; }
+  const ArchiveOptions& options() const { return options_; }
+
   /// One transaction: all of it is stored, or (Error thrown) none. A bounded share of moving older
   /// samples into chunks is part of it.
   AppendReport append(std::span<const TelemetryFrame> frames);

@@ -136,4 +136,16 @@ void ChunkStore::replace(std::int64_t series, std::span<const ChunkRow> old,
   for (const SampleGap& gap : gaps) insert_gap.run(series, gap.begin, gap.end);
 }
 
+void ChunkStore::discard(const ChunkRow& row) {
+  remove(row);
+  const std::optional<ChunkRow> previous = before(row.series, row.first);
+  const std::optional<ChunkRow> next = after(row.series, row.first);
+  connection_.query("DELETE FROM sample_gap WHERE series = ? AND begin_time BETWEEN ? AND ?")
+      .run(row.series, previous ? previous->last : row.first, row.last);
+  if (!previous || !next) return;
+  if (const auto gap = gap_between(previous->last, previous->sampling, next->first, next->sampling))
+    connection_.query("INSERT INTO sample_gap (series, begin_time, end_time) VALUES (?, ?, ?)")
+        .run(row.series, gap->begin, gap->end);
+}
+
 }  // namespace reident::storage

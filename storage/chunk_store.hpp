@@ -48,6 +48,9 @@ class ChunkStore {
   void replace(std::int64_t series, std::span<const ChunkRow> old, const SampleColumns& samples,
                std::span<const std::size_t> piece_ends);
 
+  /// Removes a chunk with its samples. Where it was there is a gap, if its neighbours say so.
+  void discard(const ChunkRow& row);
+
  private:
   std::optional<ChunkRow> one(std::string_view condition, std::int64_t series, Time time);
   Sampling insert(std::int64_t series, const SampleColumns& samples, std::size_t begin,

@@ -298,6 +298,12 @@ std::vector<EquipmentName> Registry::equipment() const {
   return names;
 }
 
+std::int64_t Registry::last_decision() const {
+  sqlite::Query row = connection(database_).query("SELECT coalesce(max(id), 0) FROM decision");
+  row.step();
+  return row.integer(0);
+}
+
 Standing Registry::standing(const std::string& spacecraft, const std::string& equipment) const {
   sqlite::Query row = connection(database_).query(
       "SELECT (SELECT coalesce(max(id), 0) FROM decision "

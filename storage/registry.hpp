@@ -195,6 +195,8 @@ class Registry {
   /// Those with attempts, in alphabetical order.
   std::vector<EquipmentName> equipment() const;
   std::optional<Hold> hold(const std::string& spacecraft, const std::string& equipment) const;
+  /// Id of the last decision about any equipment, 0 before the first.
+  std::int64_t last_decision() const;
   Standing standing(const std::string& spacecraft, const std::string& equipment) const;
   std::optional<Attempt> attempt(std::int64_t id) const;
   /// Ascending by id.

@@ -76,6 +76,7 @@ CREATE TABLE removal (
   series INTEGER NOT NULL REFERENCES series,
   begin_time INTEGER NOT NULL, end_time INTEGER NOT NULL, samples INTEGER NOT NULL,
   cause TEXT NOT NULL, time INTEGER NOT NULL);
+CREATE INDEX removal_by_series ON removal (series, cause);
 
 CREATE TABLE damaged_chunk (
   id INTEGER PRIMARY KEY,
@@ -204,6 +205,17 @@ CREATE VIEW telemetry_hole AS
                       AND parameter.id = series.parameter;
 )sql";
 
+constexpr std::string_view removal_view = R"sql(
+CREATE VIEW telemetry_removed AS
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
+         iif(origin, 'simulated', 'real') AS origin, begin_time, end_time, removal.samples, cause,
+         time
+  FROM removal JOIN series ON series.id = removal.series
+  LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
+                      AND parameter.id = series.parameter;
+)sql";
+
 constexpr std::string_view registry_views = R"sql(
 -- Each version with the champion that it was judged against: the one before its first decision.
 CREATE VIEW lineage AS
@@ -308,7 +320,8 @@ std::string user_version() {
 
 std::string creation() {
   return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
-                 decision_table, operator_tables, telemetry_views, hole_view, registry_views}) +
+                 decision_table, operator_tables, telemetry_views, hole_view, removal_view,
+                 registry_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
@@ -345,7 +358,7 @@ std::string from_2_to_3() {
 DROP VIEW telemetry;
 ALTER TABLE series ADD COLUMN moved INTEGER NOT NULL DEFAULT 0;
 )sql";
-  return joined({before, sample_tables, import_table, hole_view});
+  return joined({before, sample_tables, import_table, hole_view, removal_view});
 }
 
 std::string without_samples_of_2() {
