@@ -24,6 +24,7 @@ constexpr Duration day = 24 * hour;
 constexpr std::size_t max_file_bytes = 4u << 20;
 constexpr std::size_t max_name_bytes = 128;
 constexpr std::int64_t max_window_ticks = 50'000'000;  // 8 bytes for each channel of each
+constexpr std::uint64_t least_max_size = 1'000'000;
 constexpr int max_order = 100;
 constexpr int max_horizon = 500;
 
@@ -92,6 +93,8 @@ void read_archive(const toml::table& table, ConfigDocument& document, Config& co
   assign(config.batch_frames, reader.integer("batch_frames", 1, 1'000'000));
   assign(config.recent_samples, reader.integer("recent_samples", 10'000, 100'000'000));
   assign(config.batch_delay, reader.duration("batch_delay", millisecond, minute));
+  config.keep = reader.duration("keep", hour, 36500 * day);
+  config.max_size = reader.size("max_size", least_max_size);
   reader.refuse_unknown_keys();
 }
 
@@ -337,6 +340,19 @@ void read_spacecraft(const toml::table& table, ConfigDocument& document, Config&
   config.spacecraft.push_back(std::move(spacecraft));
 }
 
+/// Telemetry that goes before a window has used it would never be used.
+void check_keep(const toml::table& archive, ConfigDocument& document, const Config& config) {
+  if (!config.keep) return;
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      if (const Duration needed = equipment.window + equipment.slide; *config.keep < needed)
+        return TableReader(archive, "[archive]", document)
+            .mistake("keep", fmt::format("keep {} is shorter than window and slide of {}/{}; make "
+                                         "it at least {}",
+                                         duration_text(*config.keep), spacecraft.name,
+                                         equipment.name, duration_text(needed)));
+}
+
 void read_all(ConfigDocument& document, Config& config) {
   const toml::table& root = document.table;
   TableReader reader(root, "the file:", document);
@@ -346,6 +362,7 @@ void read_all(ConfigDocument& document, Config& config) {
   if (const toml::table* table = reader.section("limits")) read_limits(*table, document, config);
   for (const toml::table* table : reader.sections("spacecraft"))
     read_spacecraft(*table, document, config);
+  if (const toml::table* table = reader.section("archive")) check_keep(*table, document, config);
   if (!reader.has("spacecraft") && document.complete)
     document.mistakes.push_back(
         {0, "there is no spacecraft; add [[spacecraft]] with a name and equipment"});

@@ -63,6 +63,8 @@ struct Config {
   std::size_t batch_frames = 512;          // frames of one transaction, at most
   std::size_t recent_samples = 1'000'000;  // that wait for chunks, in memory too
   Duration batch_delay = 0;                // a started batch is committed after this; default 100ms
+  std::optional<Duration> keep{};  // older telemetry is removed; absent: none is for its age
+  std::optional<std::uint64_t> max_size{};  // bytes; the oldest makes room; absent: none
   std::size_t max_frame_samples = 65536;
   Duration max_clock_lead = 0;  // generation times further ahead of this clock are jumps; 1h
   Duration settle = 0;          // a window waits this long for stragglers; default 1s

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "service/support/size_text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident {
@@ -236,6 +237,20 @@ std::optional<Duration> TableReader::duration(std::string_view key, Duration low
              fmt::format("a duration in quotes with its unit (ns, us, ms, s, min, h, d), from "
                          "\"{}\" to \"{}\"",
                          duration_text(low), duration_text(high)));
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> TableReader::size(std::string_view key, std::uint64_t low) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const auto* value = node->as_string();
+  const std::optional<std::uint64_t> parsed =
+      value != nullptr ? parse_size(value->get()) : std::nullopt;
+  if (parsed && *parsed >= low) return parsed;
+  wrong_type(key, *node,
+             fmt::format("a size in quotes with its unit (B, kB, MB, GB, TB, KiB, MiB, GiB, TiB), "
+                         "at least \"{}\"",
+                         size_text(low)));
   return std::nullopt;
 }
 

@@ -39,6 +39,8 @@ class TableReader {
   /// `low` and `high` are allowed values.
   std::optional<double> number(std::string_view key, double low, double high);
   std::optional<Duration> duration(std::string_view key, Duration low, Duration high);
+  /// Bytes.
+  std::optional<std::uint64_t> size(std::string_view key, std::uint64_t low);
   std::optional<std::vector<std::string>> texts(std::string_view key);
   /// "auto" gives nullopt without a mistake.
   std::optional<std::int64_t> integer_or_auto(std::string_view key, std::int64_t low,

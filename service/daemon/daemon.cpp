@@ -73,6 +73,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       feed_(config, clock_),
       writer_(open_for_writing(config), {.recent_samples = config.recent_samples}, queue_,
               config.batch_frames, config.batch_delay, feed_),
+      keeper_(config, writer_, clock_),
       participant_(dds::Endpoint{config.domain, config.partition}),
       publisher_(participant_),
       desk_(participant_, config.service_name),
@@ -264,6 +265,7 @@ void Daemon::watch_champions() {
 }
 
 void Daemon::heartbeat() {
+  keeper_.look();
   const ArchiveWriter::Counts stored = writer_.counts();
   ServiceStatus status;
   status.service = config_.service_name;

@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "service/daemon/archive_keeper.hpp"
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
 #include "service/daemon/champion_monitor.hpp"
@@ -37,7 +38,8 @@ class Daemon {
   ~Daemon();
 
   void start();
-  /// Publishes the state of the service; call about once a second.
+  /// Publishes the state of the service, and sees to what is due now and then; call about once a
+  /// second.
   void heartbeat();
   /// A thread ended by an error, which is logged: the service must be stopped.
   bool failed() const { return failed_; }
@@ -66,6 +68,7 @@ class Daemon {
   WorkerPool search_;  // shared by the identification threads
   WindowFeed feed_;
   ArchiveWriter writer_;
+  ArchiveKeeper keeper_;
   dds::Participant participant_;
   Publisher publisher_;
   CommandDesk desk_;

@@ -1,4 +1,6 @@
-// backup on a real database, as an operator calls it.
+// backup, verify and retain on a real database, as an operator calls them.
+#include <sqlite3.h>
+
 #include "storage/archive.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
@@ -33,6 +35,13 @@ class Care : public testing::CliTest {
       frames.push_back(frame);
     }
     archive.append(frames);
+  }
+  /// What plain SQL does to the file.
+  void change(const std::string& sql) const {
+    sqlite3* handle = nullptr;
+    ASSERT_EQ(sqlite3_open(path().c_str(), &handle), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(handle);
   }
   static storage::ParameterDescriptor descriptor(std::uint32_t id, const std::string& name) {
     storage::ParameterDescriptor one;
@@ -75,6 +84,77 @@ TEST_F(Care, BackupRefusesInOneLineWithTheRemedy) {
 TEST_F(Care, BackupWorksWhileAServiceHoldsTheFile) {
   const storage::Database service(path(), storage::Database::Mode::read_write);
   EXPECT_EQ(json_of({"backup", "reident.db", "copy.db"})["samples"], 1200);
+}
+
+TEST_F(Care, VerifySaysThatASoundFileIsSound) {
+  const testing::Ran ran = reident({"verify", "reident.db"});
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+  EXPECT_EQ(ran.out,
+            "reident.db: sound; looked at 2 series, 0 chunks with 1200 samples and 0 versions\n");
+  reident({"backup", "reident.db", "copy.db"});
+  const json found = json_of({"verify", "copy.db", "--quick"});
+  EXPECT_EQ(found["sound"], true);
+  EXPECT_EQ(found["findings"], json::array());
+}
+
+TEST_F(Care, VerifyNamesWhatItFindsAndTheRemedyAndExitsWith1) {
+  {
+    storage::Database database(path(), storage::Database::Mode::read_write);
+    storage::Archive(database).compact();
+  }
+  change("UPDATE chunk SET samples = 601 WHERE series = 1");
+  const testing::Ran ran = reident({"verify", "reident.db"});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_THAT(
+      ran.out,
+      HasSubstr("chunk: V_BUS of CB4 (real), 2023-11-14T22:13:20Z to 2023-11-14T22:23:19Z: "
+                "its row says 601 samples, there are 600\n  remedy: restore these samples"));
+  const testing::Ran again = reident({"verify", "reident.db", "--json"});
+  EXPECT_EQ(again.status, 1);
+  const json object = json::parse(again.out);
+  EXPECT_EQ(object["sound"], false);
+  EXPECT_EQ(object["findings"][0]["name"], "V_BUS");
+  EXPECT_EQ(object["findings"][0]["first"], "2023-11-14T22:13:20Z");
+}
+
+TEST_F(Care, VerifyOfWhatIsNoDatabaseIsRefused) {
+  EXPECT_THAT(refusal_of({"verify", "nothing.db"}), HasSubstr("does not exist"));
+  write("text.db", "something else");
+  EXPECT_THAT(refusal_of({"verify", "text.db"}), HasSubstr("is not a database"));
+}
+
+TEST_F(Care, RetainRemovesByAgeAndSaysSoBeforehand) {
+  append(600, 20000);  // two chunks and a part of a third
+  const json plan = json_of({"retain", "reident.db", "--keep", "1h", "--dry-run"});
+  const json done = json_of({"retain", "reident.db", "--keep", "1h"});
+  EXPECT_EQ(done["samples"], 2 * 16384);
+  EXPECT_EQ(done["first"], "2023-11-14T22:13:20Z");
+  EXPECT_LE(plan["samples"], done["samples"]);
+  EXPECT_EQ(json_of({"verify", "reident.db"})["samples"], 2 * (20000 - 16384));
+  const testing::Ran again = reident({"retain", "reident.db", "--keep", "1h"});
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.out, HasSubstr("removed nothing; "));
+}
+
+TEST_F(Care, RetainTakesTheRuleOfTheConfiguration) {
+  append(600, 20000);
+  const std::string equipment =
+      "[[spacecraft]]\nname = \"CB4\"\n[[spacecraft.equipment]]\nname = \"BDR\"\n"
+      "inputs = [\"I_BUS\"]\noutputs = [\"V_BUS\"]\nsample_period = \"1s\"\nwindow = \"30min\"\n";
+  write("kept.toml", "[archive]\nkeep = \"1h\"\n" + equipment);
+  write("plain.toml", equipment);
+  EXPECT_THAT(refusal_of({"retain", "reident.db", "--config", "plain.toml"}),
+              HasSubstr("nothing says what to keep"));
+  EXPECT_EQ(json_of({"retain", "reident.db", "--config", "kept.toml"})["samples"], 2 * 16384);
+}
+
+TEST_F(Care, RetainRefusesInOneLineWithTheRemedy) {
+  EXPECT_THAT(refusal_of({"retain", "reident.db"}), HasSubstr("--keep TIME or --max-size SIZE"));
+  EXPECT_THAT(refusal_of({"retain", "reident.db", "--keep", "long"}), HasSubstr("as 400d"));
+  EXPECT_THAT(refusal_of({"retain", "reident.db", "--max-size", "7"}), HasSubstr("as 200GB"));
+  const storage::Database service(path(), storage::Database::Mode::read_write);
+  EXPECT_THAT(refusal_of({"retain", "reident.db", "--keep", "1h"}),
+              HasSubstr("a service that runs removes by keep and max_size of its own"));
 }
 
 }  // namespace

@@ -51,6 +51,12 @@ std::vector<std::string> mistakes_of(const std::string& text) {
   return found;
 }
 
+TEST(Config, SaysHowLongTelemetryIsKeptAndInHowMuchRoom) {
+  const Config config = config_of("[archive]\nkeep = \"400 d\"\nmax_size = \"200 GB\"\n" + minimal);
+  EXPECT_EQ(config.keep, 400 * 24 * 60 * min);
+  EXPECT_EQ(config.max_size, 200'000'000'000U);
+}
+
 TEST(Config, AMinimalFileHasGoodDefaults) {
   const Config config = config_of(minimal);
   EXPECT_EQ(config.service_name, "reident");
@@ -59,6 +65,8 @@ TEST(Config, AMinimalFileHasGoodDefaults) {
   EXPECT_EQ(config.batch_delay, 100 * ms);
   EXPECT_EQ(config.max_clock_lead, 60 * min);
   EXPECT_EQ(config.settle, s);
+  EXPECT_EQ(config.keep, std::nullopt);
+  EXPECT_EQ(config.max_size, std::nullopt);
   ASSERT_THAT(config.spacecraft, SizeIs(1));
   ASSERT_THAT(config.spacecraft[0].equipment, SizeIs(1));
   const EquipmentConfig& bdr = config.spacecraft[0].equipment[0];
@@ -304,6 +312,16 @@ const Mistake values[] = {
      "2: [service] workers must be a whole number"},
     {"empty_database", "[archive]\ndatabase = \"\"\n" + minimal,
      "2: [archive] database must be the path of a file"},
+    {"keep_without_unit", "[archive]\nkeep = \"400\"\n" + minimal,
+     "2: [archive] keep must be a duration in quotes with its unit"},
+    {"keep_shorter_than_a_window", "[archive]\nkeep = \"2h\"\n" + minimal,
+     "2: [archive] keep 2h is shorter than window and slide of CBERS-4/BDR; make it at least "
+     "130min"},
+    {"max_size_without_unit", "[archive]\nmax_size = 200\n" + minimal,
+     "2: [archive] max_size must be a size in quotes with its unit"},
+    {"max_size_too_small", "[archive]\nmax_size = \"1 kB\"\n" + minimal,
+     "2: [archive] max_size must be a size in quotes with its unit (B, kB, MB, GB, TB, KiB, MiB, "
+     "GiB, TiB), at least \"1 MB\""},
     {"database_is_a_number", "[archive]\ndatabase = 1\n" + minimal,
      "2: [archive] database must be a text in double quotes, not the number 1"},
     {"wild_partition", "[dds]\npartition = \"*\"\n" + minimal,

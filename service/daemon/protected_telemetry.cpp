@@ -1,0 +1,95 @@
+#include "service/daemon/protected_telemetry.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "service/daemon/window_data.hpp"
+#include "service/model/model_json.hpp"
+
+namespace reident {
+namespace {
+
+using storage::ProtectedStretch;
+using storage::TimeRange;
+using Descriptors = std::vector<storage::ParameterDescriptor>;
+
+storage::Time before(storage::Time time, Duration by) {
+  constexpr storage::Time earliest = std::numeric_limits<storage::Time>::min();
+  return time < earliest + by ? earliest : time - by;
+}
+
+void add(std::vector<ProtectedStretch>& stretches, const std::string& spacecraft,
+         const Descriptors& descriptors, const std::vector<std::string>& names, TimeRange range) {
+  for (const std::string& name : names) {
+    bool is_known = false;
+    for (const storage::ParameterDescriptor& descriptor : descriptors) {
+      if (descriptor.name != name) continue;
+      stretches.push_back({spacecraft, descriptor.id, range});
+      is_known = true;
+    }
+    if (!is_known) stretches.push_back({spacecraft, std::nullopt, range});
+  }
+}
+
+std::vector<std::string> parameters_of(const EquipmentModel& model) {
+  std::vector<std::string> names =
+      InputExpressions(signal_names(model.inputs), derived_inputs(model.inputs)).parameters();
+  for (const Signal& output : model.outputs) names.push_back(output.name);
+  return names;
+}
+
+void add(std::vector<ProtectedStretch>& stretches, const Descriptors& descriptors,
+         const storage::Version& version) {
+  try {
+    const EquipmentModel model = equipment_model_from_json(version.model_json);
+    TimeRange range = version.window;
+    for (const TimeRange& part : {model.identified_from, model.validated_on}) {
+      range.begin = std::min(range.begin, part.begin);
+      range.end = std::max(range.end, part.end);
+    }
+    range.begin = before(range.begin, model.hold_ns);
+    add(stretches, version.spacecraft, descriptors, parameters_of(model), range);
+  } catch (const std::invalid_argument&) {
+    stretches.push_back({version.spacecraft, std::nullopt, version.window});
+  }
+}
+
+}  // namespace
+
+std::vector<ProtectedStretch> telemetry_of_versions(const storage::Archive& archive,
+                                                    const storage::Registry& registry) {
+  std::vector<ProtectedStretch> stretches;
+  for (const storage::EquipmentName& equipment : registry.equipment()) {
+    std::set<std::int64_t> published;
+    for (const storage::Decision& decision :
+         registry.decisions(equipment.spacecraft, equipment.equipment))
+      if (decision.kind == storage::DecisionKind::approve ||
+          decision.kind == storage::DecisionKind::roll_back)
+        published.insert(decision.version);
+    const Descriptors descriptors = archive.parameters(equipment.spacecraft);
+    for (const std::int64_t number : published)
+      if (const auto version = registry.version(equipment.spacecraft, equipment.equipment, number))
+        add(stretches, descriptors, *version);
+  }
+  return stretches;
+}
+
+std::vector<ProtectedStretch> telemetry_of_next_windows(const storage::Archive& archive,
+                                                        const Config& config, storage::Time now) {
+  std::vector<ProtectedStretch> stretches;
+  for (const SpacecraftConfig& spacecraft : config.spacecraft) {
+    const auto extent = archive.extent(spacecraft.name, storage::Origin::real);
+    if (!extent) continue;
+    const storage::Time newest = std::min(extent->end, now);
+    const Descriptors descriptors = archive.parameters(spacecraft.name);
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      add(stretches, spacecraft.name, descriptors, parameters_of(equipment),
+          {before(newest, equipment.window + equipment.slide + equipment.hold),
+           std::numeric_limits<storage::Time>::max()});
+  }
+  return stretches;
+}
+
+}  // namespace reident
