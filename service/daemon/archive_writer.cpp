@@ -10,6 +10,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+// Larger transactions are no faster, and what comes next waits for them longer.
+constexpr std::size_t batch_bytes = std::size_t{5} << 20;
 constexpr auto idle_wait = 500ms;  // for the first event of a batch; post() ends it earlier
 constexpr auto retry_wait = 1s;    // between two tries of a batch that the disk refused
 
@@ -62,7 +64,8 @@ void ArchiveWriter::run_tasks() {
 
 std::vector<TelemetryEvent> ArchiveWriter::next_batch() {
   std::vector<TelemetryEvent> batch;
-  in_hand_ = queue_.pop(batch, batch_frames_, idle_wait, std::chrono::nanoseconds(batch_delay_));
+  in_hand_ = queue_.pop(batch, {batch_frames_, batch_bytes}, idle_wait,
+                        std::chrono::nanoseconds(batch_delay_));
   return batch;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,14 +19,19 @@ struct QueuedBytes {
   std::size_t operator()(const T&) const { return sizeof(T); }
 };
 
+/// So many items, and no more than `bytes` of them but for a single one.
+struct QueueBound {
+  QueueBound(std::size_t most_items,
+             std::size_t most_bytes = std::numeric_limits<std::size_t>::max())
+      : items(most_items), bytes(most_bytes) {}
+  std::size_t items;
+  std::size_t bytes;
+};
+
 template <class T>
 class BoundedQueue {
  public:
-  static constexpr std::size_t unbounded = std::numeric_limits<std::size_t>::max();
-
-  /// Holds at most `capacity` items, and no more than `bytes` of them but for a single one.
-  explicit BoundedQueue(std::size_t capacity, std::size_t bytes = unbounded)
-      : capacity_(capacity), bytes_(bytes) {}
+  explicit BoundedQueue(QueueBound bound) : bound_(bound) {}
 
   /// Waits for room. False, with the item not taken, when the queue is closed.
   bool push(T&& item) {
@@ -43,18 +49,20 @@ class BoundedQueue {
     return !closed_;
   }
 
-  /// Moves up to `max` items to the end of `out`; waits up to `timeout` for the first of them, and
-  /// then up to `gather` for the others, unless the producer has to wait. Returns how many there
-  /// were.
-  std::size_t pop(std::vector<T>& out, std::size_t max, std::chrono::nanoseconds timeout,
+  /// Moves up to `most` to the end of `out`; waits up to `timeout` for the first item, and then up
+  /// to `gather` for the others, unless the producer has to wait. Returns how many there were.
+  std::size_t pop(std::vector<T>& out, QueueBound most, std::chrono::nanoseconds timeout,
                   std::chrono::nanoseconds gather = std::chrono::nanoseconds(0)) {
     MutexLock lock(mutex_);
-    wait_for_items(1, timeout);
-    if (!items_.empty()) wait_for_items(max, gather);
+    wait_for(1, timeout);
+    if (!items_.empty()) wait_for(most, gather);
     woken_ = false;
     std::size_t taken = 0;
-    for (; taken < max && !items_.empty(); ++taken) {
-      held_bytes_ -= QueuedBytes<T>()(items_.front());
+    for (std::size_t bytes = 0; taken < most.items && !items_.empty(); ++taken) {
+      const std::size_t more = QueuedBytes<T>()(items_.front());
+      if (taken > 0 && (bytes > most.bytes || more > most.bytes - bytes)) break;
+      bytes += more;
+      held_bytes_ -= more;
       out.push_back(std::move(items_.front()));
       items_.pop_front();
     }
@@ -96,8 +104,11 @@ class BoundedQueue {
 
  private:
   bool has_room_for(std::size_t bytes) const REIDENT_REQUIRES(mutex_) {
-    return items_.empty() ||
-           (items_.size() < capacity_ && held_bytes_ <= bytes_ && bytes <= bytes_ - held_bytes_);
+    return items_.empty() || (items_.size() < bound_.items && held_bytes_ <= bound_.bytes &&
+                              bytes <= bound_.bytes - held_bytes_);
+  }
+  bool has(QueueBound wanted) const REIDENT_REQUIRES(mutex_) {
+    return items_.size() >= wanted.items || held_bytes_ >= wanted.bytes;
   }
 
   bool push_locked(T&& item) REIDENT_REQUIRES(mutex_) {
@@ -112,29 +123,30 @@ class BoundedQueue {
     items_.push_back(std::move(item));
     held_bytes_ += bytes;
     // A consumer that gathers sleeps on until it has what it wants.
-    if (items_.size() == wanted_) ready_.notify_one();
+    if (wanted_ && has(*wanted_)) {
+      wanted_.reset();
+      ready_.notify_one();
+    }
     return true;
   }
 
-  void wait_for_items(std::size_t count, std::chrono::nanoseconds timeout)
-      REIDENT_REQUIRES(mutex_) {
+  void wait_for(QueueBound wanted, std::chrono::nanoseconds timeout) REIDENT_REQUIRES(mutex_) {
     const auto deadline = std::chrono::steady_clock::now() + timeout;
-    wanted_ = count;
-    while (items_.size() < count && !held_back_ && !closed_ && !woken_) {
+    while (!has(wanted) && !held_back_ && !closed_ && !woken_) {
       const auto left = deadline - std::chrono::steady_clock::now();
       if (left <= std::chrono::nanoseconds(0)) break;
+      wanted_ = wanted;
       ready_.wait_for(mutex_, left);
     }
-    wanted_ = 0;
+    wanted_.reset();
   }
 
-  const std::size_t capacity_;
-  const std::size_t bytes_;
+  const QueueBound bound_;
   mutable Mutex mutex_;
   CondVar room_, ready_;
   std::deque<T> items_ REIDENT_GUARDED_BY(mutex_);
   std::size_t held_bytes_ REIDENT_GUARDED_BY(mutex_) = 0;
-  std::size_t wanted_ REIDENT_GUARDED_BY(mutex_) = 0;  // items that pop waits for
+  std::optional<QueueBound> wanted_ REIDENT_GUARDED_BY(mutex_);  // what pop waits for
   std::uint64_t waits_ REIDENT_GUARDED_BY(mutex_) = 0;
   bool held_back_ REIDENT_GUARDED_BY(mutex_) = false;  // push waits for room
   bool closed_ REIDENT_GUARDED_BY(mutex_) = false;

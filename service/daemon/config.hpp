@@ -59,8 +59,8 @@ struct Config {
   std::uint32_t domain = 0;
   std::string partition = "operations";
   std::size_t queue_frames = 8192;         // bound of the queue between DDS and the archive
-  std::size_t queue_mib = 64;              // its bound in memory, and that of the batch in hand
-  std::size_t batch_frames = 512;          // frames of one transaction, at most
+  std::size_t queue_mib = 64;              // its bound in memory
+  std::size_t batch_frames = 4096;         // frames of one transaction, at most; no more than 5 MiB
   std::size_t recent_samples = 1'000'000;  // that wait for chunks, in memory too
   Duration batch_delay = 0;                // a started batch is committed after this; default 100ms
   std::optional<Duration> keep{};  // older telemetry is removed; absent: none is for its age

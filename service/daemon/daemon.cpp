@@ -68,7 +68,7 @@ Daemon::Daemon(const Config& config, Clock clock)
     : config_(config),
       clock_(std::move(clock)),
       started_(clock_()),
-      queue_(config.queue_frames, config.queue_mib << 20),
+      queue_({config.queue_frames, config.queue_mib << 20}),
       search_(usable_cores()),
       feed_(config, clock_),
       writer_(open_for_writing(config), {.recent_samples = config.recent_samples}, queue_,

@@ -10,10 +10,12 @@ import statistics
 import subprocess
 import time
 
-from files import BATCH, remove
+from files import remove
 from programs import ENVIRONMENT, spread, table
 
-PARAMETERS = [629, 100, 16]
+# Samples of a frame, and frames of a commit: what the service's bounds of 4096 frames and 5 MiB
+# make of them.
+BATCHES = {629: 512, 100: 3072, 16: 4096}
 SPACECRAFT = ["BENCH-1", "BENCH-2"]
 DEADLINE_S = 120
 # The service wants some equipment; no telemetry of this one comes, so that nothing is identified.
@@ -40,10 +42,11 @@ def wait_until(condition, what):
 
 def measure(programs, folder, scale):
     print("Two publishers at full speed, one process each, into reidentd with nothing to identify, "
-          f"{BATCH} frames a commit at most; beside it the archive's own appends of the same "
-          "frames, and ddsperf from two publishers with the same bytes a message\n")
+          "with the service's default batches; beside it the archive's own appends of the same "
+          "frames, without DDS, and ddsperf, which packs messages together, from two publishers "
+          "with the same bytes a message\n")
     rows, figures = [], {}
-    for parameters in PARAMETERS:
+    for parameters in BATCHES:
         frames = max(100, scale.end_to_end_samples // (2 * parameters))
         if parameters < 629:  # bound by messages, not by samples
             frames = min(frames, 100_000)
@@ -57,8 +60,9 @@ def measure(programs, folder, scale):
         ratios = [run[1] / run[0] for run in runs]
         wrong = sum(run[2] for run in runs)
         ddsperf = ddsperf_rate(96 + 13 * parameters) if scale.repeats > 1 else None
-        rows.append([parameters, frames * 2, spread([r / 1e6 for r in stored]),
-                     spread([r / 1e6 for r in own]), spread(ratios, "{:.2f}"), wrong,
+        rows.append([parameters, frames * 2, BATCHES[parameters],
+                     spread([r / 1e6 for r in stored]), spread([r / 1e6 for r in own]),
+                     spread(ratios, "{:.2f}"), wrong,
                      spread([r / parameters for r in stored], "{:.0f}"),
                      f"{ddsperf:.0f}" if ddsperf else "not measured"])
         suffix = "" if parameters == 629 else f"_{parameters}"
@@ -66,7 +70,7 @@ def measure(programs, folder, scale):
         figures[f"end_to_end_over_append{suffix}"] = statistics.median(ratios)
         figures["end_to_end_lost"] = figures.get("end_to_end_lost", 0) + wrong
         figures[f"ddsperf_messages_per_s{suffix}"] = ddsperf
-    table(["samples a frame", "frames", "stored, million samples a second",
+    table(["samples a frame", "frames", "frames a commit", "stored, million samples a second",
            "archive alone, the same", "ratio", "lost, doubled or wrong", "frames a second",
            "ddsperf, messages a second"], rows)
     return figures
@@ -76,7 +80,8 @@ def own_rate(programs, folder, parameters, frames):
     """What the service's archive thread could do at most: the same frames, as they would come."""
     file = folder / "own.db"
     result = programs.measure("append", "archive", file, "--frames", frames, "--parameters",
-                              parameters, "--batch", BATCH, "--leave", "--spacecraft", *SPACECRAFT)
+                              parameters, "--batch", BATCHES[parameters], "--leave",
+                              "--spacecraft", *SPACECRAFT)
     remove(file)
     return result["samples"] / result["append_s"]
 
@@ -86,8 +91,7 @@ def over_dds(programs, folder, parameters, frames):
     domain, partition = random.SystemRandom().randint(1, 200), "bench"
     file = folder / "reident.db"
     (folder / "reident.toml").write_text(
-        f'[archive]\ndatabase = "reident.db"\nbatch_frames = {BATCH}\n'
-        f'[dds]\ndomain = {domain}\npartition = "{partition}"\n'
+        f'[archive]\ndatabase = "reident.db"\n[dds]\ndomain = {domain}\npartition = "{partition}"\n'
         + IDLE_EQUIPMENT)
     children = []
     with open(folder / "reidentd.log", "w", encoding="utf-8") as log:

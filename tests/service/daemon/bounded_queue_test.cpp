@@ -66,7 +66,7 @@ TEST(BoundedQueue, ReleasesAProducerThatWaitsWhenItIsClosed) {
 }
 
 TEST(BoundedQueue, HoldsTheProducerBackAtItsBoundInBytesTooButTakesASingleItemThatExceedsIt) {
-  BoundedQueue<std::string> queue(100, 10);
+  BoundedQueue<std::string> queue({100, 10});
   EXPECT_TRUE(queue.push(std::string(25, 'a')));
   std::thread producer([&] {
     for (const std::size_t size : {6U, 4U, 1U}) queue.push(std::string(size, 'b'));
@@ -100,6 +100,15 @@ TEST(BoundedQueue, GathersUntilThereAreEnough) {
   std::vector<int> out;
   EXPECT_EQ(queue.pop(out, 10, 60s, 60s), 10U);
   producer.join();
+}
+
+TEST(BoundedQueue, GivesNoMoreBytesThanAreAskedForAndGathersNoMore) {
+  BoundedQueue<std::string> queue(100);
+  for (const std::size_t size : {6U, 4U, 1U, 25U}) queue.push(std::string(size, 'c'));
+  std::vector<std::string> out;
+  EXPECT_EQ(queue.pop(out, {100, 10}, 0ns, 60s), 2U);
+  EXPECT_EQ(queue.pop(out, {100, 10}, 0ns, 60s), 1U);
+  EXPECT_EQ(queue.pop(out, {100, 10}, 0ns, 60s), 1U) << "a single item may have more";
 }
 
 TEST(BoundedQueue, GivesWhatItHasWhenTheTimeToGatherIsOver) {
