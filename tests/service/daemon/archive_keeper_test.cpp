@@ -23,7 +23,7 @@ class Keeper : public DaemonTest {
       archive.append(telemetry(day, 4 * 3600));
       archive.compact();
     }
-    writer.emplace(open(), queue, 16, 5'000'000, nobody);
+    writer.emplace(open(), storage::ArchiveOptions{}, queue, 16, 5'000'000, nobody);
     thread = std::thread([this] { writer->run(give_up); });
   }
   ~Keeper() override {
