@@ -108,6 +108,20 @@ TEST_F(Writer, KeepsABatchThatTheDiskRefusesAndStoresItWhenThereIsRoom) {
   EXPECT_TRUE(writer.counts().last_error.empty());
 }
 
+TEST_F(Writer, KeepsABatchWhileTheDatabaseIsAway) {
+  push(telemetry(day, 10));
+  EXPECT_TRUE(eventually([&] { return listener.committed == 10U; }));
+  const std::filesystem::path away = path().string() + ".away";
+  std::filesystem::rename(path(), away);
+  push(telemetry(day + minute, 10));
+  EXPECT_TRUE(eventually([&] { return !writer.counts().last_error.empty(); }));
+  EXPECT_NE(writer.counts().last_error.find("was deleted or moved"), std::string::npos);
+  std::filesystem::rename(away, path());
+  end();
+  EXPECT_EQ(listener.committed, 20U);
+  EXPECT_EQ(writer.counts().lost, 0U);
+}
+
 TEST_F(Writer, GivesUpWhatTheDiskRefusesOnlyWhenItIsToldToAndCountsIt) {
   std::optional<FullDisk> full(std::in_place, 256 * 1024);
   std::thread source([&] { push(telemetry(day, 8000)); });

@@ -63,6 +63,7 @@ TEST(Config, AMinimalFileHasGoodDefaults) {
   EXPECT_EQ(config.database, "/folder/reident.db");
   EXPECT_EQ(config.partition, "operations");
   EXPECT_EQ(config.batch_delay, 100 * ms);
+  EXPECT_EQ(config.durability, storage::Durability::power_cut);
   EXPECT_EQ(config.max_clock_lead, 60 * min);
   EXPECT_EQ(config.settle, s);
   EXPECT_EQ(config.keep, std::nullopt);
@@ -92,6 +93,7 @@ database = "/var/lib/archive.db"
 batch_frames = 100
 batch_delay = "250ms"
 recent_samples = 50000
+durability = "kill"
 [dds]
 domain = 42
 partition = "training"
@@ -140,6 +142,7 @@ horizon = "auto"
   EXPECT_EQ(config.batch_frames, 100u);
   EXPECT_EQ(config.batch_delay, 250 * ms);
   EXPECT_EQ(config.recent_samples, 50000u);
+  EXPECT_EQ(config.durability, storage::Durability::kill);
   EXPECT_EQ(config.domain, 42u);
   EXPECT_EQ(config.partition, "training");
   EXPECT_EQ(config.queue_frames, 64u);
@@ -306,6 +309,8 @@ const Mistake values[] = {
      "9: equipment BDR: approval must be one of \"automatic\", \"by_hand\", not \"by hand\""},
     {"log_level", "[service]\nlog_level = \"loud\"\n" + minimal,
      "2: [service] log_level must be one of \"debug\", \"info\", \"warning\", \"error\""},
+    {"durability", "[archive]\ndurability = \"full\"\n" + minimal,
+     "2: [archive] durability must be one of \"power_cut\", \"kill\", not \"full\""},
     {"no_worker", "[service]\nworkers = 0\n" + minimal,
      "2: [service] workers must be a whole number from 1 to 256, not the number 0"},
     {"half_a_worker", "[service]\nworkers = 0.5\n" + minimal,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include "service/daemon/config.hpp"
 #include "storage/archive.hpp"
@@ -31,6 +32,19 @@ class DaemonTest : public testing::Test {
 
   std::filesystem::path path() const { return folder_ / "reident.db"; }
   storage::Database open() const { return {path(), storage::Database::Mode::read_write}; }
+
+  /// Makes what is in chunks of a parameter undecodable.
+  void damage_chunks(std::uint32_t parameter) const {
+    sqlite3* handle = nullptr;
+    ASSERT_EQ(sqlite3_open(path().c_str(), &handle), SQLITE_OK);
+    const std::string sql =
+        "UPDATE chunk_data SET bytes = zeroblob(length(bytes)) WHERE id IN (SELECT data FROM chunk "
+        "JOIN series ON series.id = chunk.series WHERE parameter = " +
+        std::to_string(parameter) + ")";
+    ASSERT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+    ASSERT_GT(sqlite3_changes(handle), 0);
+    sqlite3_close(handle);
+  }
 
   /// Inputs u (1) and v (2), output y (3).
   static std::vector<storage::ParameterDescriptor> descriptors() {

@@ -55,6 +55,17 @@ TEST_F(Refresh, ApprovesAGoodFirstVersionAndExplainsIt) {
   EXPECT_TRUE(evidence["timing_ms"].contains("load"));
 }
 
+TEST_F(Refresh, SaysThatTelemetryIsDamagedAndWhich) {
+  archive.append(telemetry(day, 601));
+  archive.compact();
+  damage_chunks(2);
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "telemetry_damaged");
+  EXPECT_THAT(result.attempt.reason, testing::HasSubstr("601 samples of v of SAT"));
+  EXPECT_FALSE(result.candidate);
+  EXPECT_FALSE(result.decision);
+}
+
 TEST_F(Refresh, KeepsTheConfiguredBaselineThatTheGateSaw) {
   archive.append(telemetry(day, 601));
   EquipmentConfig equipment = plant();

@@ -135,6 +135,18 @@ TEST_F(Feed, TakesUpWindowsThatAnEarlierRunDidNotTry) {
   EXPECT_EQ(try_all(*feed), (std::vector{day + 20 * minute, day + 25 * minute}));
 }
 
+TEST_F(Feed, StartsInSpiteOfDamagedTelemetryAndTriesTheNewestWindow) {
+  archive.describe(descriptors());
+  archive.append(telemetry(day, 901));
+  archive.compact();
+  for (const std::uint32_t parameter : {1U, 2U, 3U}) damage_chunks(parameter);
+  auto feed = make_feed();
+  feed->recover(archive, registry);
+  feed->described(descriptors(), archive);
+  store(*feed, telemetry(day + 901 * second, 300));
+  EXPECT_EQ(try_all(*feed), (std::vector{day + 20 * minute}));
+}
+
 TEST_F(Feed, FollowsNoClockThatRanAwayNowOrAfterARestart) {
   auto feed = make_feed();
   archive.describe(descriptors());
