@@ -15,6 +15,9 @@ namespace {
 constexpr Time earliest = std::numeric_limits<Time>::min();
 constexpr Time latest = std::numeric_limits<Time>::max();
 
+// Far above what any configuration lets wait: a number beyond it is a damaged one.
+constexpr std::int64_t most_batches = 1 << 24;
+
 // Chunks do not overlap: the one that `begin` may lie in is the last that starts no later.
 constexpr std::string_view chunks_in_range =
     "SELECT first_time, last_time, samples, bytes FROM chunk "
@@ -62,6 +65,12 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
     from = batches.integer(0);
     to = batches.integer(1);
   }
+  if (to - from > most_batches)
+    throw Error(
+        Error::Kind::corrupt,
+        "database " + connection_.path() + " has recent samples of batches " +
+            std::to_string(from) + " to " + std::to_string(to) +
+            ", more than there can be: restore a backup, or see what 'reident verify' says");
   sqlite::Query row = connection_.query(
       "SELECT first_time, last_time, samples, data FROM recent WHERE batch = ? AND series = ?");
   for (std::int64_t batch = from; batch <= to; ++batch)

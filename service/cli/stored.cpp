@@ -27,7 +27,7 @@ std::variant<std::filesystem::path, Refusal> database_path(const DatabaseOptions
 
 void add_database_options(CLI::App& command, DatabaseOptions& options) {
   CLI::Option* database =
-      command.add_option("--db,--database", options.database, "database of the service");
+      command.add_option("--database,--db", options.database, "database of the service");
   command
       .add_option("--config", options.config,
                   fmt::format("configuration that names the database ({})", default_config_file))

@@ -71,7 +71,7 @@ class Care(EndToEnd):
 
     def test_old_telemetry_goes_while_the_service_runs_and_versions_stay_reproducible(self):
         # Small batches, so that samples are in chunks soon.
-        config = self.configure([plant.equipment(slide="50min", margin=90)])
+        config = self.configure([plant.equipment(window="1h", slide="50min", margin=90)])
         plain = config.read_text()
         config.write_text(plain.replace("[dds]", "batch_frames = 32\n[dds]"))
         daemon = self.start_daemon()
@@ -81,7 +81,7 @@ class Care(EndToEnd):
         self.assertEqual(daemon.terminate()[0], 0, daemon.text())
         before = self.stored()
 
-        config.write_text(plain.replace("[dds]", 'keep = "70min"\n[dds]'))
+        config.write_text(plain.replace("[dds]", 'keep = "2h"\n[dds]'))
         daemon = self.start_daemon()
         wait_until(lambda: "old telemetry removed" in daemon.text(), "telemetry was removed")
         removed = self.query("SELECT sum(samples) FROM telemetry_removed")[0][0]
@@ -92,7 +92,7 @@ class Care(EndToEnd):
             self.assertEqual(status, 0, text)
         status, text = self.reident("verify", self.database)
         self.assertEqual(status, 0, text)
-        status, text = self.reident("retain", self.database, "--keep", "2h")
+        status, text = self.reident("retain", self.database, "--keep", "3h")
         self.assertEqual(status, 2)
         self.assertIn("of its own configuration", text)
 

@@ -23,7 +23,7 @@ TEST(Pace, TellsTheTimeLeftFromWhatThisRunDid) {
   Pace pace(start);
   // The first half lay behind it when it began.
   EXPECT_EQ(pace.text(0.5, 1000, start + seconds(1)), "1000 samples, 1000/s");
-  EXPECT_EQ(pace.text(0.6, 11000, start + seconds(11)), "11 k samples, 1000/s, 40s left");
+  EXPECT_EQ(pace.text(0.625, 11000, start + seconds(11)), "11 k samples, 1000/s, 30s left");
 }
 
 }  // namespace

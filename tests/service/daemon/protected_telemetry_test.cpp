@@ -80,7 +80,7 @@ TEST_F(ProtectedTelemetry, FollowsTheParametersOfAnExpression) {
   attempt.window = {day, day + 10 * minute};
   record(day + 10 * minute);
   EquipmentModel model = equipment_model_from_json(registry.version("SAT", "PLANT", 1)->model_json);
-  model.inputs = {{"P", "W", 0, 1, "u * v"}};
+  model.inputs[0] = {"P", "W", 0, 1, "u * v"};
   registry.record(attempt, {to_json(model).dump(), "digest"}, {DecisionKind::approve, "gate", ""});
   EXPECT_THAT(stretches(), SizeIs(3 + 3)) << "u, v and y of both";
 }
