@@ -41,7 +41,7 @@ struct AppendReport {
 
 /// How the writer arranges samples; the defaults suit any archive.
 struct ArchiveOptions {
-  std::size_t chunk_samples = 16384;  // of a chunk that is filled in order of time; 16 to 65536
+  std::size_t chunk_samples = 12288;  // of a chunk that is filled in order of time; 16 to 65536
   std::size_t recent_samples = 1'000'000;  // that wait for a place in chunks; at most twice as many
   std::size_t recent_batches = 256;        // appends that wait
   std::size_t step_samples = 65536;        // that a transaction moves at least: a few milliseconds

@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,10 +46,6 @@ class ByteReader {
 
   bool failed() const { return failed_; }
   bool at_end() const { return rest_.empty(); }
-  /// The byte that byte() would give; absent at the end.
-  std::optional<std::uint8_t> next() const {
-    return rest_.empty() ? std::nullopt : std::optional(rest_.front());
-  }
 
   Bytes bytes(std::uint64_t count) {
     if (count > rest_.size()) {

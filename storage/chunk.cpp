@@ -96,6 +96,15 @@ bool sum_up_times(std::span<Time> times, Time last) {
   return times.back() == last;
 }
 
+/// Whether times at this step lead from the first to the last one without leaving their type.
+bool is_steady(const ChunkSummary& summary, std::uint64_t step) {
+  const auto span = static_cast<std::uint64_t>(summary.last_time) -
+                    static_cast<std::uint64_t>(summary.first_time);
+  if (summary.count == 1) return span == 0;
+  return step > 0 && summary.last_time > summary.first_time && span % step == 0 &&
+         span / step == summary.count - 1;
+}
+
 /// Gives the vectors their sizes back unless it is told to keep what was added.
 class Restore {
  public:
@@ -193,34 +202,70 @@ std::optional<ChunkError> ChunkDecoder::decode(std::span<const std::uint8_t> byt
   std::array<Bytes, 4> part;
   for (Bytes& each : part) each = parts.bytes(parts.varint());
   if (parts.failed() || !parts.at_end()) return damaged("has parts of impossible lengths");
-  if (!decode_times(part[0], header.summary)) return damaged("has times that do not ascend");
-  const auto begin = std::lower_bound(times_.begin(), times_.end(), range.begin);
-  const auto end = range.end == std::numeric_limits<Time>::max()
-                       ? times_.end()
-                       : std::lower_bound(begin, times_.end(), range.end);
-  if (begin >= end) return std::nullopt;
-  const Selection wanted{times_.size(), static_cast<std::size_t>(begin - times_.begin()),
-                         static_cast<std::size_t>(end - begin)};
-
   Restore restore(target);
+  const auto selected = decode_times(part[0], header.summary, range, target.time);
+  if (!selected) return damaged("has times that do not ascend");
+  const Selection wanted = *selected;
+  if (wanted.count == 0) return std::nullopt;
   if (target.value != nullptr && !decode_values(part[1], wanted, *target.value))
     return damaged("has values that cannot be decoded");
   if (target.quality != nullptr && !decode_qualities(part[2], wanted, *target.quality))
     return damaged("has qualities that cannot be decoded");
   if (target.source != nullptr && !decode_sources(part[3], wanted, *target.source))
     return damaged("has sources that cannot be decoded");
-  if (target.time != nullptr) target.time->insert(target.time->end(), begin, end);
   restore.keep();
   return std::nullopt;
 }
 
-bool ChunkDecoder::decode_times(Bytes part, const ChunkSummary& summary) {
+std::optional<ChunkDecoder::Selection> ChunkDecoder::decode_times(Bytes part,
+                                                                  const ChunkSummary& summary,
+                                                                  TimeRange range,
+                                                                  std::vector<Time>* out) {
+  ByteReader in(part);
+  const auto constant = summary.count > 1 ? IntegerDecoder::get_constant(in, summary.count - 1)
+                                          : std::optional<std::int64_t>(1);
+  if (constant) {
+    const auto step = static_cast<std::uint64_t>(*constant);
+    if (!in.at_end() || !is_steady(summary, step)) return std::nullopt;
+    return steady_times(summary, step, range, out);
+  }
   times_.resize(summary.count);
   times_[0] = summary.first_time;
-  ByteReader in(part);
-  if (summary.count > 1 && !integers_.get(in, summary.count - 1, 0, std::span(times_).subspan(1)))
-    return false;
-  return in.at_end() && sum_up_times(times_, summary.last_time);
+  if (!integers_.get(in, summary.count - 1, 0, std::span(times_).subspan(1)) || !in.at_end() ||
+      !sum_up_times(times_, summary.last_time))
+    return std::nullopt;
+  const auto begin = std::lower_bound(times_.begin(), times_.end(), range.begin);
+  const auto end = range.end == std::numeric_limits<Time>::max()
+                       ? times_.end()
+                       : std::lower_bound(begin, times_.end(), range.end);
+  if (begin >= end) return Selection{};
+  if (out != nullptr) out->insert(out->end(), begin, end);
+  return Selection{times_.size(), static_cast<std::size_t>(begin - times_.begin()),
+                   static_cast<std::size_t>(end - begin)};
+}
+
+// Times of a steady step are counted, not decoded.
+ChunkDecoder::Selection ChunkDecoder::steady_times(const ChunkSummary& summary, std::uint64_t step,
+                                                   TimeRange range, std::vector<Time>* out) {
+  const auto bits = [](Time time) { return static_cast<std::uint64_t>(time); };
+  /// Number of samples before `time`.
+  const auto before = [&](Time time) -> std::size_t {
+    if (time <= summary.first_time) return 0;
+    if (time > summary.last_time) return summary.count;
+    return static_cast<std::size_t>((bits(time) - bits(summary.first_time) - 1) / step + 1);
+  };
+  const std::size_t begin = before(range.begin);
+  const std::size_t end =
+      range.end == std::numeric_limits<Time>::max() ? summary.count : before(range.end);
+  if (begin >= end) return {};
+  if (out != nullptr) {
+    const std::size_t old = out->size();
+    out->resize(old + (end - begin));
+    std::uint64_t time = bits(summary.first_time) + begin * step;
+    for (std::size_t i = old; i < out->size(); ++i, time += step)
+      (*out)[i] = static_cast<Time>(time);
+  }
+  return {summary.count, begin, end - begin};
 }
 
 bool ChunkDecoder::decode_values(Bytes part, Selection wanted, std::vector<double>& out) {
@@ -231,8 +276,13 @@ bool ChunkDecoder::decode_values(Bytes part, Selection wanted, std::vector<doubl
 }
 
 bool ChunkDecoder::decode_qualities(Bytes part, Selection wanted, std::vector<Quality>& out) {
-  numbers_.resize(wanted.count);
   ByteReader in(part);
+  if (const auto constant = IntegerDecoder::get_constant(in, wanted.of)) {
+    if (!in.at_end() || *constant < 0 || *constant > worst_quality) return false;
+    out.insert(out.end(), wanted.count, static_cast<Quality>(*constant));
+    return true;
+  }
+  numbers_.resize(wanted.count);
   if (!integers_.get(in, wanted.of, wanted.first, numbers_) || !in.at_end()) return false;
   bool known = true;
   const std::size_t before = out.size();

@@ -112,7 +112,12 @@ class ChunkDecoder {
     std::size_t first = 0;  // wanted ones
     std::size_t count = 0;
   };
-  bool decode_times(Bytes part, const ChunkSummary& summary);
+  /// Which of the samples lie in the range; appends their times to `out`, if there is one. Absent
+  /// where the times do not ascend from the first to the last of the summary.
+  std::optional<Selection> decode_times(Bytes part, const ChunkSummary& summary, TimeRange range,
+                                        std::vector<Time>* out);
+  static Selection steady_times(const ChunkSummary& summary, std::uint64_t step, TimeRange range,
+                                std::vector<Time>* out);
   bool decode_values(Bytes part, Selection wanted, std::vector<double>& out);
   bool decode_qualities(Bytes part, Selection wanted, std::vector<Quality>& out);
   bool decode_sources(Bytes part, Selection wanted, std::vector<std::int64_t>& out);

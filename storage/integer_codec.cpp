@@ -185,8 +185,30 @@ bool IntegerDecoder::get_planes(ByteReader& in, std::size_t count,
   return true;
 }
 
+std::optional<std::int64_t> IntegerDecoder::get_constant(ByteReader& in, std::size_t count) {
+  ByteReader ahead = in;
+  const std::uint8_t form = ahead.byte();
+  const bool is_run = form == runs_bit && ahead.varint() == 1;
+  const std::int64_t base = from_zigzag(ahead.varint());
+  ahead.varint();  // whatever the unit: the word is 0
+  const bool is_constant = (form == 0 || is_run) && ahead.byte() == 0;
+  std::uint64_t length = count - 1;
+  if (is_run) {
+    const std::uint8_t width = ahead.byte();
+    if (width > 8 || (width > 0 && ahead.varint() != 2U * width)) return std::nullopt;
+    length = ahead.fixed(width);
+  }
+  if (!is_constant || ahead.failed() || length != count - 1) return std::nullopt;
+  in = ahead;
+  return base;
+}
+
 bool IntegerDecoder::get(ByteReader& in, std::size_t count, std::size_t first,
                          std::span<std::int64_t> out) {
+  if (const auto constant = count > 0 ? get_constant(in, count) : std::nullopt) {
+    std::fill(out.begin(), out.end(), *constant);
+    return true;
+  }
   const std::uint8_t form = in.byte();
   const int order = form & order_bits;
   const bool runs = (form & runs_bit) != 0;
@@ -198,12 +220,6 @@ bool IntegerDecoder::get(ByteReader& in, std::size_t count, std::size_t first,
   if (order == 2) start.slope = bits_of(from_zigzag(in.varint()));
   if (in.failed() || order >= orders || form > (order_bits | runs_bit) || heads > count)
     return false;
-  const bool is_constant = !runs && order == 0 && in.next() == std::uint8_t{0};
-  if (is_constant) {
-    in.byte();
-    std::fill(out.begin(), out.end(), static_cast<std::int64_t>(base));
-    return true;
-  }
   if (!get_planes(in, heads, words_)) return false;
   if (runs && !get_planes(in, heads, lengths_)) return false;
   const std::size_t end = first + out.size();

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,10 @@ class IntegerDecoder {
   /// Numbers [first, first + out.size()) of the `count` that `in` stands at. False if the bytes do
   /// not hold such a sequence. Needs up to 24 bytes for each of `count`, whatever the bytes say.
   bool get(ByteReader& in, std::size_t count, std::size_t first, std::span<std::int64_t> out);
+
+  /// The number that all of `count`, not 0, are, where the form says so at once; `in` then stands
+  /// behind it. Absent, and `in` where it was, for any other sequence.
+  static std::optional<std::int64_t> get_constant(ByteReader& in, std::size_t count);
 
  private:
   bool get_planes(ByteReader& in, std::size_t count, std::vector<std::uint64_t>& words);

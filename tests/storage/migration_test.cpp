@@ -154,7 +154,7 @@ INSERT INTO sample VALUES (2, -5, -0.0, 3, 4), (3, 1, NULL, 3, 4), (3, 4, 9e999,
   EXPECT_THAT(rows(path,
                    "SELECT series, count(*), sum(samples), max(samples) FROM chunk GROUP BY series;"
                    "SELECT count(*) FROM sample_gap; PRAGMA integrity_check"),
-              ElementsAre("1|2|20000|16384", "2|1|1|1", "3|1|3|3", "0", "ok"));
+              ElementsAre("1|2|20000|12288", "2|1|1|1", "3|1|3|3", "0", "ok"));
 }
 
 }  // namespace
