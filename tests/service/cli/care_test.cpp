@@ -13,6 +13,8 @@ using ::testing::HasSubstr;
 constexpr std::int64_t second = 1'000'000'000;
 constexpr std::int64_t start = 1'700'000'000 * second;  // 2023-11-14T22:13:20Z
 
+constexpr auto first_chunk = storage::ArchiveOptions().chunk_samples;
+
 class Care : public testing::CliTest {
  protected:
   Care() { append(0, 600); }
@@ -124,13 +126,13 @@ TEST_F(Care, VerifyOfWhatIsNoDatabaseIsRefused) {
 }
 
 TEST_F(Care, RetainRemovesByAgeAndSaysSoBeforehand) {
-  append(600, 20000);  // two chunks and a part of a third
+  append(600, 20000);  // a chunk and a part of a second
   const json plan = json_of({"retain", "reident.db", "--keep", "1h", "--dry-run"});
   const json done = json_of({"retain", "reident.db", "--keep", "1h"});
-  EXPECT_EQ(done["samples"], 2 * 16384);
+  EXPECT_EQ(done["samples"], 2 * first_chunk);
   EXPECT_EQ(done["first"], "2023-11-14T22:13:20Z");
   EXPECT_LE(plan["samples"], done["samples"]);
-  EXPECT_EQ(json_of({"verify", "reident.db"})["samples"], 2 * (20000 - 16384));
+  EXPECT_EQ(json_of({"verify", "reident.db"})["samples"], 2 * (20000 - first_chunk));
   const testing::Ran again = reident({"retain", "reident.db", "--keep", "1h"});
   EXPECT_EQ(again.status, 0);
   EXPECT_THAT(again.out, HasSubstr("removed nothing; "));
@@ -145,7 +147,7 @@ TEST_F(Care, RetainTakesTheRuleOfTheConfiguration) {
   write("plain.toml", equipment);
   EXPECT_THAT(refusal_of({"retain", "reident.db", "--config", "plain.toml"}),
               HasSubstr("nothing says what to keep"));
-  EXPECT_EQ(json_of({"retain", "reident.db", "--config", "kept.toml"})["samples"], 2 * 16384);
+  EXPECT_EQ(json_of({"retain", "reident.db", "--config", "kept.toml"})["samples"], 2 * first_chunk);
 }
 
 TEST_F(Care, RetainRefusesInOneLineWithTheRemedy) {
