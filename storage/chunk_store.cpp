@@ -74,6 +74,7 @@ void ChunkStore::take(const ChunkRow& row, SampleColumns& samples) {
                  samples.time.back() != row.last))
     error = {ChunkError::Kind::damaged, "holds other samples than its row says"};
   if (!error) return;
+  samples.cut(before);
   set_aside(connection_, {row.series, row.first, row.last, row.samples}, bytes, *error);
   remove(row);
 }

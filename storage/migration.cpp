@@ -29,11 +29,8 @@ void samples_to_chunks(sqlite::Connection& connection) {
   while (row.step()) {
     if (row.integer(0) != series || samples.size() == chunk_samples) put(chunks, series, samples);
     series = row.integer(0);
-    samples.time.push_back(row.integer(1));
-    samples.value.push_back(row.is_null(2) ? std::numeric_limits<double>::quiet_NaN()
-                                           : row.real(2));
-    samples.quality.push_back(row.integer<Quality>(3));
-    samples.source.push_back(row.integer(4));
+    const double value = row.is_null(2) ? std::numeric_limits<double>::quiet_NaN() : row.real(2);
+    samples.push_back(row.integer(1), {value, row.integer<Quality>(3), row.integer(4)});
   }
   put(chunks, series, samples);
 }

@@ -1,5 +1,7 @@
 #include "storage/sample_columns.hpp"
 
+#include <algorithm>
+
 namespace reident::storage {
 
 void SampleColumns::push_back(Time at, const Held& sample) {
@@ -19,6 +21,13 @@ void SampleColumns::append(const SampleColumns& other, std::size_t first, std::s
   copy(other.value, value);
   copy(other.quality, quality);
   copy(other.source, source);
+}
+
+void SampleColumns::cut(std::size_t count) {
+  time.resize(std::min(count, time.size()));
+  value.resize(std::min(count, value.size()));
+  quality.resize(std::min(count, quality.size()));
+  source.resize(std::min(count, source.size()));
 }
 
 void SampleColumns::reserve(std::size_t count, WantedColumns wanted) {

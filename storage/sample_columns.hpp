@@ -41,6 +41,8 @@ struct SampleColumns {
   void push_back(Time at, const Held& sample);
   /// Appends the samples [first, last) of `other`, in its wanted columns.
   void append(const SampleColumns& other, std::size_t first, std::size_t last);
+  /// Keeps the first `count` samples.
+  void cut(std::size_t count);
   void reserve(std::size_t count, WantedColumns wanted = {});
 };
 

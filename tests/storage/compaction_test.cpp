@@ -151,6 +151,22 @@ TEST_F(CompactionTest, SetsAsideAChunkThatItCannotReadAndSaysSo) {
               ElementsAre("100000000000|100"));
 }
 
+TEST_F(CompactionTest, TakesNothingFromAChunkThatItsRowDoesNotDescribe) {
+  const ArchiveOptions options{.chunk_samples = 100, .recent_samples = 30, .recent_batches = 1000};
+  open(options);
+  append(0, 90);
+  archive->compact();
+  archive.reset();
+  database.reset();
+  ask("UPDATE chunk SET last_time = 60000000000");
+  open(options);
+  append(50, 75, 9);
+  archive->compact();
+  EXPECT_EQ(count(), 25U);
+  EXPECT_THAT(ask("SELECT samples, reason FROM damaged_chunk"),
+              ElementsAre("90|holds other samples than its row says"));
+}
+
 TEST_F(CompactionTest, SetsAsideARecentRunThatItCannotRead) {
   open({});
   append(0, 10);
