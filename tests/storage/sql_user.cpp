@@ -34,23 +34,30 @@ SqlUser::SqlUser(const std::filesystem::path& database) {
     throw std::runtime_error(message);
 }
 
-std::vector<std::string> SqlUser::ask(const std::string& sql) const {
-  std::vector<std::string> rows;
+std::optional<std::string> SqlUser::each_row(const std::string& sql,
+                                             const std::function<void(sqlite3_stmt*)>& use) const {
   sqlite3_stmt* prepared = nullptr;
   int code = sqlite3_prepare_v2(handle(), sql.c_str(), -1, &prepared, nullptr);
   const std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)> statement(prepared,
                                                                              &sqlite3_finalize);
   while (code == SQLITE_OK || code == SQLITE_ROW) {
     code = sqlite3_step(prepared);
-    if (code != SQLITE_ROW) break;
-    std::string row;
-    for (int i = 0; i < sqlite3_column_count(prepared); ++i)
-      row += (i > 0 ? "|" : "") + text_of(prepared, i);
-    rows.push_back(row);
+    if (code == SQLITE_ROW) use(prepared);
   }
-  if (code != SQLITE_DONE)
-    rows.push_back("error " + std::to_string(sqlite3_extended_errcode(handle())) + ": " +
-                   sqlite3_errmsg(handle()));
+  if (code == SQLITE_DONE) return std::nullopt;
+  return "error " + std::to_string(sqlite3_extended_errcode(handle())) + ": " +
+         sqlite3_errmsg(handle());
+}
+
+std::vector<std::string> SqlUser::ask(const std::string& sql) const {
+  std::vector<std::string> rows;
+  const auto error = each_row(sql, [&rows](sqlite3_stmt* statement) {
+    std::string row;
+    for (int i = 0; i < sqlite3_column_count(statement); ++i)
+      row += (i > 0 ? "|" : "") + text_of(statement, i);
+    rows.push_back(row);
+  });
+  if (error) rows.push_back(*error);
   return rows;
 }
 

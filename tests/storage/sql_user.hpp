@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,10 @@ class SqlUser {
   /// One string a row, columns separated by '|', doubles with all their digits. An error is the
   /// last string: "error CODE: message".
   std::vector<std::string> ask(const std::string& sql) const;
+
+  /// Calls `use` with the statement at each row. The error, where there is one: "error CODE: ...".
+  std::optional<std::string> each_row(const std::string& sql,
+                                      const std::function<void(sqlite3_stmt*)>& use) const;
 
   sqlite3* handle() const { return handle_.get(); }
 

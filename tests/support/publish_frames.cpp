@@ -7,11 +7,11 @@
 #include <fstream>
 #include <iostream>
 #include <limits>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "service/dds/dds.hpp"
+#include "tests/support/wait_for_reader.hpp"
 
 namespace {
 
@@ -53,21 +53,12 @@ ParameterDescriptor descriptor(const json& from, const std::string& spacecraft) 
   return result;
 }
 
-template <class M>
-void wait_for_reader(reident::dds::Writer<M>& writer) {
-  const auto deadline = std::chrono::steady_clock::now() + 30s;
-  while (writer.matched_readers() == 0) {
-    if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error("no reader came");
-    std::this_thread::sleep_for(10ms);  // poll
-  }
-}
-
 void publish(char** argv) {
   reident::dds::Participant participant({static_cast<std::uint32_t>(std::stoul(argv[2])), argv[3]});
   reident::dds::Writer<ParameterDescriptor> descriptors(participant);
   reident::dds::Writer<TelemetryFrame> frames(participant);
-  wait_for_reader(descriptors);
-  wait_for_reader(frames);
+  reident::test::wait_for_reader(descriptors);
+  reident::test::wait_for_reader(frames);
   std::ifstream file(argv[1]);
   std::string line;
   while (std::getline(file, line)) {

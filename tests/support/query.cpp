@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <memory>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -33,20 +32,14 @@ std::string json_of(sqlite3_stmt* statement, int column) {
 }
 
 int print_rows(const reident::storage::testing::SqlUser& user, const char* sql) {
-  sqlite3_stmt* prepared = nullptr;
-  int code = sqlite3_prepare_v2(user.handle(), sql, -1, &prepared, nullptr);
-  const std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)> statement(prepared,
-                                                                             &sqlite3_finalize);
-  while (code == SQLITE_OK || code == SQLITE_ROW) {
-    code = sqlite3_step(prepared);
-    if (code != SQLITE_ROW) break;
+  const auto error = user.each_row(sql, [](sqlite3_stmt* statement) {
     std::string row;
-    for (int i = 0; i < sqlite3_column_count(prepared); ++i)
-      row += (i > 0 ? ", " : "") + json_of(prepared, i);
+    for (int i = 0; i < sqlite3_column_count(statement); ++i)
+      row += (i > 0 ? ", " : "") + json_of(statement, i);
     std::cout << '[' << row << "]\n";
-  }
-  if (code == SQLITE_DONE) return 0;
-  std::cerr << "query: " << sqlite3_errmsg(user.handle()) << '\n';
+  });
+  if (!error) return 0;
+  std::cerr << "query: " << *error << '\n';
   return 1;
 }
 

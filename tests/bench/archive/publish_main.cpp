@@ -3,12 +3,12 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
 #include "service/dds/dds.hpp"
 #include "tests/bench/archive/mission_telemetry.hpp"
+#include "tests/support/wait_for_reader.hpp"
 
 namespace {
 
@@ -28,15 +28,6 @@ double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
-template <class M>
-void wait_for_reader(const reident::dds::Writer<M>& writer) {
-  const auto deadline = Clock::now() + 30s;
-  while (writer.matched_readers() == 0) {
-    if (Clock::now() > deadline) throw std::runtime_error("no reader came");
-    std::this_thread::sleep_for(10ms);  // poll
-  }
-}
-
 // The frames are made beforehand: only their publication is to cost.
 void publish(const Options& options) {
   const MissionTelemetry telemetry(options.parameters);
@@ -45,7 +36,7 @@ void publish(const Options& options) {
     telemetry.fill(k, options.spacecraft, frames[k]);
   reident::dds::Participant participant({options.domain, options.partition});
   reident::dds::Writer<reident::storage::TelemetryFrame> writer(participant);
-  wait_for_reader(writer);
+  reident::test::wait_for_reader(writer);
   std::puts("ready");
   std::fflush(stdout);
   std::getchar();  // all publishers begin together
