@@ -7,6 +7,7 @@ namespace {
 
 constexpr int response_ticks = 2000;
 constexpr double settled = 1e-9;
+constexpr double let_go = 1e-14;
 
 void clamp(Vector& values, const Vector& limit) {
   values = values.cwiseMax(-limit).cwiseMin(limit);
@@ -49,8 +50,19 @@ Tracker::Tracker(const StateSpaceModel& model, const TrackingGain& gain, const V
   integrators_of_v_ = -gain.integral.rightCols(p).completeOrthogonalDecomposition().pseudoInverse();
   xi1_ = xi2_ = y_hat_ = e_ = Vector::Zero(p);
   v_ = v_next_ = bridge_ = du_ = Vector::Zero(m);
-  next_ = Vector::Zero(model.order());
+  next_ = d_peak_ = Vector::Zero(model.order());
   set_limits();
+}
+
+void Tracker::restart(const Eigen::Ref<const Vector>& x0) {
+  x_f_ = x0;
+  following_ = false;
+  for (Vector* zero : {&d_, &d_peak_, &xi1_, &xi2_, &v_, &v_next_, &bridge_}) zero->setZero();
+}
+
+bool Tracker::has_let_go() const {
+  return !following_ && (v_next_.array().abs() <= let_go * v_limit_.array()).all() &&
+         (d_.array().abs() <= let_go * d_peak_.array()).all();
 }
 
 /// Sums |response| to an impulse of error_limit in each difference between telemetry and free run.
@@ -130,6 +142,7 @@ void Tracker::advance() {
   next_.noalias() = model_.A * d_;
   next_.noalias() += model_.B * v_;
   d_.swap(next_);
+  d_peak_ = d_peak_.cwiseMax(d_.cwiseAbs());
   next_.noalias() = model_.A * x_f_;
   next_.noalias() += model_.B * du_;
   x_f_.swap(next_);

@@ -56,6 +56,13 @@ class Tracker {
   /// The same, followed by y[k] (p); as if missing where any of it is not finite.
   const Vector& step(const Eigen::Ref<const Vector>& u, const Eigen::Ref<const Vector>& y);
 
+  /// Begins a run anew: the free state x0 (n) at the next step, no correction.
+  void restart(const Eigen::Ref<const Vector>& x0);
+  /// State of the free run at the next step (n).
+  const Vector& free_state() const { return x_f_; }
+  /// What is left of the correction is no more than rounding: from here on the run is the free run.
+  bool has_let_go() const;
+
   /// v[k] of the last step, and the most that it can be (m, input units).
   const Vector& correction() const { return v_; }
   const Vector& correction_limit() const { return v_limit_; }
@@ -73,6 +80,7 @@ class Tracker {
   bool following_ = false;
   Vector v_limit_, xi1_limit_, xi2_limit_;
   Vector x_f_, d_, xi1_, xi2_;
+  Vector d_peak_;  // largest |d| since the run began
   Vector v_;       // of this tick
   Vector v_next_;  // of the next
   Vector bridge_;  // what the integrators miss of v since telemetry returned

@@ -1,6 +1,7 @@
 #include "service/client/live_equipment.hpp"
 
 #include "identification/simulate.hpp"
+#include "service/client/include/reident/client.h"
 
 namespace reident {
 namespace {
@@ -8,14 +9,23 @@ namespace {
 // Without a measured output for so many times the rows of a seed, the run starts without one.
 constexpr identification::Index seed_patience = 10;
 
+std::unique_ptr<PreparedModel> prepared(const ModelVersion& version,
+                                        const Declaration& declaration) {
+  auto made = PreparedModel::make(version, declaration);
+  auto model = std::get<std::unique_ptr<PreparedModel>>(std::move(made));
+  model->prepare_tracking();
+  return model;
+}
+
 }  // namespace
 
-LiveEquipment::LiveEquipment(const ModelVersion& version)
-    : version_(version.number),
+LiveEquipment::LiveEquipment(const ModelVersion& version, Mode mode)
+    : mode_(mode),
+      declaration_(declaration_of(version.model)),
       tracker_(version.model),
-      runner_(version.model),
+      runner_(prepared(version, declaration_), declaration_),
       score_(version.model.dynamics.outputs()),
-      hold_ns_(version.model.hold_ns) {
+      y_(version.model.dynamics.outputs()) {
   forget_state();
 }
 
@@ -24,7 +34,7 @@ void LiveEquipment::add(const storage::TelemetryFrame& frame) {
 }
 
 void LiveEquipment::forget_state() {
-  const identification::StateSpaceModel& dynamics = runner_.model().dynamics;
+  const identification::StateSpaceModel& dynamics = runner_.model().dynamics();
   const identification::Index rows = identification::initial_rows(dynamics);
   running_ = false;
   seeded_ = 0;
@@ -43,9 +53,12 @@ void LiveEquipment::run(const Tick& tick) {
     seed(tick);
     return;
   }
-  score_.add(tick.y, runner_.step(tick.u));
-  runner_.observe(tick.y);
-  if (runner_.is_any_outside()) ++ticks_outside_;
+  const int flags = mode_ == Mode::following
+                        ? runner_.follow(tick.u.data(), tick.y.data(), y_.data())
+                        : runner_.step(tick.u.data(), y_.data());
+  runner_.observe(tick.y.data());
+  score_.add(tick.y, y_);
+  if ((flags & REIDENT_INPUT_OUTSIDE) != 0) ++ticks_outside_;
 }
 
 void LiveEquipment::seed(const Tick& tick) {
@@ -61,21 +74,21 @@ void LiveEquipment::seed(const Tick& tick) {
     runner_.start(seed_u_, seed_y_);
     running_ = true;
   } else if (seed_ticks_ >= seed_patience * seed_u_.rows()) {
-    runner_ = ModelRunner(runner_.model());
+    runner_ = ModelRunner(prepared(version(), declaration_), declaration_);
     running_ = true;
   }
 }
 
-std::optional<ModelRunner::Swap> LiveEquipment::adopt(const ModelVersion& version) {
-  const bool continues = runner_.fits(version.model) && version.model.hold_ns == hold_ns_;
-  if (!continues) {
-    *this = LiveEquipment(version);
+std::optional<ModelRunner::Swap> LiveEquipment::adopt(const ModelVersion& next) {
+  const EquipmentModel& current = version().model;
+  if (!same_signals(current, next.model) || current.hold_ns != next.model.hold_ns) {
+    *this = LiveEquipment(next, mode_);
     return std::nullopt;
   }
-  version_ = version.number;
-  score_ = RunningScore(version.model.dynamics.outputs());
+  score_ = RunningScore(next.model.dynamics.outputs());
   ticks_outside_ = 0;
-  const ModelRunner::Swap swap = runner_.swap(version.model);
+  std::unique_ptr<PreparedModel> model = prepared(next, declaration_);
+  const ModelRunner::Swap swap = runner_.swap(model);
   if (!running_) forget_state();
   return swap;
 }

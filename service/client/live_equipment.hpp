@@ -1,5 +1,5 @@
-// One equipment of a simulator that follows the satellite: live telemetry in, the model's free run
-// beside the measured outputs, and versions exchanged on the way.
+// One equipment beside the satellite: live telemetry in, the model's run, free or following, beside
+// the measured outputs, and versions exchanged on the way.
 #pragma once
 
 #include <memory>
@@ -13,21 +13,25 @@ namespace reident {
 
 class LiveEquipment {
  public:
-  explicit LiveEquipment(const ModelVersion& version);
+  enum class Mode { free, following };
+
+  explicit LiveEquipment(const ModelVersion& version, Mode mode = Mode::free);
 
   void describe(const storage::ParameterDescriptor& descriptor) { tracker_.describe(descriptor); }
   void add(const storage::TelemetryFrame& frame);
 
-  /// Runs `version` from the next tick on; the errors count from zero again. Where its signals,
+  /// Runs `next` from the next tick on; the errors count from zero again. Where its signals,
   /// period and hold are those of the version that runs, the output continues: the swap is
   /// returned. Otherwise the run starts over with it, and the parameters must be described again.
-  std::optional<ModelRunner::Swap> adopt(const ModelVersion& version);
+  std::optional<ModelRunner::Swap> adopt(const ModelVersion& next);
 
-  std::int64_t version() const { return version_; }
+  const ModelVersion& version() const { return runner_.model().version(); }
   /// Since the version was adopted.
   identification::Score score() const { return score_.score(); }
   /// Ticks at which an input was outside the identified range, since the version was adopted.
   std::uint64_t ticks_outside() const { return ticks_outside_; }
+  /// Whether the last tick was corrected by measured outputs.
+  bool is_following() const { return runner_.is_following(); }
   /// Times that the run had to start over because ticks were missing.
   std::uint64_t gaps() const { return gaps_; }
   const TelemetryTracker& tracker() const { return tracker_; }
@@ -40,13 +44,14 @@ class LiveEquipment {
   void seed(const Tick& tick);
   void forget_state();
 
-  std::int64_t version_;
+  Mode mode_;
+  Declaration declaration_;
   TelemetryTracker tracker_;
   ModelRunner runner_;
   RunningScore score_;
-  storage::Time hold_ns_;
   std::optional<std::int64_t> last_tick_;
   bool running_ = false;
+  identification::Vector y_;
   identification::Matrix seed_u_, seed_y_;
   identification::Index seeded_ = 0;
   identification::Index seed_ticks_ = 0;

@@ -1,74 +1,95 @@
 // Runs a model step by step, and exchanges it while it runs.
 #pragma once
 
-#include <string>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
-#include "identification/record.hpp"
-#include "service/model/model_version.hpp"
+#include "service/client/prepared_model.hpp"
 
 namespace reident {
 
-/// Free run of a model: the outputs follow from the inputs alone. step() allocates nothing.
+/// A run of one equipment: free, from the inputs alone, or following the measured outputs, with
+/// changes between the two and between versions that the output does not jump at. Arrays of inputs
+/// and outputs are those of the declaration that its models were prepared for. step(), follow(),
+/// observe() and swap() allocate nothing, lock nothing and make no system call.
+///
+/// Following. With a tracking gain the integral feedback of identification/tracking.hpp; when the
+/// run lets go, its correction fades. Without one the Kalman gain: x[k+1] += K e[k], each error
+/// clamped to the output's identified range.
+///
+/// Swap. The new model's state is the one that agrees best with the recent inputs and outputs. What
+/// its output still differs by at the last step comes in linearly over so many steps that it adds
+/// at most the output's own recent change per step, within [least, most]_transition.
 class ModelRunner {
  public:
   using Vector = identification::Vector;
-  using Matrix = identification::Matrix;
   using Index = identification::Index;
 
-  static constexpr int transition_steps = 60;
+  static constexpr int least_transition = 60;
+  static constexpr int most_transition = 1200;
 
-  /// Starts at the operating point (x = 0). `history_rows` are kept for a swap. The model's sizes
-  /// must agree.
-  explicit ModelRunner(EquipmentModel model, Index history_rows = 256);
+  /// Starts at the operating point (x = 0).
+  ModelRunner(std::unique_ptr<PreparedModel> model, const Declaration& declaration);
 
-  /// Starts from the state that agrees best with measured rows, N x m inputs and N x p outputs at
+  /// Starts from the state that agrees best with measured rows, N x inputs and N x outputs, at
   /// ticks that follow each other; the next step is the tick after the last of them.
-  void start(const Matrix& u, const Matrix& y);
+  void start(const identification::Matrix& u, const identification::Matrix& y);
 
-  /// Output at this tick for the inputs `u` (m) at this tick; the state moves on to the next one.
-  /// The reference is good until the next call.
-  const Vector& step(const Vector& u);
-  const Vector& output() const { return y_; }
-  /// The measured output (p) at the tick of the last step, where it is known: a swap then estimates
-  /// the state from it rather than from the model's own. Ignored where it is not finite.
-  void observe(const Vector& y);
-
-  /// Whether input `i` of the last step was outside the range that the model was identified in. The
-  /// input is used as it is.
-  bool is_outside(Index i) const { return outside_[static_cast<std::size_t>(i)] != 0; }
-  bool is_any_outside() const;
-
-  /// Whether the inputs, outputs and period of `next` are those of the model that runs.
-  bool fits(const EquipmentModel& next) const;
+  /// The outputs at this tick; the state moves on to the next one. Returns flags of client.h.
+  int step(const double* u, double* y) { return advance(u, nullptr, y); }
+  /// The same, corrected by what was measured at the ticks before; NaN where an output is missing.
+  int follow(const double* u, const double* measured, double* y) { return advance(u, measured, y); }
+  /// The measured outputs at the tick of the last step, where they are known and finite: a swap
+  /// then estimates the state from them rather than from the model's own.
+  void observe(const double* measured);
 
   struct Swap {
-    Index rows = 0;  // of the history that the new state was estimated from
-    Vector change;   // new model's output at the last tick less what was put out there
+    Index rows = 0;      // of the past that the new state was estimated from
+    double largest = 0;  // change of an output, in its unit
+    int transition = 0;  // steps over which it comes in
   };
-  /// Goes on with `next`, which fits, from the state that agrees best with the recent inputs and
-  /// outputs. The output continues where it was: `change` comes in linearly over the next
-  /// `transition_steps` steps.
-  Swap swap(EquipmentModel next);
+  /// Goes on with `next`, prepared for the same declaration; afterwards `next` is the model before,
+  /// to be destroyed where that may take time.
+  Swap swap(std::unique_ptr<PreparedModel>& next);
+  /// New model's outputs at the last tick less what was put out there, at the last swap (declared
+  /// order).
+  std::span<const double> change() const { return change_; }
 
-  const EquipmentModel& model() const { return model_; }
+  const PreparedModel& model() const { return *model_; }
+  /// What was put out last; the operating point before the first step.
+  std::span<const double> output() const { return output_; }
+  /// REIDENT_INPUT_MISSING and REIDENT_INPUT_OUTSIDE of a declared input at the last step.
+  int input_flags(std::size_t declared) const { return model_->binding_.flags(declared); }
+  bool is_following() const { return is_following_; }
+  int transition_left() const { return transition_left_; }
 
  private:
-  void allocate();
-  void remember(const Vector& u);
-  /// States (n x (N + 1)) at each of the record's N rows and after them, from the initial state
-  /// that agrees best with its outputs.
-  Matrix states(const identification::Record& record) const;
-  identification::Record recent() const;
+  int advance(const double* u, const double* measured, double* y);
+  void run_tracker(identification::Tracker& tracker, const double* measured);
+  void run_plain(const double* measured);
+  /// The operating point takes the place of a run that is not finite any more.
+  void start_over();
+  /// The model's outputs, with what is left of a transition, become output().
+  void put_out();
+  void remember(const double* u);
+  /// Sets the model's state and outputs to what agrees best with what is remembered.
+  void match();
+  Swap begin_transition();
 
-  EquipmentModel model_;
-  Vector x_, next_x_, du_, y_;
-  Vector offset_;  // what is left of the old model's output in the new one's, while it fades
-  int fading_ = 0;
-  std::vector<std::uint8_t> outside_;
-  Matrix past_u_, past_y_;  // rings: row `at_` is written next
-  Index at_ = 0;
-  Index remembered_ = 0;
+  std::unique_ptr<PreparedModel> model_;
+  std::size_t inputs_, outputs_;         // declared
+  std::vector<double> output_, before_;  // at the last step and the one before it
+  std::vector<double> change_;           // at the last swap
+  std::vector<double> typical_change_;   // of output() in a step: a mean over the recent ones
+  std::vector<double> past_;             // a ring of matched_rows of [inputs, outputs]
+  std::size_t at_ = 0;                   // the row that is written next
+  std::size_t remembered_ = 0;           // rows
+  std::uint64_t steps_ = 0;
+  int transition_ = 1, transition_left_ = 0;
+  bool is_following_ = false;
+  bool tracker_runs_ = false;  // it follows, or its correction has not faded yet
 };
 
 }  // namespace reident

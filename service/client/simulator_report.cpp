@@ -38,17 +38,19 @@ void SimulatorReport::adopted(const ModelVersion& version,
               {"rollback", version.rollback},
               {"mrse_percent", to_json(model.validation.mrse_percent)},
               {"fit_percent", to_json(model.validation.fit_percent)}};
-    if (swap) line["output_change"] = to_json(swap->change);
+    if (swap) {
+      line["output_change"] = swap->largest;
+      line["transition_ticks"] = swap->transition;
+    }
     say(line.dump());
     return;
   }
-  say(fmt::format(
-      "{} v{}: {}, order {}, on unseen data MRSE {:.3f} %, fit {:.1f} %{}", model.equipment,
-      version.number, version.rollback ? "rolled back to" : "adopted", model.dynamics.order(),
-      model.validation.mrse(), model.validation.fit(),
-      swap ? fmt::format(", output changes by {:.3g} over {} ticks",
-                         swap->change.cwiseAbs().maxCoeff(), ModelRunner::transition_steps)
-           : ""));
+  say(fmt::format("{} v{}: {}, order {}, on unseen data MRSE {:.3f} %, fit {:.1f} %{}",
+                  model.equipment, version.number, version.rollback ? "rolled back to" : "adopted",
+                  model.dynamics.order(), model.validation.mrse(), model.validation.fit(),
+                  swap ? fmt::format(", output changes by {:.3g} over {} ticks", swap->largest,
+                                     swap->transition)
+                       : ""));
 }
 
 void SimulatorReport::refused(const ModelSubscriber::Refusal& refusal) const {
@@ -70,7 +72,7 @@ void SimulatorReport::running(const std::string& equipment, const LiveEquipment&
   if (json_) {
     say(Json{{"event", final ? "finished" : "running"},
              {"equipment", equipment},
-             {"version", live.version()},
+             {"version", live.version().number},
              {"ticks", score.rows},
              {"mrse_percent", to_json(score.mrse_percent)},
              {"fit_percent", to_json(score.fit_percent)},
@@ -90,7 +92,8 @@ void SimulatorReport::running(const std::string& equipment, const LiveEquipment&
                 "{} ticks, running MRSE {:.3f} %, fit {:.1f} %, {} "
                 "outside the identified range, {} gaps",
                 score.rows, score.mrse(), score.fit(), live.ticks_outside(), live.gaps());
-  say(fmt::format("{} v{}{}: {}", equipment, live.version(), final ? " (ended)" : "", state));
+  say(fmt::format("{} v{}{}: {}", equipment, live.version().number, final ? " (ended)" : "",
+                  state));
 }
 
 }  // namespace reident

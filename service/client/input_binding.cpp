@@ -1,0 +1,122 @@
+#include "service/client/input_binding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "service/client/include/reident/client.h"
+
+namespace reident {
+namespace {
+
+std::optional<std::size_t> place_of(const std::string& name,
+                                    const std::vector<DeclaredSignal>& declared) {
+  const auto found =
+      std::find_if(declared.begin(), declared.end(),
+                   [&name](const DeclaredSignal& signal) { return signal.name == name; });
+  if (found == declared.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - declared.begin());
+}
+
+std::string missing(const std::string& name) {
+  return "it needs " + name + ", which the simulator does not declare";
+}
+
+std::optional<std::string> other_unit(const Signal& signal, const DeclaredSignal& declared) {
+  if (declared.unit.empty() || declared.unit == signal.unit) return std::nullopt;
+  return "its " + signal.name + " is in " + (signal.unit.empty() ? "no unit" : signal.unit) +
+         ", and the simulator's in " + declared.unit;
+}
+
+}  // namespace
+
+std::variant<std::vector<std::size_t>, std::string> places_of(
+    const std::vector<Signal>& signals, const std::vector<DeclaredSignal>& declared) {
+  std::vector<std::size_t> places;
+  for (const Signal& signal : signals) {
+    const auto place = place_of(signal.name, declared);
+    if (!place) return missing(signal.name);
+    if (auto reason = other_unit(signal, declared[*place])) return *std::move(reason);
+    places.push_back(*place);
+  }
+  return places;
+}
+
+std::variant<InputBinding, std::string> InputBinding::make(
+    const EquipmentModel& model, const std::vector<DeclaredSignal>& declared) {
+  std::vector<DerivedInput> derived;
+  for (const Signal& input : model.inputs) {
+    const auto place = place_of(input.name, declared);
+    if (place) {
+      if (auto reason = other_unit(input, declared[*place])) return *std::move(reason);
+    } else if (!input.expression.empty()) {
+      derived.push_back({input.name, input.expression, input.unit});
+    }
+  }
+  InputExpressions expressions(signal_names(model.inputs), derived);
+  std::vector<std::size_t> places;
+  for (const std::string& parameter : expressions.parameters()) {
+    const auto place = place_of(parameter, declared);
+    if (!place) return missing(parameter);
+    places.push_back(*place);
+  }
+  return InputBinding(model, std::move(expressions), std::move(places));
+}
+
+InputBinding::InputBinding(const EquipmentModel& model, InputExpressions expressions,
+                           std::vector<std::size_t> places)
+    : expressions_(std::move(expressions)),
+      places_(std::move(places)),
+      sources_(model.inputs.size()),
+      low_(static_cast<identification::Index>(model.inputs.size())),
+      high_(low_.size()),
+      parameters_(static_cast<identification::Index>(places_.size())),
+      fresh_(low_.size()),
+      flags_(model.inputs.size()) {
+  const std::vector<std::string>& parameters = expressions_.parameters();
+  const auto add_source = [&](std::size_t input, const std::string& parameter) {
+    const auto found = std::find(parameters.begin(), parameters.end(), parameter);
+    if (found != parameters.end())
+      sources_[input].push_back(places_[static_cast<std::size_t>(found - parameters.begin())]);
+  };
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    const Signal& input = model.inputs[i];
+    low_(static_cast<identification::Index>(i)) = input.low;
+    high_(static_cast<identification::Index>(i)) = input.high;
+    add_source(i, input.name);
+    if (!sources_[i].empty()) continue;
+    const auto parsed = Expression::parse(input.expression);
+    if (const auto* expression = std::get_if<Expression>(&parsed))
+      for (const std::string& variable : expression->variables()) add_source(i, variable);
+  }
+}
+
+int InputBinding::bind(const double* declared, identification::Vector& u) {
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    parameters_(static_cast<identification::Index>(i)) = declared[places_[i]];
+  expressions_.evaluate(parameters_, fresh_);
+  int all = 0;
+  for (std::size_t i = 0; i < flags_.size(); ++i) {
+    const auto at = static_cast<identification::Index>(i);
+    int flags = 0;
+    if (std::isfinite(fresh_(at))) {
+      u(at) = fresh_(at);
+    } else {
+      flags = REIDENT_INPUT_MISSING;
+    }
+    if (u(at) < low_(at) || u(at) > high_(at)) flags |= REIDENT_INPUT_OUTSIDE;
+    flags_[i] = static_cast<std::uint8_t>(flags);
+    all |= flags;
+  }
+  return all;
+}
+
+int InputBinding::flags(std::size_t declared) const {
+  int flags = 0;
+  for (std::size_t i = 0; i < sources_.size(); ++i)
+    if (std::find(sources_[i].begin(), sources_[i].end(), declared) != sources_[i].end())
+      flags |= flags_[i];
+  return flags;
+}
+
+}  // namespace reident

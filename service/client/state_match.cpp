@@ -1,0 +1,108 @@
+#include "service/client/state_match.hpp"
+
+#include <cmath>
+#include <cstring>
+
+namespace reident {
+namespace {
+
+using identification::Index;
+
+constexpr double ridge = 1e-8;
+
+}  // namespace
+
+StateMatch::StateMatch(const identification::StateSpaceModel& model, const StepKernel& kernel,
+                       Index capacity)
+    : model_(model),
+      kernel_(kernel),
+      system_(capacity * model.outputs() + model.order(), model.order() + 1),
+      inputs_(model.inputs(), capacity),
+      visible_(model.order(), model.outputs()),
+      next_(model.order()),
+      forced_(model.order()),
+      x_(model.order()),
+      last_output_(model.outputs()),
+      z_(static_cast<std::size_t>(model.order() + model.inputs())),
+      out_(kernel.out_room()) {
+  clear();
+}
+
+void StateMatch::clear() {
+  rows_ = 0;
+  visible_ = model_.C.transpose();
+  forced_.setZero();
+}
+
+void StateMatch::add(const Vector& du, const Eigen::Ref<const Vector>& dy) {
+  const Index n = model_.order(), p = model_.outputs();
+  Eigen::Map<Vector>(z_.data(), n) = forced_;
+  Eigen::Map<Vector>(z_.data() + n, model_.inputs()) = du;
+  kernel_.run(z_.data(), out_.data());
+  forced_ = Eigen::Map<const Vector>(out_.data(), n);
+  for (Index q = 0; q < p; ++q) {
+    const Index row = rows_ * p + q;
+    system_.row(row).head(n) = visible_.col(q).transpose();
+    system_(row, n) = dy(q) - out_[static_cast<std::size_t>(n + q)];
+    next_.noalias() = model_.A.transpose() * visible_.col(q);
+    visible_.col(q) = next_;
+  }
+  inputs_.col(rows_) = du;
+  ++rows_;
+}
+
+const StateMatch::Vector& StateMatch::solve() {
+  const Index n = model_.order(), rows = rows_ * model_.outputs();
+  for (Index i = 0; i < n; ++i) {
+    const double size = system_.col(i).head(rows).norm();
+    system_.row(rows + i).setZero();
+    system_(rows + i, i) = ridge * (size > 0 ? size : 1);
+  }
+  triangularise(rows + n);
+  back_substitute();
+  if (!x_.allFinite()) x_.setZero();
+  run_from(x_);
+  return x_;
+}
+
+/// Reflects each column onto its diagonal; the last one goes along.
+void StateMatch::triangularise(Index rows) {
+  const Index n = model_.order();
+  for (Index j = 0; j < n; ++j) {
+    auto v = system_.col(j).segment(j, rows - j);
+    const double size = v.norm();
+    if (!(size > 0)) continue;
+    const double diagonal = v(0) > 0 ? -size : size;
+    v(0) -= diagonal;
+    const double scale = 2 / v.squaredNorm();
+    for (Index c = j + 1; c <= n; ++c) {
+      auto column = system_.col(c).segment(j, rows - j);
+      column -= (scale * v.dot(column)) * v;
+    }
+    v(0) = diagonal;  // what lies below it is not looked at again
+  }
+}
+
+void StateMatch::back_substitute() {
+  for (Index i = model_.order(); i-- > 0;) {
+    double rest = system_(i, model_.order());
+    for (Index j = i + 1; j < model_.order(); ++j) rest -= system_(i, j) * x_(j);
+    x_(i) = rest / system_(i, i);
+  }
+}
+
+void StateMatch::run_from(const Vector& x0) {
+  const Index n = model_.order();
+  Eigen::Map<Vector> x(z_.data(), n);
+  x = x0;
+  last_output_.setZero();
+  for (Index k = 0; k < rows_; ++k) {
+    Eigen::Map<Vector>(z_.data() + n, model_.inputs()) = inputs_.col(k);
+    kernel_.run(z_.data(), out_.data());
+    x = Eigen::Map<const Vector>(out_.data(), n);
+    last_output_ = Eigen::Map<const Vector>(out_.data() + n, model_.outputs());
+  }
+  x_ = x;
+}
+
+}  // namespace reident

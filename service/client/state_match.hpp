@@ -1,0 +1,53 @@
+// The state of a model that agrees best with recent inputs and outputs, found without allocating.
+#pragma once
+
+#include <vector>
+
+#include "identification/state_space.hpp"
+#include "service/client/step_kernel.hpp"
+
+namespace reident {
+
+/// Least squares of y[k] - (response from the zero state) = C A^k x0 over the rows that were added,
+/// by Householder reflections (Golub and Van Loan, Matrix Computations, 5.2.2) of
+/// [C A^k | y - response; ridge | 0]. The ridge is 1e-8 of each column, so that a state that the
+/// rows do not show stays small.
+class StateMatch {
+ public:
+  using Vector = identification::Vector;
+  using Index = identification::Index;
+
+  /// For at most `capacity` rows of a well-formed model, which must outlive it.
+  StateMatch(const identification::StateSpaceModel& model, const StepKernel& kernel,
+             Index capacity);
+
+  void clear();
+  /// The tick after the last one that was added: deviations of the inputs (m) from u0 and of the
+  /// outputs (p) from y0, all finite.
+  void add(const Vector& du, const Eigen::Ref<const Vector>& dy);
+  Index rows() const { return rows_; }
+
+  /// The state at the tick after the last row, and what the model's outputs (less y0) are at the
+  /// last one. The zero state where the rows give none. Uses the rows up: clear() comes next.
+  const Vector& solve();
+  const Vector& last_output() const { return last_output_; }
+
+ private:
+  void triangularise(Index rows);
+  void back_substitute();
+  void run_from(const Vector& x0);
+
+  const identification::StateSpaceModel& model_;
+  const StepKernel& kernel_;
+  identification::Matrix system_;   // capacity p + n rows, n + 1 columns
+  identification::Matrix inputs_;   // m x capacity
+  identification::Matrix visible_;  // n x p: (C A^k)'
+  Vector next_;                     // n
+  Vector forced_;                   // n: the state from zero
+  Vector x_;                        // n
+  Vector last_output_;              // p
+  std::vector<double> z_, out_;
+  Index rows_ = 0;
+};
+
+}  // namespace reident
