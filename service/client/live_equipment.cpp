@@ -23,9 +23,10 @@ LiveEquipment::LiveEquipment(const ModelVersion& version, Mode mode)
     : mode_(mode),
       declaration_(declaration_of(version.model)),
       tracker_(version.model),
-      runner_(prepared(version, declaration_), declaration_),
+      runner_(declaration_),
       score_(version.model.dynamics.outputs()),
       y_(version.model.dynamics.outputs()) {
+  run_anew(version);
   forget_state();
 }
 
@@ -33,8 +34,14 @@ void LiveEquipment::add(const storage::TelemetryFrame& frame) {
   tracker_.add(frame, [this](const Tick& tick) { run(tick); });
 }
 
+void LiveEquipment::run_anew(const ModelVersion& version) {
+  runner_ = ModelRunner(declaration_);
+  auto model = prepared(version, declaration_);
+  runner_.swap(model);
+}
+
 void LiveEquipment::forget_state() {
-  const identification::StateSpaceModel& dynamics = runner_.model().dynamics();
+  const identification::StateSpaceModel& dynamics = runner_.model()->dynamics();
   const identification::Index rows = identification::initial_rows(dynamics);
   running_ = false;
   seeded_ = 0;
@@ -74,7 +81,7 @@ void LiveEquipment::seed(const Tick& tick) {
     runner_.start(seed_u_, seed_y_);
     running_ = true;
   } else if (seed_ticks_ >= seed_patience * seed_u_.rows()) {
-    runner_ = ModelRunner(prepared(version(), declaration_), declaration_);
+    run_anew(ModelVersion(version()));
     running_ = true;
   }
 }

@@ -25,7 +25,7 @@ class LiveEquipment {
   /// returned. Otherwise the run starts over with it, and the parameters must be described again.
   std::optional<ModelRunner::Swap> adopt(const ModelVersion& next);
 
-  const ModelVersion& version() const { return runner_.model().version(); }
+  const ModelVersion& version() const { return runner_.model()->version(); }
   /// Since the version was adopted.
   identification::Score score() const { return score_.score(); }
   /// Ticks at which an input was outside the identified range, since the version was adopted.
@@ -42,6 +42,7 @@ class LiveEquipment {
   /// identification's scores take, and where no output is measured the run starts at the operating
   /// point.
   void seed(const Tick& tick);
+  void run_anew(const ModelVersion& version);
   void forget_state();
 
   Mode mode_;

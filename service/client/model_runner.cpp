@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "service/client/include/reident/client.h"
 
@@ -16,17 +17,14 @@ constexpr double changes_averaged = 64;  // steps
 
 }  // namespace
 
-ModelRunner::ModelRunner(std::unique_ptr<PreparedModel> model, const Declaration& declaration)
-    : model_(std::move(model)),
-      inputs_(declaration.inputs.size()),
+ModelRunner::ModelRunner(const Declaration& declaration)
+    : inputs_(declaration.inputs.size()),
       outputs_(declaration.outputs.size()),
-      output_(outputs_),
+      output_(outputs_, std::numeric_limits<double>::quiet_NaN()),
       before_(outputs_),
       change_(outputs_),
       typical_change_(outputs_),
-      past_(static_cast<std::size_t>(PreparedModel::matched_rows) * (inputs_ + outputs_)) {
-  put_out();
-}
+      past_(static_cast<std::size_t>(PreparedModel::matched_rows) * (inputs_ + outputs_)) {}
 
 void ModelRunner::start(const identification::Matrix& u, const identification::Matrix& y) {
   at_ = 0;
@@ -44,6 +42,10 @@ void ModelRunner::start(const identification::Matrix& u, const identification::M
 }
 
 int ModelRunner::advance(const double* u, const double* measured, double* y) {
+  if (model_ == nullptr) {
+    std::copy(output_.begin(), output_.end(), y);
+    return REIDENT_NO_MODEL;
+  }
   PreparedModel& model = *model_;
   int flags = model.binding_.bind(u, model.u_);
   model.du_ = model.u_ - model.dynamics().u0;
@@ -173,7 +175,8 @@ ModelRunner::Swap ModelRunner::swap(std::unique_ptr<PreparedModel>& next) {
   tracker_runs_ = false;
   std::fill(change_.begin(), change_.end(), 0.0);
   transition_left_ = 0;
-  if (remembered_ == 0) {
+  if (next != nullptr && next->dynamics().period_s != model_->dynamics().period_s) remembered_ = 0;
+  if (steps_ == 0) {
     put_out();
     return {};
   }

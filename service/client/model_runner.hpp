@@ -30,11 +30,11 @@ class ModelRunner {
   static constexpr int least_transition = 60;
   static constexpr int most_transition = 1200;
 
-  /// Starts at the operating point (x = 0).
-  ModelRunner(std::unique_ptr<PreparedModel> model, const Declaration& declaration);
+  /// Has no model before the first swap(): its outputs are NaN.
+  explicit ModelRunner(const Declaration& declaration);
 
-  /// Starts from the state that agrees best with measured rows, N x inputs and N x outputs, at
-  /// ticks that follow each other; the next step is the tick after the last of them.
+  /// Has a model. Starts from the state that agrees best with measured rows, N x inputs and N x
+  /// outputs, at ticks that follow each other; the next step is the tick after the last of them.
   void start(const identification::Matrix& u, const identification::Matrix& y);
 
   /// The outputs at this tick; the state moves on to the next one. Returns flags of client.h.
@@ -51,17 +51,20 @@ class ModelRunner {
     int transition = 0;  // steps over which it comes in
   };
   /// Goes on with `next`, prepared for the same declaration; afterwards `next` is the model before,
-  /// to be destroyed where that may take time.
+  /// to be destroyed where that may take time. The first model, and one of another period, starts
+  /// at its operating point (x = 0).
   Swap swap(std::unique_ptr<PreparedModel>& next);
   /// New model's outputs at the last tick less what was put out there, at the last swap (declared
   /// order).
   std::span<const double> change() const { return change_; }
 
-  const PreparedModel& model() const { return *model_; }
-  /// What was put out last; the operating point before the first step.
+  const PreparedModel* model() const { return model_.get(); }
+  /// What was put out last; before the first step, what the model starts from.
   std::span<const double> output() const { return output_; }
   /// REIDENT_INPUT_MISSING and REIDENT_INPUT_OUTSIDE of a declared input at the last step.
-  int input_flags(std::size_t declared) const { return model_->binding_.flags(declared); }
+  int input_flags(std::size_t declared) const {
+    return model_ == nullptr ? 0 : model_->binding_.flags(declared);
+  }
   bool is_following() const { return is_following_; }
   int transition_left() const { return transition_left_; }
 

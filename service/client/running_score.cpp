@@ -4,6 +4,11 @@
 #include <limits>
 
 namespace reident {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
 
 RunningScore::RunningScore(identification::Index outputs)
     : count_(Array::Zero(outputs)),
@@ -12,7 +17,12 @@ RunningScore::RunningScore(identification::Index outputs)
       squares_(Array::Zero(outputs)),
       errors_(Array::Zero(outputs)) {}
 
-void RunningScore::add(const Vector& y, const Vector& y_hat) {
+void RunningScore::clear() {
+  rows_ = 0;
+  for (Array* sums : {&count_, &mean_, &spread_, &squares_, &errors_}) sums->setZero();
+}
+
+void RunningScore::add(const Eigen::Ref<const Vector>& y, const Eigen::Ref<const Vector>& y_hat) {
   bool any = false;
   for (identification::Index q = 0; q < y.size(); ++q) {
     if (!std::isfinite(y(q)) || !std::isfinite(y_hat(q))) continue;
@@ -27,13 +37,22 @@ void RunningScore::add(const Vector& y, const Vector& y_hat) {
   if (any) ++rows_;
 }
 
+double RunningScore::mrse(identification::Index output) const {
+  if (!(count_(output) > 0)) return nan;
+  // 0/0 is a zero output that was met exactly.
+  return errors_(output) > 0 ? 100 * std::sqrt(errors_(output) / squares_(output)) : 0;
+}
+
+double RunningScore::mrse() const {
+  double sum = 0;
+  for (identification::Index q = 0; q < count_.size(); ++q) sum += mrse(q);
+  return sum / static_cast<double>(count_.size());
+}
+
 identification::Score RunningScore::score() const {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   identification::Score score{Vector(count_.size()), Vector(count_.size()), rows_};
   for (identification::Index q = 0; q < count_.size(); ++q) {
-    // 0/0 is a zero output that was met exactly.
-    const double relative = errors_(q) > 0 ? std::sqrt(errors_(q) / squares_(q)) : 0;
-    score.mrse_percent(q) = count_(q) > 0 ? 100 * relative : nan;
+    score.mrse_percent(q) = mrse(q);
     score.fit_percent(q) = spread_(q) > 0 ? 100 * (1 - std::sqrt(errors_(q) / spread_(q))) : nan;
   }
   return score;

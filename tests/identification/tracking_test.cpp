@@ -175,6 +175,24 @@ TEST(Tracking, ResumesWithoutAJumpWhenTelemetryReturns) {
   }
 }
 
+TEST(Tracking, RestartsAsANewOneAndSaysWhenItHasLetGo) {
+  const Loop l = loop(3, 4, 2, 1);
+  testing::Noise noise(5);
+  const Vector x0 = noise.normal(4, 1), u = noise.normal(2, 1), y = Vector::Constant(1, 30);
+  Tracker used(l.model, l.gain, Vector::Zero(4)), fresh(l.model, l.gain, x0);
+  for (int k = 0; k < 50; ++k) used.step(u, y);
+  EXPECT_FALSE(used.has_let_go());
+  used.restart(x0);
+  EXPECT_TRUE(used.has_let_go());
+  for (int k = 0; k < 50; ++k) EXPECT_EQ(used.step(u, y), fresh.step(u, y));
+  int ticks = 0;
+  while (!used.has_let_go() && ticks < 5000) ++ticks, used.step(u);
+  EXPECT_GT(ticks, 10);
+  EXPECT_LT(ticks, 5000);
+  Tracker free(l.model, l.gain, used.free_state());
+  EXPECT_NEAR(used.step(u)(0), free.step(u)(0), 1e-12);
+}
+
 TEST(Tracking, OfARecordStartsEachSegmentAnew) {
   const Loop l = loop(6, 3, 2, 1, 10);
   testing::Noise noise(6);

@@ -47,7 +47,9 @@ class Simulation {
  public:
   explicit Simulation(const EquipmentModel& model) : Simulation(model, declaration_of(model)) {}
   Simulation(const EquipmentModel& model, Declaration declaration)
-      : declaration_(std::move(declaration)), runner(prepare(model, declaration_), declaration_) {}
+      : declaration_(std::move(declaration)), runner(declaration_) {
+    swap(model);
+  }
 
   double step(const Vector& u) {
     flags = runner.step(u.data(), &y_);
@@ -346,6 +348,28 @@ TEST(ModelRunner, a_swap_starts_from_measured_outputs_where_they_are_known) {
   EXPECT_NEAR(run.runner.change()[0], measured - put_out, 1e-9);
 }
 
+TEST(ModelRunner, puts_nothing_out_before_its_first_model) {
+  ModelRunner runner(declaration_of(example_model()));
+  double y = 0;
+  const Vector u = example_input(0);
+  EXPECT_EQ(runner.step(u.data(), &y), REIDENT_NO_MODEL);
+  EXPECT_TRUE(std::isnan(y));
+  EXPECT_EQ(runner.input_flags(0), 0);
+}
+
+TEST(ModelRunner, a_swap_to_another_period_goes_from_the_output_to_the_operating_point) {
+  Simulation run(example_model());
+  for (Index k = 0; k < 100; ++k) run.step(example_input(k));
+  const double last = run.runner.output()[0];
+  EquipmentModel other = example_model();
+  other.dynamics.period_s = 10;
+  const ModelRunner::Swap swap = run.swap(other);
+  EXPECT_EQ(swap.rows, 0);
+  EXPECT_DOUBLE_EQ(run.runner.change()[0], 4.25 - last);
+  const double y = run.step((Vector(2) << 2.5, 1.5).finished());
+  EXPECT_NEAR(y, last, std::abs(4.25 - last) / ModelRunner::least_transition + 1e-12);
+}
+
 TEST(ModelRunner, a_swap_before_the_first_step_starts_at_the_operating_point) {
   Simulation run(example_model());
   const ModelRunner::Swap swap = run.swap(example_model());
@@ -383,9 +407,9 @@ TEST(ModelRunner, runs_a_static_model) {
   Simulation run(model);
   EXPECT_DOUBLE_EQ(run.step((Vector(2) << 3.5, 1.5).finished()), 4.25 + 0.1);
   run.swap(example_model());
-  EXPECT_EQ(run.runner.model().dynamics().order(), 2);
+  EXPECT_EQ(run.runner.model()->dynamics().order(), 2);
   run.swap(model);
-  EXPECT_EQ(run.runner.model().dynamics().order(), 0);
+  EXPECT_EQ(run.runner.model()->dynamics().order(), 0);
   run.step((Vector(2) << 3.5, 1.5).finished());
   EXPECT_TRUE(std::isfinite(run.runner.output()[0]));
 }

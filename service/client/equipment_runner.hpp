@@ -1,0 +1,95 @@
+// One equipment of a simulator: a run on the simulator's thread, and versions that come from the
+// client's, handed over without a lock.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "service/client/model_runner.hpp"
+#include "service/client/running_score.hpp"
+
+namespace reident {
+
+/// What a run says of itself.
+struct RunState {
+  std::int64_t version = 0;  // 0: none runs yet
+  storage::Time decided = 0;
+  storage::Time swapped = 0;  // its first step, by this machine's clock
+  double period_s = 0;
+  bool is_following = false;
+  double mrse_percent = 0;  // since the swap; NaN before the first measured output
+  std::uint64_t steps = 0;  // since the swap
+  std::uint64_t steps_outside = 0;
+  std::uint64_t steps_missing = 0;
+  double remaining_step = 0;  // of the last swap, in the output's unit
+  int transition_steps = 0;
+  int transition_left = 0;
+};
+
+class EquipmentRunner {
+ public:
+  EquipmentRunner(std::string spacecraft, std::string equipment, Declaration declaration);
+  /// Neither thread uses it any more.
+  ~EquipmentRunner();
+  EquipmentRunner(const EquipmentRunner&) = delete;
+  EquipmentRunner& operator=(const EquipmentRunner&) = delete;
+
+  const std::string& spacecraft() const { return spacecraft_; }
+  const std::string& equipment() const { return equipment_; }
+  const Declaration& declaration() const { return declaration_; }
+
+  // The simulator's thread's. None allocates, takes a lock or makes a system call (the clock that
+  // is read at a swap is in the kernel's shared page).
+
+  /// As ModelRunner's, and REIDENT_SWAPPED at the first step on another version.
+  int step(const double* u, double* y) { return advance(u, nullptr, y); }
+  int follow(const double* u, const double* measured, double* y) { return advance(u, measured, y); }
+  /// What was measured at the last step, which was free.
+  void observe(const double* measured);
+  RunState state() const;
+  int input_flags(std::size_t declared) const { return runner_.input_flags(declared); }
+
+  // The client's thread's.
+
+  /// Has the run go on with `model`, prepared for declaration(), at its next step. Takes the place
+  /// of one that was posted before and that no step has taken yet.
+  void post(std::unique_ptr<PreparedModel> model);
+  /// Whether one is posted that no step has taken yet.
+  bool is_waiting() const { return posted_.load(std::memory_order_relaxed) != nullptr; }
+  /// Frees the models that the run has left; `use` is called for each swap since the last call, in
+  /// their order.
+  void collect(const std::function<void(const RunState&, identification::Index rows)>& use);
+  /// Asks the run for its state; it is there after its next step.
+  void ask_state() { state_is_wanted_.store(true, std::memory_order_release); }
+  /// The state at the last step that was asked for it.
+  const RunState& last_state();
+
+ private:
+  /// A model on its way to the run, and the one before on its way back.
+  struct Parcel {
+    std::unique_ptr<PreparedModel> model;
+    RunState state;  // at the first step
+    identification::Index rows = 0;
+    Parcel* next = nullptr;
+  };
+  int advance(const double* u, const double* measured, double* y);
+  void begin(Parcel& parcel);
+  void send_back(Parcel* parcel);
+
+  const std::string spacecraft_, equipment_;
+  const Declaration declaration_;
+
+  ModelRunner runner_;
+  RunningScore score_;
+  RunState state_;
+
+  std::atomic<Parcel*> posted_ = nullptr;
+  std::atomic<Parcel*> returned_ = nullptr;  // the last one first
+  // Whoever may not set it owns sent_state_: the run while it is true, the client otherwise.
+  std::atomic<bool> state_is_wanted_ = false;
+  RunState sent_state_, last_state_;
+};
+
+}  // namespace reident
