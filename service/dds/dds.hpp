@@ -102,12 +102,15 @@ class Reader {
   Reader& operator=(Reader&&) noexcept;
 
   using Sink = std::function<void(M&&)>;
+  /// The same, and when the message was sent, by its writer's clock; 0 where that is not known.
+  using DatedSink = std::function<void(M&&, storage::Time sent)>;
   /// A malformed message, filled in as far as it could be read, and what is wrong with it.
   using Refused = std::function<void(const M&, const std::string& reason)>;
 
   /// Calls `sink` for each message taken, at most `max`, and `refused` for each malformed one;
   /// returns how many were taken, malformed ones included. Neither may throw.
   std::size_t take(std::size_t max, const Sink& sink, const Refused& refused = {});
+  std::size_t take(std::size_t max, const DatedSink& sink, const Refused& refused = {});
   /// For a clean stop, after Participant::stop_hearing(): hands out every message that was
   /// acknowledged to its writer, those included that the middleware has not handed on yet.
   std::size_t drain(const Sink& sink, const Refused& refused = {});

@@ -3,12 +3,13 @@
 namespace reident::dds {
 
 template <class M>
-void Reader<M>::Impl::decode(const void* wire, const Sink& sink, const Refused& refused) {
+void Reader<M>::Impl::decode(const void* wire, storage::Time sent, const DatedSink& sink,
+                             const Refused& refused) {
   M message;
   const Fault fault =
       Codec<M>::decode(*static_cast<const typename Codec<M>::Wire*>(wire), options, message);
   if (!fault) {
-    sink(std::move(message));
+    sink(std::move(message), sent);
     return;
   }
   {
@@ -31,12 +32,21 @@ Reader<M>& Reader<M>::operator=(Reader&&) noexcept = default;
 
 template <class M>
 std::size_t Reader<M>::take(std::size_t max, const Sink& sink, const Refused& refused) {
-  return impl_->core->take(max, [&](const void* wire) { impl_->decode(wire, sink, refused); });
+  return take(
+      max, [&sink](M&& message, storage::Time) { sink(std::move(message)); }, refused);
+}
+
+template <class M>
+std::size_t Reader<M>::take(std::size_t max, const DatedSink& sink, const Refused& refused) {
+  return impl_->core->take(
+      max, [&](const void* wire, storage::Time sent) { impl_->decode(wire, sent, sink, refused); });
 }
 
 template <class M>
 std::size_t Reader<M>::drain(const Sink& sink, const Refused& refused) {
-  return impl_->core->drain([&](const void* wire) { impl_->decode(wire, sink, refused); });
+  const DatedSink dated = [&sink](M&& message, storage::Time) { sink(std::move(message)); };
+  return impl_->core->drain(
+      [&](const void* wire, storage::Time sent) { impl_->decode(wire, sent, dated, refused); });
 }
 
 template <class M>

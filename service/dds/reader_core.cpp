@@ -98,7 +98,7 @@ std::size_t ReaderCore::take_some(const Ear& ear, std::size_t max, const Visit& 
     const dds_sample_info_t& info = loan.infos[i];
     if (!info.valid_data) continue;
     if (is_second && is_heard_by_first(info.publication_handle)) continue;
-    visit(loan.samples[i]);
+    visit(loan.samples[i], std::max<storage::Time>(info.source_timestamp, 0));
   }
   return loan.count;
 }
@@ -141,7 +141,7 @@ ReaderCore::~ReaderCore() {
     std::optional<Silence> silence;
     if (is_bounded()) {
       silence.emplace(participant_);
-      take_until_quiet(handed_on_quiet, drain_limit, [](const void*) {});
+      take_until_quiet(handed_on_quiet, drain_limit, [](const void*, storage::Time) {});
     }
     second_ = {};
     first_ = {};

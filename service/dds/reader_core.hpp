@@ -17,7 +17,8 @@ namespace reident::dds {
 /// whose samples of history-keeping writers are skipped.
 class ReaderCore {
  public:
-  using Visit = std::function<void(const void* wire)>;
+  /// `sent`: by the writer's clock; 0 where it did not say.
+  using Visit = std::function<void(const void* wire, storage::Time sent)>;
 
   ReaderCore(Participant& participant, const Profile& profile,
              const dds_topic_descriptor_t& descriptor, const ReaderOptions& options);

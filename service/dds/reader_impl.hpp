@@ -13,7 +13,7 @@ struct Reader<M>::Impl {
         core(std::make_shared<ReaderCore>(participant, Codec<M>::profile, Codec<M>::descriptor,
                                           reader_options)) {}
 
-  void decode(const void* wire, const Sink& sink, const Refused& refused);
+  void decode(const void* wire, storage::Time sent, const DatedSink& sink, const Refused& refused);
 
   ReaderOptions options;
   std::shared_ptr<ReaderCore> core;  // a wait set holds it weakly
