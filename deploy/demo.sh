@@ -39,7 +39,7 @@ trap cleanup EXIT
 "$bin/daemon/reidentd" --config "$folder/reident.toml" 2>"$folder/reidentd.log" &
 pids+=($!)
 "$bin/client/reident-simulator" --name simulator-1 --spacecraft CBERS-4 --equipment BDR BAT1 MEA \
-  "${endpoint[@]}" >"$folder/simulator.log" 2>&1 &
+  --cache "$folder/cache" "${endpoint[@]}" >"$folder/simulator.log" 2>&1 &
 pids+=($!)
 
 echo "A CBERS-4-class power subsystem flies 24 orbits at 1500 times real time."

@@ -1,111 +1,199 @@
 #include "service/client/model_subscriber.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <unistd.h>
+#include <utility>
 
+#include "service/client/name_pattern.hpp"
 #include "service/client/version_check.hpp"
+#include "service/dds/wire.hpp"
+#include "service/support/utc_clock.hpp"
+#include "service/support/version.hpp"
 
 namespace reident {
 namespace {
 
 constexpr std::size_t take_at_most = 256;
 
+storage::EquipmentName name_of(const EquipmentModel& model) {
+  return {model.spacecraft, model.equipment};
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+ModelCache::Report report_to(const ModelSubscriber::Listener& listener) {
+  return [&listener](const CacheFault& fault) {
+    if (listener.cache_fault) listener.cache_fault(fault);
+  };
+}
+
 }  // namespace
 
-ModelSubscriber::ModelSubscriber(dds::Participant& participant, Subscription subscription)
+bool Subscription::includes(const storage::EquipmentName& name) const {
+  return matches(spacecraft, name.spacecraft) &&
+         (equipment.empty() ||
+          std::any_of(equipment.begin(), equipment.end(), [&name](const std::string& pattern) {
+            return matches(pattern, name.equipment);
+          }));
+}
+
+ModelSubscriber::ModelSubscriber(dds::Participant& participant, Subscription subscription,
+                                 std::optional<ModelCache> cache)
     : subscription_(std::move(subscription)),
+      cache_(std::move(cache)),
       versions_(participant),
-      acknowledgements_(participant) {}
+      acknowledgements_(participant),
+      host_(host_name()) {}
 
 void ModelSubscriber::attach_to(dds::WaitSet& wait_set) {
   wait_set.attach(versions_);
 }
 
-bool ModelSubscriber::is_wanted(const EquipmentModel& model) const {
-  const std::vector<std::string>& names = subscription_.equipment;
-  return model.spacecraft == subscription_.spacecraft &&
-         (names.empty() || std::find(names.begin(), names.end(), model.equipment) != names.end());
-}
-
-std::size_t ModelSubscriber::poll(const Adopt& adopt, const Refuse& refuse) {
+std::size_t ModelSubscriber::poll(const Listener& listener) {
   std::size_t adopted = 0;
-  const Adopt count = [&](const ModelVersion& version) {
+  Listener counting = listener;
+  counting.adopt = [&](const ModelVersion& version, const Arrival& arrival) {
     ++adopted;
-    adopt(version);
+    if (listener.adopt) listener.adopt(version, arrival);
   };
-  while (versions_.take(
-             take_at_most,
-             [&](ModelVersion&& version) { consider(std::move(version), count, refuse); },
-             [&](const ModelVersion& version, const std::string& reason) {
-               if (is_wanted(version.model)) refuse_version(version, reason, refuse);
-             }) > 0) {
+  if (!std::exchange(handed_out_kept_, true)) hand_out_kept(counting);
+  const auto take = [&](ModelVersion&& version, storage::Time sent) {
+    if (subscription_.includes(name_of(version.model)))
+      consider(std::move(version), {sent, utc_now(), false}, counting);
+  };
+  const auto pass_on = [&](const ModelVersion& version, const std::string& reason) {
+    if (subscription_.includes(name_of(version.model))) refuse(version, reason, counting);
+  };
+  while (versions_.take(take_at_most, take, pass_on) > 0) {
   }
   return adopted;
 }
 
-void ModelSubscriber::consider(ModelVersion&& version, const Adopt& adopt, const Refuse& refuse) {
-  if (!is_wanted(version.model)) return;
+void ModelSubscriber::hand_out_kept(const Listener& listener) {
+  if (!cache_) return;
+  for (KeptVersion& kept : cache_->load(report_to(listener))) {
+    const storage::EquipmentName name = name_of(kept.version.model);
+    if (!subscription_.includes(name)) continue;
+    const Verified& verified =
+        newest_[name] = {std::move(kept.version), {kept.published, kept.received, true}};
+    listener.adopt(verified.version, verified.arrival);
+  }
+}
+
+void ModelSubscriber::consider(ModelVersion&& version, const Arrival& arrival,
+                               const Listener& listener) {
   if (const auto reason = damage(version)) {
-    refuse_version(version, *reason, refuse);
+    refuse(version, *reason, listener);
     return;
   }
-  const auto running = in_use_.find(version.model.equipment);
-  if (running != in_use_.end()) {
-    const std::string current = std::to_string(running->second.number);
-    switch (succession(version, running->second)) {
-      case Succession::same:
-        return;
-      case Succession::older:
-        refuse_version(version, "it is older than version " + current + " and not a rollback",
-                       refuse);
-        return;
-      case Succession::different:
-        refuse_version(version,
-                       "version " + current +
-                           " runs with another content; do two services publish this equipment?",
-                       refuse);
-        return;
-      case Succession::newer:
-        break;
+  const storage::EquipmentName name = name_of(version.model);
+  if (const auto found = newest_.find(name); found != newest_.end()) {
+    const Succession how = succession(version, found->second.version);
+    if (how == Succession::same) {
+      confirm(found->second, arrival, listener);
+      return;
+    }
+    if (how != Succession::newer) {
+      refuse(version, reason_against(version, found->second), listener);
+      return;
     }
   }
-  const std::string equipment = version.model.equipment;
-  adopt(in_use_[equipment] = std::move(version));
+  forget_refusal(name);
+  const Verified& verified = newest_[name] = {std::move(version), arrival};
+  listener.adopt(verified.version, verified.arrival);
+  keep(verified, listener);
 }
 
-void ModelSubscriber::refuse_version(const ModelVersion& version, const std::string& reason,
-                                     const Refuse& refuse) {
+std::string ModelSubscriber::reason_against(const ModelVersion& version,
+                                            const Verified& newest) const {
+  const std::string current = std::to_string(newest.version.number);
+  std::string reason = version.number == newest.version.number
+                           ? "version " + current +
+                                 " is known with another content; do two services publish this "
+                                 "equipment?"
+                           : "it is older than version " + current + " and not a rollback";
+  if (newest.arrival.from_cache)
+    reason += "; that was kept from an earlier run: if it is out of use, remove " +
+              cache_->file_of(name_of(version.model)).string() + " and start again";
+  return reason;
+}
+
+void ModelSubscriber::confirm(Verified& newest, const Arrival& arrival, const Listener& listener) {
+  forget_refusal(name_of(newest.version.model));
+  const bool was_kept = std::exchange(newest.arrival, arrival).from_cache;
+  if (was_kept && listener.confirm) listener.confirm(newest.version, newest.arrival);
+  keep(newest, listener);
+}
+
+void ModelSubscriber::forget_refusal(const storage::EquipmentName& equipment) {
+  const auto told = told_.find(equipment);
+  if (told == told_.end() || !told->second.refusal) return;
+  told->second.refusal.reset();
+  tell(equipment);
+}
+
+void ModelSubscriber::keep(const Verified& verified, const Listener& listener) {
+  if (!cache_) return;
+  cache_->store({verified.version, verified.arrival.published, verified.arrival.received},
+                report_to(listener));
+}
+
+void ModelSubscriber::refuse(const ModelVersion& version, const std::string& reason,
+                             const Listener& listener) {
+  const storage::EquipmentName name = name_of(version.model);
+  const Refusal refusal{name, std::max<std::int64_t>(version.number, 0), reason};
+  if (listener.refuse) listener.refuse(refusal);
+  dds::TextReader names;
+  names.name(name.spacecraft.c_str(), "spacecraft");
+  names.name(name.equipment.c_str(), "equipment");
+  if (names.fault()) return;  // nobody could be told about it
+  Told& told = told_[name];
+  told.refusal = refusal;
+  told.refused_digest = version.digest;
+  tell(name);
+}
+
+void ModelSubscriber::acknowledge(const storage::EquipmentName& equipment,
+                                  const RunningModel& running) {
+  Told& told = told_[equipment];
+  const Verified* verified = newest(equipment);
+  if (verified && verified->version.number == running.version)
+    told.running_digest = verified->version.digest;
+  else if (running.version != told.running.version)
+    told.running_digest.clear();
+  told.running = running;
+  tell(equipment);
+}
+
+void ModelSubscriber::tell(const storage::EquipmentName& equipment) {
+  const Told& told = told_[equipment];
   ModelAcknowledgement message;
   message.simulator = subscription_.simulator;
-  message.spacecraft = version.model.spacecraft;
-  message.equipment = version.model.equipment;
-  message.version = std::max<std::int64_t>(version.number, 0);
-  message.digest = version.digest;
-  message.accepted = false;
-  message.reason = reason;
-  message.running_mrse_percent = std::numeric_limits<double>::quiet_NaN();
-  acknowledgements_.write(message);
-  refuse({version.model.equipment, version.number, reason});
-}
-
-void ModelSubscriber::acknowledge(const std::string& equipment, storage::Time since,
-                                  double running_mrse_percent) {
-  const ModelVersion* version = in_use(equipment);
-  if (version == nullptr) return;
-  ModelAcknowledgement message;
-  message.simulator = subscription_.simulator;
-  message.spacecraft = subscription_.spacecraft;
-  message.equipment = equipment;
-  message.version = version->number;
-  message.digest = version->digest;
-  message.since = since;
-  message.running_mrse_percent = running_mrse_percent;
+  message.spacecraft = equipment.spacecraft;
+  message.equipment = equipment.equipment;
+  message.running = told.running;
+  message.version = told.running.version;
+  message.digest = told.running_digest;
+  if (told.refusal) {
+    message.version = told.refusal->version;
+    message.digest = told.refused_digest;
+    message.accepted = false;
+    message.reason = told.refusal->reason;
+  }
+  message.host = host_;
+  message.process = static_cast<std::uint64_t>(::getpid());
+  message.program_version = program_version();
   acknowledgements_.write(message);
 }
 
-const ModelVersion* ModelSubscriber::in_use(const std::string& equipment) const {
-  const auto found = in_use_.find(equipment);
-  return found == in_use_.end() ? nullptr : &found->second;
+const ModelSubscriber::Verified* ModelSubscriber::newest(
+    const storage::EquipmentName& equipment) const {
+  const auto found = newest_.find(equipment);
+  return found == newest_.end() ? nullptr : &found->second;
 }
 
 }  // namespace reident

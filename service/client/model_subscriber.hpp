@@ -1,11 +1,13 @@
-// The approved models of a spacecraft's equipment, as they are published and once they are checked.
+// The approved models of equipment, as they are published and once they are checked.
 #pragma once
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "service/client/model_cache.hpp"
 #include "service/dds/dds.hpp"
 #include "service/model/messages.hpp"
 #include "service/model/model_version.hpp"
@@ -13,47 +15,88 @@
 namespace reident {
 
 struct Subscription {
-  std::string simulator;  // unique name; acknowledgements carry it
-  std::string spacecraft;
-  std::vector<std::string> equipment;  // empty: every equipment of the spacecraft
+  std::string simulator;               // unique name; acknowledgements carry it
+  std::string spacecraft = "*";        // name, or pattern with * and ? (name_pattern.hpp)
+  std::vector<std::string> equipment;  // names or patterns; empty: every equipment
+  bool includes(const storage::EquipmentName& name) const;
+};
+
+/// How a version came.
+struct Arrival {
+  storage::Time published = 0;  // when the service sent it, by its clock; 0 where not known
+  storage::Time received = 0;   // by this machine's clock; of a kept version, in the earlier run
+  bool from_cache = false;      // kept from an earlier run, and not confirmed in this one
 };
 
 /// Hands each approved version over once, checked, and tells the service what becomes of it. A
-/// version that is damaged, unstable, or older than the one in use without being a rollback is
-/// refused; the one in use stays. It also stays when the service disposes of it, ends or dies.
+/// version that is damaged, unstable, or older than the newest that was verified without being a
+/// rollback is refused. What was verified stays when the service disposes of it, ends or dies.
+///
+/// Versions that a cache kept from an earlier run come first; what is published then succeeds them
+/// as it succeeds one another.
 class ModelSubscriber {
  public:
   struct Refusal {
-    std::string equipment;
+    storage::EquipmentName equipment;
     std::int64_t version = 0;
     std::string reason;
   };
-  using Adopt = std::function<void(const ModelVersion&)>;
-  using Refuse = std::function<void(const Refusal&)>;
+  /// What poll() tells of; each may be absent.
+  struct Listener {
+    std::function<void(const ModelVersion&, const Arrival&)> adopt;  // to be run from now on
+    std::function<void(const Refusal&)> refuse;                      // must not be run
+    /// A kept version turned out to be the one that is published.
+    std::function<void(const ModelVersion&, const Arrival&)> confirm;
+    ModelCache::Report cache_fault;
+  };
 
   /// The participant must outlive it. Throws dds::Error.
-  ModelSubscriber(dds::Participant& participant, Subscription subscription);
+  ModelSubscriber(dds::Participant& participant, Subscription subscription,
+                  std::optional<ModelCache> cache = std::nullopt);
 
   void attach_to(dds::WaitSet& wait_set);
-  /// Takes what was published since the last call: `adopt` for each version to be run from now on,
-  /// `refuse` for each that must not be. Returns how many were adopted. Refusals are acknowledged
-  /// as such; it is the caller's to acknowledge what it runs.
-  std::size_t poll(const Adopt& adopt, const Refuse& refuse);
-  /// Tells the service that the version in use of `equipment` runs since `since`, with what error.
-  void acknowledge(const std::string& equipment, storage::Time since, double running_mrse_percent);
+  /// Hands out, at the first call, what was kept, and then what was published since the last call.
+  /// Returns how many versions were adopted. Refusals are acknowledged as such; it is the caller's
+  /// to acknowledge what it runs. A version is kept in the cache after `adopt` has returned.
+  std::size_t poll(const Listener& listener);
 
-  /// The version in use of an equipment; null where none came yet.
-  const ModelVersion* in_use(const std::string& equipment) const;
+  /// Tells the service what runs of an equipment: a version that was adopted, or none. A refusal is
+  /// told with it until a version of the equipment is verified.
+  void acknowledge(const storage::EquipmentName& equipment, const RunningModel& running);
+
+  struct Verified {
+    ModelVersion version;
+    Arrival arrival;
+  };
+  /// The newest version of an equipment that was verified; null where none came yet.
+  const Verified* newest(const storage::EquipmentName& equipment) const;
 
  private:
-  bool is_wanted(const EquipmentModel& model) const;
-  void consider(ModelVersion&& version, const Adopt& adopt, const Refuse& refuse);
-  void refuse_version(const ModelVersion& version, const std::string& reason, const Refuse& refuse);
+  struct Told {  // to the service, of one equipment
+    RunningModel running;
+    std::string running_digest;
+    std::optional<Refusal> refusal;
+    std::string refused_digest;
+  };
+
+  void hand_out_kept(const Listener& listener);
+  void consider(ModelVersion&& version, const Arrival& arrival, const Listener& listener);
+  /// Why `version` must not follow `newest`.
+  std::string reason_against(const ModelVersion& version, const Verified& newest) const;
+  void confirm(Verified& newest, const Arrival& arrival, const Listener& listener);
+  void forget_refusal(const storage::EquipmentName& equipment);
+  void keep(const Verified& verified, const Listener& listener);
+  void refuse(const ModelVersion& version, const std::string& reason, const Listener& listener);
+  void tell(const storage::EquipmentName& equipment);
 
   Subscription subscription_;
+  std::optional<ModelCache> cache_;
+  bool handed_out_kept_ = false;
   dds::Reader<ModelVersion> versions_;
   dds::Writer<ModelAcknowledgement> acknowledgements_;
-  std::map<std::string, ModelVersion> in_use_;  // by equipment
+  std::map<storage::EquipmentName, Verified> newest_;
+  std::map<storage::EquipmentName, Told> told_;
+  std::string host_;
 };
 
 }  // namespace reident

@@ -10,13 +10,18 @@ constexpr std::size_t take_at_most = 256;
 // the archive depends on.
 constexpr std::int32_t frames_kept = 16384;
 
+std::optional<ModelCache> cache_of(const SimulatorOptions& options) {
+  if (!options.cache) return std::nullopt;
+  return ModelCache(*options.cache, options.endpoint.partition);
+}
+
 }  // namespace
 
 Simulator::Simulator(const SimulatorOptions& options)
     : options_(options),
       report_(options.json),
       participant_(options.endpoint),
-      models_(participant_, options.subscription),
+      models_(participant_, options.subscription, cache_of(options)),
       descriptors_(participant_),
       frames_(participant_, {.keep_last = frames_kept}),
       ready_(participant_) {
@@ -27,11 +32,12 @@ Simulator::Simulator(const SimulatorOptions& options)
 
 void Simulator::run(const std::stop_token& stop) {
   const std::stop_callback wake(stop, [this] { ready_.wake(); });
+  const ModelSubscriber::Listener heard = listener();
+  models_.poll(heard);  // what was kept, without waiting
   auto next_report = Clock::now() + options_.report_period;
   while (!stop.stop_requested()) {
     ready_.wait(std::max<Clock::duration>(next_report - Clock::now(), std::chrono::nanoseconds(1)));
-    models_.poll([this](const ModelVersion& version) { adopt(version); },
-                 [this](const ModelSubscriber::Refusal& refusal) { report_.refused(refusal); });
+    models_.poll(heard);
     take_telemetry();
     if (Clock::now() < next_report) continue;
     report_running();
@@ -40,29 +46,62 @@ void Simulator::run(const std::stop_token& stop) {
   for (const auto& [name, running] : equipment_) report_.running(name, running.live, true);
 }
 
-void Simulator::adopt(const ModelVersion& version) {
-  const std::string& name = version.model.equipment;
+ModelSubscriber::Listener Simulator::listener() {
+  return {
+      .adopt = [this](const ModelVersion& version,
+                      const Arrival& arrival) { adopt(version, arrival); },
+      .refuse = [this](const ModelSubscriber::Refusal& refusal) { report_.refused(refusal); },
+      .confirm =
+          [this](const ModelVersion& version, const Arrival&) {
+            const storage::EquipmentName name{version.model.spacecraft, version.model.equipment};
+            Running& running = equipment_.at(name);
+            running.told.from_cache = false;
+            report_.confirmed(name, version.number);
+            acknowledge(name, running);
+          },
+      .cache_fault = [this](const CacheFault& fault) { report_.cache_fault(fault); },
+  };
+}
+
+void Simulator::adopt(const ModelVersion& version, const Arrival& arrival) {
+  const storage::EquipmentName name{version.model.spacecraft, version.model.equipment};
   const auto running = equipment_.find(name);
   std::optional<ModelRunner::Swap> swap;
   if (running == equipment_.end()) {
-    equipment_.emplace(name, Running{LiveEquipment(version), utc_now(), 0});
+    equipment_.emplace(name, Running{LiveEquipment(version), {}, 0});
   } else {
     report_.running(name, running->second.live, true);
     swap = running->second.live.adopt(version);
-    running->second.since = utc_now();
     running->second.reported = 0;
   }
   Running& current = equipment_.at(name);
   for (const auto& [id, descriptor] : parameters_) current.live.describe(descriptor);
-  report_.adopted(version, swap);
-  models_.acknowledge(name, current.since, std::numeric_limits<double>::quiet_NaN());
+  current.told = {};
+  current.told.version = version.number;
+  current.told.mode = "free";
+  current.told.from_cache = arrival.from_cache;
+  current.told.decided = version.decided;
+  current.told.since = utc_now();
+  if (swap) {
+    current.told.remaining_step = swap->change.cwiseAbs().maxCoeff();
+    current.told.transition_steps = ModelRunner::transition_steps;
+  }
+  report_.adopted(version, arrival, swap);
+  acknowledge(name, current);
+}
+
+void Simulator::acknowledge(const storage::EquipmentName& name, Running& running) {
+  const identification::Score score = running.live.score();
+  if (score.rows > 0) running.told.mrse_percent = score.mrse();
+  running.told.steps = static_cast<std::uint64_t>(score.rows);
+  running.told.steps_outside = running.live.ticks_outside();
+  models_.acknowledge(name, running.told);
 }
 
 void Simulator::take_telemetry() {
   descriptors_.take(take_at_most, [this](storage::ParameterDescriptor&& descriptor) {
-    if (descriptor.spacecraft != options_.subscription.spacecraft) return;
     for (auto& [name, running] : equipment_) running.live.describe(descriptor);
-    parameters_[descriptor.id] = std::move(descriptor);
+    parameters_[{descriptor.spacecraft, descriptor.id}] = std::move(descriptor);
   });
   frames_.take(take_at_most, [this](storage::TelemetryFrame&& frame) {
     for (auto& [name, running] : equipment_) running.live.add(frame);
@@ -75,7 +114,7 @@ void Simulator::report_running() {
     if (score.rows == running.reported && score.rows > 0) continue;
     running.reported = score.rows;
     report_.running(name, running.live, false);
-    if (score.rows > 0) models_.acknowledge(name, running.since, score.mrse());
+    if (score.rows > 0) acknowledge(name, running);
   }
 }
 

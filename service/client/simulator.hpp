@@ -2,8 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <map>
-#include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ namespace reident {
 struct SimulatorOptions {
   dds::Endpoint endpoint;
   Subscription subscription;
+  std::optional<std::filesystem::path> cache;  // folder of the last good versions; absent: none
   std::chrono::nanoseconds report_period = std::chrono::seconds(5);
   bool json = false;
 };
@@ -35,7 +37,8 @@ class Simulator {
   using Clock = std::chrono::steady_clock;
 
   void take_telemetry();
-  void adopt(const ModelVersion& version);
+  ModelSubscriber::Listener listener();
+  void adopt(const ModelVersion& version, const Arrival& arrival);
   void report_running();
 
   SimulatorOptions options_;
@@ -45,13 +48,15 @@ class Simulator {
   dds::Reader<storage::ParameterDescriptor> descriptors_;
   dds::Reader<storage::TelemetryFrame> frames_;
   dds::WaitSet ready_;
-  std::map<std::uint32_t, storage::ParameterDescriptor> parameters_;
+  /// By spacecraft and id.
+  std::map<std::pair<std::string, std::uint32_t>, storage::ParameterDescriptor> parameters_;
   struct Running {
     LiveEquipment live;
-    storage::Time since = 0;             // this machine's clock
+    RunningModel told;                   // as it was when it was adopted
     identification::Index reported = 0;  // ticks that the last report spoke of
   };
-  std::map<std::string, Running> equipment_;
+  void acknowledge(const storage::EquipmentName& name, Running& running);
+  std::map<storage::EquipmentName, Running> equipment_;
 };
 
 }  // namespace reident

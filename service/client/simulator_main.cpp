@@ -18,13 +18,19 @@ constexpr const char* about =
     "  reident-simulator --spacecraft CBERS4 --equipment BDR --equipment BAT1 --name trainer-1\n\n"
     "Exit status: 0 stopped by SIGINT or SIGTERM; 1 failure; 2 bad request.\n";
 
-void add_options(CLI::App& app, reident::SimulatorOptions& options, double& report_s) {
-  app.add_option("--spacecraft", options.subscription.spacecraft, "Spacecraft to simulate")
+void add_options(CLI::App& app, reident::SimulatorOptions& options, std::string& cache,
+                 double& report_s) {
+  app.add_option("--spacecraft", options.subscription.spacecraft,
+                 "Spacecraft to simulate; * and ? stand for any text and any character")
       ->required()
       ->type_name("NAME");
   app.add_option("--equipment", options.subscription.equipment,
-                 "Equipment to simulate; may be given again (every one)")
+                 "Equipment to simulate, also with * and ?; may be given again (every one)")
       ->type_name("NAME");
+  app.add_option("--cache", cache,
+                 "Folder of the last good versions, for a start without a service; \"\": none "
+                 "($XDG_CACHE_HOME/reident or ~/.cache/reident)")
+      ->type_name("FOLDER");
   app.add_option("--name", options.subscription.simulator,
                  "Name of this simulator, unique in its partition")
       ->type_name("NAME")
@@ -45,14 +51,16 @@ void add_options(CLI::App& app, reident::SimulatorOptions& options, double& repo
 int main(int argc, char** argv) {
   reident::SimulatorOptions options;
   options.subscription.simulator = "simulator-" + std::to_string(getpid());
+  std::string cache = reident::ModelCache::default_folder().value_or("").string();
   double report_s = 5;
   CLI::App app(about, "reident-simulator");
-  add_options(app, options, report_s);
+  add_options(app, options, cache, report_s);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (!cache.empty()) options.cache = cache;
   options.report_period =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(report_s));
   try {

@@ -1,11 +1,14 @@
 #include "service/client/simulator_report.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "service/model/model_json.hpp"
+#include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident {
 namespace {
@@ -24,18 +27,29 @@ std::string list(const std::vector<std::string>& names) {
   return text;
 }
 
+/// To the second; "0s" where the clock stands before it.
+std::string age_text(storage::Time since) {
+  constexpr storage::Time second = 1'000'000'000;
+  const storage::Time age = std::max<storage::Time>(utc_now() - since, 0);
+  return duration_text(age / second * second);
+}
+
 }  // namespace
 
-void SimulatorReport::adopted(const ModelVersion& version,
+void SimulatorReport::adopted(const ModelVersion& version, const Arrival& arrival,
                               const std::optional<ModelRunner::Swap>& swap) const {
   const EquipmentModel& model = version.model;
+  const std::string age = age_text(version.decided);
   if (json_) {
     Json line{{"event", "adopted"},
+              {"spacecraft", model.spacecraft},
               {"equipment", model.equipment},
               {"version", version.number},
               {"digest", version.digest},
               {"order", model.dynamics.order()},
               {"rollback", version.rollback},
+              {"from_cache", arrival.from_cache},
+              {"age", age},
               {"mrse_percent", to_json(model.validation.mrse_percent)},
               {"fit_percent", to_json(model.validation.fit_percent)}};
     if (swap) {
@@ -45,33 +59,65 @@ void SimulatorReport::adopted(const ModelVersion& version,
     say(line.dump());
     return;
   }
-  say(fmt::format("{} v{}: {}, order {}, on unseen data MRSE {:.3f} %, fit {:.1f} %{}",
-                  model.equipment, version.number, version.rollback ? "rolled back to" : "adopted",
+  say(fmt::format("{}/{} v{}: {}, order {}, on unseen data MRSE {:.3f} %, fit {:.1f} %{}",
+                  model.spacecraft, model.equipment, version.number,
+                  arrival.from_cache ? "kept from an earlier run, approved " + age + " ago"
+                  : version.rollback ? "rolled back to"
+                                     : "adopted",
                   model.dynamics.order(), model.validation.mrse(), model.validation.fit(),
                   swap ? fmt::format(", output changes by {:.3g} over {} ticks", swap->largest,
                                      swap->transition)
                        : ""));
 }
 
-void SimulatorReport::refused(const ModelSubscriber::Refusal& refusal) const {
+void SimulatorReport::confirmed(const storage::EquipmentName& equipment,
+                                std::int64_t version) const {
   if (json_) {
-    say(Json{{"event", "refused"},
-             {"equipment", refusal.equipment},
-             {"version", refusal.version},
-             {"reason", refusal.reason}}
+    say(Json{{"event", "confirmed"},
+             {"spacecraft", equipment.spacecraft},
+             {"equipment", equipment.equipment},
+             {"version", version}}
             .dump());
     return;
   }
-  say(fmt::format("{} v{}: refused, {}", refusal.equipment, refusal.version, refusal.reason));
+  say(fmt::format("{}/{} v{}: confirmed by the service", equipment.spacecraft, equipment.equipment,
+                  version));
 }
 
-void SimulatorReport::running(const std::string& equipment, const LiveEquipment& live,
+void SimulatorReport::refused(const ModelSubscriber::Refusal& refusal) const {
+  if (json_) {
+    say(Json{{"event", "refused"},
+             {"spacecraft", refusal.equipment.spacecraft},
+             {"equipment", refusal.equipment.equipment},
+             {"version", refusal.version},
+             {"reason", refusal.reason}}
+            .dump(-1, ' ', false, Json::error_handler_t::replace));
+    return;
+  }
+  say(fmt::format("{}/{} v{}: refused, {}", refusal.equipment.spacecraft,
+                  refusal.equipment.equipment, refusal.version, refusal.reason));
+}
+
+void SimulatorReport::cache_fault(const CacheFault& fault) const {
+  if (json_) {
+    say(Json{{"event", "cache"},
+             {"spacecraft", fault.equipment.spacecraft},
+             {"equipment", fault.equipment.equipment},
+             {"reason", fault.reason}}
+            .dump(-1, ' ', false, Json::error_handler_t::replace));
+    return;
+  }
+  say("last good versions: " + fault.reason);
+}
+
+void SimulatorReport::running(const storage::EquipmentName& equipment, const LiveEquipment& live,
                               bool final) const {
   const identification::Score score = live.score();
   const std::vector<std::string> missing = live.tracker().undescribed();
   if (json_) {
     say(Json{{"event", final ? "finished" : "running"},
-             {"equipment", equipment},
+             {"spacecraft", equipment.spacecraft},
+             {"equipment", equipment.equipment},
              {"version", live.version().number},
              {"ticks", score.rows},
              {"mrse_percent", to_json(score.mrse_percent)},
@@ -92,8 +138,8 @@ void SimulatorReport::running(const std::string& equipment, const LiveEquipment&
                 "{} ticks, running MRSE {:.3f} %, fit {:.1f} %, {} "
                 "outside the identified range, {} gaps",
                 score.rows, score.mrse(), score.fit(), live.ticks_outside(), live.gaps());
-  say(fmt::format("{} v{}{}: {}", equipment, live.version().number, final ? " (ended)" : "",
-                  state));
+  say(fmt::format("{}/{} v{}{}: {}", equipment.spacecraft, equipment.equipment,
+                  live.version().number, final ? " (ended)" : "", state));
 }
 
 }  // namespace reident

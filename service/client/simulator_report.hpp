@@ -13,10 +13,15 @@ class SimulatorReport {
  public:
   explicit SimulatorReport(bool json) : json_(json) {}
 
-  void adopted(const ModelVersion& version, const std::optional<ModelRunner::Swap>& swap) const;
+  void adopted(const ModelVersion& version, const Arrival& arrival,
+               const std::optional<ModelRunner::Swap>& swap) const;
+  /// A kept version is the one that the service publishes.
+  void confirmed(const storage::EquipmentName& equipment, std::int64_t version) const;
   void refused(const ModelSubscriber::Refusal& refusal) const;
+  void cache_fault(const CacheFault& fault) const;
   /// `final`: nothing more is said about this version.
-  void running(const std::string& equipment, const LiveEquipment& live, bool final) const;
+  void running(const storage::EquipmentName& equipment, const LiveEquipment& live,
+               bool final) const;
 
  private:
   bool json_;

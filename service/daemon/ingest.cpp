@@ -7,6 +7,9 @@
 namespace reident {
 namespace {
 
+// More than that at work are logged more than once.
+constexpr std::size_t simulators_remembered = 4096;
+
 using namespace std::chrono_literals;
 
 constexpr std::size_t take_at_most = 256;  // messages of one topic in a turn
@@ -21,10 +24,11 @@ dds::ReaderOptions options_of(const Config& config) {
 
 void log_acknowledgement(const ModelAcknowledgement& acknowledgement) {
   if (acknowledgement.accepted)
-    log::info("simulator", "runs a version",
+    log::info("simulator",
+              acknowledgement.running.version > 0 ? "runs a version" : "runs no version",
               {{"simulator", acknowledgement.simulator},
                {"equipment", acknowledgement.spacecraft + "/" + acknowledgement.equipment},
-               {"version", acknowledgement.version}});
+               {"version", acknowledgement.running.version}});
   else
     log::warning("simulator", "refused a version",
                  {{"simulator", acknowledgement.simulator},
@@ -73,13 +77,23 @@ void Ingest::count_rejected() {
                {{"reason", frames_.last_malformed()}, {"refused", frames_rejected_.load()}});
 }
 
+void Ingest::hear(const ModelAcknowledgement& acknowledgement) {
+  const std::pair news{acknowledgement.running.version,
+                       acknowledgement.accepted ? 0 : acknowledgement.version};
+  if (heard_.size() >= simulators_remembered) heard_.clear();
+  const auto [place, is_new] = heard_.try_emplace(
+      {acknowledgement.simulator, acknowledgement.spacecraft, acknowledgement.equipment}, news);
+  if (!is_new && std::exchange(place->second, news) == news) return;
+  log_acknowledgement(acknowledgement);
+}
+
 std::size_t Ingest::take() {
   std::size_t taken = descriptors_.take(
       take_at_most, [this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });
   taken +=
       frames_.take(take_at_most, [this](storage::TelemetryFrame&& one) { queue(std::move(one)); });
-  taken += acknowledgements_.take(
-      take_at_most, [](ModelAcknowledgement&& message) { log_acknowledgement(message); });
+  taken += acknowledgements_.take(take_at_most,
+                                  [this](ModelAcknowledgement&& message) { hear(message); });
   push_taken();
   count_rejected();
   return taken;

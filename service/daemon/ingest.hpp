@@ -2,8 +2,12 @@
 // waits for the disk, only for room in the queue.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
@@ -35,6 +39,8 @@ class Ingest {
   /// Pushes what was taken; waits for room.
   void push_taken();
   void count_rejected();
+  /// Logs what is news: simulators tell their running errors again and again.
+  void hear(const ModelAcknowledgement& acknowledgement);
 
   dds::Participant& participant_;
   BoundedQueue<TelemetryEvent>& queue_;
@@ -42,6 +48,8 @@ class Ingest {
   dds::Reader<storage::TelemetryFrame> frames_;
   dds::Reader<ModelAcknowledgement> acknowledgements_;
   dds::WaitSet ready_;
+  /// By simulator, spacecraft and equipment: the versions that run and that were refused.
+  std::map<std::array<std::string, 3>, std::pair<std::int64_t, std::int64_t>> heard_;
   std::vector<TelemetryEvent> taken_;  // and not pushed yet
   std::atomic<bool> stopping_ = false;
   std::atomic<std::uint64_t> frames_received_ = 0;

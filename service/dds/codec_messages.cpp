@@ -1,6 +1,29 @@
 #include "service/dds/codec.hpp"
 
 namespace reident::dds {
+namespace {
+
+RunningModel read_running(const reident_ModelAcknowledgement& wire, TextReader& texts) {
+  RunningModel running;
+  running.version = wire.running_version;
+  running.offered_version = wire.offered_version;
+  running.mode = texts.text(wire.mode, "mode");
+  running.from_cache = wire.from_cache;
+  running.decided = wire.decided_ns;
+  running.since = wire.since_ns;
+  running.mrse_percent = wire.running_mrse_percent;
+  running.remaining_step = wire.remaining_step;
+  running.transition_steps = wire.transition_steps;
+  running.steps = wire.steps;
+  running.steps_outside = wire.steps_outside;
+  running.steps_missing = wire.steps_missing;
+  // An older program says what runs with `version` alone.
+  const bool is_older = wire.program_version == nullptr || *wire.program_version == '\0';
+  if (is_older && wire.accepted) running.version = wire.version;
+  return running;
+}
+
+}  // namespace
 
 const reident_IdentificationReport& Codec<IdentificationReport>::Encoder::operator()(
     const IdentificationReport& report) {
@@ -52,10 +75,24 @@ const reident_ModelAcknowledgement& Codec<ModelAcknowledgement>::Encoder::operat
   wire_.equipment = borrow(acknowledgement.equipment);
   wire_.version = acknowledgement.version;
   wire_.digest = borrow(acknowledgement.digest);
-  wire_.since_ns = acknowledgement.since;
   wire_.accepted = acknowledgement.accepted;
   wire_.reason = borrow(acknowledgement.reason);
-  wire_.running_mrse_percent = acknowledgement.running_mrse_percent;
+  wire_.host = borrow(acknowledgement.host);
+  wire_.process = acknowledgement.process;
+  wire_.program_version = borrow(acknowledgement.program_version);
+  const RunningModel& running = acknowledgement.running;
+  wire_.running_version = running.version;
+  wire_.offered_version = running.offered_version;
+  wire_.mode = borrow(running.mode);
+  wire_.from_cache = running.from_cache;
+  wire_.decided_ns = running.decided;
+  wire_.since_ns = running.since;
+  wire_.running_mrse_percent = running.mrse_percent;
+  wire_.remaining_step = running.remaining_step;
+  wire_.transition_steps = running.transition_steps;
+  wire_.steps = running.steps;
+  wire_.steps_outside = running.steps_outside;
+  wire_.steps_missing = running.steps_missing;
   return wire_;
 }
 
@@ -68,12 +105,17 @@ Fault Codec<ModelAcknowledgement>::decode(const reident_ModelAcknowledgement& wi
   acknowledgement.equipment = texts.name(wire.equipment, "equipment");
   acknowledgement.version = wire.version;
   acknowledgement.digest = texts.text(wire.digest, "digest");
-  acknowledgement.since = wire.since_ns;
   acknowledgement.accepted = wire.accepted;
   acknowledgement.reason = texts.text(wire.reason, "reason");
-  acknowledgement.running_mrse_percent = wire.running_mrse_percent;
+  acknowledgement.host = texts.text(wire.host, "host");
+  acknowledgement.process = wire.process;
+  acknowledgement.program_version = texts.text(wire.program_version, "program_version");
+  acknowledgement.running = read_running(wire, texts);
   if (texts.fault()) return texts.fault();
-  if (acknowledgement.version < 0) return "the version's number is negative";
+  const RunningModel& running = acknowledgement.running;
+  if (acknowledgement.version < 0 || running.version < 0 || running.offered_version < 0)
+    return "the version's number is negative";
+  if (running.transition_steps < 0) return "the steps of the transition are negative";
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,17 +28,36 @@ struct IdentificationReport {
   storage::Time time = 0;
 };
 
-/// Which version a simulator runs.
+/// What a simulator does with the model of one equipment.
+struct RunningModel {
+  std::int64_t version = 0;          // 0: none runs
+  std::int64_t offered_version = 0;  // has other signals and waits to be taken; 0: none
+  std::string mode;                  // "free", "following"; empty: nothing runs, or not known
+  bool from_cache = false;           // no service has confirmed the version in this run
+  storage::Time decided = 0;         // when the version was approved
+  storage::Time since = 0;           // its first step, by the simulator's clock
+  double mrse_percent = std::numeric_limits<double>::quiet_NaN();  // since then; NaN: no sample yet
+  double remaining_step = 0;  // of the last swap, in the output's unit, largest of the outputs
+  std::int32_t transition_steps = 0;  // over which it comes in
+  std::uint64_t steps = 0;            // since the swap
+  std::uint64_t steps_outside = 0;    // with an input outside the identified range
+  std::uint64_t steps_missing = 0;    // with an input missing
+  bool operator==(const RunningModel&) const = default;
+};
+
+/// Which version a simulator runs, and the newest that it refused, if it did since.
 struct ModelAcknowledgement {
   std::string simulator;
   std::string spacecraft;
   std::string equipment;
-  std::int64_t version = 0;
-  std::string digest;
-  storage::Time since = 0;
-  bool accepted = true;  // false: refused, `reason` says why, and the older version goes on
+  std::int64_t version = 0;  // running.version, or the one that was refused
+  std::string digest;        // of `version`
+  bool accepted = true;      // false: refused, `reason` says why, and running.version goes on
   std::string reason;
-  double running_mrse_percent = 0;  // since the swap; NaN before the first sample
+  RunningModel running;
+  std::string host;
+  std::uint64_t process = 0;
+  std::string program_version;  // empty: of a time before there was a `running`
 };
 
 /// An operator's order, sent again until its reply comes.

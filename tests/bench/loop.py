@@ -90,7 +90,7 @@ def main():
         try:
             start("daemon/reidentd", "--config", folder / "bupt1.toml", output="reidentd.log")
             start("client/reident-simulator", "--name", "bench", "--spacecraft", "BUPT-1",
-                  "--equipment", "MPPT2", "BUS", "--json", *endpoint, output="simulator.out")
+                  "--equipment", "MPPT2", "BUS", "--json", "--cache", "", *endpoint, output="simulator.out")
             expected, began, replay_s, frames = {}, time.monotonic(), 0.0, 0
             for file in files:
                 summary = json.loads(run("satcs/satcs-replay", file, "--spacecraft", "BUPT-1",

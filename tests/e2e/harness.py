@@ -163,9 +163,10 @@ class EndToEnd(unittest.TestCase):
         self.replay_all(plant.write(self.folder / f"{name}.csv", plant.rows(**keywords)))
         return self.wait_idle()
 
-    def start_simulator(self, name):
+    def start_simulator(self, name, *options):
         return self.start("reident-simulator", "--spacecraft", "SAT", "--equipment", "PLANT",
-                          "--name", name, "--json", *self.endpoint(), name=name)
+                          "--name", name, "--json", "--cache", self.folder / f"cache-{name}",
+                          *self.endpoint(), *options, name=name)
 
     def runs(self, simulator):
         """Versions that the simulator took up, in order."""

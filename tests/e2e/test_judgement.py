@@ -80,7 +80,7 @@ class Judgement(EndToEnd):
             self.assertTrue(json.loads(text)["same_model"])
         self.start_daemon()
         simulator = self.start("reident-simulator", "--spacecraft", "SAT", "--equipment", "LATER",
-                               "--name", "late", "--json", *self.endpoint(), name="late")
+                               "--name", "late", "--json", "--cache", "", *self.endpoint(), name="late")
         wait_until(lambda: self.runs(simulator), "what was approved offline is published")
 
 

@@ -23,9 +23,9 @@ class SimulatorProgram : public testing::Test {
     return {"/bin/sh", "-c",
             std::string("exec ") + SIMULATOR +
                 " --spacecraft CBERS4 --equipment BDR --name trainer --json --report 0.1"
-                " --domain " +
-                std::to_string(endpoint_.domain) + " --partition " + endpoint_.partition + " > " +
-                output().string()};
+                " --cache " +
+                (folder_ / "cache").string() + " --domain " + std::to_string(endpoint_.domain) +
+                " --partition " + endpoint_.partition + " > " + output().string()};
   }
   std::filesystem::path output() const { return folder_ / "out"; }
   std::vector<nlohmann::json> events(const std::string& kind) const {

@@ -52,7 +52,9 @@ TEST(StateTopics, every_message_arrives_as_it_was_sent) {
   const storage::ParameterDescriptor descriptor{
       "CBERS4", 9, "V_BUS", "V", "", storage::ParameterKind::digital, 1.5, std::nullopt};
   reports.write({"CBERS4", "BDR", 7, {10, 20}, "slide", "unstable", "why", 3, 4, 1, 2, NAN, 99});
-  acknowledgements.write({"trainer", "CBERS4", "BDR", 3, "ab", 5, false, "no", 1.25});
+  const RunningModel running{2, 4, "following", true, 41, 42, 1.25, 0.5, 60, 70, 100, 7000};
+  acknowledgements.write(
+      {"trainer", "CBERS4", "BDR", 3, "ab", false, "no", running, "console", 77, "0.1.0"});
   ServiceStatus status;
   status.service = "reident";
   status.frames_received = 12345678901234;
@@ -74,7 +76,10 @@ TEST(StateTopics, every_message_arrives_as_it_was_sent) {
   EXPECT_EQ(acknowledgement.simulator, "trainer");
   EXPECT_FALSE(acknowledgement.accepted);
   EXPECT_EQ(acknowledgement.reason, "no");
-  EXPECT_EQ(acknowledgement.running_mrse_percent, 1.25);
+  EXPECT_EQ(acknowledgement.running, running);
+  EXPECT_EQ(acknowledgement.host, "console");
+  EXPECT_EQ(acknowledgement.process, 77U);
+  EXPECT_EQ(acknowledgement.program_version, "0.1.0");
   const auto heartbeat = take_all(status_reader, 1).at(0);
   EXPECT_EQ(heartbeat.frames_received, 12345678901234U);
   EXPECT_EQ(heartbeat.last_error, "disk full");
