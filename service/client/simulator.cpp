@@ -68,7 +68,7 @@ void Simulator::adopt(const ModelVersion& version, const Arrival& arrival) {
   const auto running = equipment_.find(name);
   std::optional<ModelRunner::Swap> swap;
   if (running == equipment_.end()) {
-    equipment_.emplace(name, Running{LiveEquipment(version), {}, 0});
+    equipment_.emplace(name, Running{LiveEquipment(version, options_.mode), {}, 0});
   } else {
     report_.running(name, running->second.live, true);
     swap = running->second.live.adopt(version);
@@ -78,13 +78,12 @@ void Simulator::adopt(const ModelVersion& version, const Arrival& arrival) {
   for (const auto& [id, descriptor] : parameters_) current.live.describe(descriptor);
   current.told = {};
   current.told.version = version.number;
-  current.told.mode = "free";
   current.told.from_cache = arrival.from_cache;
   current.told.decided = version.decided;
   current.told.since = utc_now();
   if (swap) {
-    current.told.remaining_step = swap->change.cwiseAbs().maxCoeff();
-    current.told.transition_steps = ModelRunner::transition_steps;
+    current.told.remaining_step = swap->largest;
+    current.told.transition_steps = swap->transition;
   }
   report_.adopted(version, arrival, swap);
   acknowledge(name, current);
@@ -95,6 +94,7 @@ void Simulator::acknowledge(const storage::EquipmentName& name, Running& running
   if (score.rows > 0) running.told.mrse_percent = score.mrse();
   running.told.steps = static_cast<std::uint64_t>(score.rows);
   running.told.steps_outside = running.live.ticks_outside();
+  running.told.mode = running.live.is_following() ? "following" : "free";
   models_.acknowledge(name, running.told);
 }
 

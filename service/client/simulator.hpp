@@ -20,6 +20,7 @@ struct SimulatorOptions {
   dds::Endpoint endpoint;
   Subscription subscription;
   std::optional<std::filesystem::path> cache;  // folder of the last good versions; absent: none
+  LiveEquipment::Mode mode = LiveEquipment::Mode::free;
   std::chrono::nanoseconds report_period = std::chrono::seconds(5);
   bool json = false;
 };

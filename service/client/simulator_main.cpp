@@ -42,6 +42,10 @@ void add_options(CLI::App& app, reident::SimulatorOptions& options, std::string&
   app.add_option("--report", report_s, "Seconds between two reports of the running errors")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
+  app.add_flag_callback(
+      "--follow", [&options] { options.mode = reident::LiveEquipment::Mode::following; },
+      "Correct each model by the measured outputs, as a trainer that follows the satellite does "
+      "(the models run free)");
   app.add_flag("--json", options.json, "One JSON object a line");
   app.set_version_flag("--version", std::string(reident::program_version()));
 }
