@@ -26,7 +26,7 @@ EquipmentRunner::EquipmentRunner(std::string spacecraft, std::string equipment,
 
 EquipmentRunner::~EquipmentRunner() {
   delete posted_.load(std::memory_order_acquire);
-  collect([](const RunState&, identification::Index) {});
+  collect([](const Swapped&) {});
 }
 
 int EquipmentRunner::advance(const double* u, const double* measured, double* y) {
@@ -45,7 +45,7 @@ int EquipmentRunner::advance(const double* u, const double* measured, double* y)
   if (parcel != nullptr) {
     flags |= REIDENT_SWAPPED;
     state_.swapped = utc_now();
-    parcel->state = state();
+    parcel->swapped.state = state();
     send_back(parcel);
   }
   if (state_is_wanted_.load(std::memory_order_acquire)) {
@@ -64,7 +64,7 @@ void EquipmentRunner::begin(Parcel& parcel) {
   state_.period_s = version.model.dynamics.period_s;
   state_.remaining_step = swap.largest;
   state_.transition_steps = swap.transition;
-  parcel.rows = swap.rows;
+  parcel.swapped.rows = swap.rows;
   score_.clear();
 }
 
@@ -90,17 +90,17 @@ RunState EquipmentRunner::state() const {
   return state;
 }
 
-void EquipmentRunner::post(std::unique_ptr<PreparedModel> model) {
+void EquipmentRunner::post(std::unique_ptr<PreparedModel> model, const Arrival& arrival) {
   auto parcel = std::make_unique<Parcel>();
   parcel->model = std::move(model);
+  parcel->swapped.arrival = arrival;
   PreparedModel* const prepared = parcel->model.get();
   delete posted_.exchange(parcel.release(), std::memory_order_acq_rel);
   // The run may have begun: only this thread destroys what it has left, by collect().
   prepared->prepare_tracking();
 }
 
-void EquipmentRunner::collect(
-    const std::function<void(const RunState&, identification::Index rows)>& use) {
+void EquipmentRunner::collect(const std::function<void(const Swapped&)>& use) {
   Parcel* first = nullptr;
   for (Parcel* parcel = returned_.exchange(nullptr, std::memory_order_acquire);
        parcel != nullptr;) {
@@ -112,7 +112,7 @@ void EquipmentRunner::collect(
   while (first != nullptr) {
     const std::unique_ptr<Parcel> parcel(first);
     first = parcel->next;
-    use(parcel->state, parcel->rows);
+    use(parcel->swapped);
   }
 }
 

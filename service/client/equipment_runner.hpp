@@ -8,6 +8,7 @@
 #include <string>
 
 #include "service/client/model_runner.hpp"
+#include "service/client/model_subscriber.hpp"
 #include "service/client/running_score.hpp"
 
 namespace reident {
@@ -55,12 +56,18 @@ class EquipmentRunner {
 
   /// Has the run go on with `model`, prepared for declaration(), at its next step. Takes the place
   /// of one that was posted before and that no step has taken yet.
-  void post(std::unique_ptr<PreparedModel> model);
+  void post(std::unique_ptr<PreparedModel> model, const Arrival& arrival);
   /// Whether one is posted that no step has taken yet.
   bool is_waiting() const { return posted_.load(std::memory_order_relaxed) != nullptr; }
+  /// A first step on a version that was posted.
+  struct Swapped {
+    RunState state;                  // after the step
+    identification::Index rows = 0;  // that the new state was estimated from
+    Arrival arrival;
+  };
   /// Frees the models that the run has left; `use` is called for each swap since the last call, in
   /// their order.
-  void collect(const std::function<void(const RunState&, identification::Index rows)>& use);
+  void collect(const std::function<void(const Swapped&)>& use);
   /// Asks the run for its state; it is there after its next step.
   void ask_state() { state_is_wanted_.store(true, std::memory_order_release); }
   /// The state at the last step that was asked for it.
@@ -70,8 +77,7 @@ class EquipmentRunner {
   /// A model on its way to the run, and the one before on its way back.
   struct Parcel {
     std::unique_ptr<PreparedModel> model;
-    RunState state;  // at the first step
-    identification::Index rows = 0;
+    Swapped swapped;
     Parcel* next = nullptr;
   };
   int advance(const double* u, const double* measured, double* y);

@@ -8,8 +8,9 @@
  * complete examples.
  *
  * Threads. A client works on a thread of its own. Each runner, and each client, is for one thread
- * at a time; several runners may run on several threads. reident_step and reident_follow allocate
- * nothing, take no lock and make no system call, also when they change to a new version.
+ * at a time; several runners may run on several threads. reident_step, reident_follow and
+ * reident_observe allocate nothing, take no lock and make no system call, also when they change to
+ * a new version.
  *
  * The ABI is stable: structures carry their size and only ever grow at the end, values of
  * enumerations never change, and unknown events and flags are to be ignored. Texts are UTF-8. Times
@@ -74,7 +75,8 @@ enum {
   REIDENT_EVENT_SWAPPED = 2,   /* a runner made its first step on the version */
   REIDENT_EVENT_REFUSED = 3,   /* the version must not run; the one before goes on */
   REIDENT_EVENT_OFFERED = 4,   /* its signals differ from those that run: reident_accept takes it */
-  REIDENT_EVENT_CACHE = 5      /* the file of last good versions could not be read or written */
+  REIDENT_EVENT_CACHE = 5,     /* the file of last good versions could not be read or written */
+  REIDENT_EVENT_FAULT = 6      /* the middleware would not; the runs go on */
 };
 
 typedef struct {

@@ -39,7 +39,7 @@ struct ClientSignal {
 };
 
 struct ClientEvent {
-  enum class Kind { available = 1, swapped, refused, offered, cache };
+  enum class Kind { available = 1, swapped, refused, offered, cache, fault };
   Kind kind;
   std::string spacecraft, equipment;
   std::string text;  // one sentence for a log

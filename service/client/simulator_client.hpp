@@ -1,0 +1,119 @@
+// What libreident-client does for a simulator: it subscribes, verifies, hands versions to the runs
+// and tells the service what runs, on a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "service/client/equipment_runner.hpp"
+#include "service/client/model_subscriber.hpp"
+#include "service/dds/dds.hpp"
+#include "service/support/mutex.hpp"
+
+namespace reident {
+
+/// Of a simulator that was given no name: host and process id.
+std::string default_simulator_name();
+
+struct SimulatorClientOptions {
+  dds::Endpoint endpoint;
+  Subscription subscription;
+  std::optional<std::filesystem::path> cache;  // folder of the last good versions; absent: none
+};
+
+/// The meanings are those of reident_event in client.h.
+struct SimulatorEvent {
+  enum class Kind { available = 1, swapped, refused, offered, cache, fault };
+  Kind kind = Kind::available;
+  storage::EquipmentName equipment;
+  std::string text;
+  std::int64_t version = 0;
+  bool from_cache = false;
+  storage::Time time = 0, decided = 0, published = 0;
+  double remaining_step = 0;
+  int transition_steps = 0;
+  identification::Index matched_rows = 0;
+};
+
+/// Any thread may call it.
+class SimulatorClient {
+ public:
+  using Callback = std::function<void(const SimulatorEvent&)>;
+
+  static constexpr std::size_t most_events = 1024;
+
+  /// Throws dds::Error. Versions that were kept are there when it returns.
+  explicit SimulatorClient(const SimulatorClientOptions& options);
+  ~SimulatorClient();
+
+  /// A run of an equipment, which ends with the client or by close(). A sentence where the
+  /// declaration names a signal twice or the equipment has a run here already.
+  std::variant<EquipmentRunner*, std::string> open(const storage::EquipmentName& equipment,
+                                                   Declaration declaration);
+  void close(EquipmentRunner& runner);
+  /// Has the run take the version that is offered. A sentence why it cannot.
+  std::optional<std::string> accept(EquipmentRunner& runner);
+
+  struct Standing {
+    std::int64_t offered = 0;  // 0: none
+    bool from_cache = false;   // the version that runs or was posted
+  };
+  Standing standing(const EquipmentRunner& runner);
+
+  /// The oldest event that was not asked for yet, at most `timeout` later (negative: for ever).
+  std::optional<SimulatorEvent> next_event(std::chrono::milliseconds timeout);
+  /// Events go to `callback`, on the client's thread, instead of being kept; null ends that. The
+  /// one before is not called any more when it returns.
+  void on_event(Callback callback);
+
+  std::optional<ModelVersion> newest(const storage::EquipmentName& equipment);
+
+ private:
+  struct Run {
+    std::unique_ptr<EquipmentRunner> runner;
+    std::optional<ModelSubscriber::Verified> posted;  // runs, or will at the next step
+    std::optional<ModelSubscriber::Verified> offered;
+    RunningModel told;
+  };
+  void work();
+  void look();
+  void tell_fault(const char* what);
+  ModelSubscriber::Listener listener() REIDENT_REQUIRES(mutex_);
+  void take_in(Run& run, const ModelSubscriber::Verified& verified) REIDENT_REQUIRES(mutex_);
+  void offer(Run& run, const ModelSubscriber::Verified& verified, const std::string& reason)
+      REIDENT_REQUIRES(mutex_);
+  void post(Run& run, std::unique_ptr<PreparedModel> model,
+            const ModelSubscriber::Verified& verified) REIDENT_REQUIRES(mutex_);
+  void collect(Run& run) REIDENT_REQUIRES(mutex_);
+  void acknowledge(Run& run, const RunState& state) REIDENT_REQUIRES(mutex_);
+  void say(SimulatorEvent event) REIDENT_REQUIRES(mutex_);
+  /// Hands kept events to the callback, without the lock.
+  void deliver();
+  std::chrono::nanoseconds patience();
+  Run* find(const storage::EquipmentName& equipment) REIDENT_REQUIRES(mutex_);
+
+  dds::Participant participant_;
+  dds::WaitSet ready_;
+  Mutex mutex_;
+  ModelSubscriber models_ REIDENT_GUARDED_BY(mutex_);
+  std::vector<Run> runs_ REIDENT_GUARDED_BY(mutex_);
+  std::deque<SimulatorEvent> events_ REIDENT_GUARDED_BY(mutex_);
+  std::chrono::nanoseconds look_again_ REIDENT_GUARDED_BY(mutex_);
+  std::chrono::steady_clock::time_point next_report_ REIDENT_GUARDED_BY(mutex_);
+  Mutex callback_mutex_;  // taken before the other
+  Callback callback_ REIDENT_GUARDED_BY(callback_mutex_);
+  CondVar has_event_;
+  std::atomic<bool> stops_ = false;
+  std::thread thread_;
+};
+
+}  // namespace reident
