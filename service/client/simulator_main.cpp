@@ -54,6 +54,7 @@ void add_options(CLI::App& app, reident::SimulatorOptions& options, std::string&
 
 int main(int argc, char** argv) {
   reident::SimulatorOptions options;
+  options.endpoint.simulator = true;
   options.subscription.simulator = "simulator-" + std::to_string(getpid());
   std::string cache = reident::ModelCache::default_folder().value_or("").string();
   double report_s = 5;

@@ -27,6 +27,9 @@ class Error : public std::runtime_error {
 struct Endpoint {
   std::uint32_t domain = 0;
   std::string partition = "operations";  // separates operations, training and test
+  /// One of many that look for services, sources and consoles and not for each other: on loopback
+  /// it takes a port of its own range. A domain's first participant in a process decides for all.
+  bool simulator = false;
 };
 
 /// Joins a domain. Without CYCLONEDDS_URI in the environment all traffic stays on 127.0.0.1. Must

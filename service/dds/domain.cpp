@@ -27,17 +27,42 @@ bool configured_by_environment() {
   return uri != nullptr && *uri != '\0';
 }
 
+// Discovery by unicast is all to all: 100 simulators that find each other spend half a minute of
+// two cores on it. Services, sources and consoles take ports from the first on, and announce
+// themselves to every port; simulators take the last ones, and announce themselves to the first.
+constexpr int ports = 120;             // of participants of a domain on a machine (DDSI standard)
+constexpr int ports_of_services = 16;  // before those of simulators
+
+std::string simulator_discovery(std::uint32_t domain) {
+  constexpr int first_offset = 10, gain = 2;  // the ports of the standard: 250 a domain
+  const int first = 7400 + 250 * static_cast<int>(domain) + first_offset;
+  // One port for discovery and data: no second one that another program could have taken.
+  const std::string offset = std::to_string(first_offset + gain * ports_of_services);
+  std::string peers;
+  for (int i = 0; i < ports_of_services; ++i)
+    peers += "<Peer address=\"127.0.0.1:" + std::to_string(first + gain * i) + "\"/>";
+  return "<Domain Id=\"any\"><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+         "<MaxAutoParticipantIndex>" +
+         std::to_string(ports - ports_of_services) +
+         "</MaxAutoParticipantIndex><Ports><UnicastMetaOffset>" + offset +
+         "</UnicastMetaOffset><UnicastDataOffset>" + offset +
+         "</UnicastDataOffset></Ports><Peers>" + peers + "</Peers></Discovery></Domain>";
+}
+
 dds_entity_t joined(dds_entity_t result, const char* call, std::uint32_t domain) {
   if (result >= 0) return result;
   throw Error(
       std::string(call) + " failed for domain " + std::to_string(domain) + ": " +
       dds_strretcode(result) +
-      "; use a domain from 0 to 230 and at most 120 processes of a domain on a machine, and "
-      "where CYCLONEDDS_URI is set, check the configuration and the interfaces it names");
+      "; use a domain from 0 to 230, and at most 104 simulators and 16 other processes of a domain "
+      "on a machine, and where CYCLONEDDS_URI is set, check the configuration and the interfaces "
+      "it names");
 }
 
-Entity create_loopback_domain(std::uint32_t domain) {
-  const dds_entity_t result = dds_create_domain(domain, loopback_configuration);
+Entity create_loopback_domain(std::uint32_t domain, bool simulator) {
+  const std::string configuration =
+      simulator ? loopback_traffic + ("," + simulator_discovery(domain)) : loopback_configuration;
+  const dds_entity_t result = dds_create_domain(domain, configuration.c_str());
   // Another library of this process was first; its configuration holds.
   if (result == DDS_RETCODE_PRECONDITION_NOT_MET) return {};
   return Entity(joined(result, "dds_create_domain", domain));
@@ -50,11 +75,12 @@ Entity create_participant(std::uint32_t domain) {
 
 }  // namespace
 
-DomainUse::DomainUse(std::uint32_t domain) : domain_(domain) {
+DomainUse::DomainUse(std::uint32_t domain, bool simulator) : domain_(domain) {
   const MutexLock lock(domains_mutex);
   auto found = domains().find(domain);
   if (found == domains().end()) {
-    Entity entity = configured_by_environment() ? Entity() : create_loopback_domain(domain);
+    Entity entity =
+        configured_by_environment() ? Entity() : create_loopback_domain(domain, simulator);
     found = domains().emplace(domain, SharedDomain{std::move(entity), 0}).first;
   }
   ++found->second.users;
@@ -67,7 +93,7 @@ DomainUse::~DomainUse() {
 }
 
 Participant::Impl::Impl(const Endpoint& endpoint)
-    : domain(endpoint.domain),
+    : domain(endpoint.domain, endpoint.simulator),
       partition(endpoint.partition),
       participant(create_participant(endpoint.domain)) {
   const std::string about = "partition \"" + partition + "\"";

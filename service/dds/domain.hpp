@@ -11,12 +11,14 @@ namespace reident::dds {
 
 /// Cyclone DDS configuration that keeps all traffic on 127.0.0.1 (service/dds/loopback.xml).
 extern const char* const loopback_configuration;
+/// The same without its part about discovery.
+extern const char* const loopback_traffic;
 
 /// Keeps a domain configured for as long as anyone in the process uses it. Without CYCLONEDDS_URI
 /// the domain is the loopback one; with it the middleware reads the configuration itself.
 class DomainUse {
  public:
-  explicit DomainUse(std::uint32_t domain);
+  DomainUse(std::uint32_t domain, bool simulator);
   ~DomainUse();
   DomainUse(const DomainUse&) = delete;
   DomainUse& operator=(const DomainUse&) = delete;
