@@ -109,6 +109,7 @@ reident::SimulatorClientOptions client_options(const reident_options& given) {
   reident_options_init(&defaults);
   const reident_options c = copy_in(given, defaults);
   reident::SimulatorClientOptions options;
+  options.endpoint.simulator = true;
   options.endpoint.domain = c.domain;
   options.endpoint.partition = text_or(c.partition, "operations");
   options.subscription.simulator =
