@@ -60,18 +60,17 @@ std::variant<InputBinding, std::string> InputBinding::make(
     if (!place) return missing(parameter);
     places.push_back(*place);
   }
-  return InputBinding(model, std::move(expressions), std::move(places));
+  return InputBinding(model, std::move(expressions), std::move(places), !derived.empty());
 }
 
 InputBinding::InputBinding(const EquipmentModel& model, InputExpressions expressions,
-                           std::vector<std::size_t> places)
+                           std::vector<std::size_t> places, bool is_derived)
     : expressions_(std::move(expressions)),
       places_(std::move(places)),
       sources_(model.inputs.size()),
-      low_(static_cast<identification::Index>(model.inputs.size())),
-      high_(low_.size()),
+      is_derived_(is_derived),
       parameters_(static_cast<identification::Index>(places_.size())),
-      fresh_(low_.size()),
+      fresh_(static_cast<identification::Index>(model.inputs.size())),
       flags_(model.inputs.size()) {
   const std::vector<std::string>& parameters = expressions_.parameters();
   const auto add_source = [&](std::size_t input, const std::string& parameter) {
@@ -81,8 +80,8 @@ InputBinding::InputBinding(const EquipmentModel& model, InputExpressions express
   };
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     const Signal& input = model.inputs[i];
-    low_(static_cast<identification::Index>(i)) = input.low;
-    high_(static_cast<identification::Index>(i)) = input.high;
+    low_.push_back(input.low);
+    high_.push_back(input.high);
     add_source(i, input.name);
     if (!sources_[i].empty()) continue;
     const auto parsed = Expression::parse(input.expression);
@@ -91,28 +90,30 @@ InputBinding::InputBinding(const EquipmentModel& model, InputExpressions express
   }
 }
 
-int InputBinding::bind(const double* declared, identification::Vector& u) {
+int InputBinding::bind_any(const double* declared, double* u) {
   for (std::size_t i = 0; i < places_.size(); ++i)
     parameters_(static_cast<identification::Index>(i)) = declared[places_[i]];
   expressions_.evaluate(parameters_, fresh_);
   int all = 0;
   for (std::size_t i = 0; i < flags_.size(); ++i) {
-    const auto at = static_cast<identification::Index>(i);
+    const double value = fresh_(static_cast<identification::Index>(i));
     int flags = 0;
-    if (std::isfinite(fresh_(at))) {
-      u(at) = fresh_(at);
+    if (std::isfinite(value)) {
+      u[i] = value;
     } else {
       flags = REIDENT_INPUT_MISSING;
     }
-    if (u(at) < low_(at) || u(at) > high_(at)) flags |= REIDENT_INPUT_OUTSIDE;
+    if (u[i] < low_[i] || u[i] > high_[i]) flags |= REIDENT_INPUT_OUTSIDE;
     flags_[i] = static_cast<std::uint8_t>(flags);
     all |= flags;
   }
+  flagged_ = all != 0;
   return all;
 }
 
 int InputBinding::flags(std::size_t declared) const {
   int flags = 0;
+  if (!flagged_) return flags;
   for (std::size_t i = 0; i < sources_.size(); ++i)
     if (std::find(sources_[i].begin(), sources_[i].end(), declared) != sources_[i].end())
       flags |= flags_[i];

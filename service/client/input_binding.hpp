@@ -30,23 +30,39 @@ class InputBinding {
   static std::variant<InputBinding, std::string> make(const EquipmentModel& model,
                                                       const std::vector<DeclaredSignal>& declared);
 
-  /// u (m) from the declared values. Where one is not finite, what u holds from the call before
-  /// stays. Returns the sum of REIDENT_INPUT_MISSING and REIDENT_INPUT_OUTSIDE. Allocates nothing.
-  int bind(const double* declared, identification::Vector& u);
+  /// u (m values) from the declared ones. Where one is not finite, what u holds from the call
+  /// before stays. Returns the sum of REIDENT_INPUT_MISSING and REIDENT_INPUT_OUTSIDE. Allocates
+  /// nothing.
+  int bind(const double* declared, double* u) {
+    if (is_derived_) return bind_any(declared, u);
+    const std::size_t* place = places_.data();
+    const double *low = low_.data(), *high = high_.data();
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      const double value = declared[place[i]];
+      if (!(value >= low[i] && value <= high[i])) return bind_any(declared, u);
+      u[i] = value;
+    }
+    flagged_ = false;
+    return 0;
+  }
 
   /// The same flags of one declared input, at the last call of bind().
   int flags(std::size_t declared) const;
 
  private:
   InputBinding(const EquipmentModel& model, InputExpressions expressions,
-               std::vector<std::size_t> places);
+               std::vector<std::size_t> places, bool is_derived);
+  /// The same for inputs that are derived, missing or outside.
+  int bind_any(const double* declared, double* u);
 
   InputExpressions expressions_;
   std::vector<std::size_t> places_;                // in the declared inputs, of each parameter
   std::vector<std::vector<std::size_t>> sources_;  // of each model input, in the declared ones
-  identification::Vector low_, high_;
+  bool is_derived_;                                // any of them
+  std::vector<double> low_, high_;
   identification::Vector parameters_, fresh_;
-  std::vector<std::uint8_t> flags_;  // of each model input
+  std::vector<std::uint8_t> flags_;  // of each model input, where any is flagged
+  bool flagged_ = false;
 };
 
 }  // namespace reident

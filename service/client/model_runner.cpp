@@ -13,15 +13,67 @@ using identification::Index;
 using identification::Tracker;
 using identification::Vector;
 
-constexpr double changes_averaged = 64;  // steps
+constexpr std::uint64_t changes_averaged = 64;  // steps
 
 }  // namespace
+
+// What every step does: inlined, since the calls would take a good part of its time.
+
+inline void ModelRunner::run_plain(const double* measured) {
+  PreparedModel& model = *model_;
+  const identification::StateSpaceModel& dynamics = model.dynamics();
+  const Index n = dynamics.order(), m = dynamics.inputs(), p = dynamics.outputs();
+  double* const du = model.now_.data() + n;
+  for (Index i = 0; i < m; ++i) du[i] = model.u_[static_cast<std::size_t>(i)] - dynamics.u0(i);
+  model.kernel_.run(model.now_.data(), model.next_.data());
+  model.now_.swap(model.next_);
+  const double* const dy = model.now_.data() + n;
+  for (Index q = 0; q < p; ++q) model.y_(q) = dy[q] + dynamics.y0(q);
+  if (measured == nullptr || !model.has_kalman_gain_) return;
+  Eigen::Map<Vector> x(model.now_.data(), n);
+  for (Index q = 0; q < p; ++q) {
+    const double error = measured[model.outputs_[static_cast<std::size_t>(q)]] - model.y_(q);
+    if (!std::isfinite(error)) continue;
+    is_following_ = true;
+    const double limit = model.error_limit_(q);
+    x += std::clamp(error, -limit, limit) * dynamics.K.col(q);
+  }
+}
+
+inline bool ModelRunner::put_out() {
+  const PreparedModel& model = *model_;
+  const double left =
+      transition_left_ > 0 ? static_cast<double>(--transition_left_) / transition_ : 0;
+  const double weight = steps_ < changes_averaged ? 1 / static_cast<double>(steps_ + 1)
+                                                  : 1.0 / static_cast<double>(changes_averaged);
+  bool is_finite = true;
+  for (std::size_t q = 0; q < outputs_; ++q) {
+    const auto at = static_cast<Index>(q);
+    const std::size_t declared = model.outputs_[q];
+    double put = model.y_(at);
+    if (left > 0) put += left * model.offset_(at);
+    is_finite = is_finite && std::isfinite(put);
+    double& typical = typical_change_[declared];
+    if (steps_ > 0) typical += weight * (std::abs(put - output_[declared]) - typical);
+    output_[declared] = put;
+  }
+  return is_finite;
+}
+
+inline void ModelRunner::remember(const double* u) {
+  double* row = past_.data() + at_ * (inputs_ + outputs_);
+  for (std::size_t i = 0; i < inputs_; ++i) row[i] = u[i];
+  for (std::size_t q = 0; q < outputs_; ++q) row[inputs_ + q] = output_[q];
+  constexpr auto rows = static_cast<std::size_t>(PreparedModel::matched_rows);
+  at_ = at_ + 1 == rows ? 0 : at_ + 1;
+  remembered_ = std::min(remembered_ + 1, rows);
+  ++steps_;
+}
 
 ModelRunner::ModelRunner(const Declaration& declaration)
     : inputs_(declaration.inputs.size()),
       outputs_(declaration.outputs.size()),
       output_(outputs_, std::numeric_limits<double>::quiet_NaN()),
-      before_(outputs_),
       change_(outputs_),
       typical_change_(outputs_),
       past_(static_cast<std::size_t>(PreparedModel::matched_rows) * (inputs_ + outputs_)) {}
@@ -47,8 +99,7 @@ int ModelRunner::advance(const double* u, const double* measured, double* y) {
     return REIDENT_NO_MODEL;
   }
   PreparedModel& model = *model_;
-  int flags = model.binding_.bind(u, model.u_);
-  model.du_ = model.u_ - model.dynamics().u0;
+  int flags = model.binding_.bind(u, model.u_.data());
   Tracker* tracker = measured != nullptr || tracker_runs_
                          ? model.tracker_.load(std::memory_order_acquire)
                          : nullptr;
@@ -58,26 +109,25 @@ int ModelRunner::advance(const double* u, const double* measured, double* y) {
   } else {
     run_plain(measured);
   }
-  if (!model.y_.allFinite()) {
+  if (!put_out()) {
     start_over();
+    put_out();
     flags |= REIDENT_DIVERGED;
   }
-  before_.swap(output_);
-  put_out();
   remember(u);
   if (measured != nullptr) {
     observe(measured);
     if (!is_following_) flags |= REIDENT_NOT_FOLLOWING;
   }
   if (transition_left_ > 0) flags |= REIDENT_IN_TRANSITION;
-  std::copy(output_.begin(), output_.end(), y);
+  for (std::size_t q = 0; q < outputs_; ++q) y[q] = output_[q];
   return flags;
 }
 
 void ModelRunner::run_tracker(Tracker& tracker, const double* measured) {
   PreparedModel& model = *model_;
   const Index n = model.dynamics().order();
-  Eigen::Map<Vector> x(model.z_.data(), n);
+  Eigen::Map<Vector> x(model.now_.data(), n);
   if (!tracker_runs_) tracker.restart(x);
   tracker_runs_ = true;
   model.measured_.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -85,62 +135,22 @@ void ModelRunner::run_tracker(Tracker& tracker, const double* measured) {
     for (std::size_t q = 0; q < outputs_; ++q)
       model.measured_(static_cast<Index>(q)) = measured[model.outputs_[q]];
   is_following_ = model.measured_.allFinite();
-  model.y_ = tracker.step(model.u_, model.measured_);
+  model.y_ = tracker.step(Eigen::Map<const Vector>(model.u_.data(), model.dynamics().inputs()),
+                          model.measured_);
   if (is_following_ || !tracker.has_let_go()) return;
   x = tracker.free_state();
   tracker_runs_ = false;
 }
 
-void ModelRunner::run_plain(const double* measured) {
-  PreparedModel& model = *model_;
-  const identification::StateSpaceModel& dynamics = model.dynamics();
-  const Index n = dynamics.order(), m = dynamics.inputs(), p = dynamics.outputs();
-  std::copy_n(model.du_.data(), m, model.z_.data() + n);
-  model.kernel_.run(model.z_.data(), model.out_.data());
-  std::copy_n(model.out_.data(), n, model.z_.data());
-  for (Index q = 0; q < p; ++q)
-    model.y_(q) = model.out_[static_cast<std::size_t>(n + q)] + dynamics.y0(q);
-  if (measured == nullptr || !model.has_kalman_gain_) return;
-  Eigen::Map<Vector> x(model.z_.data(), n);
-  for (Index q = 0; q < p; ++q) {
-    const double error = measured[model.outputs_[static_cast<std::size_t>(q)]] - model.y_(q);
-    if (!std::isfinite(error)) continue;
-    is_following_ = true;
-    const double limit = model.error_limit_(q);
-    x += std::clamp(error, -limit, limit) * dynamics.K.col(q);
-  }
-}
-
 void ModelRunner::start_over() {
-  std::fill(model_->z_.begin(), model_->z_.end(), 0.0);
+  std::fill(model_->now_.begin(), model_->now_.end(), 0.0);
   model_->y_ = model_->dynamics().y0;
+  for (std::size_t q = 0; q < outputs_; ++q)
+    output_[model_->outputs_[q]] = model_->y_(static_cast<Index>(q));
+  std::fill(typical_change_.begin(), typical_change_.end(), 0.0);
   tracker_runs_ = false;
   is_following_ = false;
   transition_left_ = 0;
-}
-
-void ModelRunner::put_out() {
-  const double left =
-      transition_left_ > 0 ? static_cast<double>(--transition_left_) / transition_ : 0;
-  for (std::size_t q = 0; q < outputs_; ++q) {
-    const auto at = static_cast<Index>(q);
-    output_[model_->outputs_[q]] = model_->y_(at) + left * model_->offset_(at);
-  }
-}
-
-void ModelRunner::remember(const double* u) {
-  double* row = past_.data() + at_ * (inputs_ + outputs_);
-  std::copy_n(u, inputs_, row);
-  std::copy_n(output_.data(), outputs_, row + inputs_);
-  constexpr auto rows = static_cast<std::size_t>(PreparedModel::matched_rows);
-  at_ = at_ + 1 == rows ? 0 : at_ + 1;
-  remembered_ = std::min(remembered_ + 1, rows);
-  if (steps_ > 0) {
-    const double weight = 1 / std::min(static_cast<double>(steps_), changes_averaged);
-    for (std::size_t q = 0; q < outputs_; ++q)
-      typical_change_[q] += weight * (std::abs(output_[q] - before_[q]) - typical_change_[q]);
-  }
-  ++steps_;
 }
 
 void ModelRunner::observe(const double* measured) {
@@ -157,8 +167,8 @@ void ModelRunner::match() {
   model.match_.clear();
   for (std::size_t back = remembered_; back > 0; --back) {
     const double* row = past_.data() + (at_ + rows - back) % rows * (inputs_ + outputs_);
-    model.binding_.bind(row, model.u_);
-    model.du_ = model.u_ - model.dynamics().u0;
+    model.binding_.bind(row, model.u_.data());
+    model.du_ = Eigen::Map<const Vector>(model.u_.data(), model.du_.size()) - model.dynamics().u0;
     for (std::size_t q = 0; q < outputs_; ++q) {
       const auto at = static_cast<Index>(q);
       model.measured_(at) = row[inputs_ + model.outputs_[q]] - model.dynamics().y0(at);
@@ -166,7 +176,7 @@ void ModelRunner::match() {
     model.match_.add(model.du_, model.measured_);
   }
   const Vector& x = model.match_.solve();
-  std::copy_n(x.data(), x.size(), model.z_.data());
+  std::copy_n(x.data(), x.size(), model.now_.data());
   model.y_ = model.dynamics().y0 + model.match_.last_output();
 }
 

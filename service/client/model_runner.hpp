@@ -74,21 +74,22 @@ class ModelRunner {
   void run_plain(const double* measured);
   /// The operating point takes the place of a run that is not finite any more.
   void start_over();
-  /// The model's outputs, with what is left of a transition, become output().
-  void put_out();
+  /// The model's outputs, with what is left of a transition, become output(). Whether all of it is
+  /// finite.
+  bool put_out();
   void remember(const double* u);
   /// Sets the model's state and outputs to what agrees best with what is remembered.
   void match();
   Swap begin_transition();
 
   std::unique_ptr<PreparedModel> model_;
-  std::size_t inputs_, outputs_;         // declared
-  std::vector<double> output_, before_;  // at the last step and the one before it
-  std::vector<double> change_;           // at the last swap
-  std::vector<double> typical_change_;   // of output() in a step: a mean over the recent ones
-  std::vector<double> past_;             // a ring of matched_rows of [inputs, outputs]
-  std::size_t at_ = 0;                   // the row that is written next
-  std::size_t remembered_ = 0;           // rows
+  std::size_t inputs_, outputs_;        // declared
+  std::vector<double> output_;          // at the last step
+  std::vector<double> change_;          // at the last swap
+  std::vector<double> typical_change_;  // of output() in a step: a mean over the recent ones
+  std::vector<double> past_;            // a ring of matched_rows of [inputs, outputs]
+  std::size_t at_ = 0;                  // the row that is written next
+  std::size_t remembered_ = 0;          // rows
   std::uint64_t steps_ = 0;
   int transition_ = 1, transition_left_ = 0;
   bool is_following_ = false;

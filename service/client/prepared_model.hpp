@@ -58,12 +58,14 @@ class PreparedModel {
   StepKernel kernel_;
   StateMatch match_;
   std::atomic<identification::Tracker*> tracker_ = nullptr;  // owned
-  std::vector<double> z_, out_;                              // [x; u - u0], [next x; y - y0]
-  Vector u_, du_;                                            // m, of the last step
-  Vector y_;                                                 // p, of the model
-  Vector measured_;                                          // p
-  Vector offset_;       // p: what is left of the model before, at the step of the swap
-  Vector error_limit_;  // p: of the Kalman filter's innovations
+  // [x; u - u0] of this step, and room for [next x; y - y0]: the two change places at each step.
+  std::vector<double> now_, next_;
+  std::vector<double> u_;  // m, of the last step
+  Vector du_;              // m
+  Vector y_;               // p, of the model
+  Vector measured_;        // p
+  Vector offset_;          // p: what is left of the model before, at the step of the swap
+  Vector error_limit_;     // p: of the Kalman filter's innovations
   bool has_kalman_gain_ = false;
 };
 

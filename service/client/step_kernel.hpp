@@ -7,8 +7,8 @@
 
 namespace reident {
 
-/// [x[k+1]; y - y0] = [A B; C D] [x[k]; du]. Sums in the order of the columns, whatever the
-/// machine, so that every machine gives the same bits.
+/// [x[k+1]; y - y0] = [A B; C D] [x[k]; du]. Sums the columns in a fixed order, so that every
+/// machine gives the same bits.
 class StepKernel {
  public:
   explicit StepKernel(const identification::StateSpaceModel& model);

@@ -277,6 +277,10 @@ TEST(ModelRunner, starts_over_at_the_operating_point_when_the_run_is_not_finite)
   EXPECT_NE(run.flags & REIDENT_DIVERGED, 0);
   EXPECT_EQ(y, 4.25);
   EXPECT_NEAR(run.step((Vector(2) << 3.5, 1.5).finished()), 4.35, 1e-12) << "it goes on";
+  for (Index k = 0; k < 200; ++k) run.step(example_input(k));
+  EquipmentModel other = example_model();
+  other.dynamics.y0(0) += 0.1;
+  EXPECT_LT(run.swap(other).transition, ModelRunner::most_transition) << "its pace is known again";
 }
 
 TEST(ModelRunner, a_swap_to_the_same_model_in_another_basis_is_not_felt) {
