@@ -97,7 +97,7 @@ void EquipmentRunner::post(std::unique_ptr<PreparedModel> model, const Arrival& 
   PreparedModel* const prepared = parcel->model.get();
   delete posted_.exchange(parcel.release(), std::memory_order_acq_rel);
   // The run may have begun: only this thread destroys what it has left, by collect().
-  prepared->prepare_tracking();
+  prepared->prepare_following();
 }
 
 void EquipmentRunner::collect(const std::function<void(const Swapped&)>& use) {

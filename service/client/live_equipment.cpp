@@ -13,7 +13,7 @@ std::unique_ptr<PreparedModel> prepared(const ModelVersion& version,
                                         const Declaration& declaration) {
   auto made = PreparedModel::make(version, declaration);
   auto model = std::get<std::unique_ptr<PreparedModel>>(std::move(made));
-  model->prepare_tracking();
+  model->prepare_following();
   return model;
 }
 

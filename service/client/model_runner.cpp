@@ -29,7 +29,7 @@ inline void ModelRunner::run_plain(const double* measured) {
   model.now_.swap(model.next_);
   const double* const dy = model.now_.data() + n;
   for (Index q = 0; q < p; ++q) model.y_(q) = dy[q] + dynamics.y0(q);
-  if (measured == nullptr || !model.has_kalman_gain_) return;
+  if (measured == nullptr || !model.has_kalman_gain_.load(std::memory_order_acquire)) return;
   Eigen::Map<Vector> x(model.now_.data(), n);
   for (Index q = 0; q < p; ++q) {
     const double error = measured[model.outputs_[static_cast<std::size_t>(q)]] - model.y_(q);

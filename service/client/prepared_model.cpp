@@ -67,8 +67,7 @@ PreparedModel::PreparedModel(ModelVersion version, InputBinding binding,
       y_(dynamics().y0),
       measured_(dynamics().outputs()),
       offset_(Vector::Zero(dynamics().outputs())),
-      error_limit_(dynamics().outputs()),
-      has_kalman_gain_(observes_stably(dynamics())) {
+      error_limit_(dynamics().outputs()) {
   for (identification::Index q = 0; q < error_limit_.size(); ++q) {
     const Signal& output = version_.model.outputs[static_cast<std::size_t>(q)];
     error_limit_(q) = output.high - output.low;
@@ -79,11 +78,14 @@ PreparedModel::~PreparedModel() {
   delete tracker_.load(std::memory_order_acquire);
 }
 
-void PreparedModel::prepare_tracking() {
-  if (!version_.model.tracking || tracker_.load(std::memory_order_relaxed) != nullptr) return;
-  tracker_.store(new identification::Tracker(dynamics(), version_.model.tracking->gain,
-                                             Vector::Zero(dynamics().order())),
-                 std::memory_order_release);
+void PreparedModel::prepare_following() {
+  if (!version_.model.tracking) {
+    has_kalman_gain_.store(observes_stably(dynamics()), std::memory_order_release);
+  } else if (tracker_.load(std::memory_order_relaxed) == nullptr) {
+    tracker_.store(new identification::Tracker(dynamics(), version_.model.tracking->gain,
+                                               Vector::Zero(dynamics().order())),
+                   std::memory_order_release);
+  }
 }
 
 }  // namespace reident

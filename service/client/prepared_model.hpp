@@ -44,9 +44,9 @@ class PreparedModel {
   const ModelVersion& version() const { return version_; }
   const identification::StateSpaceModel& dynamics() const { return version_.model.dynamics; }
 
-  /// Makes its integral feedback ready, where it has a tracking gain: this takes longer than all
-  /// the rest, and the run may begin before. From another thread than the run's, too.
-  void prepare_tracking();
+  /// Makes it ready to follow: by its integral feedback, else by its Kalman gain. This takes longer
+  /// than all the rest; the run may begin before, on another thread.
+  void prepare_following();
 
  private:
   friend class ModelRunner;
@@ -66,7 +66,7 @@ class PreparedModel {
   Vector measured_;        // p
   Vector offset_;          // p: what is left of the model before, at the step of the swap
   Vector error_limit_;     // p: of the Kalman filter's innovations
-  bool has_kalman_gain_ = false;
+  std::atomic<bool> has_kalman_gain_ = false;
 };
 
 /// Whether a run may change from one to the other unasked: the same inputs, outputs (names, units,

@@ -119,6 +119,7 @@ void SimulatorReport::running(const storage::EquipmentName& equipment, const Liv
              {"spacecraft", equipment.spacecraft},
              {"equipment", equipment.equipment},
              {"version", live.version().number},
+             {"mode", live.is_following() ? "following" : "free"},
              {"ticks", score.rows},
              {"mrse_percent", to_json(score.mrse_percent)},
              {"fit_percent", to_json(score.fit_percent)},
@@ -131,13 +132,13 @@ void SimulatorReport::running(const storage::EquipmentName& equipment, const Liv
     return;
   }
   const std::string state =
-      !missing.empty() ? "waits for the descriptors of " + list(missing)
-      : score.rows == 0
-          ? std::string("waits for telemetry of its inputs and outputs")
-          : fmt::format(
-                "{} ticks, running MRSE {:.3f} %, fit {:.1f} %, {} "
-                "outside the identified range, {} gaps",
-                score.rows, score.mrse(), score.fit(), live.ticks_outside(), live.gaps());
+      !missing.empty()  ? "waits for the descriptors of " + list(missing)
+      : score.rows == 0 ? std::string("waits for telemetry of its inputs and outputs")
+                        : fmt::format(
+                              "{} ticks{}, running MRSE {:.3f} %, fit {:.1f} %, {} "
+                              "outside the identified range, {} gaps",
+                              score.rows, live.is_following() ? " following the satellite" : "",
+                              score.mrse(), score.fit(), live.ticks_outside(), live.gaps());
   say(fmt::format("{}/{} v{}{}: {}", equipment.spacecraft, equipment.equipment,
                   live.version().number, final ? " (ended)" : "", state));
 }

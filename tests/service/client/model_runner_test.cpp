@@ -38,7 +38,7 @@ std::unique_ptr<PreparedModel> prepare(EquipmentModel model, const Declaration& 
   auto made = PreparedModel::make(std::move(version), declaration);
   if (const auto* reason = std::get_if<std::string>(&made)) throw std::runtime_error(*reason);
   auto prepared = std::get<std::unique_ptr<PreparedModel>>(std::move(made));
-  prepared->prepare_tracking();
+  prepared->prepare_following();
   return prepared;
 }
 
