@@ -1,5 +1,6 @@
 // client.h over SimulatorClient: plain structures for the types, results for the exceptions.
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -10,6 +11,15 @@
 #include "service/model/model_json.hpp"
 #include "service/support/utc_clock.hpp"
 #include "service/support/version.hpp"
+
+// What programs that were compiled before rely on. New members come after the last one.
+static_assert(sizeof(void*) != 8 ||
+              (offsetof(reident_options, cache_folder) == 56 && sizeof(reident_options) >= 64 &&
+               offsetof(reident_event, matched_rows) == 84 && sizeof(reident_event) >= 88 &&
+               offsetof(reident_history_query, page_size) == 56 &&
+               sizeof(reident_history_query) >= 64 && sizeof(reident_signal) == 16 &&
+               offsetof(reident_runner_state, transition_left) == 108 &&
+               sizeof(reident_runner_state) >= 112));
 
 struct reident_runner {
   reident::EquipmentRunner* run;  // the client's

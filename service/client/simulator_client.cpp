@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <exception>
 #include <set>
 #include <unistd.h>
@@ -39,6 +40,17 @@ std::optional<std::string> named_twice(const std::vector<DeclaredSignal>& signal
   return std::nullopt;
 }
 
+/// A thread that takes no signal: they are the simulator's.
+template <class Work>
+std::thread quiet_thread(Work work) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread thread(std::move(work));
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
+}
+
 SimulatorEvent event_of(SimulatorEvent::Kind kind, const ModelVersion& version,
                         const Arrival& arrival, std::string text) {
   SimulatorEvent event;
@@ -72,7 +84,7 @@ SimulatorClient::SimulatorClient(const SimulatorClientOptions& options)
     models_.attach_to(ready_);
     models_.poll(listener());
   }
-  thread_ = std::thread([this] { work(); });
+  thread_ = quiet_thread([this] { work(); });
 }
 
 SimulatorClient::~SimulatorClient() {
