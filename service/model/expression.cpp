@@ -31,7 +31,7 @@ double magnitude(double a) {
 
 struct Expression::Evaluator {
   explicit Evaluator(const ExpressionGrammar& grammar)
-      : variables(grammar.variables()), values(variables.size()) {
+      : variables(grammar.variables()), program(grammar.program()), values(variables.size()) {
     // The grammar is ours: what the library knows beyond it is taken away.
     parser.ClearFun();
     parser.ClearConst();
@@ -45,6 +45,7 @@ struct Expression::Evaluator {
   }
 
   std::vector<std::string> variables;
+  PostfixProgram program;
   std::vector<double> values;
   mu::Parser parser;
 };
@@ -68,6 +69,10 @@ std::variant<Expression, ExpressionMistake> Expression::parse(std::string_view t
 
 const std::vector<std::string>& Expression::variables() const {
   return evaluator_->variables;
+}
+
+const PostfixProgram& Expression::program() const {
+  return evaluator_->program;
 }
 
 double Expression::evaluate(std::span<const double> values) {

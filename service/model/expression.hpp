@@ -20,6 +20,8 @@
 #include <variant>
 #include <vector>
 
+#include "service/model/postfix.hpp"
+
 namespace reident {
 
 /// What is wrong with an expression, where (1 is its first byte), and what would be right.
@@ -40,6 +42,9 @@ class Expression {
 
   /// Names of the parameters, each once, in the order of their first use.
   const std::vector<std::string>& variables() const;
+
+  /// What evaluate() computes, but for values that are not finite, in postfix order.
+  const PostfixProgram& program() const;
 
   /// The value for those of variables(). NaN where one of them, or the result, is not finite. The
   /// same values give the same bits. For one thread at a time.

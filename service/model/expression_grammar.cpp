@@ -13,11 +13,16 @@ namespace {
 
 constexpr std::size_t max_name_bytes = 100;  // muParser's bound
 
+using Kind = PostfixStep::Kind;
+
 struct Function {
   std::string_view name;
   int values;
+  Kind kind;
 };
-constexpr std::array functions = {Function{"abs", 1}, Function{"min", 2}, Function{"max", 2}};
+constexpr std::array functions = {Function{"abs", 1, Kind::magnitude},
+                                  Function{"min", 2, Kind::least},
+                                  Function{"max", 2, Kind::largest}};
 
 const Function* function_of(std::string_view name) {
   const auto found = std::find_if(functions.begin(), functions.end(),
@@ -66,9 +71,15 @@ bool ExpressionGrammar::take(std::string_view token) {
   return true;
 }
 
-bool ExpressionGrammar::take_any(std::initializer_list<std::string_view> tokens) {
-  return std::any_of(tokens.begin(), tokens.end(),
-                     [this](std::string_view token) { return take(token); });
+std::optional<Kind> ExpressionGrammar::take_any(std::initializer_list<Operator> operators) {
+  const auto* const found = std::find_if(operators.begin(), operators.end(),
+                                         [this](const Operator& one) { return take(one.token); });
+  return found == operators.end() ? std::nullopt : std::optional(found->kind);
+}
+
+bool ExpressionGrammar::operate(Kind kind) {
+  program_.push_back({kind});
+  return true;
 }
 
 bool ExpressionGrammar::refuse(std::size_t at, std::string_view what) {
@@ -123,32 +134,41 @@ bool ExpressionGrammar::conditional() {
   if (!comparison()) return false;
   if (!take("?")) return true;
   return nested(&ExpressionGrammar::conditional) && expect(":") &&
-         nested(&ExpressionGrammar::conditional);
+         nested(&ExpressionGrammar::conditional) && operate(Kind::select);
 }
 
 bool ExpressionGrammar::comparison() {
   if (!sum()) return false;
-  return take_any({"<=", ">=", "==", "!=", "<", ">"}) ? sum() : true;
+  const auto kind = take_any({{"<=", Kind::less_or_equal},
+                              {">=", Kind::greater_or_equal},
+                              {"==", Kind::equal},
+                              {"!=", Kind::not_equal},
+                              {"<", Kind::less},
+                              {">", Kind::greater}});
+  return kind ? sum() && operate(*kind) : true;
 }
 
 bool ExpressionGrammar::sum() {
   if (!term()) return false;
-  while (take_any({"+", "-"}))
-    if (!term()) return false;
+  while (const auto kind = take_any({{"+", Kind::add}, {"-", Kind::subtract}}))
+    if (!term() || !operate(*kind)) return false;
   return true;
 }
 
 bool ExpressionGrammar::term() {
   if (!factor()) return false;
-  while (take_any({"*", "/"}))
-    if (!factor()) return false;
+  while (const auto kind = take_any({{"*", Kind::multiply}, {"/", Kind::divide}}))
+    if (!factor() || !operate(*kind)) return false;
   return true;
 }
 
+// The sign is the last to work: -a^2 is -(a^2).
 bool ExpressionGrammar::factor() {
-  take_any({"+", "-"});
+  const bool negative = take("-");
+  if (!negative) take("+");
   if (!value()) return false;
-  return take("^") ? nested(&ExpressionGrammar::factor) : true;
+  if (take("^") && !(nested(&ExpressionGrammar::factor) && operate(Kind::power))) return false;
+  return negative ? operate(Kind::negate) : true;
 }
 
 bool ExpressionGrammar::value() {
@@ -173,6 +193,7 @@ bool ExpressionGrammar::number() {
                   "a number ends in a letter; write 2*a for a product, and a parameter's "
                   "name begins with a letter or _");
   canonical_ += token;
+  program_.push_back({Kind::number, parsed});
   return true;
 }
 
@@ -185,7 +206,7 @@ bool ExpressionGrammar::name() {
   if (peek() == '(') {
     if (function == nullptr)
       return refuse(begin, fmt::format("{} is no function here; abs, min and max are", token));
-    return call(function->values);
+    return call(function->values) && operate(function->kind);
   }
   if (function != nullptr)
     return refuse(begin, fmt::format("{0} is a function and needs its values in ( ); a parameter "
@@ -195,9 +216,14 @@ bool ExpressionGrammar::name() {
     return refuse(begin, fmt::format("the name has {} bytes; at most {} can stand in an "
                                      "expression",
                                      token.size(), max_name_bytes));
-  if (std::find(variables_.begin(), variables_.end(), token) == variables_.end())
-    variables_.emplace_back(token);
+  parameter(token);
   return true;
+}
+
+void ExpressionGrammar::parameter(std::string_view token) {
+  const auto found = std::find(variables_.begin(), variables_.end(), token);
+  program_.push_back({Kind::variable, 0, static_cast<std::size_t>(found - variables_.begin())});
+  if (found == variables_.end()) variables_.emplace_back(token);
 }
 
 bool ExpressionGrammar::call(int values) {

@@ -1,10 +1,13 @@
-// The grammar of expression.hpp, checked by recursive descent.
+// The grammar of expression.hpp, checked by recursive descent, and what it says to do.
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "service/model/postfix.hpp"
 
 namespace reident {
 
@@ -22,13 +25,20 @@ class ExpressionGrammar {
   const std::string& canonical() const { return canonical_; }
   /// The parameters, each once, in the order of their first use.
   const std::vector<std::string>& variables() const { return variables_; }
+  /// The same in postfix order; its variables are places in variables().
+  const PostfixProgram& program() const { return program_; }
 
  private:
   /// The next byte that is no blank; 0 at the end.
   char peek();
   bool at_end();
   bool take(std::string_view token);
-  bool take_any(std::initializer_list<std::string_view> tokens);
+  struct Operator {
+    std::string_view token;
+    PostfixStep::Kind kind;
+  };
+  /// The first of them that stands at the next byte.
+  std::optional<PostfixStep::Kind> take_any(std::initializer_list<Operator> operators);
   bool expect(std::string_view token);
 
   /// Each notes the mistake, where there is none yet, and says false.
@@ -49,6 +59,9 @@ class ExpressionGrammar {
   bool number();
   bool name();
   bool call(int values);
+  void parameter(std::string_view token);
+  /// Notes an operation whose operands are noted.
+  bool operate(PostfixStep::Kind kind);
 
   std::string_view text_;
   std::size_t at_ = 0;
@@ -56,6 +69,7 @@ class ExpressionGrammar {
   std::string canonical_;
   std::string mistake_;
   std::vector<std::string> variables_;
+  PostfixProgram program_;
 };
 
 }  // namespace reident
