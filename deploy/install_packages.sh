@@ -8,12 +8,13 @@ packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev cyclonedds-dev cyclonedds-tools libsqlite3-dev libzstd-dev libssl-dev
   libcli11-dev libfmt-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev libmuparser-dev
+  libzip-dev libmatio-dev
 )
 for option in "$@"; do
   case $option in
     --with-tests)
       packages+=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
-                 clang clang-format clang-tidy python3 sqlite3 git)
+                 clang clang-format clang-tidy python3 sqlite3 git octave)
       ;;
     --with-bench)  # what identification is compared with
       packages+=(libslicot-dev libopenblas0 octave-control)

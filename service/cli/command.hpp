@@ -41,6 +41,7 @@ void add_backfill(CLI::App& app, int& exit_code);
 void add_backup(CLI::App& app, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+void add_export_model(CLI::App& app, int& exit_code);
 void add_completeness(CLI::App& app, int& exit_code);
 void add_at(CLI::App& app, int& exit_code);
 /// approve, reject, withdraw, hold, release, rollback and identify-now.

@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   add_backfill(app, exit_code);
   add_import(app, exit_code);
   add_export(app, exit_code);
+  add_export_model(app, exit_code);
   add_completeness(app, exit_code);
   add_at(app, exit_code);
   add_operator_commands(app, exit_code);

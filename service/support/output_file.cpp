@@ -1,6 +1,7 @@
 #include "service/support/output_file.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <fcntl.h>
 #include <stdexcept>
 #include <system_error>
@@ -14,7 +15,8 @@ constexpr mode_t permissions = 0666;  // less the umask
 
 }  // namespace
 
-OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+OutputFile::OutputFile(std::filesystem::path path, Existing existing)
+    : path_(std::move(path)), existing_(existing) {
   std::error_code failed;
   if (std::filesystem::is_directory(*path_, failed))
     throw std::runtime_error(path_->string() + " is a folder: name a file in it");
@@ -34,6 +36,7 @@ OutputFile OutputFile::standard_output() {
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::exchange(other.path_, std::nullopt)),
+      existing_(other.existing_),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 OutputFile::~OutputFile() {
@@ -67,10 +70,24 @@ void OutputFile::write(std::string_view text) {
   }
 }
 
+bool OutputFile::take_name() const {
+  if (existing_ == Existing::kept) {
+    if (::renameat2(AT_FDCWD, part().c_str(), AT_FDCWD, path_->c_str(), RENAME_NOREPLACE) == 0)
+      return true;
+    if (errno != EINVAL && errno != ENOSYS) return false;
+    // A file system without it.
+    if (::access(path_->c_str(), F_OK) == 0) {
+      errno = EEXIST;
+      return false;
+    }
+  }
+  return ::rename(part().c_str(), path_->c_str()) == 0;
+}
+
 void OutputFile::finish() {
   if (!path_) return;
   if (::fsync(descriptor_) != 0) fail(errno);
-  if (::rename(part().c_str(), path_->c_str()) != 0) fail(errno);
+  if (!take_name()) fail(errno);
   ::close(std::exchange(descriptor_, -1));
 }
 

@@ -12,7 +12,11 @@ namespace reident {
 /// remedy.
 class OutputFile {
  public:
-  explicit OutputFile(std::filesystem::path path);
+  enum class Existing { replaced, kept };
+
+  /// A file of that name that is there is replaced, or else kept, also one that comes meanwhile:
+  /// then finish() throws.
+  explicit OutputFile(std::filesystem::path path, Existing existing = Existing::replaced);
   /// Standard output, where a reader may go away at any time: SIGPIPE must be ignored.
   static OutputFile standard_output();
   ~OutputFile();
@@ -25,9 +29,11 @@ class OutputFile {
  private:
   OutputFile() = default;
   std::filesystem::path part() const;
+  bool take_name() const;
   [[noreturn]] void fail(int code) const;
 
   std::optional<std::filesystem::path> path_;  // absent: standard output
+  Existing existing_ = Existing::replaced;
   int descriptor_ = -1;
 };
 

@@ -1,0 +1,92 @@
+/* A free run of the model, and all of it that changes:
+ *
+ *   y[k]   = C x[k] + D (u[k] - u0) + y0
+ *   x[k+1] = A x[k] + B (u[k] - u0),    x[0] = 0: the operating point
+ *
+ * where u follows from the parameters by the inputs' programs.
+ */
+#ifndef REIDENT_RUN_H
+#define REIDENT_RUN_H
+
+#include "clock.h"
+#include "model_file.h"
+
+typedef enum { phase_instantiated, phase_initialisation, phase_stepping, phase_terminated } Phase;
+
+typedef struct {
+  Phase phase;
+  int stop_defined;
+  double stop_s;
+  double point_s; /* the communication point, in the words of who steps */
+  Clock clock;
+  int64_t ticks;  /* that have run */
+  double* values; /* parameters, x, y; run_values() of them */
+} Run;
+
+static size_t run_values(const Model* model) {
+  return model->parameters + model->order + model->outputs;
+}
+
+static double* run_state(const Model* model, const Run* run) {
+  return run->values + model->parameters;
+}
+
+static double* run_outputs(const Model* model, const Run* run) {
+  return run->values + model->parameters + model->order;
+}
+
+/* To before its initialisation. */
+static void run_reset(const Model* model, Run* run) {
+  double* const values = run->values;
+  memset(run, 0, sizeof *run);
+  run->values = values;
+  memset(values, 0, run_values(model) * sizeof *values);
+  memcpy(values, model->start, model->parameters * sizeof *values);
+}
+
+static void run_copy(const Model* model, const Run* from, Run* to) {
+  double* const values = to->values;
+  *to = *from;
+  to->values = values;
+  memcpy(values, from->values, run_values(model) * sizeof *values);
+}
+
+/* u - u0 into `du` (m). The first input without a finite value, or m. */
+static size_t run_inputs(const Model* model, const Run* run, double* du) {
+  for (size_t i = 0; i < model->inputs; ++i) {
+    const double value = program_value(&model->programs[i], run->values);
+    if (!isfinite(value)) return i;
+    du[i] = value - model->u0[i];
+  }
+  return model->inputs;
+}
+
+static double row_times(const double* row, const double* vector, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; ++i) sum += row[i] * vector[i];
+  return sum;
+}
+
+static int outputs_of(const Model* model, const double* x, const double* du, double* y) {
+  int finite = 1;
+  for (size_t i = 0; i < model->outputs; ++i) {
+    y[i] = row_times(model->C + i * model->order, x, model->order) +
+           row_times(model->D + i * model->inputs, du, model->inputs) + model->y0[i];
+    finite = finite && isfinite(y[i]);
+  }
+  return finite;
+}
+
+/* One tick: y of x and du, then the x that follows, by way of `next` (n). Whether all is finite. */
+static int tick(const Model* model, const double* du, double* x, double* y, double* next) {
+  int finite = outputs_of(model, x, du, y);
+  for (size_t i = 0; i < model->order; ++i) {
+    next[i] = row_times(model->A + i * model->order, x, model->order) +
+              row_times(model->B + i * model->inputs, du, model->inputs);
+    finite = finite && isfinite(next[i]);
+  }
+  memcpy(x, next, model->order * sizeof *x);
+  return finite;
+}
+
+#endif

@@ -1,0 +1,33 @@
+// The variables of a model's FMU, in the order of their value references, from 0: inputs, outputs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/model/model_version.hpp"
+
+namespace reident::model_export {
+
+struct FmuVariable {
+  std::string name;
+  std::string unit;  // empty where a version does not say it
+  std::string description;
+  double start = 0;  // of an input
+};
+
+struct FmuVariables {
+  /// The SATCS parameters that the model's inputs are computed from. A parameter that stands in
+  /// expressions alone starts at 1: a version keeps the operating point of inputs, not of what they
+  /// are computed from.
+  std::vector<FmuVariable> inputs;
+  std::vector<FmuVariable> outputs;
+  /// For each output, places in `inputs` of those that it follows at once (by D), ascending.
+  std::vector<std::vector<std::size_t>> direct;
+};
+
+FmuVariables fmu_variables(const EquipmentModel& model);
+
+/// The place of a parameter in `inputs`.
+std::size_t place_of(const std::vector<FmuVariable>& inputs, const std::string& parameter);
+
+}  // namespace reident::model_export

@@ -1,0 +1,37 @@
+// A published model in files that other programs read. README.md says what each of them holds.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "service/model/model_version.hpp"
+
+namespace reident::model_export {
+
+/// A stored version, as it stands when it is exported.
+struct ExportedVersion {
+  ModelVersion version;
+  std::string status;  // "approved", "superseded", "rejected", "waiting" or "withdrawn"
+};
+
+/// Why the model cannot be exported: its content is damaged, or two of its signals have one name.
+/// Empty when it can. What follows asks for a model that can be.
+std::optional<std::string> obstacle(const ModelVersion& version);
+
+/// One JSON object; "model" in it is what equipment_model_from_json reads.
+std::string json_file(const ExportedVersion& exported);
+
+/// A MATLAB file of version 5. Throws std::runtime_error where the library fails.
+std::string mat_file(const ExportedVersion& exported);
+
+/// An FMU for co-simulation (FMI 2.0), from the parts in `parts`: linux64/reident_fmu.so and
+/// sources/. The same version gives the same bytes. Throws std::runtime_error where a part is
+/// missing.
+std::string fmu_file(const ExportedVersion& exported, const std::filesystem::path& parts);
+
+/// The folder of these parts: beside the running program as it was built, or as it was installed.
+/// Throws std::runtime_error where there is none.
+std::filesystem::path fmu_parts();
+
+}  // namespace reident::model_export

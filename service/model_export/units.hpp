@@ -1,0 +1,24 @@
+// Units of telemetry in the base units of the SI.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace reident::model_export {
+
+/// value in base units = factor * value + offset
+struct BaseUnit {
+  struct Power {
+    std::string unit;  // kg, m, s, A, K or rad
+    int exponent = 0;
+  };
+  std::vector<Power> powers;
+  double factor = 1;
+  double offset = 0;
+};
+
+/// What a unit such as "A", "mV", "degC" or "Ah" is; empty where it is not known.
+std::optional<BaseUnit> base_unit(const std::string& unit);
+
+}  // namespace reident::model_export
