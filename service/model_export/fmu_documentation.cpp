@@ -23,15 +23,15 @@ those of its tick. A step of several periods runs several ticks with inputs held
 in it changes nothing but the time. Between ticks the outputs hold. Before the first tick they are those
 that it would give for the inputs that are set. Ticks are counted in whole periods: rounding of the
 times that are handed in neither adds nor loses one, and what lies within a millionth of a period of a
-tick is on it. The inputs of the range that each was identified in are good inputs; outside of it they
-are used as they are.</p>
+tick is on it. Inputs outside of the range that they were identified in are used as they are.</p>
 <h2>What it is not</h2>
 <p>This is the free run: outputs follow from inputs alone. A tracking gain or a Kalman gain that the
 version has, which correct a model by live telemetry, are in model.json and not in the binary.</p>
-<p>An input that is not finite, and a step for whose inputs an expression has no finite value (a
-division by zero), give fmi2Discard and change nothing; a call that the standard does not allow gives
-fmi2Error and changes nothing; both say why by the logger. Inputs are not interpolated, and there are no
-directional derivatives.</p>
+<p>Where an expression has no finite value (a division by zero), its input keeps its last one, at first
+the operating point, and the step gives fmi2Warning. An input that is set to what is not finite keeps its
+value (fmi2Discard), as does the whole model where a step would leave what a double can hold. A call
+that the standard does not allow gives fmi2Error and changes nothing. All say why by the logger. Inputs
+are not interpolated, and there are no directional derivatives.</p>
 <h2>Compile it elsewhere</h2>
 <pre>cc -std=c11 -O2 -ffp-contract=off -fPIC -fvisibility=hidden -shared sources/reident_fmu.c -lm -o {1}.so</pre>
 <p>in the folder binaries/PLATFORM of that machine. sources/{1}.c is the same with the prefix {1}_ to the

@@ -162,6 +162,8 @@ std::string model_description(const ExportedVersion& exported, const FmuVariable
   const ModelVersion& version = exported.version;
   return head(exported) + co_simulation(model_identifier(version)) + unit_definitions(variables) +
          "  <LogCategories>\n"
+         "    <Category name=\"logStatusWarning\" description=\"an input without a finite "
+         "value\"/>\n"
          "    <Category name=\"logStatusDiscard\" description=\"a call that cannot be "
          "answered\"/>\n"
          "    <Category name=\"logStatusError\" description=\"a call that is refused\"/>\n"

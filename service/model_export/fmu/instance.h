@@ -34,7 +34,10 @@ static void log_text(fmi2CallbackLogger logger, fmi2ComponentEnvironment environ
   char escaped[2 * message_bytes];
   if (logger == NULL) return;
   escape(text, escaped, sizeof escaped);
-  logger(environment, name, status, status == fmi2Discard ? "logStatusDiscard" : "logStatusError",
+  logger(environment, name, status,
+         status == fmi2Warning   ? "logStatusWarning"
+         : status == fmi2Discard ? "logStatusDiscard"
+                                 : "logStatusError",
          escaped);
 }
 
@@ -66,6 +69,15 @@ static LIKE_PRINTF fmi2Status discard(const Instance* instance, const char* form
   va_list values;
   va_start(values, format);
   const fmi2Status status = say(instance, fmi2Discard, format, values);
+  va_end(values);
+  return status;
+}
+
+/* A call that was carried out, but not quite as it was meant. */
+static LIKE_PRINTF fmi2Status warn(const Instance* instance, const char* format, ...) {
+  va_list values;
+  va_start(values, format);
+  const fmi2Status status = say(instance, fmi2Warning, format, values);
   va_end(values);
   return status;
 }

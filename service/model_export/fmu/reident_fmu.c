@@ -39,7 +39,8 @@ fmi2Status FMI2(SetDebugLogging)(fmi2Component component, fmi2Boolean on, size_t
   if (count > 0 && categories == NULL) return refuse(instance, "the log categories are missing");
   for (size_t i = 0; i < count; ++i) {
     if (categories[i] == NULL) return refuse(instance, "a log category is missing");
-    if (strcmp(categories[i], "logStatusDiscard") != 0 &&
+    if (strcmp(categories[i], "logStatusWarning") != 0 &&
+        strcmp(categories[i], "logStatusDiscard") != 0 &&
         strcmp(categories[i], "logStatusError") != 0 && strcmp(categories[i], "logAll") != 0)
       return refuse(instance, "%.200s is no log category of this FMU", categories[i]);
   }
@@ -115,10 +116,7 @@ static fmi2Status expect_outputs(Instance* instance) {
   Run* const run = &instance->run;
   if (run->ticks > 0) return fmi2OK;
   double* const du = instance->scratch;
-  const size_t input = run_inputs(model, run, du);
-  if (input < model->inputs)
-    return discard(instance, "input %zu of the model has no finite value for the parameters set",
-                   input);
+  inputs_of(model, run, du);
   if (!outputs_of(model, run_state(model, run), du, run_outputs(model, run)))
     return discard(instance, "an output is beyond what a double can hold");
   return fmi2OK;
@@ -301,19 +299,20 @@ static fmi2Status run_ticks(Instance* instance, int64_t count) {
   double* const next = du + model->inputs;
   double* const before = next + model->order;
   const size_t moving = (model->order + model->outputs) * sizeof *before;
-  const size_t input = run_inputs(model, run, du);
-  if (input < model->inputs)
-    return discard(instance,
-                   "input %zu of the model has no finite value for the parameters set: no step",
-                   input);
+  const size_t missing = inputs_of(model, run, du);
   memcpy(before, run_state(model, run), moving);
   for (int64_t k = 0; k < count; ++k) {
     if (tick(model, du, run_state(model, run), run_outputs(model, run), next)) continue;
     memcpy(run_state(model, run), before, moving);
     return discard(instance, "the inputs drive the model beyond what a double can hold: no step");
   }
+  memcpy(run_inputs(model, run), du, model->inputs * sizeof *du);
   run->ticks += count;
-  return fmi2OK;
+  if (missing == model->inputs) return fmi2OK;
+  return warn(instance,
+              "input %zu of the model has no finite value for the parameters that are set; "
+              "it keeps its last",
+              missing);
 }
 
 /* What is wrong with a step from `point`, or NULL. */
@@ -344,10 +343,10 @@ fmi2Status FMI2(DoStep)(fmi2Component component, fmi2Real point, fmi2Real step,
   const Clock after = clock_after(run->clock, step, period, tolerance);
   const int64_t due = clock_ticks(after, tolerance) - run->ticks;
   const fmi2Status status = due > 0 ? run_ticks(instance, due) : fmi2OK;
-  if (status != fmi2OK) return status;
+  if (status > fmi2Warning) return status;
   run->clock = after;
   run->point_s = point + step;
-  return fmi2OK;
+  return status;
 }
 
 fmi2Status FMI2(CancelStep)(fmi2Component component) {

@@ -3,7 +3,8 @@
  *   y[k]   = C x[k] + D (u[k] - u0) + y0
  *   x[k+1] = A x[k] + B (u[k] - u0),    x[0] = 0: the operating point
  *
- * where u follows from the parameters by the inputs' programs.
+ * where u follows from the parameters by the inputs' programs. Where one has no finite value, the
+ * last that it had stays, at first the operating point.
  */
 #ifndef REIDENT_RUN_H
 #define REIDENT_RUN_H
@@ -20,19 +21,23 @@ typedef struct {
   double point_s; /* the communication point, in the words of who steps */
   Clock clock;
   int64_t ticks;  /* that have run */
-  double* values; /* parameters, x, y; run_values() of them */
+  double* values; /* parameters, u - u0 of the last tick, x, y; run_values() of them */
 } Run;
 
 static size_t run_values(const Model* model) {
-  return model->parameters + model->order + model->outputs;
+  return model->parameters + model->inputs + model->order + model->outputs;
 }
 
-static double* run_state(const Model* model, const Run* run) {
+static double* run_inputs(const Model* model, const Run* run) {
   return run->values + model->parameters;
 }
 
+static double* run_state(const Model* model, const Run* run) {
+  return run_inputs(model, run) + model->inputs;
+}
+
 static double* run_outputs(const Model* model, const Run* run) {
-  return run->values + model->parameters + model->order;
+  return run_state(model, run) + model->order;
 }
 
 /* To before its initialisation. */
@@ -51,14 +56,15 @@ static void run_copy(const Model* model, const Run* from, Run* to) {
   memcpy(values, from->values, run_values(model) * sizeof *values);
 }
 
-/* u - u0 into `du` (m). The first input without a finite value, or m. */
-static size_t run_inputs(const Model* model, const Run* run, double* du) {
+/* u - u0 of the parameters into `du` (m). The first input without a finite value, or m. */
+static size_t inputs_of(const Model* model, const Run* run, double* du) {
+  size_t first = model->inputs;
   for (size_t i = 0; i < model->inputs; ++i) {
     const double value = program_value(&model->programs[i], run->values);
-    if (!isfinite(value)) return i;
-    du[i] = value - model->u0[i];
+    du[i] = isfinite(value) ? value - model->u0[i] : run_inputs(model, run)[i];
+    if (!isfinite(value) && first == model->inputs) first = i;
   }
-  return model->inputs;
+  return first;
 }
 
 static double row_times(const double* row, const double* vector, size_t count) {

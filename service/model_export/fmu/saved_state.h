@@ -3,8 +3,8 @@
  *   8 bytes    "RIDFMU01": what it is, and the version of this form
  *   64 bytes   digest of the model
  *   8 bytes    each: phase, whether a stop time is defined, start and stop time, communication
- * point, whole periods and rest of the clock, ticks that have run 8 bytes    each: parameters, x, y
- *   8 bytes    FNV-1a of all before
+ * point, whole periods and rest of the clock, ticks that have run 8 bytes    each: parameters, u -
+ * u0 of the last tick, x, y 8 bytes    FNV-1a of all before
  *
  * Lowest byte first, doubles by their bits.
  */
@@ -70,7 +70,7 @@ static int fields_are_sound(const Model* model, const Run* run) {
   const int64_t most = INT64_C(1) << 53;
   int finite =
       isfinite(run->stop_s) && isfinite(run->point_s) && fabs(run->clock.rest_s) <= model->period_s;
-  for (size_t i = 0; i < model->parameters + model->order; ++i)
+  for (size_t i = 0; i < run_values(model) - model->outputs; ++i)
     finite = finite && isfinite(run->values[i]);
   return finite && run->clock.periods >= 0 && run->clock.periods <= most && run->ticks >= 0 &&
          run->ticks <= run->clock.periods + 1;

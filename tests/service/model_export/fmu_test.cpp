@@ -1,0 +1,413 @@
+// The binary of an FMU beside the library that simulators link, and what it does with bad calls.
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "tests/service/model_export/export_fixture.hpp"
+#include "tests/service/model_export/fmu_host.hpp"
+
+namespace reident::test {
+namespace {
+
+using model_export::ExportedVersion;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string fmu_of(const ExportedVersion& exported) {
+  return model_export::fmu_file(exported, REIDENT_FMU_PARTS);
+}
+
+/// All that is needed to run one version.
+struct Hosted {
+  explicit Hosted(const ExportedVersion& exported)
+      : version(exported.version),
+        fmu(fmu_of(exported)),
+        binary(fmu.binary()),
+        reference(version),
+        instance(another()) {}
+
+  std::unique_ptr<FmuInstance> another() const { return another(binary); }
+  std::unique_ptr<FmuInstance> another(const FmuBinary& its_binary) const {
+    return std::make_unique<FmuInstance>(its_binary, version.digest, fmu.resources(),
+                                         reference.variables.inputs.size(),
+                                         reference.variables.outputs.size());
+  }
+  std::vector<double> inputs(Noise& noise) const {
+    return random_inputs(noise, reference.variables.inputs.size());
+  }
+
+  ModelVersion version;
+  UnpackedFmu fmu;
+  FmuBinary binary;
+  Reference reference;
+  std::unique_ptr<FmuInstance> instance;
+};
+
+/// The farthest two runs are apart, over the size of what they say.
+class Distance {
+ public:
+  void add(const std::vector<double>& a, const std::vector<double>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double apart = std::fabs(a[i] - b[i]) / std::max(1.0, std::fabs(b[i]));
+      if (!(apart <= largest)) largest = apart;
+    }
+  }
+  double largest = 0;
+};
+
+const ModelKind with_expressions = {
+    3, 3, 2, true, 1, {"U * I_2 / V_BUS", "max(abs(U - 1), V_BUS ^ 1.5) * (U > V_BUS ? 2 : -0.5)"}};
+
+class FmuAgrees : public ::testing::TestWithParam<ModelKind> {};
+
+TEST_P(FmuAgrees, with_the_runner_of_the_library_also_when_its_sources_are_compiled) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Hosted run(random_version(GetParam(), seed));
+    const FmuBinary compiled(run.fmu.compiled());
+    const auto other = run.another(compiled);
+    ASSERT_NE(run.instance->component, nullptr) << run.instance->logged();
+    ASSERT_NE(other->component, nullptr) << other->logged();
+    run.instance->start();
+    other->start(1e6);
+    Noise noise(100 + seed);
+    Distance packed, own;
+    for (int k = 0; k < 500; ++k) {
+      const std::vector<double> u = run.inputs(noise);
+      const std::vector<double>& expected = run.reference.step(u);
+      for (FmuInstance* one : {run.instance.get(), other.get()}) {
+        EXPECT_EQ(one->set(u), fmi2OK);
+        EXPECT_LE(one->step(GetParam().period_s), fmi2Warning);
+      }
+      packed.add(run.instance->outputs(), expected);
+      own.add(other->outputs(), expected);
+    }
+    EXPECT_LE(packed.largest, 1e-12);
+    EXPECT_LE(own.largest, 1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(sizes, FmuAgrees,
+                         ::testing::Values(ModelKind{1, 1, 1}, ModelKind{6, 4, 1},
+                                           ModelKind{4, 2, 3, false, 0.1}, ModelKind{20, 7, 5},
+                                           ModelKind{2, 1, 1, true, 1.0 / 3}, with_expressions));
+
+TEST(Fmu, holds_inputs_over_the_ticks_of_a_long_step_and_outputs_between_ticks) {
+  Hosted run(random_version({3, 2, 2}, 5));
+  run.instance->start();
+  Noise noise(6);
+  Distance distance;
+  for (int k = 0; k < 50; ++k) {
+    const std::vector<double> u = run.inputs(noise);
+    EXPECT_EQ(run.instance->set(u), fmi2OK);
+    EXPECT_EQ(run.instance->step(3), fmi2OK);
+    for (int i = 0; i < 2; ++i) run.reference.step(u);
+    distance.add(run.instance->outputs(), run.reference.step(u));
+  }
+  std::vector<double> u = run.inputs(noise);
+  for (int quarter = 0; quarter < 40; ++quarter) {
+    EXPECT_EQ(run.instance->set(u), fmi2OK);
+    EXPECT_EQ(run.instance->step(0.25), fmi2OK);
+    const std::vector<double> held = run.instance->outputs();
+    if (quarter % 4 == 0)
+      distance.add(held, run.reference.step(u));
+    else
+      distance.add(held, run.instance->outputs());
+    u = run.inputs(noise);  // what is set between ticks counts at the next
+  }
+  EXPECT_LE(distance.largest, 1e-12);
+}
+
+/// How many ticks have run, of a model that counts them.
+double counted(Hosted& run) {
+  return run.instance->outputs()[0];
+}
+
+/// y[k] = k for an input of 1.
+ExportedVersion counter(double period_s) {
+  ExportedVersion exported = random_version({1, 1, 1, false, period_s}, 1);
+  identification::StateSpaceModel& dynamics = exported.version.model.dynamics;
+  dynamics.A(0, 0) = 1;
+  dynamics.B(0, 0) = 1;
+  dynamics.C(0, 0) = 1;
+  dynamics.u0(0) = 0;
+  dynamics.y0(0) = 1;
+  exported.version.digest = model_digest(exported.version.model);
+  return exported;
+}
+
+struct Steps {
+  const char* what;
+  double period_s, start, step_s;
+  int steps;
+  double ticks;  // that must have run
+};
+
+TEST(Fmu, neither_gains_nor_loses_a_tick_by_the_rounding_of_time) {
+  const Steps table[] = {
+      {"one period, added up", 0.1, 0, 0.1, 1'000'000, 1'000'000},
+      {"a third of one", 0.1, 0, 0.1 / 3, 300'000, 100'000},
+      {"three of them", 0.1, 0, 0.3, 100'000, 300'000},
+      {"from a time of day", 0.1, 1.7e9, 0.1, 100'000, 100'000},
+      {"one and a half", 2, -7, 3, 100'001, 150'002},
+      {"of no relation", 1, 0, 0.7310585786300049, 100'000, 73'106},
+  };
+  for (const Steps& steps : table) {
+    Hosted run(counter(steps.period_s));
+    run.instance->start(steps.start);
+    EXPECT_EQ(run.instance->set({1}), fmi2OK);
+    for (int i = 0; i < steps.steps; ++i)
+      ASSERT_EQ(run.instance->step(steps.step_s), fmi2OK) << run.instance->logged();
+    EXPECT_EQ(counted(run), steps.ticks) << steps.what;
+  }
+}
+
+TEST(Fmu, shows_before_its_first_tick_what_that_will_give) {
+  Hosted run(random_version({3, 2, 2}, 8));
+  EXPECT_EQ(run.binary.enter_initialization(run.instance->component), fmi2OK);
+  const identification::Vector& y0 = run.version.model.dynamics.y0;
+  EXPECT_THAT(run.instance->outputs(), ::testing::ElementsAre(y0(0), y0(1)))
+      << "inputs start at the operating point";
+  EXPECT_EQ(run.instance->set({1, 2}), fmi2OK);
+  const std::vector<double> shown = run.instance->outputs();
+  EXPECT_EQ(run.binary.exit_initialization(run.instance->component), fmi2OK);
+  EXPECT_EQ(run.instance->step(1), fmi2OK);
+  EXPECT_EQ(run.instance->outputs(), shown);
+}
+
+/// Steps of one period with inputs from `seed`; the outputs of the last.
+std::vector<double> after_steps(const Hosted& run, FmuInstance& instance, int steps,
+                                std::uint64_t seed) {
+  Noise noise(seed);
+  for (int k = 0; k < steps; ++k) {
+    EXPECT_EQ(instance.set(run.inputs(noise)), fmi2OK);
+    EXPECT_LE(instance.step(0.5), fmi2Warning);
+  }
+  return instance.outputs();
+}
+
+TEST(Fmu, goes_on_from_a_state_that_was_kept_also_in_another_instance) {
+  const Hosted run(random_version(with_expressions, 9));
+  const auto& [binary, first] = std::tie(run.binary, *run.instance);
+  run.instance->start();
+  after_steps(run, *run.instance, 33, 1);
+  fmi2FMUstate state = nullptr;
+  ASSERT_EQ(binary.get_state(first.component, &state), fmi2OK);
+  const double time = first.time;
+  const std::vector<double> expected = after_steps(run, *run.instance, 21, 2);
+
+  ASSERT_EQ(binary.set_state(first.component, state), fmi2OK);
+  run.instance->time = time;
+  EXPECT_EQ(after_steps(run, *run.instance, 21, 2), expected) << "to the last bit";
+
+  std::size_t size = 0;
+  ASSERT_EQ(binary.serialized_size(first.component, state, &size), fmi2OK);
+  std::vector<char> bytes(size);
+  ASSERT_EQ(binary.serialize(first.component, state, bytes.data(), size), fmi2OK);
+  const auto second = run.another();
+  fmi2FMUstate taken = nullptr;
+  ASSERT_EQ(binary.deserialize(second->component, bytes.data(), size, &taken), fmi2OK);
+  ASSERT_EQ(binary.set_state(second->component, taken), fmi2OK);
+  second->time = time;
+  EXPECT_EQ(after_steps(run, *second, 21, 2), expected);
+  EXPECT_EQ(binary.free_state(second->component, &taken), fmi2OK);
+  EXPECT_EQ(binary.free_state(first.component, &state), fmi2OK);
+  EXPECT_EQ(state, nullptr);
+}
+
+TEST(Fmu, runs_from_the_start_after_a_reset_and_beside_other_instances) {
+  const Hosted run(random_version({4, 2, 1}, 10));
+  const auto second = run.another();
+  run.instance->start();
+  second->start();
+  const std::vector<double> expected = after_steps(run, *run.instance, 40, 3);
+  after_steps(run, *second, 17, 4);
+  ASSERT_EQ(run.binary.reset(run.instance->component), fmi2OK);
+  run.instance->start();
+  EXPECT_EQ(after_steps(run, *run.instance, 40, 3), expected);
+  ASSERT_EQ(run.binary.reset(second->component), fmi2OK);
+  second->start();
+  EXPECT_EQ(after_steps(run, *second, 40, 3), expected);
+}
+
+TEST(Fmu, keeps_an_inputs_last_value_where_its_expression_has_none) {
+  const ExportedVersion version = random_version({2, 1, 1, true, 1, {"U / V_BUS"}}, 11);
+  Hosted run(version);
+  run.instance->start();
+  for (const std::vector<double>& u : std::vector<std::vector<double>>{{0, 0}, {4, 2}, {1, 0}}) {
+    EXPECT_EQ(run.instance->set(u), fmi2OK);
+    EXPECT_EQ(run.instance->step(1), u[1] == 0 ? fmi2Warning : fmi2OK);
+    const std::string said = run.instance->logged();
+    EXPECT_EQ(said.find("input 0 of the model has no finite value") == 0, u[1] == 0) << said;
+  }
+  Hosted other(version);
+  const double u0 = other.version.model.dynamics.u0(0);
+  other.instance->start();
+  for (const std::vector<double>& u : std::vector<std::vector<double>>{{u0, 1}, {2, 1}, {2, 1}}) {
+    EXPECT_EQ(other.instance->set(u), fmi2OK);
+    EXPECT_EQ(other.instance->step(1), fmi2OK);
+  }
+  EXPECT_EQ(run.instance->outputs(), other.instance->outputs());
+}
+
+TEST(Fmu, refuses_calls_that_must_not_be_made_and_says_why) {
+  const Hosted run(random_version({2, 2, 1}, 12));
+  const FmuBinary& fmi = run.binary;
+  FmuInstance& one = *run.instance;
+  const fmi2Component c = one.component;
+  const fmi2ValueReference none = 3, output = 2;
+  const double infinite = std::numeric_limits<double>::infinity();
+  double value = 0;
+  int whole = 0;
+  fmi2FMUstate state = nullptr;
+  const auto expect = [&one](fmi2Status status, fmi2Status expected, const char* says) {
+    EXPECT_EQ(status, expected) << says;
+    EXPECT_THAT(one.logged(), HasSubstr(says));
+  };
+  expect(fmi.do_step(c, 0, 1, 1), fmi2Error, "fmi2DoStep must not be called before initialisation");
+  expect(fmi.get_real(c, &output, 1, &value), fmi2Error, "must not be called before init");
+  expect(fmi.exit_initialization(c), fmi2Error, "fmi2ExitInitializationMode must not be called");
+  expect(fmi.setup_experiment(c, 0, 0, nan, 0, 0), fmi2Error, "start time nan is not finite");
+  expect(fmi.setup_experiment(c, 0, 0, 5, 1, 4), fmi2Error, "the stop time 4");
+  EXPECT_EQ(fmi.setup_experiment(c, 0, 0, 10, 1, 15), fmi2OK);
+  EXPECT_EQ(fmi.enter_initialization(c), fmi2OK);
+  EXPECT_EQ(fmi.exit_initialization(c), fmi2OK);
+  expect(fmi.setup_experiment(c, 0, 0, 0, 0, 0), fmi2Error, "must not be called between steps");
+  expect(fmi.get_real(c, &none, 1, &value), fmi2Error, "3 is no value reference of this FMU");
+  expect(fmi.set_real(c, &output, 1, &value), fmi2Error, "2 is no value reference of an input");
+  expect(fmi.get_real(c, nullptr, 1, &value), fmi2Error, "needs references");
+  expect(fmi.set_real(c, &output, 1, nullptr), fmi2Error, "needs references and values");
+  expect(one.set({0, infinite}), fmi2Discard, "input 1 cannot be inf; it keeps its value");
+  expect(fmi.get_integer(c, &output, 1, &whole), fmi2Error, "no Integer variables");
+  expect(fmi.set_string(c, &output, 1, nullptr), fmi2Error, "no String variables");
+  expect(fmi.do_step(c, 11, 1, 1), fmi2Error, "does not begin where the last ended");
+  expect(fmi.do_step(c, 10, 0, 1), fmi2Error, "must be finite and above 0");
+  expect(fmi.do_step(c, 10, nan, 1), fmi2Error, "must be finite and above 0");
+  expect(fmi.do_step(c, 10, 6, 1), fmi2Error, "ends after the stop time");
+  expect(fmi.do_step(c, 10, 2e9, 1), fmi2Error, "is more than 1e9 sample periods");
+  expect(fmi.set_state(c, nullptr), fmi2Error, "needs a state of this model");
+  expect(fmi.get_state(c, nullptr), fmi2Error, "needs a place");
+  expect(fmi.deserialize(c, nullptr, 3, &state), fmi2Error, "needs bytes");
+  expect(fmi.set_debug_logging(c, 1, 1, nullptr), fmi2Error, "categories are missing");
+  expect(fmi.directional_derivative(c, &output, 1, &none, 1, &value, &value), fmi2Error,
+         "no directional derivatives");
+  expect(fmi.set_input_derivatives(c, &none, 1, &whole, &value), fmi2Error, "does not interpolate");
+  expect(fmi.get_output_derivatives(c, &none, 1, &whole, &value), fmi2Error, "no derivatives");
+  expect(fmi.cancel_step(c), fmi2Error, "no step is ever pending");
+  fmi2Status status = fmi2OK;
+  expect(fmi.get_status(c, fmi2DoStepStatus, &status), fmi2Discard, "no such status");
+  EXPECT_EQ(one.set({1e308, 1e308}), fmi2OK);
+  expect(fmi.do_step(c, 10, 5, 1), fmi2Discard, "beyond what a double can hold: no step");
+  EXPECT_EQ(one.set({1, 1}), fmi2OK);
+  EXPECT_EQ(fmi.do_step(c, 10, 5, 1), fmi2OK) << "what was refused changed nothing";
+  EXPECT_EQ(fmi.get_real_status(c, fmi2LastSuccessfulTime, &value), fmi2OK);
+  EXPECT_EQ(value, 15);
+  EXPECT_EQ(fmi.get_boolean_status(c, fmi2Terminated, &whole), fmi2OK);
+  EXPECT_EQ(whole, fmi2False);
+  EXPECT_EQ(fmi.terminate(c), fmi2OK);
+  EXPECT_EQ(fmi.get_real(c, &output, 1, &value), fmi2OK);
+  expect(fmi.do_step(c, 15, 1, 1), fmi2Error, "must not be called terminated");
+  EXPECT_EQ(fmi.do_step(nullptr, 0, 1, 1), fmi2Error);
+  fmi.free_instance(nullptr);
+}
+
+TEST(Fmu, takes_no_bytes_for_a_state_but_its_own) {
+  const Hosted run(random_version({2, 2, 1}, 13));
+  const FmuBinary& fmi = run.binary;
+  FmuInstance& one = *run.instance;
+  fmi2FMUstate state = nullptr;
+  std::size_t size = 0;
+  ASSERT_EQ(fmi.get_state(one.component, &state), fmi2OK);
+  ASSERT_EQ(fmi.serialized_size(one.component, state, &size), fmi2OK);
+  std::vector<char> bytes(size);
+  EXPECT_EQ(fmi.serialize(one.component, state, bytes.data(), size - 1), fmi2Error);
+  ASSERT_EQ(fmi.serialize(one.component, state, bytes.data(), size), fmi2OK);
+  fmi2FMUstate taken = nullptr;
+  for (std::size_t i = 0; i < size; ++i) {
+    EXPECT_EQ(fmi.deserialize(one.component, bytes.data(), i, &taken), fmi2Error) << i;
+    std::vector<char> damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
+    EXPECT_EQ(fmi.deserialize(one.component, damaged.data(), size, &taken), fmi2Error) << i;
+    EXPECT_THAT(one.logged(), HasSubstr("these bytes are not taken for a state"));
+  }
+  EXPECT_EQ(taken, nullptr);
+  const Hosted another(random_version({2, 2, 1}, 14));
+  EXPECT_EQ(another.binary.deserialize(another.instance->component, bytes.data(), size, &taken),
+            fmi2Error);
+  EXPECT_THAT(another.instance->logged(), HasSubstr("the state of another model"));
+  EXPECT_EQ(another.binary.set_state(another.instance->component, state), fmi2Error);
+  EXPECT_EQ(fmi.free_state(one.component, &state), fmi2OK);
+}
+
+TEST(Fmu, is_not_instantiated_from_resources_that_are_not_its_own) {
+  const Hosted run(random_version(with_expressions, 15));
+  const std::string sound = run.fmu.text("resources/model.txt");
+  const auto refused = [&run](const std::string& guid, const std::string& uri) {
+    FmuInstance instance(run.binary, guid, uri, 1, 1);
+    EXPECT_EQ(instance.component, nullptr);
+    return instance.logged();
+  };
+  const std::string guid = run.version.digest, uri = run.fmu.resources();
+  EXPECT_THAT(refused("0" + guid.substr(1), uri), HasSubstr("the model of another guid"));
+  EXPECT_THAT(refused(guid, "http://example.org/resources"), HasSubstr("is no file: URI"));
+  EXPECT_THAT(refused(guid, "file:///tmp/%zz"), HasSubstr("is no file: URI"));
+  EXPECT_THAT(refused(guid, ""), HasSubstr("is no file: URI"));
+  EXPECT_THAT(refused(guid, "file:///nowhere/100%25"),
+              AllOf(HasSubstr("/nowhere/100%/model.txt"), HasSubstr("it cannot be read")));
+  for (std::size_t at = 0; at < sound.size(); at += 7) {
+    run.fmu.write("resources/model.txt", sound.substr(0, at));
+    EXPECT_THAT(refused(guid, uri), HasSubstr("it is damaged")) << "cut at " << at;
+    std::string damaged = sound;
+    damaged[at] = damaged[at] == '7' ? '5' : '7';
+    run.fmu.write("resources/model.txt", damaged);
+    EXPECT_THAT(refused(guid, uri), HasSubstr("it is damaged")) << "changed at " << at;
+  }
+}
+
+TEST(Fmu, finds_resources_by_every_form_of_a_file_uri) {
+  const Hosted run(random_version({1, 1, 1}, 16));
+  run.fmu.write("a folder/é%#/model.txt", run.fmu.text("resources/model.txt"));
+  const std::string folder = run.fmu.folder().string();
+  for (const std::string& uri :
+       {"file://" + folder + "/resources/", "file:" + folder + "/resources",
+        "FILE://localhost" + folder + "/resources", "file://" + folder + "/a%20folder/%c3%A9%25%23",
+        "file://" + folder + "/a folder/é%25#"}) {
+    FmuInstance instance(run.binary, run.version.digest, uri, 1, 1);
+    EXPECT_NE(instance.component, nullptr) << uri << ": " << instance.logged();
+  }
+}
+
+TEST(Fmu, shows_the_functions_of_the_standard_and_nothing_else) {
+  const Hosted run(random_version({1, 1, 1}, 17));
+  EXPECT_STREQ(run.binary.get_version(), "2.0");
+  EXPECT_STREQ(run.binary.get_types_platform(), "default");
+  const std::string command = "nm -D --defined-only " + run.fmu.binary().string() +
+                              " | grep -v ' T fmi2' | grep -v -e __asan -e __ubsan -e ' W '";
+  FILE* pipe = popen(command.c_str(), "r");
+  char line[200];
+  EXPECT_EQ(std::fgets(line, sizeof line, pipe), nullptr) << line;
+  pclose(pipe);
+}
+
+TEST(Fmu, has_sources_whose_functions_begin_with_the_identifier) {
+  const Hosted run(random_version({1, 1, 1}, 18));
+  const std::string folder = run.fmu.folder().string();
+  const std::string command = "cd " + folder +
+                              " && cc -std=c11 -Wall -Wextra -Werror -c sources/CBERS_4_BAT_1_v7.c "
+                              "-o a.o && nm -g --defined-only a.o | grep -c "
+                              "' T CBERS_4_BAT_1_v7_fmi2' > count";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(run.fmu.text("count"), "34\n");
+}
+
+TEST(Fmu, is_the_same_to_the_last_byte_when_it_is_exported_again) {
+  EXPECT_EQ(fmu_of(random_version(with_expressions, 19)),
+            fmu_of(random_version(with_expressions, 19)));
+}
+
+}  // namespace
+}  // namespace reident::test
