@@ -155,7 +155,7 @@ std::vector<double> FmuInstance::outputs() const {
 
 fmi2Status FmuInstance::step(double seconds) {
   const fmi2Status status = binary_.do_step(component, time, seconds, fmi2True);
-  if (status == fmi2OK) time += seconds;
+  if (status <= fmi2Warning) time += seconds;
   return status;
 }
 

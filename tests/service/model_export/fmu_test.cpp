@@ -66,9 +66,10 @@ const ModelKind with_expressions = {
 class FmuAgrees : public ::testing::TestWithParam<ModelKind> {};
 
 TEST_P(FmuAgrees, with_the_runner_of_the_library_also_when_its_sources_are_compiled) {
+  const Hosted any(random_version(GetParam(), 0));
+  const FmuBinary compiled(any.fmu.compiled());
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Hosted run(random_version(GetParam(), seed));
-    const FmuBinary compiled(run.fmu.compiled());
     const auto other = run.another(compiled);
     ASSERT_NE(run.instance->component, nullptr) << run.instance->logged();
     ASSERT_NE(other->component, nullptr) << other->logged();
@@ -352,7 +353,7 @@ TEST(Fmu, is_not_instantiated_from_resources_that_are_not_its_own) {
     return instance.logged();
   };
   const std::string guid = run.version.digest, uri = run.fmu.resources();
-  EXPECT_THAT(refused("0" + guid.substr(1), uri), HasSubstr("the model of another guid"));
+  EXPECT_THAT(refused("x" + guid.substr(1), uri), HasSubstr("the model of another guid"));
   EXPECT_THAT(refused(guid, "http://example.org/resources"), HasSubstr("is no file: URI"));
   EXPECT_THAT(refused(guid, "file:///tmp/%zz"), HasSubstr("is no file: URI"));
   EXPECT_THAT(refused(guid, ""), HasSubstr("is no file: URI"));
