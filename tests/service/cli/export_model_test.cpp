@@ -1,5 +1,8 @@
 // export-model on a database that the registry filled.
-#include <fmt/format.h>
+#include <algorithm>
+#include <csignal>
+
+#include <sys/resource.h>
 
 #include "storage/registry.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
@@ -37,6 +40,13 @@ class ExportModel : public testing::CliTest {
                                    std::vector<std::string> words) const {
     words.insert(words.begin(), {"export-model", subject, "--database", "reident.db"});
     return words;
+  }
+  void expect_failure(const testing::Ran& ran, const std::string& says) const {
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_THAT(ran.err, StartsWith("reident: " + says));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    for (const char* name : {"a.fmu", "a.fmu.part", "a.mat", "a.mat.part"})
+      EXPECT_FALSE(exists(name)) << name;
   }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder() / name); }
 };
@@ -85,11 +95,19 @@ TEST_F(ExportModel, LeavesNothingBehindWhereAFileCannotBeWritten) {
   for (const char* path : {"nowhere/a.mat", "/dev/full"}) {
     const testing::Ran ran =
         reident(command("BDR@1", {"--fmu", "a.fmu", "--mat", path, "--force"}));
-    EXPECT_EQ(ran.status, 1);
-    EXPECT_THAT(ran.err, StartsWith(fmt::format("reident: {}", path)));
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-    EXPECT_FALSE(exists("a.fmu") || exists("a.fmu.part")) << path;
+    expect_failure(ran, path);
   }
+}
+
+TEST_F(ExportModel, LeavesNothingBehindOnAFullDisk) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit less_than_an_fmu{36'000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &less_than_an_fmu);
+  const testing::Ran ran = reident(command("BDR@1", {"--mat", "a.mat", "--fmu", "a.fmu"}));
+  setrlimit(RLIMIT_FSIZE, &before);
+  expect_failure(ran, "a.fmu cannot be written, there is no room");
 }
 
 }  // namespace
