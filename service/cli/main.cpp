@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   add_backup(app, exit_code);
   add_verify(app, exit_code);
   add_retain(app, exit_code);
+  add_simulators(app, exit_code);
   add_status(app, exit_code);
   add_version(app, exit_code);
   try {

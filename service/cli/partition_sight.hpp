@@ -1,0 +1,16 @@
+// What the simulators and services of a partition say, heard by a program that has just joined.
+#pragma once
+
+#include <chrono>
+
+#include "service/cli/simulator_list.hpp"
+#include "service/dds/dds.hpp"
+
+namespace reident::cli {
+
+/// Listens until what is new has ended: no writer of versions or acknowledgements, no simulator and
+/// no champion appeared for a second; at most for `limit`. Each of those who live sends what it
+/// said last as soon as it is discovered. Throws dds::Error.
+PartitionSight look_into(const dds::Endpoint& endpoint, std::chrono::nanoseconds limit);
+
+}  // namespace reident::cli
