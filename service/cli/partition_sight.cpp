@@ -31,6 +31,7 @@ class Listener {
       simulators_[{said.simulator, said.spacecraft, said.equipment}] = std::move(said);
     });
     const auto note = [this](const ModelVersion& version) {
+      if (version.number < 1) return;
       champions_[{version.model.spacecraft, version.model.equipment}] = {
           version.number, version.decided, version.digest};
     };

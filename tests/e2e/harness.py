@@ -163,10 +163,12 @@ class EndToEnd(unittest.TestCase):
         self.replay_all(plant.write(self.folder / f"{name}.csv", plant.rows(**keywords)))
         return self.wait_idle()
 
-    def start_simulator(self, name, *options):
+    def start_simulator(self, name, *options, cache=None):
+        """By default with a folder of last good versions of its own."""
         return self.start("reident-simulator", "--spacecraft", "SAT", "--equipment", "PLANT",
-                          "--name", name, "--json", "--cache", self.folder / f"cache-{name}",
-                          *self.endpoint(), *options, name=name)
+                          "--name", name, "--json", "--cache",
+                          cache or self.folder / f"cache-{name}", *self.endpoint(), *options,
+                          name=name)
 
     def runs(self, simulator):
         """Versions that the simulator took up, in order."""

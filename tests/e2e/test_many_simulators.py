@@ -19,7 +19,8 @@ class ManySimulators(EndToEnd):
 
     def start_simulators(self, count):
         return [self.start("reident-simulator", "--spacecraft", "SAT", "--name", f"trainer-{i}",
-                           "--json", *self.endpoint(), name=f"trainer-{i}") for i in range(count)]
+                           "--json", "--cache", "", *self.endpoint(), name=f"trainer-{i}")
+                for i in range(count)]
 
     def adopted(self, simulator):
         lines = [json.loads(line) for line in simulator.out.read_text().splitlines() if line]
