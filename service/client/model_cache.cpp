@@ -97,9 +97,10 @@ std::string set_aside(const fs::path& file) {
   return error ? "it cannot be set aside (" + error.message() + ")" : "set aside as .damaged";
 }
 
-std::string about(const fs::path& file, const Unusable& unusable) {
+std::string about(const fs::path& file, const Unusable& unusable, const FolderLock& lock) {
   const std::string text = file.string() + " is not used: " + unusable.reason;
-  return unusable.kind == Unusable::Kind::damaged ? text + "; " + set_aside(file) : text;
+  if (unusable.kind != Unusable::Kind::damaged || lock.error() != 0) return text;
+  return text + "; " + set_aside(file);
 }
 
 bool is_as_new(const ModelVersion& there, const ModelVersion& version) {
@@ -133,17 +134,17 @@ std::vector<KeptVersion> ModelCache::load(const Report& report) {
   std::vector<KeptVersion> versions;
   std::error_code error;
   if (!fs::exists(folder_, error) && !error) return versions;
+  // Files change by renaming alone: they can be read without the lock, but not set aside.
   const FolderLock lock(folder_);
-  if (lock.error() != 0) {
-    report({{}, lock_fault(folder_, lock.error())});
-    return versions;
-  }
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
        entry.increment(error)) {
     if (entry->path().extension() == ".json") files.push_back(entry->path());
   }
-  if (error) report({{}, folder_.string() + " cannot be read: " + error.message()});
+  if (error)
+    report({{},
+            folder_.string() + " cannot be read: " + error.message() +
+                "; check the path and its permissions"});
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     auto read = read_kept_version(file, partition_);
@@ -156,7 +157,7 @@ std::vector<KeptVersion> ModelCache::load(const Report& report) {
       read = Unusable{Unusable::Kind::damaged,
                       "it is of " + model.spacecraft + "/" + model.equipment + ", not of its name"};
     }
-    report({{}, about(file, std::get<Unusable>(read))});
+    report({{}, about(file, std::get<Unusable>(read), lock)});
   }
   return versions;
 }
