@@ -1,6 +1,7 @@
-// older_program read|write DOMAIN PARTITION: a program that was compiled against older_model.idl.
-// `read` prints one line about the first version that it receives; `write` publishes one and stays
-// until it is ended.
+// older_program read|write|hear|acknowledge DOMAIN PARTITION: a program that was compiled against
+// older_model.idl. `read` prints one line about the first version that it receives, `hear` about
+// the first acknowledgement; `write` publishes a version, `acknowledge` says that it runs, and both
+// stay until they are ended.
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -21,7 +22,10 @@ dds_qos_t* state_qos() {
   return qos;
 }
 
-int read(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition) {
+/// Calls `print` with the first sample of the topic.
+template <class Print>
+int take_one(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition,
+             const Print& print) {
   const dds_entity_t subscriber = dds_create_subscriber(participant, partition, nullptr);
   const dds_entity_t reader = dds_create_reader(subscriber, topic, state_qos(), nullptr);
   const dds_entity_t wait_set = dds_create_waitset(participant);
@@ -30,17 +34,58 @@ int read(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partitio
   void* sample = nullptr;
   dds_sample_info_t info;
   if (dds_take(reader, &sample, &info, 1, 1) != 1 || !info.valid_data) return 4;
-  const auto* version = static_cast<const reident_ModelVersion*>(sample);
-  std::printf("%s/%s %ld %s %s %g %u\n", version->spacecraft, version->equipment,
-              static_cast<long>(version->number), version->digest, version->inputs._buffer[0].name,
-              version->A._buffer[0], version->fit_percent._length);
+  print(sample);
   dds_return_loan(reader, &sample, 1);
   return 0;
 }
 
-int write(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition) {
+int read(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition) {
+  return take_one(participant, topic, partition, [](const void* sample) {
+    const auto* version = static_cast<const reident_ModelVersion*>(sample);
+    std::printf("%s/%s %ld %s %s %g %u\n", version->spacecraft, version->equipment,
+                static_cast<long>(version->number), version->digest,
+                version->inputs._buffer[0].name, version->A._buffer[0],
+                version->fit_percent._length);
+  });
+}
+
+int hear(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition) {
+  return take_one(participant, topic, partition, [](const void* sample) {
+    const auto* said = static_cast<const reident_ModelAcknowledgement*>(sample);
+    std::printf("%s %s/%s %ld %d %g\n", said->simulator, said->spacecraft, said->equipment,
+                static_cast<long>(said->version), said->accepted ? 1 : 0,
+                said->running_mrse_percent);
+  });
+}
+
+/// Writes the sample and stays.
+int say(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition,
+        const void* sample) {
   const dds_entity_t publisher = dds_create_publisher(participant, partition, nullptr);
   const dds_entity_t writer = dds_create_writer(publisher, topic, state_qos(), nullptr);
+  if (dds_write(writer, sample) != DDS_RETCODE_OK) return 5;
+  dds_sleepfor(DDS_SECS(60));
+  return 0;
+}
+
+int acknowledge(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition) {
+  std::string simulator = "trainer";
+  std::string spacecraft = "CBERS4";
+  std::string equipment = "BDR";
+  std::string text = "ab";
+  const reident_ModelAcknowledgement said{simulator.data(),
+                                          spacecraft.data(),
+                                          equipment.data(),
+                                          4,
+                                          text.data(),
+                                          5,
+                                          true,
+                                          text.data(),
+                                          1.5};
+  return say(participant, topic, partition, &said);
+}
+
+int write(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition) {
   std::string spacecraft = "CBERS4";
   std::string equipment = "BDR";
   std::string name = "I_BDRIN1";
@@ -65,9 +110,7 @@ int write(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partiti
                          &version.output_offset, &version.mrse_percent, &version.fit_percent}) {
     *sequence = {1, 1, number.data(), false};
   }
-  if (dds_write(writer, &version) != DDS_RETCODE_OK) return 5;
-  dds_sleepfor(DDS_SECS(60));
-  return 0;
+  return say(participant, topic, partition, &version);
 }
 
 }  // namespace
@@ -76,11 +119,16 @@ int main(int argc, char** argv) {
   if (argc != 4) return 2;
   const auto domain = static_cast<dds_domainid_t>(std::atoi(argv[2]));
   const dds_entity_t participant = dds_create_participant(domain, nullptr, nullptr);
-  const dds_entity_t topic = dds_create_topic(participant, &reident_ModelVersion_desc,
-                                              "reident/ModelVersion", nullptr, nullptr);
+  const bool about_versions =
+      std::strcmp(argv[1], "read") == 0 || std::strcmp(argv[1], "write") == 0;
+  const dds_entity_t topic = dds_create_topic(
+      participant, about_versions ? &reident_ModelVersion_desc : &reident_ModelAcknowledgement_desc,
+      about_versions ? "reident/ModelVersion" : "reident/ModelAcknowledgement", nullptr, nullptr);
   if (topic < 0) return 1;
   dds_qos_t* partition = dds_create_qos();
   dds_qset_partition1(partition, argv[3]);
-  return std::strcmp(argv[1], "read") == 0 ? read(participant, topic, partition)
-                                           : write(participant, topic, partition);
+  if (std::strcmp(argv[1], "read") == 0) return read(participant, topic, partition);
+  if (std::strcmp(argv[1], "write") == 0) return write(participant, topic, partition);
+  if (std::strcmp(argv[1], "hear") == 0) return hear(participant, topic, partition);
+  return acknowledge(participant, topic, partition);
 }

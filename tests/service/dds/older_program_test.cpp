@@ -19,6 +19,16 @@ class OlderProgram : public testing::Test {
   std::vector<std::string> command(const std::string& what) const {
     return {OLDER_PROGRAM, what, std::to_string(endpoint_.domain), endpoint_.partition};
   }
+  /// The first line that it prints.
+  std::string said(const std::string& what) const {
+    std::string line;
+    for (const std::string& word : command(what)) line += word + " ";
+    FILE* program = popen(line.c_str(), "r");
+    if (program == nullptr) return "cannot be started";
+    std::array<char, 400> text{};
+    const bool has_line = fgets(text.data(), text.size(), program) != nullptr;
+    return pclose(program) == 0 && has_line ? text.data() : "no line";
+  }
   dds::Endpoint endpoint_ = own_endpoint();
 };
 
@@ -26,15 +36,32 @@ TEST_F(OlderProgram, reads_a_version_that_has_fields_it_does_not_know) {
   dds::Participant participant(endpoint_);
   dds::Writer<ModelVersion> writer(participant);
   writer.write(example_version(3));
-  std::string line;
-  for (const std::string& word : command("read")) line += word + " ";
-  FILE* program = popen(line.c_str(), "r");
-  ASSERT_NE(program, nullptr);
-  std::array<char, 400> said{};
-  ASSERT_NE(fgets(said.data(), said.size(), program), nullptr);
-  EXPECT_EQ(pclose(program), 0);
-  EXPECT_EQ(std::string(said.data()),
-            "CBERS4/BDR 3 " + example_version(3).digest + " I_BDRIN1 0.9 1\n");
+  EXPECT_EQ(said("read"), "CBERS4/BDR 3 " + example_version(3).digest + " I_BDRIN1 0.9 1\n");
+}
+
+TEST_F(OlderProgram, hears_which_version_a_newer_simulator_runs) {
+  dds::Participant participant(endpoint_);
+  dds::Writer<ModelAcknowledgement> writer(participant);
+  ModelAcknowledgement message{"trainer", "CBERS4", "BDR", 3, "ab", true, "", {}, "host", 7, "1.0"};
+  message.running.version = 3;
+  message.running.mrse_percent = 2.5;
+  writer.write(message);
+  EXPECT_EQ(said("hear"), "trainer CBERS4/BDR 3 1 2.5\n");
+}
+
+TEST_F(OlderProgram, that_runs_a_version_is_known_to_run_it) {
+  dds::Participant participant(endpoint_);
+  dds::Reader<ModelAcknowledgement> reader(participant);
+  const Child child(command("acknowledge"));
+  const auto messages = take_all(reader, 1);
+  ASSERT_EQ(messages.size(), 1U) << reader.last_malformed();
+  RunningModel running;
+  running.version = 4;
+  running.since = 5;
+  running.mrse_percent = 1.5;
+  EXPECT_EQ(messages[0].running, running);
+  EXPECT_EQ(messages[0].host, "");
+  EXPECT_EQ(messages[0].program_version, "");
 }
 
 TEST_F(OlderProgram, is_read_with_what_it_does_not_say_left_empty) {
