@@ -134,7 +134,7 @@ void add_export_model(CLI::App& app, int& exit_code) {
   command->add_flag("--force", arguments->force, "replace files that exist");
   add_database_options(*command, arguments->database);
   command->footer(
-      "Several at once are written together or not at all.\n"
+      "Of several no file takes its name before all of them are written.\n"
       "Example:\n"
       "  reident export-model CBERS-4/BDR@3 --fmu bdr.fmu --mat bdr.mat --config reident.toml");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

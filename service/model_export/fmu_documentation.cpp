@@ -15,6 +15,12 @@ std::string rows_of(const std::vector<FmuVariable>& variables, std::string_view 
   return text;
 }
 
+constexpr const char* about_expressions =
+    "<p>A parameter that stands in expressions alone has no unit here and starts at 1: a version "
+    "keeps "
+    "the operating point of inputs, not of what they are computed from. Set it before the first "
+    "step.</p>\n";
+
 constexpr const char* behaviour = R"(<h2>What a step does</h2>
 <p>The model is sampled: x[k+1] = A x[k] + B (u[k] - u0), y[k] = C x[k] + D (u[k] - u0) + y0, with a
 tick every {0} s, the first at the start time, where x = 0: the operating point. A step over [t, t + h)
@@ -54,12 +60,8 @@ std::string fmu_documentation(const ExportedVersion& exported, const FmuVariable
              "<table>\n<tr><th>variable</th><th></th><th>unit</th><th></th></tr>\n",
              name, xml_text(model.method), xml_text(exported.status), time_text(version.decided),
              xml_text(version.decided_by), version.digest) +
-         rows_of(variables.inputs, "input") + rows_of(variables.outputs, "output") +
-         "</table>\n<p>A parameter that stands in expressions alone has no unit here and starts at "
-         "1: "
-         "a version keeps the operating point of inputs, not of what they are computed from. Set "
-         "it "
-         "before the first step.</p>\n" +
+         rows_of(variables.inputs, "input") + rows_of(variables.outputs, "output") + "</table>\n" +
+         (has_expressions(model.inputs) ? about_expressions : "") +
          fmt::format(behaviour, model.dynamics.period_s, model_identifier(version)) +
          "</body>\n</html>\n";
 }

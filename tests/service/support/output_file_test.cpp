@@ -1,0 +1,67 @@
+#include "service/support/output_file.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+
+namespace reident {
+namespace {
+
+namespace fs = std::filesystem;
+using Existing = OutputFile::Existing;
+
+class OutputFiles : public testing::Test {
+ protected:
+  OutputFiles() {
+    std::string name = (fs::temp_directory_path() / "reident-output-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~OutputFiles() override { fs::remove_all(folder_); }
+
+  fs::path path() const { return folder_ / "a.txt"; }
+  void make(const std::string& content) const { std::ofstream(path()) << content; }
+  std::string content() const {
+    std::stringstream text;
+    text << std::ifstream(path()).rdbuf();
+    return text.str();
+  }
+  std::ptrdiff_t files() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(OutputFiles, have_their_name_when_all_of_them_is_there) {
+  for (const Existing existing : {Existing::kept, Existing::replaced}) {
+    OutputFile file(path(), existing);
+    file.write("new");
+    EXPECT_NE(content(), "new");
+    file.finish();
+    EXPECT_EQ(content(), "new");
+    make("old");
+  }
+}
+
+TEST_F(OutputFiles, leave_alone_what_came_meanwhile_where_they_are_to_keep_it) {
+  {
+    OutputFile file(path(), Existing::kept);
+    file.write("new");
+    make("old");
+    try {
+      file.finish();
+      FAIL() << "the file was replaced";
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("a.txt cannot be written: File exists"));
+    }
+  }
+  EXPECT_EQ(content(), "old");
+  EXPECT_EQ(files(), 1);
+}
+
+}  // namespace
+}  // namespace reident
