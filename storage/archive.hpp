@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "storage/database.hpp"
+#include "storage/sample_source.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident::storage {
@@ -45,14 +46,6 @@ struct ArchiveOptions {
   std::size_t recent_samples = 1'000'000;  // that wait for a place in chunks; at most twice as many
   std::size_t recent_batches = 256;        // appends that wait
   std::size_t step_samples = 65536;        // that a transaction moves at least: a few milliseconds
-};
-
-/// Samples of one series, ascending in time.
-struct Series {
-  std::vector<Time> time;
-  std::vector<double> value;
-  std::vector<Quality> quality;
-  std::vector<std::int64_t> source;  // ids of the sources; where they were asked for
 };
 
 /// Counts of one source since the archive was made. Of its samples,
@@ -94,7 +87,7 @@ struct LateRange {
   TimeRange range;
 };
 
-class Archive {
+class Archive : public SampleSource {
  public:
   /// The database must outlive the archive. The options are the writer's: those of the archive that
   /// appends first hold for the database.
@@ -125,13 +118,11 @@ class Archive {
   std::vector<std::string> spacecraft() const;
   /// Those described, ascending by id.
   std::vector<ParameterDescriptor> parameters(const std::string& spacecraft) const;
-  /// Of several with one name the lowest id.
   std::optional<ParameterDescriptor> parameter(const std::string& spacecraft,
-                                               const std::string& name) const;
+                                               const std::string& name) const override;
 
-  /// Samples with a generation time in `range`.
   Series read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
-              TimeRange range) const;
+              TimeRange range) const override;
   /// The same, with the ids of the sources.
   Series read_with_sources(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
                            TimeRange range) const;

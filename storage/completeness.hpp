@@ -24,6 +24,7 @@ class TimeBins {
   TimeBins(TimeRange range, Time length);
   std::size_t count() const { return count_; }
   TimeRange range() const { return range_; }
+  Time length() const { return length_; }
   TimeRange at(std::size_t bin) const;
   /// Of a time in the range.
   std::size_t of(Time time) const;

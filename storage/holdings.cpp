@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "storage/connection.hpp"
+#include "storage/sequence.hpp"
 
 namespace reident::storage {
 
@@ -24,6 +25,32 @@ std::vector<SeriesInfo> all_series(const Database& database) {
                    .first = row.integer(6),
                    .last = row.integer(7)});
   return all;
+}
+
+std::optional<std::int64_t> series_id(const Database& database, const std::string& spacecraft,
+                                      Origin origin, std::uint32_t parameter) {
+  return database.impl().reader().find(spacecraft, origin, parameter);
+}
+
+void each_sequence_gap(const Database& database, const std::optional<GapKey>& beyond,
+                       const std::function<bool(const GapKey&, SequenceGap&&)>& visit) {
+  const GapKey after = beyond.value_or(GapKey{});  // ids of sources begin at 1
+  sqlite::Query row = database.impl().connection->query(
+      "SELECT source, run, first, last, time_before, time_after, spacecraft, name, origin "
+      "FROM sequence_gap JOIN source ON source.id = sequence_gap.source "
+      "WHERE (source, run, first) > (?, ?, ?) ORDER BY source, run, first",
+      after.source, after.run, after.first);
+  while (row.step()) {
+    const GapKey key{row.integer(0), row.integer(1), row.integer(2)};
+    if (!visit(key, {.spacecraft = row.text(6),
+                     .source = row.text(7),
+                     .origin = row.integer<Origin>(8),
+                     .first = from_column(key.first),
+                     .last = from_column(row.integer(3)),
+                     .before = row.integer(4),
+                     .after = row.integer(5)}))
+      return;
+  }
 }
 
 std::map<std::int64_t, std::string> source_names(const Database& database) {

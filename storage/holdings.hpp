@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,20 @@ struct SeriesInfo {
 
 /// Those with samples, by spacecraft, origin and name.
 std::vector<SeriesInfo> all_series(const Database& database);
+
+/// Id of a series; absent where nothing of it was archived.
+std::optional<std::int64_t> series_id(const Database& database, const std::string& spacecraft,
+                                      Origin origin, std::uint32_t parameter);
+
+/// Which of a source's gaps: ascending.
+struct GapKey {
+  std::int64_t source = 0;
+  std::int64_t run = 0;
+  std::int64_t first = 0;
+};
+/// Calls `visit` with one gap at a time that lies beyond `beyond`, until it answers false.
+void each_sequence_gap(const Database& database, const std::optional<GapKey>& beyond,
+                       const std::function<bool(const GapKey&, SequenceGap&&)>& visit);
 
 /// Names of the sources by their ids.
 std::map<std::int64_t, std::string> source_names(const Database& database);

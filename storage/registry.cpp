@@ -1,33 +1,16 @@
 #include "storage/registry.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "storage/connection.hpp"
+#include "storage/registry_rows.hpp"
 
 namespace reident::storage {
 namespace {
 
 sqlite::Connection& connection(Database& database) {
   return *database.impl().connection;
-}
-
-constexpr std::array kinds{
-    std::pair{DecisionKind::approve, std::string_view("approve")},
-    std::pair{DecisionKind::reject, std::string_view("reject")},
-    std::pair{DecisionKind::wait, std::string_view("wait")},
-    std::pair{DecisionKind::roll_back, std::string_view("roll_back")},
-    std::pair{DecisionKind::withdraw, std::string_view("withdraw")},
-};
-
-DecisionKind decision_kind(std::string_view text) {
-  const auto found = std::find_if(kinds.begin(), kinds.end(),
-                                  [&](const auto& kind) { return kind.second == text; });
-  if (found == kinds.end())
-    throw Error(Error::Kind::corrupt, "a decision has the unknown kind '" + std::string(text) +
-                                          "': restore the database from a backup");
-  return found->first;
 }
 
 std::int64_t add_attempt(sqlite::Connection& connection, const NewAttempt& attempt) {
@@ -62,69 +45,6 @@ std::int64_t next_number(sqlite::Connection& connection, const NewAttempt& attem
   return row.integer(0);
 }
 
-std::string version_sql(std::string_view rest) {
-  return "SELECT spacecraft, equipment, version, attempt, window_begin, window_end, created, "
-         "model_json, digest, status, parent, provenance_json, samples_digest FROM model_version " +
-         std::string(rest);
-}
-
-Version read_version(const sqlite::Query& row) {
-  return {.spacecraft = row.text(0),
-          .equipment = row.text(1),
-          .number = row.integer(2),
-          .attempt = row.integer(3),
-          .window = {row.integer(4), row.integer(5)},
-          .created = row.integer(6),
-          .model_json = row.text(7),
-          .digest = row.text(8),
-          .status = row.text(9),
-          .parent = row.is_null(10) ? std::nullopt : std::optional(row.integer(10)),
-          .provenance_json = row.text(11),
-          .samples_digest = row.text(12)};
-}
-
-std::string decision_sql(std::string_view rest) {
-  return "SELECT id, spacecraft, equipment, version, kind, actor, reason, time FROM decision " +
-         std::string(rest);
-}
-
-Decision read_decision(const sqlite::Query& row) {
-  Decision decision;
-  decision.id = row.integer(0);
-  decision.spacecraft = row.text(1);
-  decision.equipment = row.text(2);
-  decision.version = row.integer(3);
-  decision.kind = decision_kind(row.text(4));
-  decision.actor = row.text(5);
-  decision.reason = row.text(6);
-  decision.time = row.integer(7);
-  return decision;
-}
-
-std::string attempt_sql(std::string_view rest) {
-  return "SELECT attempt.id, attempt.spacecraft, attempt.equipment, window_begin, window_end, "
-         "cause, time, outcome, reason, evidence_json, configuration_digest, program_version, "
-         "number FROM attempt LEFT JOIN version ON version.attempt = attempt.id " +
-         std::string(rest);
-}
-
-Attempt read_attempt(const sqlite::Query& row) {
-  Attempt attempt;
-  attempt.id = row.integer(0);
-  attempt.spacecraft = row.text(1);
-  attempt.equipment = row.text(2);
-  attempt.window = {row.integer(3), row.integer(4)};
-  attempt.trigger = row.text(5);
-  attempt.time = row.integer(6);
-  attempt.outcome = row.text(7);
-  attempt.reason = row.text(8);
-  attempt.evidence_json = row.text(9);
-  attempt.configuration_digest = row.text(10);
-  attempt.program_version = row.text(11);
-  if (!row.is_null(12)) attempt.version = row.integer(12);
-  return attempt;
-}
-
 bool follows(DecisionKind kind, std::string_view status) {
   switch (kind) {
     case DecisionKind::approve:
@@ -141,10 +61,6 @@ bool follows(DecisionKind kind, std::string_view status) {
 }
 
 }  // namespace
-
-std::string_view name(DecisionKind kind) {
-  return kinds[static_cast<std::size_t>(kind)].second;
-}
 
 Registry::Registry(Database& database) : database_(database) {}
 

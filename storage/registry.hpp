@@ -49,6 +49,8 @@ struct NewVersion {
 
 enum class DecisionKind { approve, reject, wait, roll_back, withdraw };
 std::string_view name(DecisionKind kind);
+/// Absent where no kind has that name.
+std::optional<DecisionKind> decision_kind(std::string_view name);
 
 struct NewDecision {
   DecisionKind kind = DecisionKind::reject;
@@ -139,6 +141,18 @@ struct HistoryFilter {
   std::optional<std::size_t> last;  // the newest so many
 };
 
+/// Which rows are read one after the other, by whoever may not hold all of them. Empty fields
+/// select everything.
+struct RowFilter {
+  std::string spacecraft;
+  std::string equipment;
+  std::optional<TimeRange>
+      range;  // attempts and versions whose window overlaps it, decisions in it
+  std::optional<std::int64_t> version;
+  bool newest_first = false;
+  std::optional<std::int64_t> beyond;  // only rows after this id, in the order that is asked for
+};
+
 class Registry {
  public:
   /// The database must outlive the registry.
@@ -201,6 +215,11 @@ class Registry {
   std::optional<Attempt> attempt(std::int64_t id) const;
   /// Ascending by id.
   std::vector<Attempt> attempts(const HistoryFilter& filter = {}) const;
+  /// Calls `visit` with one row at a time, by id, until it answers false. The id of a version is
+  /// that of its attempt.
+  void each_attempt(const RowFilter& filter, const std::function<bool(Attempt&&)>& visit) const;
+  void each_version(const RowFilter& filter, const std::function<bool(Version&&)>& visit) const;
+  void each_decision(const RowFilter& filter, const std::function<bool(Decision&&)>& visit) const;
   /// End of the latest window that was tried for an equipment.
   std::optional<Time> last_window_end(const std::string& spacecraft,
                                       const std::string& equipment) const;
