@@ -161,4 +161,37 @@ struct Codec<CommandReply> {
   static Fault decode(const Wire& wire, const ReaderOptions& options, CommandReply& reply);
 };
 
+template <>
+struct Codec<HistoryRequest> {
+  using Wire = reident_HistoryRequest;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_HistoryRequest_desc;
+  static constexpr const Profile& profile = history_request;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const HistoryRequest& request);
+
+   private:
+    Wire wire_{};
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, HistoryRequest& request);
+};
+
+template <>
+struct Codec<HistoryReply> {
+  using Wire = reident_HistoryReply;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_HistoryReply_desc;
+  static constexpr const Profile& profile = history_reply;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const HistoryReply& reply);
+
+   private:
+    Wire wire_{};
+    std::vector<char*> rows_;
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, HistoryReply& reply);
+};
+
 }  // namespace reident::dds

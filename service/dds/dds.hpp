@@ -1,8 +1,9 @@
 // Typed, owning access to the topics of idl/README.md. No DDS type shows here.
 //
 // M is one of storage::TelemetryFrame, storage::ParameterDescriptor, ModelVersion,
-// IdentificationReport, ModelAcknowledgement, ServiceStatus, CommandRequest and CommandReply; the
-// topic, its key and its QoS follow from it (service/dds/qos.hpp has every profile).
+// IdentificationReport, ModelAcknowledgement, ServiceStatus, CommandRequest, CommandReply,
+// HistoryRequest and HistoryReply; the topic, its key and its QoS follow from it
+// (service/dds/qos.hpp has every profile).
 #pragma once
 
 #include <chrono>

@@ -40,6 +40,8 @@ inline constexpr Profile model_acknowledgement{"reident/ModelAcknowledgement", 1
 inline constexpr Profile service_status{"reident/ServiceStatus", 1, 1, true};
 inline constexpr Profile command_request{"reident/Command", 1, 0, true};
 inline constexpr Profile command_reply{"reident/CommandReply", 1, 0, true};
+inline constexpr Profile history_request{"reident/HistoryRequest", 1, 0, false};
+inline constexpr Profile history_reply{"reident/HistoryReply", 1, 0, false};
 
 /// The middleware's blocking time of one attempt to write: how soon a stop request is seen.
 inline constexpr std::chrono::milliseconds write_slice{100};

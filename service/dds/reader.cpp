@@ -74,5 +74,7 @@ template class Reader<ModelAcknowledgement>;
 template class Reader<ServiceStatus>;
 template class Reader<CommandRequest>;
 template class Reader<CommandReply>;
+template class Reader<HistoryRequest>;
+template class Reader<HistoryReply>;
 
 }  // namespace reident::dds

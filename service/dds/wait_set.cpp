@@ -52,5 +52,7 @@ template void WaitSet::attach(Reader<ModelAcknowledgement>& reader);
 template void WaitSet::attach(Reader<ServiceStatus>& reader);
 template void WaitSet::attach(Reader<CommandRequest>& reader);
 template void WaitSet::attach(Reader<CommandReply>& reader);
+template void WaitSet::attach(Reader<HistoryRequest>& reader);
+template void WaitSet::attach(Reader<HistoryReply>& reader);
 
 }  // namespace reident::dds

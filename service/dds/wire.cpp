@@ -51,16 +51,16 @@ bool is_utf8(const std::string& text) {
   return true;
 }
 
-std::string TextReader::text(const char* text, const char* field) {
+std::string TextReader::text(const char* text, const char* field, std::size_t max_bytes) {
   if (text == nullptr) {
     if (!fault_) fault_ = std::string(field) + " is null";
     return {};
   }
-  const std::size_t size = strnlen(text, max_text_bytes + 1);
-  std::string copy(text, std::min(size, max_text_bytes));
+  const std::size_t size = strnlen(text, max_bytes + 1);
+  std::string copy(text, std::min(size, max_bytes));
   if (fault_) return copy;
-  if (size > max_text_bytes) {
-    fault_ = std::string(field) + " is longer than " + std::to_string(max_text_bytes) + " bytes";
+  if (size > max_bytes) {
+    fault_ = std::string(field) + " is longer than " + std::to_string(max_bytes) + " bytes";
   } else if (!is_utf8(copy)) {
     fault_ = std::string(field) + " is not UTF-8";
   }

@@ -35,8 +35,8 @@ class TextReader {
  public:
   /// 1 to max_name_bytes bytes of UTF-8 without control characters.
   std::string name(const char* text, const char* field);
-  /// 0 to max_text_bytes bytes of UTF-8.
-  std::string text(const char* text, const char* field);
+  /// 0 to max_bytes bytes of UTF-8.
+  std::string text(const char* text, const char* field, std::size_t max_bytes = max_text_bytes);
   const Fault& fault() const { return fault_; }
 
  private:

@@ -88,5 +88,7 @@ template class Writer<ModelAcknowledgement>;
 template class Writer<ServiceStatus>;
 template class Writer<CommandRequest>;
 template class Writer<CommandReply>;
+template class Writer<HistoryRequest>;
+template class Writer<HistoryReply>;
 
 }  // namespace reident::dds

@@ -72,6 +72,48 @@ struct CommandReply {
   storage::CommandOutcome outcome;
 };
 
+/// A question to the archive and the registry; idl/README.md, "History", says what each field
+/// selects for which subject.
+struct HistoryQuery {
+  std::string subject;
+  std::string spacecraft;  // empty selects every one
+  std::string equipment;
+  storage::TimeRange range;  // empty selects all of time
+  std::int64_t version = 0;  // 0 selects every one
+  std::uint32_t page_size = 1000;
+  std::string cursor;  // empty for the first page
+  bool newest_first = false;
+  storage::Origin origin = storage::Origin::real;
+  std::uint32_t parameter = 0;
+  storage::Time step = 0;
+  storage::Time until = 0;
+};
+
+/// Rows are JSON objects; the cursor is empty on the last page.
+struct HistoryPage {
+  std::vector<std::string> rows;
+  std::string next_cursor;
+};
+
+/// Sent again until its reply comes.
+struct HistoryRequest {
+  std::uint16_t slot = 0;  // the key; a program keeps the one that it chose
+  std::string requester;   // unique name of the asking program
+  std::uint64_t request = 0;
+  std::string service;  // instance name of the one that is asked; empty: every one
+  HistoryQuery query;
+};
+
+struct HistoryReply {
+  std::uint16_t slot = 0;
+  std::string requester;
+  std::uint64_t request = 0;
+  std::string service;  // instance name of the one that answers
+  bool ok = false;
+  std::string reason;  // where it is not ok: what is wrong and what would mend it
+  HistoryPage page;
+};
+
 /// Heartbeat of a service.
 struct ServiceStatus {
   std::string service;  // instance name
