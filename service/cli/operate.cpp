@@ -14,6 +14,7 @@
 #include "service/cli/command_sender.hpp"
 #include "service/cli/config_choice.hpp"
 #include "service/daemon/commands.hpp"
+#include "service/support/program_identity.hpp"
 #include "service/support/utc_clock.hpp"
 
 namespace reident::cli {
@@ -56,13 +57,6 @@ std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
   target.endpoint.domain = options.domain.value_or(target.endpoint.domain);
   target.endpoint.partition = options.partition.value_or(target.endpoint.partition);
   return target;
-}
-
-/// Like no other's of any process on any machine.
-std::string requester_name() {
-  std::array<char, 256> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
-  return fmt::format("reident:{:.100}:{}:{}", host.data(), ::getpid(), utc_now());
 }
 
 struct Answer {
@@ -167,10 +161,14 @@ int operate(const OperatorOptions& options, const OperatorOrder& order) {
   const auto found = target_of(options);
   if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
   const Target& target = std::get<Target>(found);
-  Command command{requester_name(), 1,
-                  order.action,     order.spacecraft,
-                  order.equipment,  order.version,
-                  options.actor,    options.reason};
+  Command command{unique_program_name("reident"),
+                  1,
+                  order.action,
+                  order.spacecraft,
+                  order.equipment,
+                  order.version,
+                  options.actor,
+                  options.reason};
   name_the_version(target, command);
   std::string why;
   const auto asked = ask(target, options, command, why);

@@ -1,0 +1,33 @@
+// One page while it is filled: bounded in rows and in bytes.
+#pragma once
+
+#include <optional>
+
+#include "service/history/cursor.hpp"
+
+namespace reident::history {
+
+/// Bytes of rows in a page. A row that is larger alone is a page alone.
+inline constexpr std::size_t page_bytes = std::size_t{256} << 10;
+
+class PageMaker {
+ public:
+  /// Throws std::invalid_argument where the query's cursor is not one of its own.
+  explicit PageMaker(const HistoryQuery& query);
+
+  /// The key of the last row before this page.
+  const std::optional<Json>& beyond() const { return beyond_; }
+  /// Adds a row, by whose key the next page would go on; false where the page is full without it.
+  bool add(const Json& row, const Json& key);
+  HistoryPage page();
+
+ private:
+  const HistoryQuery& query_;
+  std::optional<Json> beyond_;
+  HistoryPage page_;
+  std::size_t bytes_ = 0;
+  Json last_key_;
+  bool is_cut_ = false;
+};
+
+}  // namespace reident::history

@@ -1,0 +1,43 @@
+// Questions to a running service over DDS, a page at a time.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "service/dds/dds.hpp"
+#include "service/history/sources.hpp"
+
+namespace reident::history {
+
+/// Asks again and again until the answer comes: a reply can be lost to a reader that its writer has
+/// not discovered yet, and a service that is asked twice answers twice the same. Of several
+/// services the one that answered first is asked on. One thread at a time.
+class RemoteHistory {
+ public:
+  /// Asks the service of this instance name, or any. The participant must outlive it. Throws
+  /// dds::Error.
+  explicit RemoteHistory(dds::Participant& participant, std::string service = "");
+
+  struct Failure {
+    Error::Kind kind = Error::Kind::no_answer;
+    std::string message;
+  };
+  /// idl/README.md, "History", has the questions and their rows. The page's next_cursor goes into
+  /// the next question.
+  std::variant<HistoryPage, Failure> page(const HistoryQuery& query,
+                                          std::chrono::milliseconds timeout);
+
+ private:
+  void send();
+  std::optional<HistoryReply> take();
+
+  const std::string wanted_service_;
+  dds::Writer<HistoryRequest> requests_;
+  dds::Reader<HistoryReply> replies_;
+  dds::WaitSet ready_;
+  HistoryRequest request_;  // the last one
+};
+
+}  // namespace reident::history

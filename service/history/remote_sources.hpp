@@ -1,0 +1,117 @@
+// The sources of a running service. Each throws Error where no answer comes.
+#pragma once
+
+#include <functional>
+
+#include "service/history/remote_history.hpp"
+#include "service/history/rows.hpp"
+#include "service/history/sources.hpp"
+
+namespace reident::history {
+
+/// Every row of a question, page after page.
+class RemoteRows {
+ public:
+  /// Each page may take `timeout`.
+  RemoteRows(RemoteHistory& history, std::chrono::milliseconds timeout)
+      : history_(history), timeout_(timeout) {}
+
+  /// Throws Error. Asks for the rows beyond the query's cursor.
+  HistoryPage page(const HistoryQuery& query) const;
+
+  /// Calls `visit` with each row until it answers false. Throws Error, also for a row that is not
+  /// of its kind.
+  template <typename Row>
+  void each(HistoryQuery query, const std::function<bool(Row&&)>& visit) const {
+    do {
+      HistoryPage page = this->page(query);
+      for (const std::string& text : page.rows)
+        if (!visit(read<Row>(text))) return;
+      query.cursor = std::move(page.next_cursor);
+    } while (!query.cursor.empty());
+  }
+
+  template <typename Row>
+  std::vector<Row> all(const HistoryQuery& query) const {
+    std::vector<Row> rows;
+    each<Row>(query, [&rows](Row&& row) {
+      rows.push_back(std::move(row));
+      return true;
+    });
+    return rows;
+  }
+
+  template <typename Row>
+  std::optional<Row> first(const HistoryQuery& query) const {
+    std::optional<Row> found;
+    each<Row>(query, [&found](Row&& row) {
+      found = std::move(row);
+      return false;
+    });
+    return found;
+  }
+
+  template <typename Row>
+  static Row read(const std::string& text) {
+    Row row{};
+    try {
+      read_row(Json::parse(text), row);
+    } catch (const std::exception& mistake) {
+      refuse_row(mistake);
+    }
+    return row;
+  }
+
+ private:
+  [[noreturn]] static void refuse_row(const std::exception& mistake);
+
+  RemoteHistory& history_;
+  const std::chrono::milliseconds timeout_;
+};
+
+class RemoteHistorySource final : public HistorySource {
+ public:
+  explicit RemoteHistorySource(const RemoteRows& rows) : rows_(rows) {}
+
+  std::vector<storage::EquipmentName> equipment() const override;
+  std::optional<storage::Hold> hold(const storage::EquipmentName& equipment) const override;
+  std::vector<storage::Attempt> attempts(const storage::HistoryFilter& filter) const override;
+  std::optional<storage::Attempt> attempt(const storage::EquipmentName& equipment,
+                                          std::int64_t version) const override;
+  std::vector<storage::VersionSummary> summaries(
+      const storage::EquipmentName& equipment) const override;
+  std::optional<storage::Version> version(const storage::EquipmentName& equipment,
+                                          std::int64_t number) const override;
+  std::vector<storage::Decision> decisions(const storage::EquipmentName& equipment,
+                                           std::optional<std::int64_t> version) const override;
+  std::optional<storage::Decision> champion_decision(
+      const storage::EquipmentName& equipment, std::optional<storage::Time> time) const override;
+
+ private:
+  const RemoteRows rows_;
+};
+
+class RemoteTelemetrySource final : public TelemetrySource {
+ public:
+  explicit RemoteTelemetrySource(const RemoteRows& rows) : rows_(rows) {}
+
+  std::optional<storage::ParameterDescriptor> parameter(const std::string& spacecraft,
+                                                        const std::string& name) const override;
+  storage::Series read(const std::string& spacecraft, storage::Origin origin,
+                       std::uint32_t parameter, storage::TimeRange range) const override;
+  std::vector<storage::SeriesInfo> series() const override;
+  std::map<std::int64_t, std::string> source_names() const override;
+  /// A stretch is a page, whatever `chunks` says.
+  std::unique_ptr<Stretches> stretches(const storage::SeriesInfo& series, storage::TimeRange range,
+                                       std::size_t chunks,
+                                       storage::WantedColumns wanted) const override;
+  std::vector<storage::BinCounts> completeness(const storage::SeriesInfo& series,
+                                               const storage::TimeBins& bins,
+                                               storage::Time until) const override;
+  std::vector<storage::SequenceGap> sequence_gaps() const override;
+
+ private:
+  const RemoteRows rows_;
+};
+
+}  // namespace reident::history

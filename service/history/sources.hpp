@@ -1,0 +1,88 @@
+// The questions that programs ask the registry and the archive, wherever these are: in a file
+// (stored_sources.hpp), or behind a running service (remote_sources.hpp).
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "storage/completeness.hpp"
+#include "storage/holdings.hpp"
+#include "storage/registry.hpp"
+#include "storage/sample_source.hpp"
+
+namespace reident::history {
+
+/// No answer; says what is wrong and what would mend it. Files throw storage::Error.
+class Error : public std::runtime_error {
+ public:
+  enum class Kind {
+    refused,   // the service said why
+    no_answer  // none in time
+  };
+  Error(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
+};
+
+/// What was tried and decided. One thread at a time.
+class HistorySource {
+ public:
+  virtual ~HistorySource() = default;
+
+  /// Those with attempts, in alphabetical order.
+  virtual std::vector<storage::EquipmentName> equipment() const = 0;
+  virtual std::optional<storage::Hold> hold(const storage::EquipmentName& equipment) const = 0;
+  /// Ascending by id.
+  virtual std::vector<storage::Attempt> attempts(const storage::HistoryFilter& filter) const = 0;
+  /// The one that gave a version.
+  virtual std::optional<storage::Attempt> attempt(const storage::EquipmentName& equipment,
+                                                  std::int64_t version) const = 0;
+  /// Every version of an equipment, ascending.
+  virtual std::vector<storage::VersionSummary> summaries(
+      const storage::EquipmentName& equipment) const = 0;
+  virtual std::optional<storage::Version> version(const storage::EquipmentName& equipment,
+                                                  std::int64_t number) const = 0;
+  /// Ascending by id.
+  virtual std::vector<storage::Decision> decisions(
+      const storage::EquipmentName& equipment,
+      std::optional<std::int64_t> version = std::nullopt) const = 0;
+  /// The decision that made the champion now, or at `time`; absent where there is none.
+  virtual std::optional<storage::Decision> champion_decision(
+      const storage::EquipmentName& equipment,
+      std::optional<storage::Time> time = std::nullopt) const = 0;
+};
+
+/// One series read forward, see storage::SeriesStretches.
+class Stretches {
+ public:
+  virtual ~Stretches() = default;
+  /// The next samples in place of those that `stretch` held; false, and none, at the end.
+  virtual bool next(storage::SampleColumns& stretch) = 0;
+};
+
+/// What was archived. One thread at a time.
+class TelemetrySource : public storage::SampleSource {
+ public:
+  /// Those with samples, by spacecraft, origin and name.
+  virtual std::vector<storage::SeriesInfo> series() const = 0;
+  /// By their ids.
+  virtual std::map<std::int64_t, std::string> source_names() const = 0;
+  /// `chunks` bounds the memory, as for storage::SeriesStretches.
+  virtual std::unique_ptr<Stretches> stretches(const storage::SeriesInfo& series,
+                                               storage::TimeRange range, std::size_t chunks,
+                                               storage::WantedColumns wanted) const = 0;
+  /// As storage::completeness.
+  virtual std::vector<storage::BinCounts> completeness(const storage::SeriesInfo& series,
+                                                       const storage::TimeBins& bins,
+                                                       storage::Time until) const = 0;
+  /// By source.
+  virtual std::vector<storage::SequenceGap> sequence_gaps() const = 0;
+};
+
+}  // namespace reident::history

@@ -1,0 +1,12 @@
+// What a program calls itself towards others.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace reident {
+
+/// Begins with `program`; like no other's of any process on any machine, at any time.
+std::string unique_program_name(std::string_view program);
+
+}  // namespace reident
