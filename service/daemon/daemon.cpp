@@ -77,6 +77,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       participant_(dds::Endpoint{config.domain, config.partition}),
       publisher_(participant_),
       desk_(participant_, config.service_name),
+      history_desk_(participant_, config.service_name),
       ingest_(std::in_place, participant_, config, queue_) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
@@ -104,6 +105,7 @@ void Daemon::start() {
   for (unsigned i = 0; i < config_.workers; ++i)
     identification_threads_.push_back(spawn("identify", [this] { identify_windows(); }));
   desk_thread_ = spawn("command", [this] { answer_operators(); });
+  history_thread_ = spawn("history", [this] { answer_history(); });
   monitor_thread_ = spawn("monitor", [this] { watch_champions(); });
 }
 
@@ -226,6 +228,12 @@ void Daemon::answer_operators() {
   });
 }
 
+void Daemon::answer_history() {
+  storage::Database database(config_.database, storage::Database::Mode::read_only);
+  history_desk_.run(
+      [&database](const HistoryQuery& query) { return history::answer(database, query); });
+}
+
 void Daemon::watch_champions() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Archive archive(database);
@@ -294,6 +302,8 @@ bool Daemon::stop() {
   if (stopping_.exchange(true)) return true;
   desk_.stop();
   if (desk_thread_.joinable()) desk_thread_.join();
+  history_desk_.stop();
+  if (history_thread_.joinable()) history_thread_.join();
   feed_.stop();
   if (monitor_thread_.joinable()) monitor_thread_.join();
   ingest_->stop();

@@ -6,6 +6,7 @@
 //                                        ^               | attempt, version, decision
 //                                        '- writer <-----' then publisher
 //   command desk thread -> writer thread, then publisher, then the reply
+//   history desk thread (a read-only database) -> pages of rows to whoever asks
 //   monitor thread (a read-only database) -> window feed, when a champion drifts
 #pragma once
 
@@ -20,6 +21,7 @@
 #include "service/daemon/champion_monitor.hpp"
 #include "service/daemon/command_desk.hpp"
 #include "service/daemon/config.hpp"
+#include "service/daemon/history_desk.hpp"
 #include "service/daemon/ingest.hpp"
 #include "service/daemon/publisher.hpp"
 #include "service/daemon/refresh.hpp"
@@ -59,6 +61,7 @@ class Daemon {
   bool conclude(RefreshResult&& result, const storage::Standing& standing,
                 const storage::Registry& registry);
   void answer_operators();
+  void answer_history();
   void watch_champions();
 
   const Config& config_;
@@ -72,11 +75,12 @@ class Daemon {
   dds::Participant participant_;
   Publisher publisher_;
   CommandDesk desk_;
+  HistoryDesk history_desk_;
   std::optional<Ingest> ingest_;  // ends before the middleware hears again
   /// By equipment, which has one job at a time: the job's thread owns its entry.
   std::vector<KeptWindow> kept_;
 
-  std::thread ingest_thread_, writer_thread_, desk_thread_, monitor_thread_;
+  std::thread ingest_thread_, writer_thread_, desk_thread_, history_thread_, monitor_thread_;
   std::vector<std::thread> identification_threads_;
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> failed_ = false;

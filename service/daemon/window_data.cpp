@@ -52,7 +52,7 @@ std::vector<std::string> parameters_of(const EquipmentConfig& equipment) {
   return names;
 }
 
-std::variant<WindowData, UnknownParameter> describe_window(const storage::Archive& archive,
+std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleSource& archive,
                                                            const WindowRequest& request) {
   WindowData data;
   std::map<std::string, std::string> units;
@@ -88,7 +88,7 @@ double coverage_of(const identification::Record& record, storage::TimeRange wind
   return std::min(1.0, static_cast<double>(record.rows()) / ticks);
 }
 
-std::variant<WindowData, UnknownParameter> load_window(const storage::Archive& archive,
+std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window) {
   auto described = describe_window(archive, request);

@@ -8,7 +8,7 @@
 #include "identification/record.hpp"
 #include "service/daemon/config.hpp"
 #include "service/model/model_version.hpp"
-#include "storage/archive.hpp"
+#include "storage/sample_source.hpp"
 
 namespace reident {
 
@@ -45,7 +45,7 @@ struct UnknownParameter {
 };
 
 /// What the request's signals and parameters are, and no rows.
-std::variant<WindowData, UnknownParameter> describe_window(const storage::Archive& archive,
+std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleSource& archive,
                                                            const WindowRequest& request);
 
 /// Share of the window's ticks that are rows of the record.
@@ -54,7 +54,7 @@ double coverage_of(const identification::Record& record, storage::TimeRange wind
 
 /// Samples of quality good or out of limits count; suspect and invalid ones are holes, and so are
 /// ticks at which a derived input has no finite value.
-std::variant<WindowData, UnknownParameter> load_window(const storage::Archive& archive,
+std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window);
 

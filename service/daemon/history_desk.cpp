@@ -1,0 +1,83 @@
+#include "service/daemon/history_desk.hpp"
+
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include "service/support/log.hpp"
+
+namespace reident {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t take_at_most = 16;
+constexpr auto look_around = 500ms;  // for stop(); data and wake() end the wait earlier
+// For a console that takes nothing; whoever else waits asks again.
+constexpr auto patience = 300ms;
+
+}  // namespace
+
+HistoryDesk::HistoryDesk(dds::Participant& participant, std::string service)
+    : service_(std::move(service)),
+      requests_(participant),
+      replies_(participant),
+      ready_(participant) {
+  ready_.attach(requests_);
+}
+
+void HistoryDesk::reply(const HistoryRequest& request,
+                        std::variant<HistoryPage, history::BadQuestion> answer) {
+  HistoryReply reply;
+  reply.slot = request.slot;
+  reply.requester = request.requester;
+  reply.request = request.request;
+  reply.service = service_;
+  reply.ok = std::holds_alternative<HistoryPage>(answer);
+  if (reply.ok)
+    reply.page = std::get<HistoryPage>(std::move(answer));
+  else
+    reply.reason = std::move(std::get<history::BadQuestion>(answer).reason);
+  const auto deadline = Clock::now() + patience;
+  replies_.write(reply, [&] { return stopping_ || Clock::now() >= deadline; });
+}
+
+void HistoryDesk::run(const Answer& answer) {
+  using Asked = std::pair<HistoryRequest, std::string>;  // what is malformed, or nothing
+  while (!stopping_) {
+    ready_.wait(look_around);
+    std::vector<Asked> asked;
+    do {
+      asked.clear();
+      requests_.take(
+          take_at_most,
+          [&](HistoryRequest&& request) { asked.emplace_back(std::move(request), ""); },
+          [&](const HistoryRequest& request, const std::string& reason) {
+            asked.emplace_back(request, reason);
+          });
+      for (const auto& [request, malformed] : asked) {
+        if (stopping_) return;
+        if (!request.service.empty() && request.service != service_) continue;
+        if (!malformed.empty()) {
+          reply(request, history::BadQuestion{malformed + "; ask again without that"});
+          continue;
+        }
+        try {
+          reply(request, answer(request.query));
+        } catch (const storage::Error& error) {
+          log::warning("history", "a question could not be answered",
+                       {{"subject", request.query.subject}, {"error", error.what()}});
+          reply(request, history::BadQuestion{error.what()});
+        }
+      }
+    } while (!asked.empty() && !stopping_);
+  }
+}
+
+void HistoryDesk::stop() {
+  stopping_ = true;
+  ready_.wake();
+}
+
+}  // namespace reident

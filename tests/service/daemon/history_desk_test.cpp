@@ -1,0 +1,116 @@
+// Questions over DDS: heard, answered in pages, by a desk that no console holds up.
+#include "service/daemon/history_desk.hpp"
+
+#include <filesystem>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+#include "service/history/remote_history.hpp"
+#include "service/history/remote_sources.hpp"
+#include "service/history/stored_sources.hpp"
+#include "storage/registry.hpp"
+#include "tests/service/dds/dds_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+using history::RemoteHistory;
+using ::testing::HasSubstr;
+
+/// A desk whose thread runs on a database, and a console beside it.
+class HistoryDesk : public testing::Test {
+ protected:
+  const std::filesystem::path folder_ = [] {
+    std::string name = (std::filesystem::temp_directory_path() / "reident-desk-XXXXXX").string();
+    return std::filesystem::path(mkdtemp(name.data()));
+  }();
+  storage::Database database_{folder_ / "reident.db", storage::Database::Mode::read_write};
+  storage::Registry registry_{database_};
+  dds::Participant service_{own_endpoint()};
+  dds::Participant console_{own_endpoint()};
+  reident::HistoryDesk desk_{service_, "first"};
+  std::thread thread_;
+
+  void run() {
+    thread_ = std::thread([this] {
+      storage::Database database(folder_ / "reident.db", storage::Database::Mode::read_only);
+      desk_.run([&](const HistoryQuery& query) { return history::answer(database, query); });
+    });
+  }
+  ~HistoryDesk() override {
+    desk_.stop();
+    if (thread_.joinable()) thread_.join();
+    std::filesystem::remove_all(folder_);
+  }
+
+  void add_attempts(int count, const std::string& evidence = "{}") {
+    for (int i = 0; i < count; ++i) {
+      storage::NewAttempt attempt;
+      attempt.spacecraft = "SAT";
+      attempt.equipment = "PLANT";
+      attempt.window = {i, i + 10};
+      attempt.evidence_json = evidence;
+      registry_.record(attempt);
+    }
+  }
+  static HistoryQuery about(const std::string& subject) {
+    HistoryQuery query;
+    query.subject = subject;
+    return query;
+  }
+  static std::string failure(const std::variant<HistoryPage, RemoteHistory::Failure>& answer) {
+    const auto* failed = std::get_if<RemoteHistory::Failure>(&answer);
+    return failed ? failed->message : "answered";
+  }
+};
+
+TEST_F(HistoryDesk, gives_every_row_through_as_many_pages_as_it_takes) {
+  add_attempts(100, "{\"why\":\"" + std::string(10'000, 'x') + "\"}");
+  run();
+  RemoteHistory remote(console_, "first");
+  const history::RemoteHistorySource source(history::RemoteRows(remote, 10s));
+  const auto attempts = source.attempts({});
+  const auto stored = history::StoredHistory(database_).attempts({});
+  ASSERT_EQ(attempts.size(), stored.size());
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    EXPECT_EQ(attempts[i].id, stored[i].id);
+    EXPECT_EQ(attempts[i].evidence_json, stored[i].evidence_json);
+  }
+  storage::HistoryFilter newest;
+  newest.last = 3;
+  const auto last = source.attempts(newest);
+  ASSERT_EQ(last.size(), 3U);
+  EXPECT_EQ(last.front().id, 98);
+  EXPECT_EQ(last.back().id, 100);
+}
+
+TEST_F(HistoryDesk, says_what_is_wrong_with_a_question_and_hears_the_next) {
+  add_attempts(1);
+  run();
+  RemoteHistory remote(console_);
+  EXPECT_THAT(failure(remote.page(about("weather"), 10s)), HasSubstr("there is no subject"));
+  HistoryQuery damaged = about("attempts");
+  damaged.spacecraft = "\xff";
+  EXPECT_THAT(failure(remote.page(damaged, 10s)), HasSubstr("spacecraft is not UTF-8"));
+  damaged = about("attempts");
+  damaged.cursor = "damaged";
+  EXPECT_THAT(failure(remote.page(damaged, 10s)), HasSubstr("begin again"));
+  EXPECT_EQ(failure(remote.page(about("attempts"), 10s)), "answered");
+}
+
+TEST_F(HistoryDesk, leaves_questions_to_another_service_alone) {
+  add_attempts(1);
+  run();
+  RemoteHistory other(console_, "second");
+  EXPECT_EQ(failure(other.page(about("attempts"), 300ms)),
+            "no service second answered within 0.3 s");
+}
+
+TEST_F(HistoryDesk, without_a_service_the_console_is_told_in_time) {
+  RemoteHistory remote(console_);
+  EXPECT_THAT(failure(remote.page(about("attempts"), 200ms)), HasSubstr("within 0.2 s"));
+}
+
+}  // namespace
+}  // namespace reident::test
