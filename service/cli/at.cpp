@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
@@ -11,13 +12,13 @@
 namespace reident::cli {
 namespace {
 
+using history::HistorySource;
 using nlohmann::ordered_json;
 using storage::Decision;
 using storage::EquipmentName;
-using storage::Registry;
 
 struct Arguments {
-  DatabaseOptions database;
+  SourceOptions source;
   std::string time;
   std::string subject;
   bool json = false;
@@ -26,7 +27,7 @@ struct Arguments {
 /// An equipment and the decision that made its champion; none where it had no champion.
 using Reign = std::pair<EquipmentName, std::optional<Decision>>;
 
-std::variant<std::vector<Reign>, Refusal> reigns(const Registry& registry, storage::Time time,
+std::variant<std::vector<Reign>, Refusal> reigns(const HistorySource& history, storage::Time time,
                                                  const std::string& text) {
   Subject wanted;
   if (!text.empty()) {
@@ -36,13 +37,13 @@ std::variant<std::vector<Reign>, Refusal> reigns(const Registry& registry, stora
     if (wanted.version) return Refusal{text + " names a version; name the equipment alone"};
   }
   std::vector<Reign> found;
-  for (const EquipmentName& one : registry.equipment())
+  for (const EquipmentName& one : history.equipment())
     if ((wanted.equipment.empty() || one.equipment == wanted.equipment) &&
         (wanted.spacecraft.empty() || one.spacecraft == wanted.spacecraft))
-      found.emplace_back(one, registry.champion_decision(one.spacecraft, one.equipment, time));
+      found.emplace_back(one, history.champion_decision(one, time));
   if (!found.empty()) return found;
   return Refusal{fmt::format("nothing is known about {}; the database has {}",
-                             text.empty() ? "any equipment" : text, equipment_in(registry))};
+                             text.empty() ? "any equipment" : text, equipment_in(history))};
 }
 
 void print_table(const std::vector<Reign>& reigns) {
@@ -84,8 +85,8 @@ int run(const Arguments& arguments) {
         {fmt::format("{} is no time; write it as 2026-03-01T12:00:00Z or in seconds since "
                      "1970",
                      arguments.time)});
-  return with_registry(arguments.database, [&](const Registry& registry) {
-    const auto found = reigns(registry, *time, arguments.subject);
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const auto found = reigns(sources.history, *time, arguments.subject);
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
     if (arguments.json)
       print_json(*time, std::get<std::vector<Reign>>(found));
@@ -104,7 +105,7 @@ void add_at(CLI::App& app, int& exit_code) {
   command->add_option("time", arguments->time, "UTC, or seconds since 1970")->required();
   command->add_option("equipment", arguments->subject,
                       "EQUIPMENT or SPACECRAFT/EQUIPMENT (all of them)");
-  add_database_options(*command, arguments->database);
+  add_source_options(*command, arguments->source);
   command->add_flag("--json", arguments->json, "one JSON object");
   command->footer("Example:\n  reident at 2026-03-01T12:00:00Z CBERS-4/BDR --config reident.toml");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -6,6 +6,7 @@
 
 #include "service/cli/model_comparison.hpp"
 #include "service/cli/model_run.hpp"
+#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
@@ -20,7 +21,7 @@ using nlohmann::ordered_json;
 using RunResult = std::variant<ModelRun, std::string>;
 
 struct Arguments {
-  DatabaseOptions database;
+  SourceOptions source;
   std::string equipment;
   std::string first, second;
   RangeOptions range;
@@ -36,25 +37,24 @@ struct Outcome {
   RunResult run_a, run_b;
 };
 
-std::variant<Story, Refusal> story_of(const storage::Registry& registry, Subject subject,
+std::variant<Story, Refusal> story_of(const history::HistorySource& history, Subject subject,
                                       const std::string& number) {
   subject.version = whole_number(number);
   if (!subject.version)
     return Refusal{fmt::format("{} is no version; give the numbers of two, such as 3 5", number)};
-  auto story = find_story(registry, subject);
+  auto story = find_story(history, subject);
   if (const auto* found = std::get_if<Story>(&story);
       found != nullptr && !is_well_formed(found->model.dynamics))
     return Refusal{fmt::format("the stored model of version {} is damaged", number)};
   return story;
 }
 
-std::variant<Outcome, Refusal> compare(storage::Database& database, const Arguments& arguments) {
+std::variant<Outcome, Refusal> compare(const Sources& sources, const Arguments& arguments) {
   const auto subject = parse_subject(arguments.equipment);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return *refusal;
-  const storage::Registry registry(database);
-  auto a = story_of(registry, std::get<Subject>(subject), arguments.first);
+  auto a = story_of(sources.history, std::get<Subject>(subject), arguments.first);
   if (const auto* refusal = std::get_if<Refusal>(&a)) return *refusal;
-  auto b = story_of(registry, std::get<Subject>(subject), arguments.second);
+  auto b = story_of(sources.history, std::get<Subject>(subject), arguments.second);
   if (const auto* refusal = std::get_if<Refusal>(&b)) return *refusal;
   Outcome outcome{std::get<Story>(std::move(a)), std::get<Story>(std::move(b)), {}, {}, 0, "", ""};
   const EquipmentModel &model_a = outcome.a.model, &model_b = outcome.b.model;
@@ -68,10 +68,9 @@ std::variant<Outcome, Refusal> compare(storage::Database& database, const Argume
   outcome.run_from = chosen ? outcome.range.begin : model_b.identified_from.begin;
   outcome.models =
       compare_models(model_a, outcome.a.version.number, model_b, outcome.b.version.number);
-  const storage::Archive archive(database);
   const storage::TimeRange run{outcome.run_from, outcome.range.end};
-  outcome.run_a = run_model(archive, model_a, run, outcome.range.begin);
-  outcome.run_b = run_model(archive, model_b, run, outcome.range.begin);
+  outcome.run_a = run_model(sources.telemetry, model_a, run, outcome.range.begin);
+  outcome.run_b = run_model(sources.telemetry, model_b, run, outcome.range.begin);
   return outcome;
 }
 
@@ -231,8 +230,8 @@ void print_text(const Outcome& outcome) {
 }
 
 int run(const Arguments& arguments) {
-  return with_database(arguments.database, [&](storage::Database& database) {
-    const auto outcome = compare(database, arguments);
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const auto outcome = compare(sources, arguments);
     if (const auto* refusal = std::get_if<Refusal>(&outcome)) return refuse(*refusal);
     if (arguments.json)
       print_json(std::get<Outcome>(outcome));
@@ -253,7 +252,7 @@ void add_compare(CLI::App& app, int& exit_code) {
   command->add_option("first", arguments->first, "number of a version")->required();
   command->add_option("second", arguments->second, "number of another")->required();
   add_range_options(*command, arguments->range, "the validation part of the second version");
-  add_database_options(*command, arguments->database);
+  add_source_options(*command, arguments->source);
   command->add_flag("--json", arguments->json, "one JSON object");
   command->footer("Example:\n  reident compare CBERS-4/BDR 3 5 --config reident.toml");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

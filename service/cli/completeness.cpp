@@ -10,7 +10,7 @@
 
 #include "service/cli/config_choice.hpp"
 #include "service/cli/pace.hpp"
-#include "service/cli/stored.hpp"
+#include "service/cli/source_choice.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
 #include "service/cli/time_choice.hpp"
@@ -35,8 +35,8 @@ constexpr std::size_t most_bins = 100'000;
 constexpr int bar_width = 20;
 
 struct Arguments {
-  std::string archive;
-  std::optional<std::string> spacecraft, equipment, config;
+  SourceOptions source;
+  std::optional<std::string> spacecraft, equipment;
   std::vector<std::string> parameters;
   TimeChoice time;
   std::string by = "day";
@@ -67,7 +67,7 @@ struct Wanted {
 
 std::optional<Refusal> add_equipment(const Arguments& arguments, Wanted& wanted) {
   if (!arguments.equipment) return std::nullopt;
-  auto chosen = chosen_config(arguments.config);
+  auto chosen = chosen_config(arguments.source.database.config);
   if (auto* refusal = std::get_if<Refusal>(&chosen)) return std::move(*refusal);
   const auto& config = std::get<std::optional<Config>>(chosen);
   if (!config)
@@ -93,12 +93,12 @@ std::optional<Refusal> add_equipment(const Arguments& arguments, Wanted& wanted)
                              *arguments.equipment, joined(names))};
 }
 
-std::variant<std::vector<Group>, Refusal> groups_of(const storage::Database& database,
+std::variant<std::vector<Group>, Refusal> groups_of(const history::TelemetrySource& telemetry,
                                                     const Wanted& wanted) {
   std::vector<Group> groups;
   std::vector<std::string> spacecraft;
   const auto& names = wanted.parameters;
-  for (SeriesInfo& one : storage::all_series(database)) {
+  for (SeriesInfo& one : telemetry.series()) {
     if (spacecraft.empty() || spacecraft.back() != one.spacecraft)
       spacecraft.push_back(one.spacecraft);
     if ((wanted.spacecraft && one.spacecraft != *wanted.spacecraft) ||
@@ -150,8 +150,9 @@ void count_frames(const std::vector<storage::SequenceGap>& gaps, const TimeBins&
   }
 }
 
-void count(storage::Database& database, const TimeBins& bins, std::vector<Group>& groups) {
-  const auto gaps = storage::Archive(database).sequence_gaps();
+void count(const history::TelemetrySource& telemetry, const TimeBins& bins,
+           std::vector<Group>& groups) {
+  const auto gaps = telemetry.sequence_gaps();
   std::size_t all = 0, done = 0;
   for (const Group& group : groups) all += group.series.size();
   Progress bar;
@@ -159,7 +160,7 @@ void count(storage::Database& database, const TimeBins& bins, std::vector<Group>
     Time until = std::numeric_limits<Time>::min();
     for (const SeriesInfo& one : group.series) until = std::max(until, one.last);
     for (const SeriesInfo& one : group.series) {
-      group.counts.push_back(storage::completeness(database, one, bins, until));
+      group.counts.push_back(telemetry.completeness(one, bins, until));
       bar.update(static_cast<double>(++done) / static_cast<double>(all),
                  fmt::format("{} of {} parameters", done, all));
     }
@@ -297,13 +298,15 @@ void print_json(const std::vector<Group>& groups, const TimeBins& bins,
 int run(const Arguments& arguments) {
   Wanted wanted{arguments.spacecraft, arguments.parameters};
   if (const auto refusal = add_equipment(arguments, wanted)) return refuse(*refusal);
-  return with_database({arguments.archive, {}}, [&](storage::Database& database) {
-    auto found = groups_of(database, wanted);
+  if (!arguments.source.is_remote() && !arguments.source.database.database)
+    return refuse({no_archive("completeness")});
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    auto found = groups_of(sources.telemetry, wanted);
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
     auto& groups = std::get<std::vector<Group>>(found);
     const auto bins = bins_of(groups, arguments);
     if (const auto* refusal = std::get_if<Refusal>(&bins)) return refuse(*refusal);
-    count(database, std::get<TimeBins>(bins), groups);
+    count(sources.telemetry, std::get<TimeBins>(bins), groups);
     if (arguments.json) {
       print_json(groups, std::get<TimeBins>(bins), arguments);
       return static_cast<int>(exit_done);
@@ -322,7 +325,7 @@ void add_completeness(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
       "completeness", "Count for each day the samples that came and those that are missing");
-  command->add_option("archive", arguments->archive, "database of the service")->required();
+  add_archive_options(*command, arguments->source);
   command->add_option("--spacecraft", arguments->spacecraft, "this one alone (all)");
   CLI::Option* parameters =
       command->add_option("--parameter", arguments->parameters, "these alone (all)");
@@ -330,9 +333,6 @@ void add_completeness(CLI::App& app, int& exit_code) {
       ->add_option("--equipment", arguments->equipment,
                    "the parameters of EQUIPMENT or SPACECRAFT/EQUIPMENT alone")
       ->excludes(parameters);
-  command->add_option(
-      "--config", arguments->config,
-      fmt::format("configuration that has the equipment ({})", default_config_file));
   add_time_options(*command, arguments->time, "samples");
   command->add_option("--by", arguments->by, "day or hour, of UTC")
       ->check(CLI::IsMember({"day", "hour"}))

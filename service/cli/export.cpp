@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/pace.hpp"
-#include "service/cli/stored.hpp"
+#include "service/cli/source_choice.hpp"
 #include "service/cli/time_choice.hpp"
 #include "service/support/output_file.hpp"
 #include "service/support/progress.hpp"
@@ -24,14 +24,14 @@ using transfer::ExportReport;
 constexpr const char* standard_output = "-";
 
 struct Arguments {
-  std::string archive;
+  SourceOptions source;
   ExportOptions options;
   std::optional<std::string> origin;
   TimeChoice time;
   std::string output = standard_output;
 };
 
-int write(const storage::Database& database, const std::vector<storage::SeriesInfo>& series,
+int write(const history::TelemetrySource& telemetry, const std::vector<storage::SeriesInfo>& series,
           const Arguments& arguments) {
   const StopSignal stop;
   const bool to_file = arguments.output != standard_output;
@@ -39,7 +39,7 @@ int write(const storage::Database& database, const std::vector<storage::SeriesIn
   Progress bar(stderr, to_file && isatty(STDERR_FILENO) == 1);
   Pace pace;
   const ExportReport report = transfer::export_series(
-      database, series, arguments.options, [&](std::string_view text) { file.write(text); },
+      telemetry, series, arguments.options, [&](std::string_view text) { file.write(text); },
       [&](const ExportProgress& at) {
         if (bar.due()) bar.update(at.fraction, pace.text(at.fraction, at.samples));
         return !stop.token().stop_requested();
@@ -64,10 +64,12 @@ int run(Arguments& arguments) {
   if (const auto* refusal = std::get_if<Refusal>(&range)) return refuse(*refusal);
   arguments.options.range = std::get<storage::TimeRange>(range);
   if (arguments.origin) arguments.options.origin = transfer::parse_origin(*arguments.origin);
-  return with_database({arguments.archive, {}}, [&](storage::Database& database) {
-    const auto series = transfer::series_to_export(database, arguments.options);
+  if (!arguments.source.is_remote() && !arguments.source.database.database)
+    return refuse({no_archive("export")});
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const auto series = transfer::series_to_export(sources.telemetry, arguments.options);
     if (const auto* error = std::get_if<csv::Error>(&series)) return refuse({error->message});
-    return write(database, std::get<std::vector<storage::SeriesInfo>>(series), arguments);
+    return write(sources.telemetry, std::get<std::vector<storage::SeriesInfo>>(series), arguments);
   });
 }
 
@@ -76,7 +78,7 @@ int run(Arguments& arguments) {
 void add_export(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("export", "Write archived telemetry as CSV");
-  command->add_option("archive", arguments->archive, "database of the service")->required();
+  add_archive_options(*command, arguments->source);
   command->add_option("--spacecraft", arguments->options.spacecraft, "this one alone (all)");
   command->add_option("--parameter", arguments->options.parameters, "these alone (all)");
   command->add_option("--origin", arguments->origin, "real or simulated alone (both)")

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/stored.hpp"
+#include "service/cli/source_choice.hpp"
 #include "service/cli/story.hpp"
 #include "service/daemon/commands.hpp"
 #include "service/model_export/model_export.hpp"
@@ -18,7 +18,7 @@ using model_export::ExportedVersion;
 constexpr const char* standard_output = "-";
 
 struct Arguments {
-  DatabaseOptions database;
+  SourceOptions source;
   std::string subject;
   std::optional<std::string> fmu, mat, json;
   bool force = false;
@@ -103,8 +103,8 @@ int run(const Arguments& arguments) {
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
   const std::vector<Target> targets = targets_of(arguments);
   if (const auto refusal = mistake_in(targets, arguments.force)) return refuse(*refusal);
-  return with_registry(arguments.database, [&](const storage::Registry& registry) {
-    auto story = find_story(registry, std::get<Subject>(subject));
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    auto story = find_story(sources.history, std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
     const auto exported = exported_version(std::get<Story>(std::move(story)));
     if (const auto* refusal = std::get_if<Refusal>(&exported)) return refuse(*refusal);
@@ -132,7 +132,7 @@ void add_export_model(CLI::App& app, int& exit_code) {
   command->add_option("--mat", arguments->mat, "MATLAB file, version 5");
   command->add_option("--json", arguments->json, "JSON; - is standard output");
   command->add_flag("--force", arguments->force, "replace files that exist");
-  add_database_options(*command, arguments->database);
+  add_source_options(*command, arguments->source);
   command->footer(
       "Of several no file takes its name before all of them are written.\n"
       "Example:\n"

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
 #include <fmt/format.h>
 
+#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/table.hpp"
 #include "service/daemon/commands.hpp"
@@ -11,17 +13,17 @@
 namespace reident::cli {
 namespace {
 
+using history::HistorySource;
 using nlohmann::ordered_json;
 using storage::Attempt;
 using storage::Decision;
 using storage::EquipmentName;
 using storage::HistoryFilter;
 using storage::Hold;
-using storage::Registry;
 using storage::VersionSummary;
 
 struct Arguments {
-  DatabaseOptions database;
+  SourceOptions source;
   std::string spacecraft;
   std::string equipment;
   std::optional<std::size_t> last;
@@ -37,15 +39,14 @@ bool is_selected(const EquipmentName& equipment, const Arguments& arguments) {
 /// What the registry says about the versions of the chosen equipment, and about holds.
 class Decided {
  public:
-  Decided(const Registry& registry, const Arguments& arguments) {
-    for (const EquipmentName& equipment : registry.equipment()) {
+  Decided(const HistorySource& history, const Arguments& arguments) {
+    for (const EquipmentName& equipment : history.equipment()) {
       if (!is_selected(equipment, arguments)) continue;
-      const auto& [spacecraft, name] = equipment;
-      for (VersionSummary& version : registry.summaries(spacecraft, name))
+      for (VersionSummary& version : history.summaries(equipment))
         versions_[{equipment, version.number}].summary = std::move(version);
-      for (Decision& decision : registry.decisions(spacecraft, name))
+      for (Decision& decision : history.decisions(equipment))
         versions_[{equipment, decision.version}].decisions.push_back(std::move(decision));
-      if (auto hold = registry.hold(spacecraft, name)) holds_.emplace(equipment, *std::move(hold));
+      if (auto hold = history.hold(equipment)) holds_.emplace(equipment, *std::move(hold));
     }
   }
   struct Version {
@@ -151,16 +152,16 @@ void print_json(const std::vector<Attempt>& attempts, const Decided& decided) {
 }
 
 /// Why a filter selects nothing.
-Refusal nothing_selected(const Arguments& arguments, const Registry& registry) {
+Refusal nothing_selected(const Arguments& arguments, const HistorySource& history) {
   HistoryFilter newest;
   newest.last = 1;
-  if (registry.attempts(newest).empty())
+  if (history.attempts(newest).empty())
     return {"no window has been tried yet; reident status shows what the service does"};
   const auto or_any = [](const std::string& name) { return name.empty() ? "(any)" : name; };
   return {fmt::format("no {} of {}; the database has {}",
                       arguments.versions_only ? "version" : "attempt",
                       full_name({or_any(arguments.spacecraft), or_any(arguments.equipment)}),
-                      equipment_in(registry))};
+                      equipment_in(history))};
 }
 
 int run(Arguments arguments) {
@@ -169,17 +170,23 @@ int run(Arguments arguments) {
     arguments.spacecraft = arguments.equipment.substr(0, slash);
     arguments.equipment.erase(0, slash + 1);
   }
-  return with_registry(arguments.database, [&](const Registry& registry) {
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const HistorySource& history = sources.history;
+    const std::vector<EquipmentName> known = history.equipment();
+    const bool filtered = !arguments.spacecraft.empty() || !arguments.equipment.empty();
+    if (filtered && std::none_of(known.begin(), known.end(), [&](const EquipmentName& one) {
+          return is_selected(one, arguments);
+        }))
+      return refuse(nothing_selected(arguments, history));
     HistoryFilter filter;
     filter.spacecraft = arguments.spacecraft;
     filter.equipment = arguments.equipment;
     filter.versions_only = arguments.versions_only;
     filter.last = arguments.last;
-    const std::vector<Attempt> attempts = registry.attempts(filter);
-    const bool filtered = !arguments.spacecraft.empty() || !arguments.equipment.empty();
+    const std::vector<Attempt> attempts = history.attempts(filter);
     if (attempts.empty() && (filtered || !arguments.json))
-      return refuse(nothing_selected(arguments, registry));
-    const Decided decided(registry, arguments);
+      return refuse(nothing_selected(arguments, history));
+    const Decided decided(history, arguments);
     if (arguments.json)
       print_json(attempts, decided);
     else
@@ -194,7 +201,7 @@ void add_history(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
       "history", "List every window that was tried, what came out and why, the latest last");
-  add_database_options(*command, arguments->database);
+  add_source_options(*command, arguments->source);
   command->add_option("--spacecraft", arguments->spacecraft, "of this spacecraft alone");
   command->add_option("--equipment", arguments->equipment,
                       "of this EQUIPMENT or SPACECRAFT/EQUIPMENT alone");

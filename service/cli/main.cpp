@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/command.hpp"
+#include "service/cli/source_choice.hpp"
 
 namespace reident::cli {
 namespace {
@@ -15,6 +16,14 @@ int run(int argc, char** argv) {
   CLI::App app("Keeps the equipment models of satellite simulators true to the satellite",
                "reident");
   app.require_subcommand(1);
+  app.fallthrough();  // --remote may stand behind a command that cannot have it, to be told why
+  const CLI::Option* remote = app.add_flag(
+      "--remote", "with a command that reads: ask the running service over DDS instead of a file");
+  app.parse_complete_callback([&app, remote] {
+    for (const CLI::App* command : app.get_subcommands())
+      if (remote->count() > 0 && command->get_option_no_throw("--remote") == nullptr)
+        throw CLI::ValidationError(why_not_remote(command->get_name()));
+  });
   app.footer("reident COMMAND --help shows the options of a command and an example.");
   int exit_code = exit_done;
   add_identify(app, exit_code);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/model_picture.hpp"
+#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/daemon/commands.hpp"
@@ -19,7 +20,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Arguments {
-  DatabaseOptions database;
+  SourceOptions source;
   std::string subject;
   std::optional<std::string> output;
   RangeOptions range;
@@ -47,12 +48,12 @@ std::vector<double> singular_values_of(const storage::Attempt& attempt) {
   return values;
 }
 
-std::variant<std::string, Refusal> picture_of(storage::Database& database, const Story& story,
-                                              const RangeOptions& options) {
+std::variant<std::string, Refusal> picture_of(const storage::SampleSource& archive,
+                                              const Story& story, const RangeOptions& options) {
   const auto range = range_of(options, story.version.window);
   if (const auto* refusal = std::get_if<Refusal>(&range)) return *refusal;
   const auto& shown = std::get<storage::TimeRange>(range);
-  const auto run = run_model(storage::Archive(database), story.model, shown, shown.begin);
+  const auto run = run_model(archive, story.model, shown, shown.begin);
   if (const auto* reason = std::get_if<std::string>(&run)) return Refusal{*reason};
   const storage::Version& version = story.version;
   const PictureData data{
@@ -89,11 +90,11 @@ int write_picture(const std::string& picture, const std::string& path) {
 int run(const Arguments& arguments) {
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
-  return with_database(arguments.database, [&](storage::Database& database) {
-    const auto found = find_story(storage::Registry(database), std::get<Subject>(subject));
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const auto found = find_story(sources.history, std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
     const Story& story = std::get<Story>(found);
-    const auto picture = picture_of(database, story, arguments.range);
+    const auto picture = picture_of(sources.telemetry, story, arguments.range);
     if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
     return write_picture(std::get<std::string>(picture),
                          arguments.output.value_or(fmt::format(
@@ -115,7 +116,7 @@ void add_plot(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", arguments->output,
                       "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
   add_range_options(*command, arguments->range, "the window of the version");
-  add_database_options(*command, arguments->database);
+  add_source_options(*command, arguments->source);
   command->footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -7,6 +7,7 @@
 #include "service/cli/story.hpp"
 #include "service/daemon/commands.hpp"
 #include "service/daemon/provenance.hpp"
+#include "service/history/stored_sources.hpp"
 #include "service/support/parallel.hpp"
 #include "service/support/version.hpp"
 #include "storage/archive.hpp"
@@ -75,7 +76,7 @@ int run(const Arguments& arguments) {
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
   return with_database(arguments.database, [&](storage::Database& database) {
-    const auto found = find_story(storage::Registry(database), std::get<Subject>(subject));
+    const auto found = find_story(history::StoredHistory(database), std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
     const Story& story = std::get<Story>(found);
     WorkerPool workers(usable_cores());

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/model_text.hpp"
+#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
@@ -17,10 +18,9 @@ namespace {
 
 using nlohmann::ordered_json;
 using storage::Decision;
-using storage::Registry;
 
 struct Arguments {
-  DatabaseOptions database;
+  SourceOptions source;
   std::string subject;
   bool json = false;
 };
@@ -168,8 +168,8 @@ void print_story(const Story& story) {
 int run(const Arguments& arguments) {
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
-  return with_registry(arguments.database, [&](const Registry& registry) {
-    const auto story = find_story(registry, std::get<Subject>(subject));
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const auto story = find_story(sources.history, std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
     if (arguments.json)
       print_json(std::get<Story>(story));
@@ -189,7 +189,7 @@ void add_show(CLI::App& app, int& exit_code) {
       ->add_option("subject", arguments->subject,
                    "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
       ->required();
-  add_database_options(*command, arguments->database);
+  add_source_options(*command, arguments->source);
   command->add_flag("--json", arguments->json, "one JSON object with the matrices");
   command->footer("Example:\n  reident show CBERS-4/BDR@3 --config reident.toml");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -67,15 +67,9 @@ int with_writable_database(const DatabaseOptions& options,
   }
 }
 
-int with_registry(const DatabaseOptions& options,
-                  const std::function<int(const storage::Registry&)>& work) {
-  return with_database(
-      options, [&work](storage::Database& database) { return work(storage::Registry(database)); });
-}
-
-std::string equipment_in(const storage::Registry& registry) {
+std::string equipment_in(const history::HistorySource& history) {
   std::vector<std::string> names;
-  for (const auto& [spacecraft, equipment] : registry.equipment())
+  for (const auto& [spacecraft, equipment] : history.equipment())
     names.push_back(full_name({spacecraft, equipment}));
   return names.empty() ? "nothing yet" : joined(names);
 }

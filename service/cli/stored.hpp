@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/command.hpp"
+#include "service/history/sources.hpp"
 #include "storage/registry.hpp"
 
 namespace reident::cli {
@@ -30,12 +31,8 @@ int with_database(const DatabaseOptions& options,
 int with_writable_database(const DatabaseOptions& options,
                            const std::function<int(storage::Database&)>& work);
 
-/// As with_database, with the registry.
-int with_registry(const DatabaseOptions& options,
-                  const std::function<int(const storage::Registry&)>& work);
-
 /// The equipment of the database for messages, such as "CBERS-4/BDR, CBERS-4/MEA".
-std::string equipment_in(const storage::Registry& registry);
+std::string equipment_in(const history::HistorySource& history);
 
 nlohmann::ordered_json hold_json(const storage::Hold& hold);
 nlohmann::ordered_json decisions_json(const std::vector<storage::Decision>& decisions);

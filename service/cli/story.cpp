@@ -11,14 +11,13 @@
 
 namespace reident::cli {
 
-using storage::Registry;
+using history::HistorySource;
 
 namespace {
 
-std::string versions_text(const Registry& registry, const std::string& spacecraft,
-                          const std::string& equipment) {
+std::string versions_text(const HistorySource& history, const storage::EquipmentName& equipment) {
   constexpr std::size_t most = 5;
-  const std::vector<storage::VersionSummary> versions = registry.summaries(spacecraft, equipment);
+  const std::vector<storage::VersionSummary> versions = history.summaries(equipment);
   if (versions.empty()) return "none yet";
   std::string text = versions.size() > most
                          ? fmt::format("{} to {}, the last of them ", versions.front().number,
@@ -31,10 +30,10 @@ std::string versions_text(const Registry& registry, const std::string& spacecraf
 }
 
 /// The equipment that a subject means.
-std::variant<storage::EquipmentName, Refusal> find_equipment(const Registry& registry,
+std::variant<storage::EquipmentName, Refusal> find_equipment(const HistorySource& history,
                                                              const Subject& subject) {
   std::optional<storage::EquipmentName> found;
-  for (const storage::EquipmentName& one : registry.equipment()) {
+  for (const storage::EquipmentName& one : history.equipment()) {
     if (one.equipment != subject.equipment) continue;
     if (!subject.spacecraft.empty() && one.spacecraft != subject.spacecraft) continue;
     if (found)
@@ -48,7 +47,7 @@ std::variant<storage::EquipmentName, Refusal> find_equipment(const Registry& reg
                              subject.spacecraft.empty()
                                  ? subject.equipment
                                  : full_name({subject.spacecraft, subject.equipment}),
-                             equipment_in(registry))};
+                             equipment_in(history))};
 }
 
 }  // namespace
@@ -70,21 +69,23 @@ std::variant<Subject, Refusal> parse_subject(const std::string& text) {
   return subject;
 }
 
-std::variant<Story, Refusal> find_story(const Registry& registry, const Subject& subject) {
-  const auto found = find_equipment(registry, subject);
+std::variant<Story, Refusal> find_story(const HistorySource& history, const Subject& subject) {
+  const auto found = find_equipment(history, subject);
   if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
-  const auto& [spacecraft, equipment] = std::get<storage::EquipmentName>(found);
-  auto version = subject.version ? registry.version(spacecraft, equipment, *subject.version)
-                                 : registry.champion(spacecraft, equipment);
+  const auto& equipment = std::get<storage::EquipmentName>(found);
+  std::optional<std::int64_t> number = subject.version;
+  if (!number)
+    if (const auto made = history.champion_decision(equipment)) number = made->version;
+  auto version = number ? history.version(equipment, *number) : std::nullopt;
   if (!version)
     return Refusal{fmt::format(
-        "{} has no {}; versions: {}", full_name({spacecraft, equipment}),
+        "{} has no {}; versions: {}", full_name(equipment),
         subject.version ? fmt::format("version {}", *subject.version) : "approved version",
-        versions_text(registry, spacecraft, equipment))};
+        versions_text(history, equipment))};
   Story story;
-  story.attempt = registry.attempt(version->attempt).value();
-  story.decisions = registry.decisions(spacecraft, equipment, version->number);
-  story.hold = registry.hold(spacecraft, equipment);
+  story.attempt = history.attempt(equipment, version->number).value();
+  story.decisions = history.decisions(equipment, version->number);
+  story.hold = history.hold(equipment);
   story.model = equipment_model_from_json(version->model_json);
   story.digest_matches = model_digest(story.model) == version->digest;
   story.version = *std::move(version);

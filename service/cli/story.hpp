@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "service/cli/command.hpp"
+#include "service/history/sources.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/registry.hpp"
 
@@ -37,6 +38,7 @@ std::optional<storage::TimeRange> tuned_on(const storage::Version& version);
 
 /// The version that the subject names, or the champion of its equipment. A spacecraft that is left
 /// out is found by the equipment's name.
-std::variant<Story, Refusal> find_story(const storage::Registry& registry, const Subject& subject);
+std::variant<Story, Refusal> find_story(const history::HistorySource& history,
+                                        const Subject& subject);
 
 }  // namespace reident::cli

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/model_text.hpp"
+#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/story.hpp"
 #include "service/cli/table.hpp"
@@ -17,7 +18,7 @@ using nlohmann::ordered_json;
 using Sentences = std::vector<std::string>;
 
 struct Arguments {
-  DatabaseOptions database;
+  SourceOptions source;
   std::string subject;
   bool json = false;
 };
@@ -160,8 +161,8 @@ int print(const Story& story, bool json) {
 int run(const Arguments& arguments) {
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
-  return with_registry(arguments.database, [&](const storage::Registry& registry) {
-    const auto story = find_story(registry, std::get<Subject>(subject));
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const auto story = find_story(sources.history, std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
     return print(std::get<Story>(story), arguments.json);
   });
@@ -177,7 +178,7 @@ void add_why(CLI::App& app, int& exit_code) {
       ->add_option("subject", arguments->subject,
                    "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
       ->required();
-  add_database_options(*command, arguments->database);
+  add_source_options(*command, arguments->source);
   command->add_flag("--json", arguments->json, "one JSON object with the evidence itself");
   command->footer("Example:\n  reident why CBERS-4/BDR@3 --config reident.toml");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

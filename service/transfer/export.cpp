@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -96,7 +97,7 @@ class Text {
 
 class Export {
  public:
-  Export(const storage::Database& database, const std::vector<SeriesInfo>& series,
+  Export(const history::TelemetrySource& telemetry, const std::vector<SeriesInfo>& series,
          const ExportOptions& options, const TextSink& sink, const ExportObserver& observer);
 
   ExportReport run() {
@@ -117,20 +118,20 @@ class Export {
 
   const std::string& name_of_source(std::int64_t id) {
     // Not known: its first sample came after the last look.
-    if (sources_.find(id) == sources_.end()) sources_ = storage::source_names(database_);
+    if (sources_.find(id) == sources_.end()) sources_ = telemetry_.source_names();
     return sources_[id];
   }
 
   /// A series on its way into the columns of a wide file.
   struct Column {
-    storage::SeriesStretches reader;
+    std::unique_ptr<history::Stretches> reader;
     SampleColumns stretch;
     std::size_t at = 0;
     bool at_end = false;
 
     void refill() {
       at = 0;
-      at_end = !reader.next(stretch);
+      at_end = !reader->next(stretch);
     }
     void advance() {
       if (++at == stretch.size()) refill();
@@ -144,7 +145,7 @@ class Export {
 
   void write_row(std::vector<Column>& columns, Time time);
 
-  const storage::Database& database_;
+  const history::TelemetrySource& telemetry_;
   const std::vector<SeriesInfo>& series_;
   const ExportOptions& options_;
   Text text_;
@@ -154,9 +155,9 @@ class Export {
   ExportReport report_;
 };
 
-Export::Export(const storage::Database& database, const std::vector<SeriesInfo>& series,
+Export::Export(const history::TelemetrySource& telemetry, const std::vector<SeriesInfo>& series,
                const ExportOptions& options, const TextSink& sink, const ExportObserver& observer)
-    : database_(database), series_(series), options_(options), text_(sink), observer_(observer) {
+    : telemetry_(telemetry), series_(series), options_(options), text_(sink), observer_(observer) {
   for (const SeriesInfo& one : series) expected_ += one.samples;
   report_.series = series.size();
 }
@@ -168,8 +169,8 @@ bool Export::write_long() {
   text_.end_line();
   SampleColumns stretch;
   for (const SeriesInfo& series : series_) {
-    storage::SeriesStretches reader(database_, series.id, options_.range, chunks_at_once, {});
-    while (reader.next(stretch)) {
+    const auto reader = telemetry_.stretches(series, options_.range, chunks_at_once, {});
+    while (reader->next(stretch)) {
       write_samples(series, stretch);
       if (!go_on()) return false;
     }
@@ -210,11 +211,11 @@ bool Export::write_wide() {
   std::vector<Column> columns;
   const std::size_t chunks = std::max<std::size_t>(1, chunks_at_once / series_.size());
   for (const SeriesInfo& series : series_)
-    columns.push_back({storage::SeriesStretches(database_, series.id, options_.range, chunks,
-                                                {.quality = false, .source = false}),
-                       {},
-                       0,
-                       false});
+    columns.push_back(
+        {telemetry_.stretches(series, options_.range, chunks, {.quality = false, .source = false}),
+         {},
+         0,
+         false});
   for (Column& column : columns) column.refill();
   while (const auto time = earliest(columns)) {
     write_row(columns, *time);
@@ -246,9 +247,9 @@ void Export::write_row(std::vector<Column>& columns, Time time) {
 
 }  // namespace
 
-std::variant<std::vector<SeriesInfo>, Error> series_to_export(const storage::Database& database,
-                                                              const ExportOptions& options) {
-  const std::vector<SeriesInfo> all = storage::all_series(database);
+std::variant<std::vector<SeriesInfo>, Error> series_to_export(
+    const history::TelemetrySource& telemetry, const ExportOptions& options) {
+  const std::vector<SeriesInfo> all = telemetry.series();
   if (auto error = check_names(all, options)) return *std::move(error);
   std::vector<SeriesInfo> wanted;
   std::copy_if(all.begin(), all.end(), std::back_inserter(wanted),
@@ -266,10 +267,10 @@ std::variant<std::vector<SeriesInfo>, Error> series_to_export(const storage::Dat
   return wanted;
 }
 
-ExportReport export_series(const storage::Database& database, const std::vector<SeriesInfo>& series,
-                           const ExportOptions& options, const TextSink& sink,
-                           const ExportObserver& observer) {
-  return Export(database, series, options, sink, observer).run();
+ExportReport export_series(const history::TelemetrySource& telemetry,
+                           const std::vector<SeriesInfo>& series, const ExportOptions& options,
+                           const TextSink& sink, const ExportObserver& observer) {
+  return Export(telemetry, series, options, sink, observer).run();
 }
 
 }  // namespace reident::transfer

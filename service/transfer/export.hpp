@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "service/history/sources.hpp"
 #include "service/support/csv.hpp"
 #include "storage/holdings.hpp"
 
@@ -41,11 +42,11 @@ using ExportObserver = std::function<bool(const ExportProgress&)>;
 
 /// The series to be exported, or what is wrong with the request.
 std::variant<std::vector<storage::SeriesInfo>, csv::Error> series_to_export(
-    const storage::Database& database, const ExportOptions& options);
+    const history::TelemetrySource& telemetry, const ExportOptions& options);
 
 /// Writes header and rows. Long: series after series, each in order of time. Samples that come
 /// while it runs may be among them or not.
-ExportReport export_series(const storage::Database& database,
+ExportReport export_series(const history::TelemetrySource& telemetry,
                            const std::vector<storage::SeriesInfo>& series,
                            const ExportOptions& options, const TextSink& sink,
                            const ExportObserver& observer);

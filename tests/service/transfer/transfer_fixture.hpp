@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "service/history/stored_sources.hpp"
 #include "service/transfer/export.hpp"
 #include "service/transfer/import.hpp"
 #include "tests/storage/fixture.hpp"
@@ -56,13 +57,14 @@ inline ExportOptions everything() {
 }
 
 /// The text of an export; the message where the request is refused.
-inline std::string exported(const storage::Database& database,
+inline std::string exported(storage::Database& database,
                             const ExportOptions& options = everything()) {
-  const auto series = series_to_export(database, options);
+  const history::StoredTelemetry telemetry(database);
+  const auto series = series_to_export(telemetry, options);
   if (const auto* error = std::get_if<csv::Error>(&series)) return error->message;
   std::string text;
   export_series(
-      database, std::get<std::vector<storage::SeriesInfo>>(series), options,
+      telemetry, std::get<std::vector<storage::SeriesInfo>>(series), options,
       [&text](std::string_view piece) { text += piece; },
       [](const ExportProgress&) { return true; });
   return text;
