@@ -3,11 +3,13 @@
 #include <cstddef>
 #include <cstring>
 #include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "service/client/include/reident/client.h"
 #include "service/client/simulator_client.hpp"
+#include "service/history/remote_history.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/utc_clock.hpp"
 #include "service/support/version.hpp"
@@ -33,6 +35,7 @@ struct reident_client {
   reident::SimulatorEvent event;  // whose texts the last reident_event points to
   std::string json;
   reident::SimulatorClient client;
+  std::optional<reident::history::RemoteHistory> history;  // from the first question on
 };
 
 namespace {
@@ -112,6 +115,25 @@ std::vector<reident::DeclaredSignal> declared(const reident_signal* signals, std
   for (std::size_t i = 0; i < count; ++i)
     result.push_back({signals[i].name, text_or(signals[i].unit, "")});
   return result;
+}
+
+reident::HistoryQuery history_query(const reident_history_query& given, const char* cursor) {
+  reident_history_query defaults{};
+  reident_history_init(&defaults);
+  const reident_history_query c = copy_in(given, defaults);
+  reident::HistoryQuery query;
+  query.subject = text_or(c.subject, "");
+  query.spacecraft = text_or(c.spacecraft, "");
+  query.equipment = text_or(c.equipment, "");
+  query.range = {c.begin_ns, c.end_ns};
+  query.version = c.version;
+  query.page_size = c.page_size;
+  query.cursor = cursor;
+  query.newest_first = c.newest_first != 0;
+  query.origin =
+      c.simulated != 0 ? reident::storage::Origin::simulated : reident::storage::Origin::real;
+  query.parameter = c.parameter;
+  return query;
 }
 
 reident::SimulatorClientOptions client_options(const reident_options& given) {
@@ -208,6 +230,39 @@ const char* reident_version_json(reident_client* client, const char* spacecraft,
         {"rollback", newest->rollback},  {"model", reident::to_json(newest->model)}};
     client->json = json.dump();
     return client->json.c_str();
+  });
+}
+
+void reident_history_init(reident_history_query* query) {
+  if (query == nullptr) return;
+  *query = {};
+  query->size = sizeof(*query);
+  query->subject = "versions";
+  query->page_size = 1000;
+}
+
+int reident_history_page(reident_client* client, const reident_history_query* query,
+                         const char* cursor, int timeout_ms, reident_history_row row, void* user,
+                         char* next, size_t next_size) {
+  if (client == nullptr || query == nullptr || query->size == 0 || cursor == nullptr ||
+      row == nullptr || next == nullptr || next_size == 0)
+    return fail(REIDENT_BAD_ARGUMENT,
+                "client, query, cursor, row or next is NULL, or the size of query or next is 0");
+  return guarded<int>(REIDENT_FAILED, [&] {
+    if (!client->history) client->history.emplace(client->client.participant());
+    const auto answer =
+        client->history->page(history_query(*query, cursor), std::chrono::milliseconds(timeout_ms));
+    if (const auto* failure = std::get_if<reident::history::RemoteHistory::Failure>(&answer))
+      return fail(failure->kind == reident::history::Error::Kind::refused ? REIDENT_BAD_ARGUMENT
+                                                                          : REIDENT_UNAVAILABLE,
+                  failure->message);
+    const auto& page = std::get<reident::HistoryPage>(answer);
+    if (page.next_cursor.size() >= next_size)
+      return fail(REIDENT_BAD_ARGUMENT, "next has no room for a cursor of " +
+                                            std::to_string(page.next_cursor.size() + 1) + " bytes");
+    for (const std::string& json : page.rows) row(json.c_str(), user);
+    std::memcpy(next, page.next_cursor.c_str(), page.next_cursor.size() + 1);
+    return static_cast<int>(page.rows.size());
   });
 }
 

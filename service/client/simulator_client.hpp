@@ -75,6 +75,8 @@ class SimulatorClient {
   /// one before is not called any more when it returns.
   void on_event(Callback callback);
 
+  dds::Participant& participant() { return participant_; }
+
   std::optional<ModelVersion> newest(const storage::EquipmentName& equipment);
 
  private:

@@ -120,19 +120,23 @@ typedef struct {
   const char* equipment;  /* NULL: every one */
   int64_t begin_ns;       /* begin == end: all of time */
   int64_t end_ns;
-  int64_t version;    /* 0: every one */
-  uint32_t page_size; /* rows */
+  int64_t version;      /* 0: every one */
+  uint32_t page_size;   /* rows, 1 to 10000 */
+  int32_t newest_first; /* 1: descending */
+  int32_t simulated;    /* of telemetry: 1: the simulator's own */
+  uint32_t parameter;   /* of telemetry: id within the spacecraft */
 } reident_history_query;
 
 REIDENT_API void reident_history_init(reident_history_query* query);
 
-/* One row: a JSON object, good during the call. */
+/* One row: a JSON object, good during the call, which must not throw. */
 typedef void (*reident_history_row)(const char* json, void* user);
 
 /* Asks the running service for one page and calls `row` for each of its rows, on this thread.
  * `cursor` is "" for the first page, then what the page before wrote into `next`; "" there says
- * that it was the last. Returns the number of rows; REIDENT_BAD_ARGUMENT; REIDENT_UNAVAILABLE when
- * no service answered in timeout_ms; REIDENT_FAILED. */
+ * that it was the last. Returns the number of rows; REIDENT_BAD_ARGUMENT, also where the service
+ * says so or `next` has no room (a cursor takes at most a few hundred bytes); REIDENT_UNAVAILABLE
+ * when no service answered in timeout_ms; REIDENT_FAILED. */
 REIDENT_API int reident_history_page(reident_client* client, const reident_history_query* query,
                                      const char* cursor, int timeout_ms, reident_history_row row,
                                      void* user, char* next, size_t next_size);
