@@ -14,8 +14,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t take_at_most = 16;
 constexpr auto look_around = 500ms;  // for stop(); data and wake() end the wait earlier
-// For a console that takes nothing; whoever else waits asks again.
-constexpr auto patience = 300ms;
+// A page that a console does not take is given up by the middleware sooner than that.
+constexpr auto patience = 2s;
 
 }  // namespace
 

@@ -36,6 +36,8 @@ Qos writer_qos(const Profile& profile, const WriterOptions& options) {
   const std::int32_t late_joiners =
       profile.history == keep_all ? options.history : profile.late_joiners;
   dds_qset_writer_data_lifecycle(qos.get(), profile.autodispose);
+  if (profile.lifespan.count() > 0)
+    dds_qset_lifespan(qos.get(), std::chrono::nanoseconds(profile.lifespan).count());
   if (late_joiners == 0) {
     dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
     return qos;

@@ -30,6 +30,9 @@ struct Profile {
   /// The instances of a writer that ends are disposed of. False where what was said last stays
   /// true without its writer.
   bool autodispose;
+  /// How long a sample may wait for readers that do not take it; 0: for ever. What such a reader
+  /// holds back counts against the bound of what a writer keeps for all of them.
+  std::chrono::milliseconds lifespan{0};
 };
 
 inline constexpr Profile telemetry_frame{"satcs/TelemetryFrame", keep_all, keep_all, false};
@@ -41,7 +44,8 @@ inline constexpr Profile service_status{"reident/ServiceStatus", 1, 1, true};
 inline constexpr Profile command_request{"reident/Command", 1, 0, true};
 inline constexpr Profile command_reply{"reident/CommandReply", 1, 0, true};
 inline constexpr Profile history_request{"reident/HistoryRequest", 1, 0, false};
-inline constexpr Profile history_reply{"reident/HistoryReply", 1, 0, false};
+inline constexpr Profile history_reply{"reident/HistoryReply", 1, 0, false,
+                                       std::chrono::milliseconds(500)};
 
 /// The middleware's blocking time of one attempt to write: how soon a stop request is seen.
 inline constexpr std::chrono::milliseconds write_slice{100};
