@@ -111,7 +111,8 @@ std::string why_not_remote(const std::string& command) {
   if (std::find(of_the_file.begin(), of_the_file.end(), command) != of_the_file.end())
     return fmt::format(
         "{} works on the database file itself: run it where that is, without --remote", command);
-  return fmt::format("{} reads no database: leave out --remote", command);
+  return fmt::format("{} is none of the commands that read a database; leave out --remote",
+                     command);
 }
 
 }  // namespace reident::cli
