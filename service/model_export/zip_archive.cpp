@@ -1,8 +1,7 @@
 #include "service/model_export/zip_archive.hpp"
 
-#include <cstdlib>
-#include <cstring>
 #include <stdexcept>
+#include <utility>
 #include <zip.h>
 
 namespace reident::model_export {
@@ -36,15 +35,10 @@ void ZipArchive::fail(const std::string& what) const {
                            zip_strerror(archive_));
 }
 
-void ZipArchive::add(const std::string& path, const std::string& content) {
-  void* const copy = std::malloc(content.size() + 1);
-  if (copy == nullptr) throw std::bad_alloc();
-  std::memcpy(copy, content.data(), content.size());
-  zip_source_t* const source = zip_source_buffer(archive_, copy, content.size(), 1);
-  if (source == nullptr) {
-    std::free(copy);
-    fail(path);
-  }
+void ZipArchive::add(const std::string& path, std::string content) {
+  const std::string& kept = contents_.emplace_back(std::move(content));
+  zip_source_t* const source = zip_source_buffer(archive_, kept.data(), kept.size(), 0);
+  if (source == nullptr) fail(path);
   const zip_int64_t index = zip_file_add(archive_, path.c_str(), source, ZIP_FL_ENC_UTF_8);
   if (index < 0) {
     zip_source_free(source);

@@ -1,7 +1,7 @@
 // A zip file in memory.
 #pragma once
 
-#include <memory>
+#include <deque>
 #include <string>
 
 struct zip;
@@ -18,13 +18,14 @@ class ZipArchive {
   ZipArchive(const ZipArchive&) = delete;
   ZipArchive& operator=(const ZipArchive&) = delete;
 
-  void add(const std::string& path, const std::string& content);
+  void add(const std::string& path, std::string content);
   /// The bytes of the whole file; nothing can be added afterwards.
   std::string finish();
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
 
+  std::deque<std::string> contents_;  // the library reads them when it closes the archive
   zip_source* file_ = nullptr;
   zip* archive_ = nullptr;
 };
