@@ -17,9 +17,10 @@ int run(int argc, char** argv) {
                "reident");
   app.require_subcommand(1);
   app.fallthrough();  // --remote may stand behind a command that cannot have it, to be told why
-  const CLI::Option* remote = app.add_flag(
-      "--remote",
-      std::string("with a command that reads: ask the running service over DDS instead of a file"));
+  const CLI::Option* remote =
+      app.add_flag("--remote")
+          ->description(
+              "with a command that reads: ask the running service over DDS instead of a file");
   app.parse_complete_callback([&app, remote] {
     for (const CLI::App* command : app.get_subcommands())
       if (remote->count() > 0 && command->get_option_no_throw("--remote") == nullptr)
