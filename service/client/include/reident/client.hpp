@@ -51,7 +51,7 @@ struct ClientEvent {
 };
 
 using RunnerState = reident_runner_state;
-using HistoryQuery = reident_history_query;
+using ClientHistoryQuery = reident_history_query;
 
 namespace detail {
 
@@ -119,7 +119,7 @@ class Client {
   }
 
   /// Calls `row` with each row (JSON) of the history, page by page. Throws ClientError.
-  void history(const HistoryQuery& query, const std::function<void(const char*)>& row,
+  void history(const ClientHistoryQuery& query, const std::function<void(const char*)>& row,
                int timeout_ms = 10000);
 
   reident_client* handle() { return client_.get(); }
@@ -162,8 +162,8 @@ inline std::optional<ClientEvent> Client::next_event(int timeout_ms) {
                      event.matched_rows};
 }
 
-inline void Client::history(const HistoryQuery& query, const std::function<void(const char*)>& row,
-                            int timeout_ms) {
+inline void Client::history(const ClientHistoryQuery& query,
+                            const std::function<void(const char*)>& row, int timeout_ms) {
   const auto call = [](const char* json, void* user) {
     (*static_cast<const std::function<void(const char*)>*>(user))(json);
   };
