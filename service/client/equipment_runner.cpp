@@ -95,7 +95,9 @@ void EquipmentRunner::post(std::unique_ptr<PreparedModel> model, const Arrival& 
   parcel->model = std::move(model);
   parcel->swapped.arrival = arrival;
   PreparedModel* const prepared = parcel->model.get();
-  delete posted_.exchange(parcel.release(), std::memory_order_acq_rel);
+  const std::unique_ptr<Parcel> replaced(
+      posted_.exchange(parcel.release(), std::memory_order_acq_rel));
+  if (replaced == nullptr) ++under_way_;
   // The run may have begun: only this thread destroys what it has left, by collect().
   prepared->prepare_following();
 }
@@ -112,6 +114,7 @@ void EquipmentRunner::collect(const std::function<void(const Swapped&)>& use) {
   while (first != nullptr) {
     const std::unique_ptr<Parcel> parcel(first);
     first = parcel->next;
+    --under_way_;
     use(parcel->swapped);
   }
 }

@@ -57,8 +57,8 @@ class EquipmentRunner {
   /// Has the run go on with `model`, prepared for declaration(), at its next step. Takes the place
   /// of one that was posted before and that no step has taken yet.
   void post(std::unique_ptr<PreparedModel> model, const Arrival& arrival);
-  /// Whether one is posted that no step has taken yet.
-  bool is_waiting() const { return posted_.load(std::memory_order_relaxed) != nullptr; }
+  /// Whether one is posted whose first step collect() has not told of yet.
+  bool is_waiting() const { return under_way_ > 0; }
   /// A first step on a version that was posted.
   struct Swapped {
     RunState state;                  // after the step
@@ -91,6 +91,7 @@ class EquipmentRunner {
   RunningScore score_;
   RunState state_;
 
+  int under_way_ = 0;  // parcels; the client's thread's
   std::atomic<Parcel*> posted_ = nullptr;
   std::atomic<Parcel*> returned_ = nullptr;  // the last one first
   // Whoever may not set it owns sent_state_: the run while it is true, the client otherwise.
