@@ -76,11 +76,12 @@ void copy_out(T value, T* to, std::size_t size) {
   std::memcpy(to, &value, std::min(size, sizeof(T)));
 }
 
-/// The caller's structure with what a shorter one, of an older header, leaves out as `defaults`.
+/// The caller's structure; what a shorter one, of an older header, leaves out is 0.
 template <class T>
-T copy_in(const T& from, T defaults) {
-  std::memcpy(&defaults, &from, std::min(from.size, sizeof(T)));
-  return defaults;
+T copy_in(const T& from) {
+  T copy{};
+  std::memcpy(&copy, &from, std::min(from.size, sizeof(T)));
+  return copy;
 }
 
 std::string text_or(const char* text, const char* otherwise) {
@@ -118,16 +119,14 @@ std::vector<reident::DeclaredSignal> declared(const reident_signal* signals, std
 }
 
 reident::HistoryQuery history_query(const reident_history_query& given, const char* cursor) {
-  reident_history_query defaults{};
-  reident_history_init(&defaults);
-  const reident_history_query c = copy_in(given, defaults);
+  const reident_history_query c = copy_in(given);
   reident::HistoryQuery query;
-  query.subject = text_or(c.subject, "");
+  query.subject = text_or(c.subject, "versions");
   query.spacecraft = text_or(c.spacecraft, "");
   query.equipment = text_or(c.equipment, "");
   query.range = {c.begin_ns, c.end_ns};
   query.version = c.version;
-  query.page_size = c.page_size;
+  if (c.page_size > 0) query.page_size = c.page_size;
   query.cursor = cursor;
   query.newest_first = c.newest_first != 0;
   query.origin =
@@ -137,9 +136,7 @@ reident::HistoryQuery history_query(const reident_history_query& given, const ch
 }
 
 reident::SimulatorClientOptions client_options(const reident_options& given) {
-  reident_options defaults{};
-  reident_options_init(&defaults);
-  const reident_options c = copy_in(given, defaults);
+  const reident_options c = copy_in(given);
   reident::SimulatorClientOptions options;
   options.endpoint.simulator = true;
   options.endpoint.domain = c.domain;
@@ -166,12 +163,6 @@ const char* reident_last_error(void) {
 const char* reident_library_version(void) {
   static const std::string version(reident::program_version());
   return version.c_str();
-}
-
-void reident_options_init(reident_options* options) {
-  if (options == nullptr) return;
-  *options = {};
-  options->size = sizeof(*options);
 }
 
 reident_client* reident_client_open(const reident_options* options) {
@@ -231,14 +222,6 @@ const char* reident_version_json(reident_client* client, const char* spacecraft,
     client->json = json.dump();
     return client->json.c_str();
   });
-}
-
-void reident_history_init(reident_history_query* query) {
-  if (query == nullptr) return;
-  *query = {};
-  query->size = sizeof(*query);
-  query->subject = "versions";
-  query->page_size = 1000;
 }
 
 int reident_history_page(reident_client* client, const reident_history_query* query,

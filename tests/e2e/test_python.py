@@ -57,7 +57,8 @@ class PythonModule(EndToEnd):
         self.assertIn(f"version {self.champion()}", swapped.text)
         self.assertIn(reident.EventKind.AVAILABLE, kinds)
         model = client.version("SAT", "PLANT")
-        self.assertEqual([one["name"] for one in model["inputs"]], ["drive", "load"])
+        self.assertEqual(model["version"], self.champion())
+        self.assertEqual([one["name"] for one in model["model"]["inputs"]], ["drive", "load"])
         self.assertIsNone(client.version("SAT", "NONE"))
 
     def test_takes_any_vector_and_flags_inputs_by_name(self):

@@ -21,6 +21,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #if defined(__GNUC__)
 #define REIDENT_API __attribute__((visibility("default")))
@@ -62,7 +63,11 @@ typedef struct {
   const char* cache_folder; /* NULL: $XDG_CACHE_HOME/reident or ~/.cache/reident; "": none */
 } reident_options;
 
-REIDENT_API void reident_options_init(reident_options* options);
+/* Everything by default. Compiled into the program, which knows how large its own structure is. */
+static inline void reident_options_init(reident_options* options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+}
 
 /* NULL when it cannot be opened. Does not wait for a service. Versions kept from an earlier run are
  * there when it returns. */
@@ -115,19 +120,22 @@ REIDENT_API const char* reident_version_json(reident_client* client, const char*
 
 typedef struct {
   size_t size;            /* set by reident_history_init */
-  const char* subject;    /* see "History" in idl/README.md: "versions", "decisions", ... */
+  const char* subject;    /* "decisions", ...: "History" in idl/README.md; NULL: "versions" */
   const char* spacecraft; /* NULL: every one */
   const char* equipment;  /* NULL: every one */
   int64_t begin_ns;       /* begin == end: all of time */
   int64_t end_ns;
   int64_t version;      /* 0: every one */
-  uint32_t page_size;   /* rows, 1 to 10000 */
+  uint32_t page_size;   /* rows, at most 10000; 0: 1000 */
   int32_t newest_first; /* 1: descending */
   int32_t simulated;    /* of telemetry: 1: the simulator's own */
   uint32_t parameter;   /* of telemetry: id within the spacecraft */
 } reident_history_query;
 
-REIDENT_API void reident_history_init(reident_history_query* query);
+static inline void reident_history_init(reident_history_query* query) {
+  memset(query, 0, sizeof *query);
+  query->size = sizeof *query;
+}
 
 /* One row: a JSON object, good during the call, which must not throw. */
 typedef void (*reident_history_row)(const char* json, void* user);

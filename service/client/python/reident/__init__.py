@@ -99,8 +99,7 @@ class Client:
         one. `cache_folder` keeps the last good versions: None is the user's, "" none."""
         if isinstance(equipment, str):
             equipment = [equipment]
-        options = _abi.Options()
-        library.reident_options_init(ctypes.byref(options))
+        options = _abi.Options(size=ctypes.sizeof(_abi.Options))
         names = (ctypes.c_char_p * len(equipment))(*map(_text, equipment))
         options.simulator, options.domain = _text(simulator), domain
         options.partition, options.spacecraft = _text(partition), _text(spacecraft)
@@ -161,12 +160,11 @@ class Client:
                 version: int = 0, page_size: Optional[int] = None,
                 timeout: float = 10) -> Iterator[dict]:
         """Rows of the running service's history, fetched page by page as they are asked for."""
-        query = _abi.HistoryQuery()
-        library.reident_history_init(ctypes.byref(query))
+        query = _abi.HistoryQuery(size=ctypes.sizeof(_abi.HistoryQuery))
         query.subject, query.version = _text(subject), version
         query.spacecraft, query.equipment = _text(spacecraft), _text(equipment)
         query.begin_ns, query.end_ns = begin_ns, end_ns
-        query.page_size = page_size or query.page_size
+        query.page_size = page_size or 0
         cursor, following = b"", ctypes.create_string_buffer(4096)
         while True:
             rows = []

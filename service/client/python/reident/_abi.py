@@ -16,6 +16,7 @@ class EventKind(enum.IntEnum):
     REFUSED = 3  # the version must not run; the one before goes on
     OFFERED = 4  # its signals differ from those that run: Runner.accept() takes it
     CACHE = 5  # the file of last good versions could not be read or written
+    FAULT = 6  # the middleware would not; the runs go on
 
 
 class Flags(enum.IntFlag):
@@ -48,7 +49,8 @@ class Event(ctypes.Structure):
 class HistoryQuery(ctypes.Structure):
     _fields_ = [("size", c_size_t), ("subject", c_char_p), ("spacecraft", c_char_p),
                 ("equipment", c_char_p), ("begin_ns", c_int64), ("end_ns", c_int64),
-                ("version", c_int64), ("page_size", c_uint32)]
+                ("version", c_int64), ("page_size", c_uint32), ("newest_first", c_int32),
+                ("simulated", c_int32), ("parameter", c_uint32)]
 
 
 class Signal(ctypes.Structure):
@@ -71,12 +73,10 @@ _VECTOR = POINTER(c_double)
 _PROTOTYPES = {  # name: result, arguments
     "reident_last_error": (c_char_p, []),
     "reident_library_version": (c_char_p, []),
-    "reident_options_init": (None, [POINTER(Options)]),
     "reident_client_open": (c_void_p, [POINTER(Options)]),
     "reident_client_close": (None, [c_void_p]),
     "reident_next_event": (c_int, [c_void_p, POINTER(Event), c_int]),
     "reident_version_json": (c_char_p, [c_void_p, c_char_p, c_char_p]),
-    "reident_history_init": (None, [POINTER(HistoryQuery)]),
     "reident_history_page": (c_int, [c_void_p, POINTER(HistoryQuery), c_char_p, c_int, HistoryRow,
                                      c_void_p, c_char_p, c_size_t]),
     "reident_runner_open": (c_void_p, [c_void_p, c_char_p, c_char_p, POINTER(Signal), c_size_t,
