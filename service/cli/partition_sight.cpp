@@ -10,7 +10,8 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto settled = 1s;
-constexpr auto look_around = 20ms;  // for writers: the wait set wakes for samples
+constexpr auto settled_without = 2s;  // that nobody is there takes longer to tell
+constexpr auto look_around = 20ms;    // for writers: the wait set wakes for samples
 constexpr std::size_t take_at_most = 1024;
 
 class Listener {
@@ -69,7 +70,11 @@ PartitionSight look_into(const dds::Endpoint& endpoint, std::chrono::nanoseconds
   const auto deadline = Clock::now() + limit;
   auto changed = Clock::now();
   std::array<std::size_t, 4> known{};
-  for (auto now = changed; now < deadline && now - changed < settled; now = Clock::now()) {
+  const auto has_settled = [&](Clock::time_point now) {
+    const bool is_full = std::find(known.begin(), known.end(), 0U) == known.end();
+    return now - changed >= (is_full ? settled : settled_without);
+  };
+  for (auto now = changed; now < deadline && !has_settled(now); now = Clock::now()) {
     const auto known_now = listener.look(deadline - now);
     if (known_now != known) changed = Clock::now();
     known = known_now;

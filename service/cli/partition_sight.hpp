@@ -9,7 +9,8 @@
 namespace reident::cli {
 
 /// Listens until what is new has ended: no writer of versions or acknowledgements, no simulator and
-/// no champion appeared for a second; at most for `limit`. Each of those who live sends what it
+/// no champion appeared for a second, or for two where there is none of one of them; at most for
+/// `limit`. Each of those who live sends what it
 /// said last as soon as it is discovered. Throws dds::Error.
 PartitionSight look_into(const dds::Endpoint& endpoint, std::chrono::nanoseconds limit);
 

@@ -116,11 +116,10 @@ void print_text(const Arguments& arguments, const dds::Endpoint& endpoint,
       fmt::format("domain {}, partition {}", endpoint.domain, endpoint.partition);
   const bool has_service = sight.services > 0;
   if (rows.empty()) {
-    const std::string subject =
-        arguments.subject.empty() ? std::string("a model") : arguments.subject;
-    fmt::print("{}\n", arguments.old
-                           ? fmt::format("no simulator runs something old on {}", place)
-                           : fmt::format("no simulator of {} is there on {}", subject, place));
+    const std::string whose =
+        arguments.subject.empty() ? std::string() : " of " + arguments.subject;
+    fmt::print("no simulator{} {} on {}\n", whose,
+               arguments.old ? "runs something old" : "is there", place);
   } else {
     const std::size_t width = terminal_width();
     std::string text = table_text(rows, has_service, false, width);
@@ -224,8 +223,9 @@ void add_simulators(CLI::App& app, int& exit_code) {
   command->add_flag("--old", arguments->old,
                     "those alone that run another version than the champion");
   command
-      ->add_option("--wait", arguments->wait_s,
-                   "seconds to listen at most; it ends once nobody new was heard for a second")
+      ->add_option(
+          "--wait", arguments->wait_s,
+          "seconds to listen at most; it ends once nobody new was heard for a second or two")
       ->check(CLI::Range(0.0, max_wait_s))
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "one JSON object");

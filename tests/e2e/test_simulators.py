@@ -84,9 +84,13 @@ class Simulators(EndToEnd):
         wait_until(went_on, f"the simulator goes on with version {version}")
 
     def simulators(self, *options, expect=0):
-        status, text = self.reident("simulators", "--json", *self.endpoint(), *options)
-        self.assertEqual(status, expect, text)
-        return json.loads(text)
+        """The list, once the command ends as expected."""
+
+        def listed():
+            status, text = self.reident("simulators", "--json", *self.endpoint(), *options)
+            return status == expect and text
+
+        return json.loads(wait_until(listed, f"reident simulators {options} exits {expect}"))
 
     def wait_for_row(self, what, **fields):
         """The only simulator, once it is listed so."""
@@ -139,9 +143,9 @@ class Simulators(EndToEnd):
         other.publish(1, model=model(gain=2.0))
         self.assertIn("two services", self.wait_for(simulator, "refused", 1)["reason"])
         self.assert_goes_on(simulator, 1)
-        seen = self.simulators()
-        self.assertEqual(seen["services"], 2)
-        self.assertIn("two services", seen["simulators"][0]["refused"]["reason"])
+        wait_until(lambda: self.simulators()["services"] == 2, "both services are seen")
+        row = self.wait_for_row("the refusal is listed", version=1)
+        self.assertIn("two services", row["refused"]["reason"])
         other.publish(3, model=model(gain=2.0))
         one.publish(2)
         self.assertIn("older than version 3", self.wait_for(simulator, "refused", 2)["reason"])
@@ -275,7 +279,7 @@ class Simulators(EndToEnd):
         wait_until(lambda: not self.simulators()["simulators"], "none is listed")
         status, text = self.reident("simulators", *self.endpoint())
         self.assertEqual(status, 0, text)
-        self.assertIn(f"no simulator of a model is there on domain {self.domain}", text)
+        self.assertIn(f"no simulator is there on domain {self.domain}", text)
 
     def test_the_list_says_who_runs_something_old_also_on_a_narrow_terminal(self):
         service = self.service()
@@ -287,9 +291,9 @@ class Simulators(EndToEnd):
         service.publish(3, spoil="digest")
         wait_until(lambda: all(row["old"] and row["refused"]
                                for row in self.simulators()["simulators"]), "both are behind")
-        self.assertEqual([row["simulator"] for row in
-                          self.simulators("PLANT", "--old", expect=1)["simulators"]],
-                         ["aside", "behind"])
+        wait_until(lambda: [row["simulator"] for row in
+                            self.simulators("PLANT", "--old", expect=1)["simulators"]] ==
+                   ["aside", "behind"], "both are listed, in order")
         self.assertEqual(self.simulators("SAT/OTHER", "--old")["simulators"], [])
         text = self.on_terminal(80, "simulators", *self.endpoint())
         self.assertIn("old by 2 versions: 3 is out", " ".join(text.split()))
@@ -298,6 +302,25 @@ class Simulators(EndToEnd):
         self.assertEqual(wide[0].split()[:3], ["simulator", "host", "equipment"])
         self.assertEqual([line.split()[0] for line in wide[1:3]], ["aside", "behind"])
         self.assertEqual(stopped.terminate()[0], 0)
+
+    def test_what_was_withdrawn_is_shown_as_no_longer_published(self):
+        config = self.configure([plant.equipment()])
+        self.start_daemon()
+        self.replay_rows("first", count=1900)
+        champion = self.champion()
+        simulator = self.start_running()
+        self.wait_for(simulator, "adopted", 1)
+        self.wait_for_row("it runs the champion", version=champion, state="current")
+        status, text = self.reident("withdraw", "SAT/PLANT", champion, "--reason", "wrong sensor",
+                                    "--config", config)
+        self.assertEqual(status, 0, text)
+        for version in reversed(range(1, champion)):  # a withdrawal brings the one before back
+            self.reident("withdraw", "SAT/PLANT", version, "--reason", "all", "--config", config)
+        self.assertIsNone(self.champion())
+        self.wait_for_row("nothing is published", champion=None, state="unpublished", old=True)
+        status, text = self.reident("simulators", "--config", config)
+        self.assertEqual(status, 0, text)
+        self.assertIn("no champion: what runs is no longer published", text)
 
     def on_terminal(self, columns, *arguments):
         master, slave = pty.openpty()
