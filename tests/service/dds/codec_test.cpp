@@ -236,5 +236,30 @@ TEST(CommandCodec, refuses_what_cannot_be_answered_and_leaves_the_rest_to_the_an
   expect(reply, R{"", [](auto& r) { r.requester = text("a\nb"); }, "control character"});
 }
 
+using AcknowledgementSpoil = Spoil<reident_ModelAcknowledgement>;
+class AcknowledgementCodec : public testing::TestWithParam<AcknowledgementSpoil> {};
+TEST_P(AcknowledgementCodec, takes_what_keeps_the_contract_and_names_what_breaks_it) {
+  expect(ModelAcknowledgement{"trainer", "CBERS4", "BDR", 3, "ab", true, "", {}, "console", 7, "1"},
+         GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    table, AcknowledgementCodec,
+    testing::Values(
+        AcknowledgementSpoil{"nothing", [](auto&) {}, ""},
+        AcknowledgementSpoil{"no error yet", [](auto& a) { a.running_mrse_percent = nan; }, ""},
+        AcknowledgementSpoil{"unknown mode", [](auto& a) { a.mode = text("hybrid"); }, ""},
+        AcknowledgementSpoil{"empty simulator", [](auto& a) { a.simulator = text(""); },
+                             "simulator is empty"},
+        AcknowledgementSpoil{"null host", [](auto& a) { a.host = null_text; }, "host is null"},
+        AcknowledgementSpoil{"mode", [](auto& a) { a.mode = text("\xff"); }, "mode is not UTF-8"},
+        AcknowledgementSpoil{"version", [](auto& a) { a.version = -1; }, "number is negative"},
+        AcknowledgementSpoil{"running", [](auto& a) { a.running_version = -1; },
+                             "number is negative"},
+        AcknowledgementSpoil{"offered", [](auto& a) { a.offered_version = -1; },
+                             "number is negative"},
+        AcknowledgementSpoil{"transition", [](auto& a) { a.transition_steps = -1; },
+                             "transition are negative"}));
+
 }  // namespace
 }  // namespace reident::test
