@@ -23,7 +23,7 @@ TEST_F(Program, EveryCommandHasHelpWithAnExample) {
   for (const std::string command :
        {"identify", "history", "show", "at", "approve", "reject", "withdraw", "hold", "release",
         "rollback", "identify-now", "check-config", "status", "version", "import", "export",
-        "completeness"}) {
+        "completeness", "simulators"}) {
     const testing::Ran ran = reident({command, "--help"});
     EXPECT_EQ(ran.status, 0) << command;
     EXPECT_THAT(ran.out, HasSubstr("Example:\n  reident " + command)) << command;

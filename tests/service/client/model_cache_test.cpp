@@ -2,6 +2,7 @@
 #include "service/client/model_cache.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <fcntl.h>
 #include <fstream>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 #include "identification/tracking_search.hpp"
 #include "service/client/kept_version_file.hpp"
@@ -256,6 +258,28 @@ TEST_F(Cache, that_simulators_share_ends_with_the_newest_version_whole) {
   EXPECT_EQ(loaded(), last);
   EXPECT_THAT(faults_, testing::IsEmpty());
   EXPECT_EQ(std::distance(fs::directory_iterator(file().parent_path()), {}), 1);
+}
+
+TEST_F(Cache, is_whole_after_a_kill_at_any_moment) {
+  store(kept(1));
+  std::int64_t last = 1;
+  for (int round = 0; round < 10; ++round) {
+    const pid_t writer = ::fork();
+    ASSERT_GE(writer, 0);
+    for (std::int64_t number = last + 1; writer == 0; ++number)
+      cache_.store(kept(number), [](const CacheFault&) {});
+    const bool has_begun = eventually([&] { return loaded() > last; });
+    std::this_thread::sleep_for(round * 271us);  // another moment of a write each time
+    ::kill(writer, SIGKILL);
+    ::waitpid(writer, nullptr, 0);
+    ASSERT_TRUE(has_begun);
+    const std::int64_t now = loaded();
+    EXPECT_GT(now, last);
+    last = now;
+  }
+  EXPECT_THAT(faults_, testing::IsEmpty());
+  store(kept(last + 1));
+  EXPECT_EQ(loaded(), last + 1) << "what the dead left behind is in nobody's way";
 }
 
 TEST(CacheFolder, is_that_of_the_user) {
