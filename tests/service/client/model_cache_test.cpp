@@ -268,8 +268,10 @@ TEST_F(Cache, is_whole_after_a_kill_at_any_moment) {
     ASSERT_GE(writer, 0);
     for (std::int64_t number = last + 1; writer == 0; ++number)
       cache_.store(kept(number), [](const CacheFault&) {});
-    const bool has_begun = eventually([&] { return loaded() > last; });
-    std::this_thread::sleep_for(round * 271us);  // another moment of a write each time
+    const bool has_begun = eventually([&] {  // without the lock, which the writer needs
+      const auto there = read_kept_version(file(), "operations");
+      return std::get<KeptVersion>(there).version.number > last + round;
+    });
     ::kill(writer, SIGKILL);
     ::waitpid(writer, nullptr, 0);
     ASSERT_TRUE(has_begun);
