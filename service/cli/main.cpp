@@ -2,6 +2,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <optional>
+#include <string>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -21,10 +23,14 @@ int run(int argc, char** argv) {
       app.add_flag("--remote")
           ->description(
               "with a command that reads: ask the running service over DDS instead of a file");
-  app.parse_complete_callback([&app, remote] {
+  const auto remote_in_vain = [&app, remote]() -> std::optional<std::string> {
     for (const CLI::App* command : app.get_subcommands())
       if (remote->count() > 0 && command->get_option_no_throw("--remote") == nullptr)
-        throw CLI::ValidationError(why_not_remote(command->get_name()));
+        return why_not_remote(command->get_name());
+    return std::nullopt;
+  };
+  app.parse_complete_callback([&remote_in_vain] {
+    if (const auto why = remote_in_vain()) throw CLI::ValidationError(*why);
   });
   app.footer("reident COMMAND --help shows the options of a command and an example.");
   int exit_code = exit_done;
@@ -53,6 +59,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    if (const auto why = remote_in_vain()) return refuse({*why});
     std::string command = "reident";
     for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
     return refuse({fmt::format("{}; see {} --help", error.what(), command)});
