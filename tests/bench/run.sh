@@ -22,6 +22,11 @@
 #                                         (bupt1_eps_*.csv). The large archive has 100 million
 #                                         samples, or N, or a billion, and is made in FOLDER.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh simulator          a version's way from the service to a step in another
+#                                         process beside ddsperf's round trip, a step beside the
+#                                         bare products, what a step allocates, a hundred
+#                                         simulators that come late and go a hundred times, the
+#                                         output's jump at a swap. The last line is one JSON object
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 usage() {
@@ -53,6 +58,12 @@ case $what in
       { echo "$1 is no folder of telemetry" >&2; exit 2; }
     arguments=(build/release "$@")
     targets=(reident_archive_bench reident_bench_publisher reidentd)
+    ;;
+  simulator)
+    [ $# -eq 0 ] || usage
+    arguments=(build/release)
+    targets=(reident_step_bench reident_swap_bench reident_jump_bench reidentd reident
+             reident-simulator satcs-replay)
     ;;
   *)
     usage
