@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "service/support/allocator.hpp"
 #include "service/support/log.hpp"
 
 namespace reident {
@@ -99,11 +100,23 @@ std::size_t Ingest::take() {
   return taken;
 }
 
+void Ingest::watch_simulators() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_look_) return;
+  next_look_ = now + std::chrono::seconds(1);
+  const std::uint32_t simulators = acknowledgements_.matched_writers();
+  if (simulators == 0) heard_.clear();
+  if (simulators >= simulators_ && std::exchange(are_leaving_, false)) return_freed_memory();
+  if (simulators < simulators_) are_leaving_ = true;
+  simulators_ = simulators;
+}
+
 void Ingest::run() {
   while (!stopping_) {
     ready_.wait(look_around);
     while (take() > 0 && !stopping_) {
     }
+    watch_simulators();
   }
   participant_.stop_hearing();
   descriptors_.drain([this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });

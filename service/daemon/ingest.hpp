@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -39,6 +40,8 @@ class Ingest {
   /// Pushes what was taken; waits for room.
   void push_taken();
   void count_rejected();
+  /// Once a second: what a hundred simulators leave behind is given back when they have left.
+  void watch_simulators();
   /// Logs what is news: simulators tell their running errors again and again.
   void hear(const ModelAcknowledgement& acknowledgement);
 
@@ -50,6 +53,9 @@ class Ingest {
   dds::WaitSet ready_;
   /// By simulator, spacecraft and equipment: the versions that run and that were refused.
   std::map<std::array<std::string, 3>, std::pair<std::int64_t, std::int64_t>> heard_;
+  std::uint32_t simulators_ = 0;  // at the last look
+  bool are_leaving_ = false;
+  std::chrono::steady_clock::time_point next_look_;
   std::vector<TelemetryEvent> taken_;  // and not pushed yet
   std::atomic<bool> stopping_ = false;
   std::atomic<std::uint64_t> frames_received_ = 0;

@@ -10,4 +10,8 @@ void keep_freed_memory() {
   mallopt(M_MMAP_THRESHOLD, 32 * mebibyte);
 }
 
+void return_freed_memory() {
+  malloc_trim(0);
+}
+
 }  // namespace reident

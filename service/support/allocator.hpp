@@ -7,4 +7,7 @@ namespace reident {
 /// not take the same pages anew each time. Call once, before threads start.
 void keep_freed_memory();
 
+/// Gives back what is kept now; for a moment when much was freed that will not be needed soon.
+void return_freed_memory();
+
 }  // namespace reident
