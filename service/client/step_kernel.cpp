@@ -58,7 +58,8 @@ void product(const double* packed, std::size_t stride, std::size_t columns, cons
 }  // namespace
 
 StepKernel::StepKernel(const identification::StateSpaceModel& model)
-    : columns_(static_cast<std::size_t>(model.order() + model.inputs())),
+    : product_(&product),
+      columns_(static_cast<std::size_t>(model.order() + model.inputs())),
       stride_((static_cast<std::size_t>(model.order() + model.outputs()) + block - 1) / block *
               block),
       packed_(stride_ * columns_) {
@@ -69,10 +70,6 @@ StepKernel::StepKernel(const identification::StateSpaceModel& model)
   packed.block(0, n, n, m) = model.B;
   packed.block(n, 0, p, n) = model.C;
   packed.block(n, n, p, m) = model.D;
-}
-
-void StepKernel::run(const double* z, double* out) const {
-  product(packed_.data(), stride_, columns_, z, out);
 }
 
 }  // namespace reident
