@@ -56,10 +56,14 @@ flight=(--spacecraft CBERS-4 --duration 2406min --speed 1500 --wait-readers 2 "$
 pids+=($!)
 "$bin/satcs/satcs-reference" "${flight[@]}" 2>"$folder/reference.log"
 "$bin/cli/reident" status --wait idle --timeout 60 "${endpoint[@]}" >"$folder/status.log"
+"$bin/cli/reident" simulators "${endpoint[@]}" >"$folder/simulators.log"
 trap - EXIT
 cleanup
 
 echo
 "$bin/cli/reident" history --config "$folder/reident.toml"
+echo
+echo "Who ran what at the end (reident simulators):"
+cat "$folder/simulators.log"
 echo
 echo "Archive and registry: $folder/reident.db; configuration: $folder/reident.toml"
