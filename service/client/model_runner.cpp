@@ -23,14 +23,14 @@ inline void ModelRunner::run_plain(const double* measured) {
   PreparedModel& model = *model_;
   const identification::StateSpaceModel& dynamics = model.dynamics();
   const Index n = dynamics.order(), m = dynamics.inputs(), p = dynamics.outputs();
-  double* const du = model.now_.data() + n;
+  double* const du = model.now_ + n;
   for (Index i = 0; i < m; ++i) du[i] = model.u_[static_cast<std::size_t>(i)] - dynamics.u0(i);
-  model.kernel_.run(model.now_.data(), model.next_.data());
-  model.now_.swap(model.next_);
-  const double* const dy = model.now_.data() + n;
+  model.kernel_.run(model.now_, model.next_);
+  std::swap(model.now_, model.next_);
+  const double* const dy = model.now_ + n;
   for (Index q = 0; q < p; ++q) model.y_(q) = dy[q] + dynamics.y0(q);
   if (measured == nullptr || !model.has_kalman_gain_.load(std::memory_order_acquire)) return;
-  Eigen::Map<Vector> x(model.now_.data(), n);
+  Eigen::Map<Vector> x(model.now_, n);
   for (Index q = 0; q < p; ++q) {
     const double error = measured[model.outputs_[static_cast<std::size_t>(q)]] - model.y_(q);
     if (!std::isfinite(error)) continue;
@@ -127,7 +127,7 @@ int ModelRunner::advance(const double* u, const double* measured, double* y) {
 void ModelRunner::run_tracker(Tracker& tracker, const double* measured) {
   PreparedModel& model = *model_;
   const Index n = model.dynamics().order();
-  Eigen::Map<Vector> x(model.now_.data(), n);
+  Eigen::Map<Vector> x(model.now_, n);
   if (!tracker_runs_) tracker.restart(x);
   tracker_runs_ = true;
   model.measured_.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -143,7 +143,7 @@ void ModelRunner::run_tracker(Tracker& tracker, const double* measured) {
 }
 
 void ModelRunner::start_over() {
-  std::fill(model_->now_.begin(), model_->now_.end(), 0.0);
+  std::fill_n(model_->now_, model_->room_, 0.0);
   model_->y_ = model_->dynamics().y0;
   for (std::size_t q = 0; q < outputs_; ++q)
     output_[model_->outputs_[q]] = model_->y_(static_cast<Index>(q));
@@ -176,7 +176,7 @@ void ModelRunner::match() {
     model.match_.add(model.du_, model.measured_);
   }
   const Vector& x = model.match_.solve();
-  std::copy_n(x.data(), x.size(), model.now_.data());
+  std::copy_n(x.data(), x.size(), model.now_);
   model.y_ = model.dynamics().y0 + model.match_.last_output();
 }
 

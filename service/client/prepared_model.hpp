@@ -59,7 +59,9 @@ class PreparedModel {
   StateMatch match_;
   std::atomic<identification::Tracker*> tracker_ = nullptr;  // owned
   // [x; u - u0] of this step, and room for [next x; y - y0]: the two change places at each step.
-  std::vector<double> now_, next_;
+  std::size_t room_;  // of each
+  std::vector<double> both_;
+  double *now_, *next_;
   std::vector<double> u_;  // m, of the last step
   Vector du_;              // m
   Vector y_;               // p, of the model
