@@ -238,7 +238,7 @@ void SimulatorClient::collect(Run& run) {
 void SimulatorClient::acknowledge(Run& run, const RunState& state) {
   RunningModel& told = run.told;
   told.version = state.version;
-  told.mode = state.is_following ? "following" : "free";
+  told.mode = state.version == 0 ? "" : state.is_following ? "following" : "free";
   told.decided = state.decided;
   told.since = state.swapped;
   told.mrse_percent = state.mrse_percent;
