@@ -43,8 +43,8 @@ def cycle(programs, service, number, count):
             with open(path, "wb") as out:
                 simulators.append(subprocess.Popen(
                     [programs.simulator, "--spacecraft", SPACECRAFT, "--name",
-                     f"simulator-{number}-{i}", "--json", *service.endpoint], stdout=out,
-                    stderr=subprocess.STDOUT, env=ENVIRONMENT))
+                     f"simulator-{number}-{i}", "--json", "--cache", "", *service.endpoint],
+                    stdout=out, stderr=subprocess.STDOUT, env=ENVIRONMENT))
         late = list(outputs)
 
         def all_adopted():
