@@ -70,7 +70,7 @@ case $what in
     ;;
 esac
 deploy/install_packages.sh --with-tests
-cmake --preset release >/dev/null
+cmake --preset release -DBUILD_TESTING=ON >/dev/null
 if [ "$what" = identification ]; then
   targets=(reident reident_identification_bench)
   if cmake --build --preset release --target help | grep '^slicot_n4sid:' >/dev/null; then
