@@ -61,19 +61,6 @@ std::filesystem::path fast_folder() {
   return ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
 }
 
-TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent) {
-  std::string pattern = parent / "reident-storage-XXXXXX";
-  if (!::mkdtemp(pattern.data())) throw std::runtime_error("cannot make " + pattern);
-  path_ = pattern;
-  std::filesystem::permissions(path_, std::filesystem::perms::all);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::permissions(path_, std::filesystem::perms::all, ignored);
-  std::filesystem::remove_all(path_, ignored);
-}
-
 TelemetryFrame frame(std::uint64_t sequence, Time time, std::vector<Sample> samples) {
   return {.spacecraft = "CB4",
           .source = "station",

@@ -13,24 +13,17 @@
 
 #include "storage/archive.hpp"
 #include "storage/registry.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace reident::storage::testing {
 
 /// In memory where the system has a file system there: most tests wait for the disk otherwise.
 std::filesystem::path fast_folder();
 
-/// Made anew, accessible to every user, removed with all that is in it.
-class TemporaryFolder {
+class TemporaryFolder : public test::TemporaryFolder {
  public:
-  explicit TemporaryFolder(const std::filesystem::path& parent = fast_folder());
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
+  explicit TemporaryFolder(const std::filesystem::path& parent = fast_folder())
+      : test::TemporaryFolder(parent) {}
 };
 
 /// A frame of spacecraft CB4 from source "station"; received when it was generated.

@@ -25,15 +25,6 @@ void redirect(int descriptor, const std::string& path) {
 
 }  // namespace
 
-CliTest::CliTest() {
-  std::string name = (std::filesystem::temp_directory_path() / "reident-cli-XXXXXX").string();
-  folder_ = mkdtemp(name.data());
-}
-
-CliTest::~CliTest() {
-  std::filesystem::remove_all(folder_);
-}
-
 Ran CliTest::reident(const std::vector<std::string>& arguments) const {
   std::vector<std::string> words = {REIDENT_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -45,7 +36,7 @@ Ran CliTest::reident(const std::vector<std::string>& arguments) const {
   if (child == 0) {
     redirect(STDOUT_FILENO, out);
     redirect(STDERR_FILENO, err);
-    if (chdir(folder_.c_str()) == 0) execv(argv[0], argv.data());
+    if (chdir(folder_.path().c_str()) == 0) execv(argv[0], argv.data());
     _exit(127);
   }
   int status = 0;

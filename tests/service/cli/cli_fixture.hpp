@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace reident::cli::testing {
 
 struct Ran {
@@ -19,9 +21,6 @@ struct Ran {
 
 class CliTest : public ::testing::Test {
  protected:
-  CliTest();
-  ~CliTest() override;
-
   /// Runs reident with the folder as the current one.
   Ran reident(const std::vector<std::string>& arguments) const;
   /// Runs it and expects exit status 0; its output as JSON.
@@ -30,10 +29,10 @@ class CliTest : public ::testing::Test {
   std::string refusal_of(const std::vector<std::string>& arguments) const;
 
   void write(const std::string& name, const std::string& text) const;
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 }  // namespace reident::cli::testing

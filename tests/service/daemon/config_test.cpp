@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace reident {
 namespace {
 
@@ -441,11 +443,6 @@ TEST(Config, TheDigestIsTheSha256OfTheBytes) {
 
 class ConfigFile : public ::testing::Test {
  protected:
-  ConfigFile() {
-    std::string name = (std::filesystem::temp_directory_path() / "reident-config-XXXXXX").string();
-    folder = mkdtemp(name.data());
-  }
-  ~ConfigFile() override { std::filesystem::remove_all(folder); }
   std::vector<ConfigMistake> mistakes(const std::filesystem::path& path) {
     auto loaded = load_config(path);
     return std::holds_alternative<Config>(loaded)
@@ -453,7 +450,7 @@ class ConfigFile : public ::testing::Test {
                : std::get<std::vector<ConfigMistake>>(std::move(loaded));
   }
 
-  std::filesystem::path folder;
+  const test::TemporaryFolder folder;
 };
 
 TEST_F(ConfigFile, ARelativeDatabaseStandsBesideTheFile) {
@@ -466,8 +463,8 @@ TEST_F(ConfigFile, ARelativeDatabaseStandsBesideTheFile) {
 TEST_F(ConfigFile, AMissingFileAFolderAndAHugeFileAreRefused) {
   ASSERT_THAT(mistakes(folder / "none.toml"), SizeIs(1));
   EXPECT_THAT(mistakes(folder / "none.toml")[0].message, HasSubstr("No such file"));
-  ASSERT_THAT(mistakes(folder), SizeIs(1));
-  EXPECT_THAT(mistakes(folder)[0].message, HasSubstr("folder"));
+  ASSERT_THAT(mistakes(folder.path()), SizeIs(1));
+  EXPECT_THAT(mistakes(folder.path())[0].message, HasSubstr("folder"));
   std::ofstream(folder / "huge.toml") << std::string(5u << 20, '#');
   ASSERT_THAT(mistakes(folder / "huge.toml"), SizeIs(1));
   EXPECT_THAT(mistakes(folder / "huge.toml")[0].message, HasSubstr("larger than 4 MiB"));

@@ -14,6 +14,7 @@
 #include "service/daemon/config.hpp"
 #include "storage/archive.hpp"
 #include "storage/registry.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace reident::test {
 
@@ -24,12 +25,6 @@ constexpr storage::Time day = 19'000LL * 86'400 * second;
 
 class DaemonTest : public testing::Test {
  protected:
-  DaemonTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "reident-daemon-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~DaemonTest() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path path() const { return folder_ / "reident.db"; }
   storage::Database open() const { return {path(), storage::Database::Mode::read_write}; }
 
@@ -108,7 +103,7 @@ class DaemonTest : public testing::Test {
   }
 
  private:
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 }  // namespace reident::test

@@ -11,6 +11,7 @@
 #include "service/history/stored_sources.hpp"
 #include "storage/registry.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace reident::test {
 namespace {
@@ -21,10 +22,7 @@ using ::testing::HasSubstr;
 /// A desk whose thread runs on a database, and a console beside it.
 class HistoryDesk : public testing::Test {
  protected:
-  const std::filesystem::path folder_ = [] {
-    std::string name = (std::filesystem::temp_directory_path() / "reident-desk-XXXXXX").string();
-    return std::filesystem::path(mkdtemp(name.data()));
-  }();
+  const TemporaryFolder folder_;
   storage::Database database_{folder_ / "reident.db", storage::Database::Mode::read_write};
   storage::Registry registry_{database_};
   dds::Participant service_{own_endpoint()};
@@ -41,7 +39,6 @@ class HistoryDesk : public testing::Test {
   ~HistoryDesk() override {
     desk_.stop();
     if (thread_.joinable()) thread_.join();
-    std::filesystem::remove_all(folder_);
   }
 
   void add_attempts(int count, const std::string& evidence = "{}") {

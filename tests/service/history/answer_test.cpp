@@ -9,6 +9,7 @@
 #include "service/history/rows.hpp"
 #include "storage/archive.hpp"
 #include "storage/registry.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace reident::history {
 namespace {
@@ -17,14 +18,9 @@ using ::testing::HasSubstr;
 
 class Answers : public testing::Test {
  protected:
-  std::filesystem::path folder_ = [] {
-    std::string name = (std::filesystem::temp_directory_path() / "reident-answer-XXXXXX").string();
-    return std::filesystem::path(mkdtemp(name.data()));
-  }();
+  const test::TemporaryFolder folder_;
   storage::Database database_{folder_ / "reident.db", storage::Database::Mode::read_write};
   storage::Registry registry_{database_};
-
-  ~Answers() override { std::filesystem::remove_all(folder_); }
 
   static storage::NewAttempt attempt(storage::Time end, std::size_t evidence_bytes = 10) {
     storage::NewAttempt attempt;

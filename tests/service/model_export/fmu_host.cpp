@@ -17,8 +17,6 @@ namespace reident::test {
 namespace fs = std::filesystem;
 
 UnpackedFmu::UnpackedFmu(const std::string& bytes) {
-  std::string name = (fs::temp_directory_path() / "reident-fmu-XXXXXX").string();
-  folder_ = mkdtemp(name.data());
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
@@ -35,10 +33,6 @@ UnpackedFmu::UnpackedFmu(const std::string& bytes) {
     write(entry.name, content);
   }
   zip_discard(archive);
-}
-
-UnpackedFmu::~UnpackedFmu() {
-  fs::remove_all(folder_);
 }
 
 std::string UnpackedFmu::text(const std::string& name) const {

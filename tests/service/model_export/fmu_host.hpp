@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.hpp"
+
 extern "C" {
 #include "service/model_export/fmu/fmi2.h"
 }
@@ -15,11 +17,8 @@ namespace reident::test {
 class UnpackedFmu {
  public:
   explicit UnpackedFmu(const std::string& bytes);
-  ~UnpackedFmu();
-  UnpackedFmu(const UnpackedFmu&) = delete;
-  UnpackedFmu& operator=(const UnpackedFmu&) = delete;
 
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
   std::string text(const std::string& name) const;
   void write(const std::string& name, const std::string& content) const;
   std::string resources() const { return "file://" + (folder_ / "resources").string(); }
@@ -29,7 +28,7 @@ class UnpackedFmu {
   std::filesystem::path compiled() const;
 
  private:
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 /// The functions of a binary, and what it logged.

@@ -7,6 +7,8 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace reident {
 namespace {
 
@@ -15,12 +17,6 @@ using Existing = OutputFile::Existing;
 
 class OutputFiles : public testing::Test {
  protected:
-  OutputFiles() {
-    std::string name = (fs::temp_directory_path() / "reident-output-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~OutputFiles() override { fs::remove_all(folder_); }
-
   fs::path path() const { return folder_ / "a.txt"; }
   void make(const std::string& content) const { std::ofstream(path()) << content; }
   std::string content() const {
@@ -29,11 +25,11 @@ class OutputFiles : public testing::Test {
     return text.str();
   }
   std::ptrdiff_t files() const {
-    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+    return std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator());
   }
 
  private:
-  fs::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(OutputFiles, have_their_name_when_all_of_them_is_there) {
