@@ -1,36 +1,15 @@
 #include "service/client/step_kernel.hpp"
 
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wpsabi"  // Four never crosses a call: all is inlined
-#endif
-// Clones need the loader's indirect functions, which sanitizers and clang 14 do not go with.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define REIDENT_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define REIDENT_CLONES
-#endif
+#include "identification/cpu_clones.hpp"
 
 namespace reident {
 namespace {
 
-// Inlined, so that each clone has its own.
-#define REIDENT_INLINE inline __attribute__((always_inline))
+using identification::Four;
+using identification::load;
+using identification::store;
 
-/// Four doubles that the compiler keeps in one register where the machine has one for them, and in
-/// two where it has not.
-typedef double Four __attribute__((vector_size(32)));
 constexpr std::size_t block = 8;  // rows whose sums stay in registers
-
-REIDENT_INLINE Four load(const double* from) {
-  Four value;
-  __builtin_memcpy(&value, from, sizeof value);
-  return value;
-}
-
-REIDENT_INLINE void store(double* to, Four value) {
-  __builtin_memcpy(to, &value, sizeof value);
-}
 
 REIDENT_CLONES
 void product(const double* packed, std::size_t stride, std::size_t columns, const double* z,

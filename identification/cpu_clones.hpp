@@ -1,0 +1,35 @@
+// For the few functions whose time counts: compiled for the baseline and for AVX2, and chosen by
+// the loader. Both give the same bits. Private to source files: it silences a warning.
+#pragma once
+
+// Clones need the loader's indirect functions, which sanitizers and clang 14 do not go with.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"  // Four never crosses a call: all is inlined
+#endif
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define REIDENT_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define REIDENT_CLONES
+#endif
+
+// What a clone calls: inlined, so that each clone has its own.
+#define REIDENT_INLINE inline __attribute__((always_inline))
+
+namespace reident::identification {
+
+/// Four doubles that the compiler keeps in one register where the machine has one for them, and in
+/// two where it has not.
+typedef double Four __attribute__((vector_size(32)));
+
+REIDENT_INLINE Four load(const double* from) {
+  Four value;
+  __builtin_memcpy(&value, from, sizeof value);
+  return value;
+}
+
+REIDENT_INLINE void store(double* to, Four value) {
+  __builtin_memcpy(to, &value, sizeof value);
+}
+
+}  // namespace reident::identification
