@@ -1,13 +1,13 @@
 #include "service/client/model_subscriber.hpp"
 
 #include <algorithm>
-#include <array>
 #include <unistd.h>
 #include <utility>
 
 #include "service/client/name_pattern.hpp"
 #include "service/client/version_check.hpp"
 #include "service/dds/wire.hpp"
+#include "service/support/program_identity.hpp"
 #include "service/support/utc_clock.hpp"
 #include "service/support/version.hpp"
 
@@ -18,11 +18,6 @@ constexpr std::size_t take_at_most = 256;
 
 storage::EquipmentName name_of(const EquipmentModel& model) {
   return {model.spacecraft, model.equipment};
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
 ModelCache::Report report_to(const ModelSubscriber::Listener& listener) {

@@ -1,13 +1,13 @@
 #include "service/client/simulator_client.hpp"
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <exception>
 #include <set>
 #include <unistd.h>
 #include <utility>
 
+#include "service/support/program_identity.hpp"
 #include "service/support/utc_clock.hpp"
 
 namespace reident {
@@ -68,9 +68,7 @@ SimulatorEvent event_of(SimulatorEvent::Kind kind, const ModelVersion& version,
 }  // namespace
 
 std::string default_simulator_name() {
-  std::array<char, 256> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
-  return std::string(host.data()) + "-" + std::to_string(::getpid());
+  return host_name() + "-" + std::to_string(::getpid());
 }
 
 SimulatorClient::SimulatorClient(const SimulatorClientOptions& options)

@@ -9,10 +9,13 @@
 
 namespace reident {
 
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
 std::string unique_program_name(std::string_view program) {
-  std::array<char, 256> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
-  return fmt::format("{}:{:.100}:{}:{}", program, host.data(), ::getpid(), utc_now());
+  return fmt::format("{}:{:.100}:{}:{}", program, host_name(), ::getpid(), utc_now());
 }
 
 }  // namespace reident

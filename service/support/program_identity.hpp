@@ -6,6 +6,9 @@
 
 namespace reident {
 
+/// Of this machine; empty where it has none.
+std::string host_name();
+
 /// Begins with `program`; like no other's of any process on any machine, at any time.
 std::string unique_program_name(std::string_view program);
 
