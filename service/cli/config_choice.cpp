@@ -19,6 +19,19 @@ std::variant<std::optional<Config>, Refusal> chosen_config(const std::optional<s
   return Refusal{text};
 }
 
+std::variant<dds::Endpoint, Refusal> chosen_endpoint(const std::optional<std::string>& file,
+                                                     std::optional<std::uint32_t> domain,
+                                                     const std::optional<std::string>& partition) {
+  auto chosen = chosen_config(file);
+  if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
+  dds::Endpoint endpoint;
+  if (const auto& config = std::get<std::optional<Config>>(chosen))
+    endpoint = {config->domain, config->partition};
+  endpoint.domain = domain.value_or(endpoint.domain);
+  endpoint.partition = partition.value_or(endpoint.partition);
+  return endpoint;
+}
+
 std::string mistake_text(const std::string& file, const ConfigMistake& mistake) {
   return mistake.line == 0 ? fmt::format("{}: {}", file, mistake.message)
                            : fmt::format("{}:{}: {}", file, mistake.line, mistake.message);

@@ -1,12 +1,14 @@
 // The configuration that a command works with.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "service/cli/command.hpp"
 #include "service/daemon/config.hpp"
+#include "service/dds/dds.hpp"
 
 namespace reident::cli {
 
@@ -15,6 +17,12 @@ inline constexpr const char* default_config_file = "reident.toml";
 /// The configuration in `file`, by default reident.toml of the current folder; nullopt where there
 /// is none of that name and none was asked for.
 std::variant<std::optional<Config>, Refusal> chosen_config(const std::optional<std::string>& file);
+
+/// Where a console listens: what is named here comes before the configuration, and without either
+/// it is the default.
+std::variant<dds::Endpoint, Refusal> chosen_endpoint(const std::optional<std::string>& file,
+                                                     std::optional<std::uint32_t> domain,
+                                                     const std::optional<std::string>& partition);
 
 /// "FILE:LINE: what", or "FILE: what" of the file as a whole.
 std::string mistake_text(const std::string& file, const ConfigMistake& mistake);

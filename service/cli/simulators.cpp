@@ -30,17 +30,6 @@ struct Arguments {
   bool json = false;
 };
 
-std::variant<dds::Endpoint, Refusal> endpoint_of(const Arguments& arguments) {
-  auto chosen = chosen_config(arguments.config);
-  if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
-  dds::Endpoint endpoint;
-  if (const auto& config = std::get<std::optional<Config>>(chosen))
-    endpoint = {config->domain, config->partition};
-  endpoint.domain = arguments.domain.value_or(endpoint.domain);
-  endpoint.partition = arguments.partition.value_or(endpoint.partition);
-  return endpoint;
-}
-
 std::variant<storage::EquipmentName, Refusal> wanted_of(const std::string& text) {
   if (text.empty()) return storage::EquipmentName{};
   const auto parsed = parse_subject(text);
@@ -187,7 +176,7 @@ void print_json(const dds::Endpoint& endpoint, const PartitionSight& sight,
 }
 
 int run(const Arguments& arguments) {
-  const auto found = endpoint_of(arguments);
+  const auto found = chosen_endpoint(arguments.config, arguments.domain, arguments.partition);
   if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
   const auto wanted = wanted_of(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&wanted)) return refuse(*refusal);

@@ -28,17 +28,6 @@ struct Arguments {
   bool json = false;
 };
 
-std::variant<dds::Endpoint, Refusal> endpoint_of(const Arguments& arguments) {
-  auto chosen = chosen_config(arguments.config);
-  if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
-  dds::Endpoint endpoint;
-  if (const auto& config = std::get<std::optional<Config>>(chosen))
-    endpoint = {config->domain, config->partition};
-  endpoint.domain = arguments.domain.value_or(endpoint.domain);
-  endpoint.partition = arguments.partition.value_or(endpoint.partition);
-  return endpoint;
-}
-
 bool is_idle(const ServiceStatus& status) {
   return status.queue_length == 0 && status.windows_pending == 0;
 }
@@ -138,7 +127,7 @@ int report_timeout(const dds::Endpoint& endpoint, const Arguments& arguments,
 }
 
 int run(const Arguments& arguments) {
-  const auto endpoint = endpoint_of(arguments);
+  const auto endpoint = chosen_endpoint(arguments.config, arguments.domain, arguments.partition);
   if (const auto* refusal = std::get_if<Refusal>(&endpoint)) return refuse(*refusal);
   std::optional<ServiceStatus> heard;
   const auto status = listen(std::get<dds::Endpoint>(endpoint), arguments, heard);
