@@ -60,10 +60,13 @@ void LiveEquipment::run(const Tick& tick) {
     seed(tick);
     return;
   }
-  const int flags = mode_ == Mode::following
-                        ? runner_.follow(tick.u.data(), tick.y.data(), y_.data())
-                        : runner_.step(tick.u.data(), y_.data());
-  runner_.observe(tick.y.data());
+  int flags = 0;
+  if (mode_ == Mode::following) {
+    flags = runner_.follow(tick.u.data(), tick.y.data(), y_.data());
+  } else {
+    flags = runner_.step(tick.u.data(), y_.data());
+    runner_.observe(tick.y.data());
+  }
   score_.add(tick.y, y_);
   if ((flags & REIDENT_INPUT_OUTSIDE) != 0) ++ticks_outside_;
 }

@@ -74,7 +74,6 @@ ModelRunner::ModelRunner(const Declaration& declaration)
     : inputs_(declaration.inputs.size()),
       outputs_(declaration.outputs.size()),
       output_(outputs_, std::numeric_limits<double>::quiet_NaN()),
-      change_(outputs_),
       typical_change_(outputs_),
       past_(static_cast<std::size_t>(PreparedModel::matched_rows) * (inputs_ + outputs_)) {}
 
@@ -143,7 +142,7 @@ void ModelRunner::run_tracker(Tracker& tracker, const double* measured) {
 }
 
 void ModelRunner::start_over() {
-  std::fill_n(model_->now_, model_->room_, 0.0);
+  std::fill(model_->both_.begin(), model_->both_.end(), 0.0);
   model_->y_ = model_->dynamics().y0;
   for (std::size_t q = 0; q < outputs_; ++q)
     output_[model_->outputs_[q]] = model_->y_(static_cast<Index>(q));
@@ -183,7 +182,6 @@ void ModelRunner::match() {
 ModelRunner::Swap ModelRunner::swap(std::unique_ptr<PreparedModel>& next) {
   model_.swap(next);
   tracker_runs_ = false;
-  std::fill(change_.begin(), change_.end(), 0.0);
   transition_left_ = 0;
   if (next != nullptr && next->dynamics().period_s != model_->dynamics().period_s) remembered_ = 0;
   if (steps_ == 0) {
@@ -201,7 +199,6 @@ ModelRunner::Swap ModelRunner::begin_transition() {
     const auto at = static_cast<Index>(q);
     const double offset = output_[declared] - model_->y_(at);
     model_->offset_(at) = offset;
-    change_[declared] = -offset;
     swap.largest = std::max(swap.largest, std::abs(offset));
     if (offset == 0) continue;
     const double steps = std::abs(offset) / typical_change_[declared];

@@ -47,16 +47,13 @@ class ModelRunner {
 
   struct Swap {
     Index rows = 0;      // of the past that the new state was estimated from
-    double largest = 0;  // change of an output, in its unit
+    double largest = 0;  // change of an output at the last step, in its unit
     int transition = 0;  // steps over which it comes in
   };
   /// Goes on with `next`, prepared for the same declaration; afterwards `next` is the model before,
   /// to be destroyed where that may take time. The first model, and one of another period, starts
   /// at its operating point (x = 0).
   Swap swap(std::unique_ptr<PreparedModel>& next);
-  /// New model's outputs at the last tick less what was put out there, at the last swap (declared
-  /// order).
-  std::span<const double> change() const { return change_; }
 
   const PreparedModel* model() const { return model_.get(); }
   /// What was put out last; before the first step, what the model starts from.
@@ -85,7 +82,6 @@ class ModelRunner {
   std::unique_ptr<PreparedModel> model_;
   std::size_t inputs_, outputs_;        // declared
   std::vector<double> output_;          // at the last step
-  std::vector<double> change_;          // at the last swap
   std::vector<double> typical_change_;  // of output() in a step: a mean over the recent ones
   std::vector<double> past_;            // a ring of matched_rows of [inputs, outputs]
   std::size_t at_ = 0;                  // the row that is written next

@@ -59,8 +59,7 @@ class PreparedModel {
   StateMatch match_;
   std::atomic<identification::Tracker*> tracker_ = nullptr;  // owned
   // [x; u - u0] of this step, and room for [next x; y - y0]: the two change places at each step.
-  std::size_t room_;  // of each
-  std::vector<double> both_;
+  std::vector<double> both_;  // now_ and next_
   double *now_, *next_;
   std::vector<double> u_;  // m, of the last step
   Vector du_;              // m

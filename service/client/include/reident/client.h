@@ -110,9 +110,9 @@ REIDENT_API int reident_next_event(reident_client* client, reident_event* event,
 typedef void (*reident_event_callback)(const reident_event* event, void* user);
 REIDENT_API void reident_on_event(reident_client* client, reident_event_callback call, void* user);
 
-/* The newest verified version of an equipment as a JSON object (signals with units and ranges,
- * matrices, scores: "model" in idl/README.md), good until the next call for this client; NULL where
- * there is none. */
+/* The newest verified version of an equipment as a JSON object: version, digest, decided_ns,
+ * decided_by, rollback, and model (signals with units and ranges, matrices, scores); good until the
+ * next call for this client; NULL where there is none. */
 REIDENT_API const char* reident_version_json(reident_client* client, const char* spacecraft,
                                              const char* equipment);
 

@@ -151,7 +151,7 @@ class Client:
             yield event
 
     def version(self, spacecraft: str, equipment: str) -> Optional[dict]:
-        """The newest verified version of an equipment: signals, matrices, scores."""
+        """The newest verified version of an equipment; its "model" has signals, matrices, scores."""
         found = library.reident_version_json(self._open(), _text(spacecraft), _text(equipment))
         return None if found is None else json.loads(found)
 
