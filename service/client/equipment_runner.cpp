@@ -29,15 +29,24 @@ EquipmentRunner::~EquipmentRunner() {
   collect([](const Swapped&) {});
 }
 
-int EquipmentRunner::advance(const double* u, const double* measured, double* y) {
-  Parcel* parcel = posted_.load(std::memory_order_relaxed) == nullptr
-                       ? nullptr
-                       : posted_.exchange(nullptr, std::memory_order_acq_rel);
-  if (parcel != nullptr) begin(*parcel);
-  int flags = measured == nullptr ? runner_.step(u, y) : runner_.follow(u, measured, y);
+inline int EquipmentRunner::count(int flags) {
   ++state_.steps;
   if ((flags & REIDENT_INPUT_OUTSIDE) != 0) ++state_.steps_outside;
   if ((flags & REIDENT_INPUT_MISSING) != 0) ++state_.steps_missing;
+  return flags;
+}
+
+int EquipmentRunner::step(const double* u, double* y) {
+  if (posted_.load(std::memory_order_relaxed) == nullptr &&
+      !state_is_wanted_.load(std::memory_order_relaxed)) [[likely]]
+    return count(runner_.step(u, y));
+  return advance(u, nullptr, y);
+}
+
+[[gnu::noinline]] int EquipmentRunner::advance(const double* u, const double* measured, double* y) {
+  Parcel* const parcel = posted_.exchange(nullptr, std::memory_order_acq_rel);
+  if (parcel != nullptr) begin(*parcel);
+  int flags = count(measured == nullptr ? runner_.step(u, y) : runner_.follow(u, measured, y));
   if (measured != nullptr) {
     const std::size_t p = declaration_.outputs.size();
     score_.add(outputs(measured, p), outputs(y, p));

@@ -45,7 +45,7 @@ class EquipmentRunner {
   // is read at a swap is in the kernel's shared page).
 
   /// As ModelRunner's, and REIDENT_SWAPPED at the first step on another version.
-  int step(const double* u, double* y) { return advance(u, nullptr, y); }
+  int step(const double* u, double* y);
   int follow(const double* u, const double* measured, double* y) { return advance(u, measured, y); }
   /// What was measured at the last step, which was free.
   void observe(const double* measured);
@@ -80,7 +80,9 @@ class EquipmentRunner {
     Swapped swapped;
     Parcel* next = nullptr;
   };
+  /// A step at which anything but a free run may happen.
   int advance(const double* u, const double* measured, double* y);
+  int count(int flags);
   void begin(Parcel& parcel);
   void send_back(Parcel* parcel);
 

@@ -67,45 +67,48 @@ InputBinding::InputBinding(const EquipmentModel& model, InputExpressions express
                            std::vector<std::size_t> places, bool is_derived)
     : expressions_(std::move(expressions)),
       places_(std::move(places)),
-      sources_(model.inputs.size()),
+      inputs_(model.inputs.size()),
       is_derived_(is_derived),
       parameters_(static_cast<identification::Index>(places_.size())),
-      fresh_(static_cast<identification::Index>(model.inputs.size())),
-      flags_(model.inputs.size()) {
+      fresh_(static_cast<identification::Index>(model.inputs.size())) {
   const std::vector<std::string>& parameters = expressions_.parameters();
-  const auto add_source = [&](std::size_t input, const std::string& parameter) {
+  const auto add_source = [&](Input& input, const std::string& parameter) {
     const auto found = std::find(parameters.begin(), parameters.end(), parameter);
     if (found != parameters.end())
-      sources_[input].push_back(places_[static_cast<std::size_t>(found - parameters.begin())]);
+      input.sources.push_back(places_[static_cast<std::size_t>(found - parameters.begin())]);
   };
-  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    const Signal& input = model.inputs[i];
-    low_.push_back(input.low);
-    high_.push_back(input.high);
-    add_source(i, input.name);
-    if (!sources_[i].empty()) continue;
-    const auto parsed = Expression::parse(input.expression);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const Signal& signal = model.inputs[i];
+    Input& input = inputs_[i];
+    input.low = signal.low;
+    input.high = signal.high;
+    input.u0 = model.dynamics.u0(static_cast<identification::Index>(i));
+    if (!is_derived) input.place = places_[i];
+    add_source(input, signal.name);
+    if (!input.sources.empty()) continue;
+    const auto parsed = Expression::parse(signal.expression);
     if (const auto* expression = std::get_if<Expression>(&parsed))
-      for (const std::string& variable : expression->variables()) add_source(i, variable);
+      for (const std::string& variable : expression->variables()) add_source(input, variable);
   }
 }
 
-int InputBinding::bind_any(const double* declared, double* u) {
+int InputBinding::bind_any(const double* declared, double* du) {
   for (std::size_t i = 0; i < places_.size(); ++i)
     parameters_(static_cast<identification::Index>(i)) = declared[places_[i]];
   expressions_.evaluate(parameters_, fresh_);
   int all = 0;
-  for (std::size_t i = 0; i < flags_.size(); ++i) {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const double value = fresh_(static_cast<identification::Index>(i));
-    int flags = 0;
+    Input& input = inputs_[i];
     if (std::isfinite(value)) {
-      u[i] = value;
+      du[i] = value - input.u0;
+      input.flags = value < input.low || value > input.high ? REIDENT_INPUT_OUTSIDE : 0;
     } else {
-      flags = REIDENT_INPUT_MISSING;
+      // What is held was outside or not when it came.
+      const int held = flagged_ ? input.flags & REIDENT_INPUT_OUTSIDE : 0;
+      input.flags = REIDENT_INPUT_MISSING | held;
     }
-    if (u[i] < low_[i] || u[i] > high_[i]) flags |= REIDENT_INPUT_OUTSIDE;
-    flags_[i] = static_cast<std::uint8_t>(flags);
-    all |= flags;
+    all |= input.flags;
   }
   flagged_ = all != 0;
   return all;
@@ -114,9 +117,9 @@ int InputBinding::bind_any(const double* declared, double* u) {
 int InputBinding::flags(std::size_t declared) const {
   int flags = 0;
   if (!flagged_) return flags;
-  for (std::size_t i = 0; i < sources_.size(); ++i)
-    if (std::find(sources_[i].begin(), sources_[i].end(), declared) != sources_[i].end())
-      flags |= flags_[i];
+  for (const Input& input : inputs_)
+    if (std::find(input.sources.begin(), input.sources.end(), declared) != input.sources.end())
+      flags |= input.flags;
   return flags;
 }
 

@@ -22,25 +22,24 @@ struct DeclaredSignal {
 std::variant<std::vector<std::size_t>, std::string> places_of(
     const std::vector<Signal>& signals, const std::vector<DeclaredSignal>& declared);
 
-/// Computes a model's inputs from the declared ones. A declared input that has the name of a
-/// derived one stands for it; otherwise the expression is evaluated, whose parameters must be
-/// declared.
+/// Computes a model's inputs, as deviations from its operating point u0, from the declared ones. A
+/// declared input that has the name of a derived one stands for it; otherwise the expression is
+/// evaluated, whose parameters must be declared.
 class InputBinding {
  public:
   static std::variant<InputBinding, std::string> make(const EquipmentModel& model,
                                                       const std::vector<DeclaredSignal>& declared);
 
-  /// u (m values) from the declared ones. Where one is not finite, what u holds from the call
+  /// u - u0 (m values) from the declared ones. Where one is not finite, what du holds from the call
   /// before stays. Returns the sum of REIDENT_INPUT_MISSING and REIDENT_INPUT_OUTSIDE. Allocates
   /// nothing.
-  int bind(const double* declared, double* u) {
-    if (is_derived_) return bind_any(declared, u);
-    const std::size_t* place = places_.data();
-    const double *low = low_.data(), *high = high_.data();
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-      const double value = declared[place[i]];
-      if (!(value >= low[i] && value <= high[i])) return bind_any(declared, u);
-      u[i] = value;
+  int bind(const double* declared, double* du) {
+    if (is_derived_) return bind_any(declared, du);
+    double* next = du;
+    for (const Input& input : inputs_) {
+      const double value = declared[input.place];
+      if (!(value >= input.low && value <= input.high)) return bind_any(declared, du);
+      *next++ = value - input.u0;
     }
     flagged_ = false;
     return 0;
@@ -53,15 +52,21 @@ class InputBinding {
   InputBinding(const EquipmentModel& model, InputExpressions expressions,
                std::vector<std::size_t> places, bool is_derived);
   /// The same for inputs that are derived, missing or outside.
-  int bind_any(const double* declared, double* u);
+  int bind_any(const double* declared, double* du);
+
+  struct Input {
+    std::size_t place = 0;     // in the declared inputs, where none is derived
+    double low = 0, high = 0;  // that it was identified in
+    double u0 = 0;
+    std::vector<std::size_t> sources;  // in the declared inputs
+    int flags = 0;                     // where any is flagged
+  };
 
   InputExpressions expressions_;
-  std::vector<std::size_t> places_;                // in the declared inputs, of each parameter
-  std::vector<std::vector<std::size_t>> sources_;  // of each model input, in the declared ones
-  bool is_derived_;                                // any of them
-  std::vector<double> low_, high_;
+  std::vector<std::size_t> places_;  // in the declared inputs, of each parameter
+  std::vector<Input> inputs_;
+  bool is_derived_;  // any of them
   identification::Vector parameters_, fresh_;
-  std::vector<std::uint8_t> flags_;  // of each model input, where any is flagged
   bool flagged_ = false;
 };
 

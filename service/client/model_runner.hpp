@@ -67,26 +67,40 @@ class ModelRunner {
 
  private:
   int advance(const double* u, const double* measured, double* y);
-  void run_tracker(identification::Tracker& tracker, const double* measured);
-  void run_plain(const double* measured);
-  /// The operating point takes the place of a run that is not finite any more.
-  void start_over();
-  /// The model's outputs, with what is left of a transition, become output(). Whether all of it is
-  /// finite.
+  void run_free();
+  void run_corrected(const double* measured);
+  void run_tracker(identification::Tracker& tracker);
+  /// By the Kalman gain; whether any output was measured.
+  bool correct_state();
+  /// Adds what is left of a transition to the model's outputs. Returns REIDENT_IN_TRANSITION while
+  /// there is more to come.
+  int blend();
+  /// The model's outputs become output(). Whether all of them are finite.
   bool put_out();
+  /// The operating point takes the place of a run that is not finite any more. Returns
+  /// REIDENT_DIVERGED.
+  int start_over();
   void remember(const double* u);
   /// Sets the model's state and outputs to what agrees best with what is remembered.
   void match();
   Swap begin_transition();
 
+  std::size_t row_size() const { return inputs_ + 2 * outputs_; }
+  /// Remembered ones of the model's period.
+  std::size_t matched_rows() const;
+  /// The one of so many steps before the next one, at most as many as the ring has.
+  const double* row_before(std::size_t back) const;
+  /// The mean change of an output in a step, over the recent ones.
+  double typical_change(std::size_t declared) const;
+
   std::unique_ptr<PreparedModel> model_;
-  std::size_t inputs_, outputs_;        // declared
-  std::vector<double> output_;          // at the last step
-  std::vector<double> typical_change_;  // of output() in a step: a mean over the recent ones
-  std::vector<double> past_;            // a ring of matched_rows of [inputs, outputs]
-  std::size_t at_ = 0;                  // the row that is written next
-  std::size_t remembered_ = 0;          // rows
+  std::size_t inputs_, outputs_;  // declared
+  std::vector<double> output_;    // at the last step
+  // A ring of matched_rows rows of [inputs, outputs that are known best, outputs as put out].
+  std::vector<double> past_;
+  std::size_t at_ = 0;  // in past_, where the next row begins
   std::uint64_t steps_ = 0;
+  std::uint64_t period_began_ = 0;  // steps before the first one of the model's period
   int transition_ = 1, transition_left_ = 0;
   bool is_following_ = false;
   bool tracker_runs_ = false;  // it follows, or its correction has not faded yet

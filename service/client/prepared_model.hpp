@@ -58,15 +58,15 @@ class PreparedModel {
   StepKernel kernel_;
   StateMatch match_;
   std::atomic<identification::Tracker*> tracker_ = nullptr;  // owned
-  // [x; u - u0] of this step, and room for [next x; y - y0]: the two change places at each step.
+  // [x; y - y0], x of the next step and y of the last one, and room for what comes after it: the
+  // two change places at each step.
   std::vector<double> both_;  // now_ and next_
   double *now_, *next_;
-  std::vector<double> u_;  // m, of the last step
-  Vector du_;              // m
-  Vector y_;               // p, of the model
-  Vector measured_;        // p
-  Vector offset_;          // p: what is left of the model before, at the step of the swap
-  Vector error_limit_;     // p: of the Kalman filter's innovations
+  Vector du_;           // m: u - u0, of the last step
+  Vector u_;            // m: for the integral feedback
+  Vector measured_;     // p
+  Vector offset_;       // p: what is left of the model before, at the step of the swap
+  Vector error_limit_;  // p: of the Kalman filter's innovations
   std::atomic<bool> has_kalman_gain_ = false;
 };
 

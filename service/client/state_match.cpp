@@ -23,7 +23,6 @@ StateMatch::StateMatch(const identification::StateSpaceModel& model, const StepK
       forced_(model.order()),
       x_(model.order()),
       last_output_(model.outputs()),
-      z_(static_cast<std::size_t>(model.order() + model.inputs())),
       out_(kernel.out_room()) {
   clear();
 }
@@ -36,9 +35,7 @@ void StateMatch::clear() {
 
 void StateMatch::add(const Vector& du, const Eigen::Ref<const Vector>& dy) {
   const Index n = model_.order(), p = model_.outputs();
-  Eigen::Map<Vector>(z_.data(), n) = forced_;
-  Eigen::Map<Vector>(z_.data() + n, model_.inputs()) = du;
-  kernel_.run(z_.data(), out_.data());
+  kernel_.run(forced_.data(), du.data(), out_.data());
   forced_ = Eigen::Map<const Vector>(out_.data(), n);
   for (Index q = 0; q < p; ++q) {
     const Index row = rows_ * p + q;
@@ -61,7 +58,7 @@ const StateMatch::Vector& StateMatch::solve() {
   triangularise(rows + n);
   back_substitute();
   if (!x_.allFinite()) x_.setZero();
-  run_from(x_);
+  run_on();
   return x_;
 }
 
@@ -91,18 +88,14 @@ void StateMatch::back_substitute() {
   }
 }
 
-void StateMatch::run_from(const Vector& x0) {
+void StateMatch::run_on() {
   const Index n = model_.order();
-  Eigen::Map<Vector> x(z_.data(), n);
-  x = x0;
   last_output_.setZero();
   for (Index k = 0; k < rows_; ++k) {
-    Eigen::Map<Vector>(z_.data() + n, model_.inputs()) = inputs_.col(k);
-    kernel_.run(z_.data(), out_.data());
-    x = Eigen::Map<const Vector>(out_.data(), n);
+    kernel_.run(x_.data(), inputs_.col(k).data(), out_.data());
+    x_ = Eigen::Map<const Vector>(out_.data(), n);
     last_output_ = Eigen::Map<const Vector>(out_.data() + n, model_.outputs());
   }
-  x_ = x;
 }
 
 }  // namespace reident

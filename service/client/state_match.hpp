@@ -35,7 +35,8 @@ class StateMatch {
  private:
   void triangularise(Index rows);
   void back_substitute();
-  void run_from(const Vector& x0);
+  /// From x_ before the first row to behind the last one.
+  void run_on();
 
   const identification::StateSpaceModel& model_;
   const StepKernel& kernel_;
@@ -46,7 +47,7 @@ class StateMatch {
   Vector forced_;                   // n: the state from zero
   Vector x_;                        // n
   Vector last_output_;              // p
-  std::vector<double> z_, out_;
+  std::vector<double> out_;
   Index rows_ = 0;
 };
 

@@ -13,18 +13,15 @@ class StepKernel {
  public:
   explicit StepKernel(const identification::StateSpaceModel& model);
 
-  /// z: n + m values. out: n + p values, and room for out_room() in all; does not overlap z.
-  void run(const double* z, double* out) const {
-    product_(packed_.data(), stride_, columns_, z, out);
-  }
+  /// x: n values, du: m. out: n + p values, and room for out_room() in all; overlaps neither.
+  void run(const double* x, const double* du, double* out) const { product_(*this, x, du, out); }
   std::size_t out_room() const { return stride_; }
 
  private:
-  using Product = void (*)(const double* packed, std::size_t stride, std::size_t columns,
-                           const double* z, double* out);
+  static void product(const StepKernel& kernel, const double* x, const double* du, double* out);
 
-  Product product_;  // the machine's own
-  std::size_t columns_;
+  decltype(&product) product_;  // the machine's own
+  std::size_t order_, inputs_;
   std::size_t stride_;          // n + p, rounded up
   std::vector<double> packed_;  // column by column
 };
