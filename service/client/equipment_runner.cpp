@@ -31,6 +31,7 @@ EquipmentRunner::~EquipmentRunner() {
 
 inline int EquipmentRunner::count(int flags) {
   ++state_.steps;
+  if (flags == 0) return flags;
   if ((flags & REIDENT_INPUT_OUTSIDE) != 0) ++state_.steps_outside;
   if ((flags & REIDENT_INPUT_MISSING) != 0) ++state_.steps_missing;
   return flags;

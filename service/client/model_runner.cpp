@@ -20,6 +20,12 @@ constexpr std::size_t changes_averaged = 64;
 
 // What every step does: inlined, since the calls would take a good part of its time.
 
+inline void ModelRunner::run_free() {
+  PreparedModel& model = *model_;
+  model.kernel_.run(model.now_, model.du_.data(), model.next_);
+  std::swap(model.now_, model.next_);
+}
+
 inline bool ModelRunner::put_out() {
   const PreparedModel& model = *model_;
   const Vector& y0 = model.dynamics().y0;
@@ -62,6 +68,21 @@ void ModelRunner::start(const identification::Matrix& u, const identification::M
   transition_left_ = 0;
 }
 
+int ModelRunner::step(const double* u, double* y) {
+  if (model_ == nullptr || tracker_runs_ || transition_left_ > 0) [[unlikely]]
+    return advance(u, nullptr, y);
+  int flags = model_->binding_.bind(u, model_->du_.data());
+  is_following_ = false;
+  run_free();
+  if (!put_out()) [[unlikely]]
+    flags |= start_over();
+  remember(u);
+  for (std::size_t q = 0; q < outputs_; ++q) y[q] = output_[q];
+  return flags;
+}
+
+// What few steps do: apart, so that the others need not make room for it.
+
 int ModelRunner::advance(const double* u, const double* measured, double* y) {
   if (model_ == nullptr) {
     std::copy(output_.begin(), output_.end(), y);
@@ -85,14 +106,6 @@ int ModelRunner::advance(const double* u, const double* measured, double* y) {
   for (std::size_t q = 0; q < outputs_; ++q) y[q] = output_[q];
   return flags;
 }
-
-inline void ModelRunner::run_free() {
-  PreparedModel& model = *model_;
-  model.kernel_.run(model.now_, model.du_.data(), model.next_);
-  std::swap(model.now_, model.next_);
-}
-
-// What some steps do: apart, so that the others need not make room for it.
 
 [[gnu::noinline]] void ModelRunner::run_corrected(const double* measured) {
   PreparedModel& model = *model_;

@@ -38,7 +38,7 @@ class ModelRunner {
   void start(const identification::Matrix& u, const identification::Matrix& y);
 
   /// The outputs at this tick; the state moves on to the next one. Returns flags of client.h.
-  int step(const double* u, double* y) { return advance(u, nullptr, y); }
+  int step(const double* u, double* y);
   /// The same, corrected by what was measured at the ticks before; NaN where an output is missing.
   int follow(const double* u, const double* measured, double* y) { return advance(u, measured, y); }
   /// The measured outputs at the tick of the last step, where they are known and finite: a swap
@@ -66,6 +66,7 @@ class ModelRunner {
   int transition_left() const { return transition_left_; }
 
  private:
+  /// A step at which anything may happen.
   int advance(const double* u, const double* measured, double* y);
   void run_free();
   void run_corrected(const double* measured);
