@@ -181,13 +181,15 @@ REIDENT_CLONES
 void run_state_space(const double* M, Index n, Index m, Index p, const double* v, Index count,
                      double* state, double* work, double* y) {
   switch (n + p) {
-#define REIDENT_CASE(size) \
-  case size:               \
+#define REIDENT_CASE(size)                                                                   \
+  case size:                                                                                 \
+    /* one output: all sizes but that of the inputs are known */                             \
+    if (p == 1) return state_space_steps<size>(M, size - 1, m, 1, v, count, state, work, y); \
     return state_space_steps<size>(M, n, m, p, v, count, state, work, y);
     REIDENT_SMALL_SIZES(REIDENT_CASE)
 #undef REIDENT_CASE
     default:
-      return state_space_steps<0>(M, n, m, p, v, count, state, work, y);
+      state_space_steps<0>(M, n, m, p, v, count, state, work, y);
   }
 }
 

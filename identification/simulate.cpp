@@ -20,10 +20,13 @@ void run_segment(const StateSpaceModel& model, const Record& record, const Segme
   Matrix du(m, stretch), y(p, stretch);
   for (Index begin = segment.begin; begin < segment.end; begin += stretch) {
     const Index count = std::min(stretch, segment.end - begin);
-    du.leftCols(count) = record.u.middleRows(begin, count).transpose().colwise() - model.u0;
+    for (Index i = 0; i < m; ++i)
+      du.row(i).head(count) =
+          record.u.col(i).segment(begin, count).transpose().array() - model.u0(i);
     run_state_space(M.data(), n, m, p, du.data(), count, x.data(), work.data(), y.data());
-    y_hat.middleRows(out + (begin - segment.begin), count) =
-        (y.leftCols(count).colwise() + model.y0).transpose();
+    for (Index q = 0; q < p; ++q)
+      y_hat.col(q).segment(out + (begin - segment.begin), count) =
+          y.row(q).head(count).transpose().array() + model.y0(q);
   }
 }
 
