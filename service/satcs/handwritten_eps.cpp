@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "service/satcs/parameter_id.hpp"
 #include "service/satcs/reference_spacecraft.hpp"
@@ -40,10 +41,11 @@ constexpr std::array points = {
 
 }  // namespace
 
-HandwrittenEps::HandwrittenEps(const reference::Constants& spacecraft, storage::Time start,
+HandwrittenEps::HandwrittenEps(const reference::Constants& spacecraft,
+                               std::vector<reference::LifeEvent> life, storage::Time start,
                                std::uint64_t seed)
     : orbit_(spacecraft.orbit),
-      plan_(orbit_, spacecraft.load, seed),
+      plan_(orbit_, spacecraft.load, std::move(life), seed),
       time_(reference::whole_seconds(start)),
       charge_(constants_.initial_charge) {
   solve();

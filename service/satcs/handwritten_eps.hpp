@@ -41,8 +41,10 @@ struct HandwrittenConstants {
 
 class HandwrittenEps {
  public:
-  /// From `start`, rounded down to a second, with the operations plan of `seed`.
-  HandwrittenEps(const reference::Constants& spacecraft, storage::Time start, std::uint64_t seed);
+  /// From `start`, rounded down to a second, with the operations plan of `seed` and
+  /// the modes of `life`.
+  HandwrittenEps(const reference::Constants& spacecraft, std::vector<reference::LifeEvent> life,
+                 storage::Time start, std::uint64_t seed);
 
   storage::Time time() const { return time_; }
   /// One sample for each of handwritten_descriptors(), now.

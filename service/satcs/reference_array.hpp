@@ -9,6 +9,7 @@ namespace reident::satcs::reference {
 class SolarArray {
  public:
   explicit SolarArray(const ArrayConstants& constants);
+  void age(const ArrayConstants& constants) { constants_ = constants; }
 
   /// Current of one string [A] of `cells` in series that feeds a node at `node_V` through its
   /// blocking diode. Single exponential: I = I_sc (1 - exp((V - V_oc(T)) / V_knee)), never

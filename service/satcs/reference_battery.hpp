@@ -13,6 +13,8 @@ namespace reident::satcs::reference {
 class Battery {
  public:
   Battery(const BatteryConstants& constants, double step_s);
+  /// The state of charge stays a share of the capacity.
+  void age(const BatteryConstants& constants) { constants_ = constants; }
 
   struct State {
     double soc = 0;

@@ -12,6 +12,7 @@ namespace reident::satcs::reference {
 class DischargeRegulator {
  public:
   DischargeRegulator(const DischargeRegulatorConstants& constants, double step_s);
+  void age(const DischargeRegulatorConstants& constants) { constants_ = constants; }
 
   using Modules = std::array<double, battery_count>;
   using Supplied = std::array<bool, battery_count>;  // modules whose battery is not empty

@@ -9,6 +9,7 @@ namespace reident::satcs::reference {
 
 inline constexpr std::size_t battery_count = 2;
 inline constexpr std::size_t shunt_channels = 6;
+inline constexpr std::size_t section_count = 3;  // SAG1A, SAG1B, SAG2
 
 struct OrbitConstants {
   double period_s = 100.26 * 60;
@@ -29,10 +30,11 @@ struct ArrayConstants {
   double cell_open_V_per_K = -6.0e-3;
   double cell_knee_V = 0.075;  // slope of the exponential knee
   double blocking_diode_V = 0.8;
-  int charge_cells = 26;    // in series, SAG1A and SAG1B
-  int charge_strings = 13;  // in parallel, each of SAG1A and SAG1B
-  int bus_cells = 16;       // in series, SAG2
+  int charge_cells = 26;                                  // in series, SAG1A and SAG1B
+  std::array<int, battery_count> charge_strings{13, 13};  // in parallel, SAG1A and SAG1B
+  int bus_cells = 16;                                     // in series, SAG2
   std::array<int, shunt_channels> bus_strings{15, 15, 15, 15, 15, 15};
+  std::array<double, section_count> section_share{1, 1, 1};  // of the new strings' current
   double solar_flux_W_m2 = 1361;
   double absorptance = 0.85;         // of the front, before electrical power is taken out
   double electrical_share = 0.20;    // of the flux
@@ -66,6 +68,7 @@ struct BatteryConstants {
 
 /// Battery charge controller: a shunt across the section, which limits the battery's voltage.
 struct ChargerConstants {
+  int cells = 38;               // that its limit is set for
   double cell_limit_V = 1.425;  // at 10 degC
   double cell_limit_V_per_K = -2.5e-3;
   double gain_per_Vs = 0.15;  // of the shunted share
@@ -106,6 +109,7 @@ struct BusConstants {
 
 struct LoadConstants {
   double platform_W = 600;
+  double platform_safe_W = 430;  // in safe mode
   double platform_sigma_W = 12;  // slow variation
   double platform_correlation_s = 240;
   double payload_standby_W = 45;
@@ -131,7 +135,10 @@ struct Constants {
   ArrayConstants array;
   std::array<BatteryConstants, battery_count> battery{
       BatteryConstants{}, BatteryConstants{.capacity_Ah = 49.2, .series_ohm = 0.048}};
-  ChargerConstants charger;
+  std::array<ChargerConstants, 2> charger{
+      // main and redundant
+      ChargerConstants{}, ChargerConstants{.cell_limit_V = 1.431, .gain_per_Vs = 0.11}};
+  std::array<std::size_t, battery_count> charger_in_use{0, 0};  // of each battery
   DischargeRegulatorConstants bdr;
   ErrorAmplifierConstants mea;
   BusConstants bus;

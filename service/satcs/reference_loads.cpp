@@ -1,6 +1,7 @@
 #include "service/satcs/reference_loads.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace reident::satcs::reference {
 namespace {
@@ -15,10 +16,12 @@ bool thermostat(bool on, double temperature_C, double on_C, double off_C) {
 }  // namespace
 
 OperationsPlan::OperationsPlan(const Orbit& orbit, const LoadConstants& constants,
-                               std::uint64_t seed)
-    : orbit_(orbit), constants_(constants), seed_(mix(seed)) {}
+                               std::vector<LifeEvent> life, std::uint64_t seed)
+    : orbit_(orbit), constants_(constants), life_(std::move(life)), seed_(mix(seed)) {}
 
 OperationsPlan::On OperationsPlan::at(storage::Time time) const {
+  if (in_mode(life_, LifeKind::safe_mode, time)) return {.safe_mode = true};
+  if (in_mode(life_, LifeKind::quiet, time)) return {};
   const bool contact = orbit_.in_contact(time);
   const bool sunlit = orbit_.illumination(time) == 1;
   return {.payload = sunlit && (contact || in_session(time)), .transmitter = contact};
@@ -41,8 +44,9 @@ bool OperationsPlan::in_session(storage::Time time) const {
   return phase >= begin && (phase - begin) * orbit_.period_s() < length_s;
 }
 
-Loads::Loads(const Orbit& orbit, const LoadConstants& constants, std::uint64_t seed)
-    : plan_(orbit, constants, seed), constants_(constants), random_(seed, 0) {}
+Loads::Loads(const Orbit& orbit, const LoadConstants& constants, const std::vector<LifeEvent>& life,
+             std::uint64_t seed)
+    : plan_(orbit, constants, life, seed), constants_(constants), random_(seed, 0) {}
 
 void Loads::update(storage::Time time, double illumination,
                    const std::array<double, battery_count>& battery_C) {
@@ -72,8 +76,9 @@ double Loads::current_A(Load load, double bus_V) const {
   };
   switch (load) {
     case platform:
-      return converter(c.platform_W + variation_W_);
+      return converter((on_.safe_mode ? c.platform_safe_W : c.platform_W) + variation_W_);
     case payload:
+      if (on_.safe_mode) return 0;
       return converter(on_.payload ? c.payload_W : c.payload_standby_W);
     case transmitter:
       return converter(on_.transmitter ? c.transmitter_W : 0.0);

@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "service/satcs/random.hpp"
 #include "service/satcs/reference_constants.hpp"
+#include "service/satcs/reference_life.hpp"
 #include "service/satcs/reference_orbit.hpp"
 
 namespace reident::satcs::reference {
@@ -21,17 +23,21 @@ enum Load : std::size_t {
   load_count
 };
 
-/// Which of the instruments and transmitters are on: a function of time and seed alone.
+/// Which of the instruments and transmitters are on: a function of time, seed and modes alone.
 class OperationsPlan {
  public:
-  OperationsPlan(const Orbit& orbit, const LoadConstants& constants, std::uint64_t seed);
+  /// Of `life`, the modes alone count.
+  OperationsPlan(const Orbit& orbit, const LoadConstants& constants, std::vector<LifeEvent> life,
+                 std::uint64_t seed);
 
   struct On {
     bool payload = false;
     bool transmitter = false;
+    bool safe_mode = false;
   };
   /// Over a station the transmitter is on, and in sunlight the cameras with it; besides, one
-  /// recorded imaging session around noon in some orbits.
+  /// recorded imaging session around noon in some orbits. In safe mode and in quiet stretches
+  /// everything is off.
   On at(storage::Time time) const;
 
  private:
@@ -39,13 +45,15 @@ class OperationsPlan {
 
   Orbit orbit_;
   LoadConstants constants_;
+  std::vector<LifeEvent> life_;
   std::uint64_t seed_;
 };
 
 /// The demand of every load. Converters take constant power, heaters are resistors.
 class Loads {
  public:
-  Loads(const Orbit& orbit, const LoadConstants& constants, std::uint64_t seed);
+  Loads(const Orbit& orbit, const LoadConstants& constants, const std::vector<LifeEvent>& life,
+        std::uint64_t seed);
 
   /// Once a second: the plan, the platform's slow variation and the thermostats.
   void update(storage::Time time, double illumination,

@@ -9,18 +9,25 @@ namespace reident::satcs::reference {
 namespace {
 constexpr storage::Time second_ns = 1'000'000'000;
 constexpr double charger_rated_C = 10;
+
+storage::Time warm_up_ns(const Constants& constants) {
+  return static_cast<storage::Time>(std::ceil(constants.orbit.period_s)) * second_ns;
+}
+
 }  // namespace
 
-Plant::Plant(const Constants& constants, storage::Time start, std::uint64_t seed)
-    : constants_(constants),
-      orbit_(constants.orbit),
-      array_(constants.array),
-      batteries_{Battery(constants.battery[0], step_s), Battery(constants.battery[1], step_s)},
-      bdr_(constants.bdr, step_s),
-      bus_(constants.bus, constants.mea, step_s),
-      loads_(orbit_, constants.load, seed) {
-  const auto orbit_s = static_cast<storage::Time>(std::ceil(constants.orbit.period_s));
-  second_ = start - orbit_s * second_ns;
+Plant::Plant(const Constants& fresh, std::vector<LifeEvent> life, storage::Time start,
+             std::uint64_t seed)
+    : fresh_(fresh),
+      life_(std::move(life)),
+      constants_(aged(fresh_, life_, start - warm_up_ns(fresh))),
+      orbit_(constants_.orbit),
+      array_(constants_.array),
+      batteries_{Battery(constants_.battery[0], step_s), Battery(constants_.battery[1], step_s)},
+      bdr_(constants_.bdr, step_s),
+      bus_(constants_.bus, constants_.mea, step_s),
+      loads_(orbit_, constants_.load, life_, seed),
+      second_(start - warm_up_ns(fresh)) {
   illumination_end_ = orbit_.illumination(second_);
   for (std::size_t k = 0; k < battery_count; ++k) {
     charging_[k] = 1;
@@ -52,7 +59,16 @@ void Plant::step() {
   }
 }
 
+void Plant::age() {
+  if (!ages_between(life_, second_ - second_ns, second_)) return;
+  constants_ = aged(fresh_, life_, second_);
+  array_.age(constants_.array);
+  for (std::size_t k = 0; k < battery_count; ++k) batteries_[k].age(constants_.battery[k]);
+  bdr_.age(constants_.bdr);
+}
+
 void Plant::begin_second() {
+  age();
   illumination_begin_ = illumination_end_;
   illumination_end_ = orbit_.illumination(second_ + second_ns);
   incidence_ = array_.incidence(orbit_.beta(second_));
@@ -71,7 +87,8 @@ void Plant::solve_bus() {
   Bus::Demand demand;
   const double string_A = array_.string_current(constants_.array.bus_cells, flows_.bus_V);
   for (std::size_t c = 0; c < shunt_channels; ++c) {
-    demand.channel_A[c] = constants_.array.bus_strings[c] * string_A;
+    demand.channel_A[c] =
+        constants_.array.bus_strings[c] * constants_.array.section_share[battery_count] * string_A;
   }
   const auto supplied = modules_supplied();
   demand.bdr_max_A = bdr_.max_output_A(supplied);
@@ -95,7 +112,7 @@ void Plant::solve_bus() {
 void Plant::solve_battery(std::size_t k) {
   Battery& battery = batteries_[k];
   const double before_V = flows_.battery_V[k];
-  flows_.section_A[k] = constants_.array.charge_strings *
+  flows_.section_A[k] = constants_.array.charge_strings[k] * constants_.array.section_share[k] *
                         array_.string_current(constants_.array.charge_cells, before_V);
   flows_.charge_A[k] = charging_[k] * flows_.section_A[k];
   flows_.section_shunt_A[k] = flows_.section_A[k] - flows_.charge_A[k];
@@ -109,11 +126,11 @@ void Plant::solve_battery(std::size_t k) {
   flows_.battery_A[k] = flows_.charge_A[k] - flows_.bdr_in_A[k];
   flows_.stored_A[k] = battery.stored_A(flows_.battery_A[k]);
 
-  const ChargerConstants& charger = constants_.charger;
+  const ChargerConstants& charger = constants_.charger[constants_.charger_in_use[k]];
   const double cell_limit_V =
       charger.cell_limit_V +
       charger.cell_limit_V_per_K * (battery.state().temperature_C - charger_rated_C);
-  const double limit_V = constants_.battery[k].cells * cell_limit_V;
+  const double limit_V = charger.cells * cell_limit_V;
   charging_[k] =
       std::clamp(charging_[k] + charger.gain_per_Vs * (limit_V - voltage) * step_s, 0.0, 1.0);
   const Load heater = k == 0 ? battery_heater_1 : battery_heater_2;

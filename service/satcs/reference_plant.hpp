@@ -12,12 +12,14 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "service/satcs/reference_array.hpp"
 #include "service/satcs/reference_battery.hpp"
 #include "service/satcs/reference_bdr.hpp"
 #include "service/satcs/reference_bus.hpp"
 #include "service/satcs/reference_constants.hpp"
+#include "service/satcs/reference_life.hpp"
 #include "service/satcs/reference_loads.hpp"
 #include "service/satcs/reference_orbit.hpp"
 
@@ -53,8 +55,10 @@ class Plant {
   static constexpr double step_s = 1.0 / steps_per_second;
 
   /// At `start`, a multiple of a second; one orbit before it has been simulated already, so that
-  /// temperatures and charge are on their way round the orbit.
-  Plant(const Constants& constants, storage::Time start, std::uint64_t seed);
+  /// temperatures and charge are on their way round the orbit. `fresh` are the constants before any
+  /// event of `life`.
+  Plant(const Constants& fresh, std::vector<LifeEvent> life, storage::Time start,
+        std::uint64_t seed);
 
   void step();
 
@@ -68,11 +72,14 @@ class Plant {
 
  private:
   void begin_second();
+  void age();
   DischargeRegulator::Supplied modules_supplied() const;
   void solve_bus();
   void solve_battery(std::size_t k);
 
-  Constants constants_;
+  Constants fresh_;
+  std::vector<LifeEvent> life_;
+  Constants constants_;  // of the running second
   Orbit orbit_;
   SolarArray array_;
   std::array<Battery, battery_count> batteries_;

@@ -7,7 +7,7 @@ namespace reident::satcs {
 template <class Model>
 SecondsSource<Model>::SecondsSource(const ReferenceOptions& options,
                                     std::vector<storage::ParameterDescriptor> descriptors)
-    : model_(options.constants, options.start, options.seed),
+    : model_(options.constants, options.life, options.start, options.seed),
       descriptors_(std::move(descriptors)),
       frames_(static_cast<std::uint64_t>((options.duration_ns + 999'999'999) / 1'000'000'000)) {}
 

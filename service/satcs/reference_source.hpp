@@ -8,7 +8,8 @@
 namespace reident::satcs {
 
 struct ReferenceOptions {
-  reference::Constants constants;
+  reference::Constants constants;                   // before any of `life`
+  std::vector<reference::LifeEvent> life;           // events without life_mistake()
   storage::Time start = 1'498'867'200'000'000'000;  // 2017-07-01T00:00:00Z
   std::int64_t duration_ns = 86'400'000'000'000;    // frames with start <= time < start + duration
   std::uint64_t seed = 1;

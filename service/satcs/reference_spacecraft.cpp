@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <utility>
 
 #include "service/satcs/parameter_id.hpp"
 
@@ -122,8 +123,9 @@ std::vector<storage::ParameterDescriptor> telemetry_descriptors(std::string_view
   return descriptors;
 }
 
-Spacecraft::Spacecraft(const Constants& constants, storage::Time start, std::uint64_t seed)
-    : plant_(constants, whole_seconds(start), seed) {
+Spacecraft::Spacecraft(const Constants& fresh, std::vector<LifeEvent> life, storage::Time start,
+                       std::uint64_t seed)
+    : plant_(fresh, std::move(life), whole_seconds(start), seed) {
   for (const TelemetryPoint& point : points) {
     if (point.kind == digital) continue;
     sensors_.emplace_back(point.sensor, Plant::step_s, seed, parameter_id(point.name));

@@ -35,8 +35,10 @@ storage::Time whole_seconds(storage::Time time);
 
 class Spacecraft {
  public:
-  /// The first reading is of `start`, rounded down to a second.
-  Spacecraft(const Constants& constants, storage::Time start, std::uint64_t seed);
+  /// The first reading is of `start`, rounded down to a second. `life` happens to a spacecraft of
+  /// the constants `fresh`; every event must be without life_mistake().
+  Spacecraft(const Constants& fresh, std::vector<LifeEvent> life, storage::Time start,
+             std::uint64_t seed);
 
   storage::Time time() const { return plant_.time(); }
   const Plant& plant() const { return plant_; }

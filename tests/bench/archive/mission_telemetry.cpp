@@ -17,7 +17,7 @@ constexpr std::uint64_t shift_seconds = 3'571;
 MissionTelemetry::MissionTelemetry(std::size_t parameters)
     : parameters_(parameters), points_(reference::telemetry_points().size()) {
   constexpr std::uint64_t seed = 1;
-  reference::Spacecraft spacecraft(reference::Constants{}, start, seed);
+  reference::Spacecraft spacecraft(reference::Constants{}, {}, start, seed);
   day_.reserve(day_seconds * points_);
   std::vector<storage::Sample> samples;
   for (std::uint64_t k = 0; k < day_seconds; ++k, spacecraft.advance()) {

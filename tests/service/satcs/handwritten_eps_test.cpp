@@ -25,7 +25,7 @@ std::map<std::string, double> named(const std::vector<storage::ParameterDescript
 }
 
 TEST(HandwrittenEps, BalancesItsCurrentsAndPowers) {
-  HandwrittenEps eps({}, start, 1);
+  HandwrittenEps eps({}, {}, start, 1);
   for (int k = 0; k < orbit_s; ++k, eps.advance()) {
     const auto& f = eps.flows();
     EXPECT_NEAR(f.sg2_A + f.bdr_out_A, f.load_A, 1e-12);
@@ -39,7 +39,7 @@ TEST(HandwrittenEps, BalancesItsCurrentsAndPowers) {
 }
 
 TEST(HandwrittenEps, ClosesItsPowerBudgetOverADay) {
-  HandwrittenEps eps({}, start, 1);
+  HandwrittenEps eps({}, {}, start, 1);
   double least = 1;
   for (int k = 0; k < 86400; ++k, eps.advance()) least = std::min(least, eps.charge());
   EXPECT_GT(least, 0.6);
@@ -47,8 +47,8 @@ TEST(HandwrittenEps, ClosesItsPowerBudgetOverADay) {
 }
 
 TEST(HandwrittenEps, HasTheOrbitAndThePlanOfTheSpacecraft) {
-  reference::Spacecraft spacecraft({}, start, 3);
-  HandwrittenEps eps({}, start, 3);
+  reference::Spacecraft spacecraft({}, {}, start, 3);
+  HandwrittenEps eps({}, {}, start, 3);
   int with_payload = 0;
   double planned = 0;  // of the second before, which the spacecraft's loads are in still
   for (int k = 0; k < 4 * orbit_s; ++k, eps.advance(), spacecraft.advance()) {
@@ -79,8 +79,8 @@ TEST(HandwrittenEps, NamesItsPointsAsTheSpacecraftAndHasNoAmplifier) {
 }
 
 TEST(HandwrittenEps, IsOfTheSizeOfTheSpacecraftButNotLikeIt) {
-  reference::Spacecraft spacecraft({}, start, 1);
-  HandwrittenEps eps({}, start, 1);
+  reference::Spacecraft spacecraft({}, {}, start, 1);
+  HandwrittenEps eps({}, {}, start, 1);
   double error = 0, size = 0, battery_error = 0, battery_size = 0;
   for (int k = 0; k < 2 * orbit_s; ++k, eps.advance(), spacecraft.advance()) {
     const auto& real = spacecraft.plant().flows();

@@ -139,7 +139,7 @@ TEST(ReferenceBus, AnswersALoadStepAtOnceAndThenTakesTheErrorOut) {
 
 TEST(ReferenceLoads, CamerasRunInSunlightAndTheTransmitterOverStations) {
   const Orbit orbit{OrbitConstants{}};
-  const OperationsPlan plan(orbit, LoadConstants{}, 3);
+  const OperationsPlan plan(orbit, LoadConstants{}, {}, 3);
   int payload_s = 0;
   int beyond_contact_s = 0;
   for (int s = 0; s < 86'400; s += 10) {
@@ -156,8 +156,8 @@ TEST(ReferenceLoads, CamerasRunInSunlightAndTheTransmitterOverStations) {
 
 TEST(ReferenceLoads, PlanIsAFunctionOfTimeAndSeed) {
   const Orbit orbit{OrbitConstants{}};
-  const OperationsPlan a(orbit, LoadConstants{}, 3), again(orbit, LoadConstants{}, 3),
-      b(orbit, LoadConstants{}, 4);
+  const OperationsPlan a(orbit, LoadConstants{}, {}, 3), again(orbit, LoadConstants{}, {}, 3),
+      b(orbit, LoadConstants{}, {}, 4);
   int differ = 0;
   for (int s = 0; s < 86'400; s += 10) {
     const auto time = july + s * second;
@@ -168,7 +168,7 @@ TEST(ReferenceLoads, PlanIsAFunctionOfTimeAndSeed) {
 }
 
 TEST(ReferenceLoads, HeatersKeepTheBatteryBetweenTheirThresholds) {
-  Loads loads(Orbit{OrbitConstants{}}, LoadConstants{}, 1);
+  Loads loads(Orbit{OrbitConstants{}}, LoadConstants{}, {}, 1);
   loads.update(july, 1, {4.9, 8});
   EXPECT_TRUE(loads.heater_on(0));
   EXPECT_FALSE(loads.heater_on(1));

@@ -27,7 +27,7 @@ double sum(const auto& values) {
 
 TEST(ReferencePlant, CurrentsBalanceAtEveryNode) {
   constexpr double rounding_A = 1e-12;  // of sums up to 100 A
-  Plant plant(Constants{}, july, 1);
+  Plant plant(Constants{}, {}, july, 1);
   run(plant, two_orbits, [&](const Flows& f) {
     EXPECT_NEAR(f.sg2_A + f.shunt_A, f.array_A, rounding_A);
     EXPECT_NEAR(f.sg2_A + f.bdr_out_A, f.bus_A, rounding_A);
@@ -41,7 +41,7 @@ TEST(ReferencePlant, CurrentsBalanceAtEveryNode) {
 }
 
 TEST(ReferencePlant, PowerBalancesInEveryStep) {
-  Plant plant(Constants{}, july, 2);
+  Plant plant(Constants{}, {}, july, 2);
   run(plant, two_orbits, [&](const Flows& f) {
     double given_W = f.bus_V * f.sg2_A;
     double taken_W = f.bus_V * (sum(f.load_A) + f.capacitor_A);
@@ -57,7 +57,7 @@ TEST(ReferencePlant, PowerBalancesInEveryStep) {
 
 TEST(ReferencePlant, BatteryVoltageFollowsFromItsCurrent) {
   const Constants constants;
-  Plant plant(constants, july, 3);
+  Plant plant(constants, {}, july, 3);
   for (int step = 0; step < two_orbits * Plant::steps_per_second; ++step) {
     const std::array internal_V{plant.battery(0).internal_V(), plant.battery(1).internal_V()};
     plant.step();
@@ -71,7 +71,7 @@ TEST(ReferencePlant, BatteryVoltageFollowsFromItsCurrent) {
 
 TEST(ReferencePlant, ChargeAndBusEnergyAreCounted) {
   const Constants constants;
-  Plant plant(constants, july, 4);
+  Plant plant(constants, {}, july, 4);
   const double soc = plant.battery(0).state().soc;
   const double bus_V = plant.flows().bus_V;
   double stored_As = 0;
@@ -88,7 +88,7 @@ TEST(ReferencePlant, ChargeAndBusEnergyAreCounted) {
 
 TEST(ReferencePlant, AmplifierKeepsTheBusAndItsDomainsApart) {
   const Constants constants;
-  Plant plant(constants, july, 5);
+  Plant plant(constants, {}, july, 5);
   int discharging = 0;
   int shunting = 0;
   run(plant, two_orbits, [&](const Flows& f) {
@@ -103,7 +103,7 @@ TEST(ReferencePlant, AmplifierKeepsTheBusAndItsDomainsApart) {
 }
 
 TEST(ReferencePlant, BatteriesDischargeInEclipseAndAreFullAgainBeforeTheNext) {
-  Plant plant(Constants{}, july, 6);
+  Plant plant(Constants{}, {}, july, 6);
   double least = 1;
   double most = 0;
   run(plant, 10 * 6016, [&](const Flows& f) {
@@ -122,13 +122,13 @@ TEST(ReferencePlant, BatteriesDischargeInEclipseAndAreFullAgainBeforeTheNext) {
 
 TEST(ReferencePlant, ChargersHoldTheBatteriesAtTheirLimit) {
   const Constants constants;
-  Plant plant(constants, july, 7);
-  const double warm_V = constants.battery[0].cells * constants.charger.cell_limit_V;
+  Plant plant(constants, {}, july, 7);
+  const double warm_V = constants.battery[0].cells * constants.charger[0].cell_limit_V;
   int tapering = 0;
   run(plant, two_orbits, [&](const Flows& f) {
     const double colder_K = 10 - plant.battery(0).state().temperature_C;
     const double limit_V =
-        warm_V - constants.battery[0].cells * constants.charger.cell_limit_V_per_K * colder_K;
+        warm_V - constants.battery[0].cells * constants.charger[0].cell_limit_V_per_K * colder_K;
     EXPECT_LT(f.battery_V[0], limit_V + 0.1);
     tapering += f.section_shunt_A[0] > 0;
   });
@@ -141,7 +141,7 @@ TEST(ReferencePlant, BrownsOutWithEmptyBatteriesAndComesBackInSunlight) {
     battery.capacity_Ah = 2;
     battery.initial_soc = 0.1;
   }
-  Plant plant(constants, july, 8);
+  Plant plant(constants, {}, july, 8);
   bool browned_out = false;
   bool recovered = false;
   run(plant, two_orbits, [&](const Flows& f) {
@@ -159,8 +159,8 @@ TEST(ReferencePlant, BrownsOutWithEmptyBatteriesAndComesBackInSunlight) {
 TEST(ReferencePlant, LosesOneSixthOfTheArrayWithAChannel) {
   Constants constants;
   constants.array.bus_strings[2] = 0;
-  Plant damaged(constants, july, 9);
-  Plant whole(Constants{}, july, 9);
+  Plant damaged(constants, {}, july, 9);
+  Plant whole(Constants{}, {}, july, 9);
   run(whole, 6016, [&](const Flows& f) {
     damaged.step();
     EXPECT_NEAR(damaged.flows().array_A, f.array_A * 5 / 6, 0.02);  // the bus differs a little

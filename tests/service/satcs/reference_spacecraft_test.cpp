@@ -17,7 +17,7 @@ constexpr storage::Time second = 1'000'000'000;
 constexpr storage::Time july = 1'498'867'200 * second;  // 2017-07-01T00:00:00Z
 
 std::vector<std::vector<storage::Sample>> readings(std::uint64_t seed, int seconds) {
-  Spacecraft spacecraft(Constants{}, july, seed);
+  Spacecraft spacecraft(Constants{}, {}, july, seed);
   std::vector<std::vector<storage::Sample>> result(static_cast<std::size_t>(seconds));
   for (auto& reading : result) {
     spacecraft.read(reading);
@@ -62,7 +62,7 @@ TEST(ReferenceSpacecraft, PublishesTheParametersOfThePaper) {
 }
 
 TEST(ReferenceSpacecraft, ReadsInStepsOfTheConverter) {
-  Spacecraft spacecraft(Constants{}, july, 1);
+  Spacecraft spacecraft(Constants{}, {}, july, 1);
   std::vector<storage::Sample> samples;
   for (int s = 0; s < 600; ++s, spacecraft.advance()) {
     spacecraft.read(samples);
@@ -84,7 +84,7 @@ TEST(ReferenceSpacecraft, ReadsInStepsOfTheConverter) {
 }
 
 TEST(ReferenceSpacecraft, CurrentsOfTheBusAddUpButForNoise) {
-  Spacecraft spacecraft(Constants{}, july, 2);
+  Spacecraft spacecraft(Constants{}, {}, july, 2);
   std::map<std::string_view, std::size_t> at;
   for (std::size_t i = 0; i < telemetry_points().size(); ++i) at[telemetry_points()[i].name] = i;
   const auto& sensor = telemetry_points()[at["I_BUS"]].sensor;
@@ -100,11 +100,11 @@ TEST(ReferenceSpacecraft, CurrentsOfTheBusAddUpButForNoise) {
 }
 
 TEST(ReferenceSpacecraft, StartsOnAWholeSecondAndGoesOnBySeconds) {
-  Spacecraft spacecraft(Constants{}, july + 1, 1);
+  Spacecraft spacecraft(Constants{}, {}, july + 1, 1);
   EXPECT_EQ(spacecraft.time(), july);
   spacecraft.advance();
   EXPECT_EQ(spacecraft.time(), july + second);
-  EXPECT_EQ(Spacecraft(Constants{}, -1, 1).time(), -second);
+  EXPECT_EQ(Spacecraft(Constants{}, {}, -1, 1).time(), -second);
 }
 
 TEST(ReferenceSensor, FollowsAStepWithItsTimeConstant) {
