@@ -4,7 +4,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <system_error>
+#include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -26,17 +29,25 @@ void append_time(std::string& row, storage::Time time) {
 void write_csv(FrameSource& source, const std::filesystem::path& path) {
   std::ofstream file(path, std::ios::binary);
   std::string row = "unix_s";
-  for (const auto& parameter : source.parameters()) row += "," + parameter.name;
+  std::unordered_map<std::uint32_t, std::size_t> column;
+  for (const auto& parameter : source.parameters()) {
+    column.emplace(parameter.id, column.size());
+    row += "," + parameter.name;
+  }
   file << row << '\n';
-  storage::Time time = 0;
-  std::vector<storage::Sample> samples;
-  while (file && source.next(time, samples)) {
+  storage::TelemetryFrame frame;
+  std::vector<std::optional<double>> cells;
+  while (file && source.next(frame)) {
+    cells.assign(column.size(), std::nullopt);
+    for (const auto& sample : frame.samples) {
+      if (sample.quality != storage::Quality::invalid)
+        cells[column.at(sample.parameter)] = sample.value;
+    }
     row.clear();
-    append_time(row, time);
-    for (const auto& sample : samples) {
+    append_time(row, frame.generation_time);
+    for (const auto& cell : cells) {
       row += ',';
-      if (sample.quality == storage::Quality::invalid) continue;
-      fmt::format_to(std::back_inserter(row), "{}", sample.value);
+      if (cell) fmt::format_to(std::back_inserter(row), "{}", *cell);
     }
     file << row << '\n';
   }

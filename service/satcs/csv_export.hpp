@@ -3,12 +3,13 @@
 
 #include <filesystem>
 
-#include "service/satcs/publisher.hpp"
+#include "service/satcs/frame_source.hpp"
 
 namespace reident::satcs {
 
-/// The first column is the time in seconds since 1970 UTC (unix_s), then one for each parameter,
-/// with as many digits as its value needs; an invalid sample is a blank cell. Throws
+/// A row for each frame, in their order. The first column is the generation time in seconds since
+/// 1970 UTC (unix_s), then one for each parameter, with as many digits as its value needs; a blank
+/// cell is an invalid sample, or none. Senders, qualities and reception times are left out. Throws
 /// std::runtime_error when the file cannot be written.
 void write_csv(FrameSource& source, const std::filesystem::path& path);
 

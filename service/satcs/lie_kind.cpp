@@ -44,7 +44,7 @@ const LieFacts* find_facts(std::string_view name) {
   return found == all_facts.end() ? nullptr : &*found;
 }
 
-std::string all_lie_names() {
+std::string lie_kind_names() {
   std::string names;
   for (const LieFacts& one : all_facts) {
     if (!names.empty()) names += ", ";

@@ -18,8 +18,6 @@ struct LieFacts {
 const LieFacts& facts(LieKind kind);
 /// Nullptr where there is no such kind.
 const LieFacts* find_facts(std::string_view name);
-/// "stuck, bias_step, ...".
-std::string all_lie_names();
 
 /// What the parameter's sensor can say.
 struct Limits {

@@ -109,8 +109,8 @@ std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start
   Lie lie;
   const LieFacts* kind = find_facts(text.substr(0, at));
   if (kind == nullptr)
-    return wrong(
-        fmt::format("there is no lie '{}'; the lies are: {}", text.substr(0, at), all_lie_names()));
+    return wrong(fmt::format("there is no lie '{}'; the lies are: {}", text.substr(0, at),
+                             lie_kind_names()));
   lie.kind = kind->kind;
 
   std::string_view to = text.substr(slash + 1);

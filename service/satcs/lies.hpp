@@ -62,6 +62,8 @@ inline constexpr std::size_t lie_kinds = static_cast<std::size_t>(LieKind::simul
 
 /// "stuck", ...
 std::string_view name(LieKind kind);
+/// "stuck, bias_step, ...".
+std::string lie_kind_names();
 
 struct Lie {
   LieKind kind = LieKind::stuck;

@@ -15,13 +15,13 @@ class Pacer {
   /// `speed` > 0: seconds of telemetry a second; infinity for as fast as the readers take it.
   explicit Pacer(double speed) : speed_(speed) {}
 
-  /// The instant at which the frame of this generation time is due, `now` at the earliest. A source
-  /// that is more than a second late, or whose time jumps back, goes on at its speed from here.
-  Clock::time_point due(storage::Time generation_time, Clock::time_point now);
+  /// The instant at which the frame of this time is due, `now` at the earliest. A source that is
+  /// more than a second late, or whose time jumps back, goes on at its speed from here.
+  Clock::time_point due(storage::Time time, Clock::time_point now);
 
  private:
   struct Anchor {
-    storage::Time generation_time;
+    storage::Time time;
     Clock::time_point instant;
   };
   double speed_;

@@ -84,16 +84,16 @@ int complain(const CLI::App& app, std::string_view message, int code) {
 
 }  // namespace
 
-void add_publisher_options(CLI::App& app, PublisherOptions& options, bool& json) {
+void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& options, bool& json) {
   add_parsed(app, "--spacecraft", options.spacecraft, parse_name, "Name of the spacecraft",
              "a name")
       ->type_name("NAME")
       ->default_str(options.spacecraft);
-  add_parsed(app, "--source", options.source, parse_name,
+  add_parsed(app, "--source", sender.source, parse_name,
              "Name of the station or gateway that sends", "a name")
       ->type_name("NAME")
-      ->default_str(options.source);
-  add_parsed(app, "--origin", options.origin, parse_origin,
+      ->default_str(sender.source);
+  add_parsed(app, "--origin", sender.origin, parse_origin,
              "real, or simulated for telemetry of the simulator itself", "'real' or 'simulated'")
       ->type_name("ORIGIN")
       ->default_str("real");
@@ -102,7 +102,7 @@ void add_publisher_options(CLI::App& app, PublisherOptions& options, bool& json)
              "a number above 0 or 'max'")
       ->type_name("N|max")
       ->default_str("1");
-  app.add_option("--first-sequence", options.first_sequence, "Sequence number of the first frame")
+  app.add_option("--first-sequence", sender.first_sequence, "Sequence number of the first frame")
       ->capture_default_str();
   app.add_option("--wait-readers", options.wait_readers,
                  "Write nothing while fewer readers are there")
@@ -128,10 +128,11 @@ void add_publisher_options(CLI::App& app, PublisherOptions& options, bool& json)
   app.add_flag("--json", json, "Print the summary as one JSON object");
 }
 
-std::string to_json(const PublisherSummary& summary, const PublisherOptions& options) {
+std::string to_json(const PublisherSummary& summary, const Sender& sender,
+                    const PublisherOptions& options) {
   nlohmann::ordered_json json = {
       {"outcome", name(summary.outcome)}, {"spacecraft", options.spacecraft},
-      {"source", options.source},         {"origin", storage::name(options.origin)},
+      {"source", sender.source},          {"origin", storage::name(sender.origin)},
       {"parameters", summary.parameters}, {"frames", summary.frames},
       {"samples", summary.samples},       {"invalid_samples", summary.invalid_samples}};
   const bool any = summary.frames > 0;
@@ -161,10 +162,11 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   }
 }
 
-int publish_and_report(FrameSource& source, const PublisherOptions& options, bool json) {
+int publish_and_report(FrameSource& source, const Sender& sender, const PublisherOptions& options,
+                       bool json) {
   const StopSignal stop;
   const PublisherSummary summary = publish(source, options, stop.token());
-  fmt::print("{}\n", json ? to_json(summary, options) : sentence(summary));
+  fmt::print("{}\n", json ? to_json(summary, sender, options) : sentence(summary));
   if (const std::string what = remedy(summary.outcome, options); !what.empty()) {
     log::error("satcs", what);
   }

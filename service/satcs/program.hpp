@@ -44,8 +44,9 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, T& value,
       description);
 }
 
-/// --spacecraft, --source, --origin, --speed and all that says how frames are published.
-void add_publisher_options(CLI::App& app, PublisherOptions& options, bool& json);
+/// --spacecraft, --source, --origin, --first-sequence, --speed and all that says how frames are
+/// published.
+void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& options, bool& json);
 
 /// Parses the command line and does the work; every failure becomes one line on standard error.
 /// Returns the exit status.
@@ -53,9 +54,11 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
 
 /// Publishes all of `source` until a signal says otherwise, and prints the summary. Returns the
 /// exit status.
-int publish_and_report(FrameSource& source, const PublisherOptions& options, bool json);
+int publish_and_report(FrameSource& source, const Sender& sender, const PublisherOptions& options,
+                       bool json);
 
 /// The summary as one JSON object on one line.
-std::string to_json(const PublisherSummary& summary, const PublisherOptions& options);
+std::string to_json(const PublisherSummary& summary, const Sender& sender,
+                    const PublisherOptions& options);
 
 }  // namespace reident::satcs

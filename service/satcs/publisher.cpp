@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -71,6 +72,7 @@ class Run {
   dds::Participant participant_;
   dds::Writer<storage::ParameterDescriptor> descriptors_;
   dds::Writer<storage::TelemetryFrame> frames_;
+  std::map<std::string, Pacer, std::less<>> pacers_;  // by sender: their clocks may differ
   Progress progress_;
   PublisherSummary summary_;
 };
@@ -92,23 +94,18 @@ Outcome Run::all() {
 }
 
 Outcome Run::write_frames() {
-  Pacer pacer(options_.speed);
   storage::TelemetryFrame frame;
-  frame.spacecraft = options_.spacecraft;
-  frame.source = options_.source;
-  frame.origin = options_.origin;
-  frame.sequence = options_.first_sequence;
   if (const Outcome outcome = wait_for_readers(); outcome != Outcome::complete) return outcome;
-  while (source_.next(frame.generation_time, frame.samples)) {
-    frame.reception_time = frame.generation_time;
+  while (source_.next(frame)) {
+    frame.spacecraft = options_.spacecraft;
     const auto now = Clock::now();
-    const auto due = pacer.due(frame.generation_time, now);
+    const auto due = pacers_.try_emplace(frame.source, options_.speed)
+                         .first->second.due(frame.reception_time, now);
     if (due > now) sleep_until(due, stop_);
     if (const Outcome outcome = wait_for_readers(); outcome != Outcome::complete) return outcome;
     if (!frames_.write(frame, [this] { return stop_.stop_requested(); })) return Outcome::stopped;
     count(frame);
     show_progress(frame);
-    ++frame.sequence;
   }
   return Outcome::complete;
 }

@@ -4,39 +4,21 @@
 
 #include <chrono>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "service/dds/dds.hpp"
+#include "service/satcs/frame_source.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident::satcs {
 
-/// Where frames come from: a recorded file, the reference spacecraft.
-class FrameSource {
- public:
-  virtual ~FrameSource() = default;
-
-  /// What the samples are; the publisher fills in the spacecraft.
-  virtual std::vector<storage::ParameterDescriptor> parameters() const = 0;
-  /// The time and the samples of the next frame; false when there is none. Throws
-  /// std::runtime_error when the source breaks.
-  virtual bool next(storage::Time& generation_time, std::vector<storage::Sample>& samples) = 0;
-  /// The share of the source that was handed out, in [0, 1].
-  virtual double progress() const = 0;
-};
-
 struct PublisherOptions {
   dds::Endpoint endpoint;
   std::string spacecraft;
-  std::string source;
-  storage::Origin origin = storage::Origin::real;
   double speed = 1;  // seconds of telemetry a second; infinity: as fast as the readers take it
-  std::uint64_t first_sequence = 1;
   std::uint32_t wait_readers = 1;  // no frame is written while fewer readers are there
   /// How long to wait for the readers, and for their last acknowledgments; absent: for ever.
   std::optional<std::chrono::nanoseconds> wait_timeout;
@@ -70,9 +52,9 @@ struct PublisherSummary {
   double wall_s = 0;
 };
 
-/// Publishes all of `source`, one frame for each of its rows. The reception time of a frame is its
-/// generation time: what is replayed reached the ground when it was recorded. Shows a progress bar
-/// on a terminal. Throws dds::Error when the middleware fails.
+/// Publishes all frames of `source` in its order. Each sender's frames are paced by its own
+/// reception times. Shows a progress bar on a terminal. Throws dds::Error when the middleware
+/// fails.
 PublisherSummary publish(FrameSource& source, const PublisherOptions& options,
                          const std::stop_token& stop);
 

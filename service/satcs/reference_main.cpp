@@ -2,8 +2,11 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "service/satcs/csv_export.hpp"
+#include "service/satcs/lying_source.hpp"
 #include "service/satcs/program.hpp"
 #include "service/satcs/reference_source.hpp"
 #include "service/support/time_text.hpp"
@@ -19,7 +22,9 @@ constexpr const char* about =
     "  satcs-reference --duration 12h --speed 600\n"
     "  satcs-reference --start 2017-07-01T06:00:00Z --duration 3d --speed max --seed 7 --json\n"
     "  satcs-reference --duration 6h --csv reference.csv\n"
-    "  satcs-reference --duration 12h --speed 600 --simulated\n\n"
+    "  satcs-reference --duration 12h --speed 600 --simulated\n"
+    "  satcs-reference --duration 2d --speed max --lie stuck@+6h/+8h:V_BUS \\\n"
+    "      --lie bias_step@+1d/+30h:I_BUS*0.5 --lie passes_lost@+12h/+36h\n\n"
     "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
     "missing\n"
     "or did not take everything; 128 + N stopped by signal N.\n";
@@ -41,9 +46,30 @@ void add_reference_options(CLI::App& app, ReferenceOptions& options) {
   app.add_option("--seed", options.seed, "Seed of noise and operations")->capture_default_str();
 }
 
-std::unique_ptr<FrameSource> source_of(const ReferenceOptions& options, bool simulated) {
-  if (simulated) return std::make_unique<HandwrittenSource>(options);
-  return std::make_unique<ReferenceSource>(options);
+std::unique_ptr<FrameSource> source_of(const ReferenceOptions& options, const Sender& sender,
+                                       bool simulated) {
+  if (simulated) return std::make_unique<HandwrittenSource>(options, sender);
+  return std::make_unique<ReferenceSource>(options, sender);
+}
+
+/// What the ground receives of `truth`. Throws BadRequest.
+std::unique_ptr<FrameSource> with_lies(std::unique_ptr<FrameSource> truth,
+                                       const std::vector<std::string>& texts,
+                                       const ReferenceOptions& options) {
+  const auto parameters = truth->parameters();
+  std::vector<Lie> lies;
+  for (const std::string& text : texts) {
+    auto parsed = parse_lie(text, options.start);
+    if (const auto* error = std::get_if<LieError>(&parsed)) {
+      throw BadRequest("--lie: " + error->message);
+    }
+    auto& lie = std::get<Lie>(parsed);
+    lie.seed = mix(options.seed + lies.size());
+    if (const auto error = obstacle(lie, parameters)) throw BadRequest("--lie: " + error->message);
+    lies.push_back(std::move(lie));
+  }
+  return std::make_unique<LyingSource>(std::move(truth), lies,
+                                       LiarOptions{options.constants, options.life, options.seed});
 }
 
 }  // namespace
@@ -51,26 +77,34 @@ std::unique_ptr<FrameSource> source_of(const ReferenceOptions& options, bool sim
 int main(int argc, char** argv) {
   CLI::App app(about, "satcs-reference");
   ReferenceOptions reference;
+  Sender sender{.source = "reference"};
   PublisherOptions publisher;
   publisher.spacecraft = "REFERENCE";
-  publisher.source = "reference";
   bool json = false;
   bool simulated = false;
   std::string csv;
+  std::vector<std::string> lies;
   add_reference_options(app, reference);
   app.add_option("--csv", csv, "Write the telemetry to this file and publish nothing")
       ->type_name("FILE");
   app.add_flag("--simulated", simulated,
                "The telemetry of a simplified, hand-written simulation of the same spacecraft and\n"
                "operations instead, from source 'simulator' with origin 'simulated'");
-  add_publisher_options(app, publisher, json);
+  app.add_option("--lie", lies,
+                 "What befalls the telemetry between two times, or two durations after the start;\n"
+                 "may be given again. Kinds: " +
+                     lie_kind_names())
+      ->type_name("KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE]")
+      ->allow_extra_args(false);
+  add_publisher_options(app, sender, publisher, json);
   return run_program(app, argc, argv, [&]() -> int {
     if (simulated) {
-      publisher.origin = reident::storage::Origin::simulated;
-      if (app.count("--source") == 0) publisher.source = "simulator";
+      sender.origin = reident::storage::Origin::simulated;
+      if (app.count("--source") == 0) sender.source = "simulator";
     }
-    const auto source = source_of(reference, simulated);
-    if (csv.empty()) return publish_and_report(*source, publisher, json);
+    auto source = source_of(reference, sender, simulated);
+    if (!lies.empty()) source = with_lies(std::move(source), lies, reference);
+    if (csv.empty()) return publish_and_report(*source, sender, publisher, json);
     write_csv(*source, csv);
     return exit_complete;
   });

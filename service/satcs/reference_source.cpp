@@ -5,19 +5,22 @@
 namespace reident::satcs {
 
 template <class Model>
-SecondsSource<Model>::SecondsSource(const ReferenceOptions& options,
+SecondsSource<Model>::SecondsSource(const ReferenceOptions& options, Sender sender,
                                     std::vector<storage::ParameterDescriptor> descriptors)
     : model_(options.constants, options.life, options.start, options.seed),
+      sender_(std::move(sender)),
       descriptors_(std::move(descriptors)),
       frames_(static_cast<std::uint64_t>((options.duration_ns + 999'999'999) / 1'000'000'000)) {}
 
 template <class Model>
-bool SecondsSource<Model>::next(storage::Time& generation_time,
-                                std::vector<storage::Sample>& samples) {
+bool SecondsSource<Model>::next(storage::TelemetryFrame& frame) {
   if (frames_done_ == frames_) return false;
   if (frames_done_ > 0) model_.advance();
-  generation_time = model_.time();
-  model_.read(samples);
+  frame.source = sender_.source;
+  frame.origin = sender_.origin;
+  frame.sequence = sender_.first_sequence + frames_done_;
+  frame.generation_time = frame.reception_time = model_.time();
+  model_.read(frame.samples);
   ++frames_done_;
   return true;
 }
@@ -30,10 +33,10 @@ double SecondsSource<Model>::progress() const {
 template class SecondsSource<reference::Spacecraft>;
 template class SecondsSource<HandwrittenEps>;
 
-ReferenceSource::ReferenceSource(const ReferenceOptions& options)
-    : SecondsSource(options, reference::telemetry_descriptors({})) {}
+ReferenceSource::ReferenceSource(const ReferenceOptions& options, Sender sender)
+    : SecondsSource(options, std::move(sender), reference::telemetry_descriptors({})) {}
 
-HandwrittenSource::HandwrittenSource(const ReferenceOptions& options)
-    : SecondsSource(options, handwritten_descriptors({})) {}
+HandwrittenSource::HandwrittenSource(const ReferenceOptions& options, Sender sender)
+    : SecondsSource(options, std::move(sender), handwritten_descriptors({})) {}
 
 }  // namespace reident::satcs

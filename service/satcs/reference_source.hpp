@@ -1,8 +1,8 @@
 // The reference spacecraft, and its hand-written simulation, as sources of frames at 1 Hz.
 #pragma once
 
+#include "service/satcs/frame_source.hpp"
 #include "service/satcs/handwritten_eps.hpp"
-#include "service/satcs/publisher.hpp"
 #include "service/satcs/reference_spacecraft.hpp"
 
 namespace reident::satcs {
@@ -15,20 +15,21 @@ struct ReferenceOptions {
   std::uint64_t seed = 1;
 };
 
-/// `Model` is read and advanced second by second.
+/// `Model` is read and advanced second by second; its frames are received when they are generated.
 template <class Model>
 class SecondsSource : public FrameSource {
  public:
   std::vector<storage::ParameterDescriptor> parameters() const override { return descriptors_; }
-  bool next(storage::Time& generation_time, std::vector<storage::Sample>& samples) override;
+  bool next(storage::TelemetryFrame& frame) override;
   double progress() const override;
 
  protected:
-  SecondsSource(const ReferenceOptions& options,
+  SecondsSource(const ReferenceOptions& options, Sender sender,
                 std::vector<storage::ParameterDescriptor> descriptors);
 
  private:
   Model model_;
+  Sender sender_;
   std::vector<storage::ParameterDescriptor> descriptors_;
   std::uint64_t frames_;
   std::uint64_t frames_done_ = 0;
@@ -36,12 +37,12 @@ class SecondsSource : public FrameSource {
 
 class ReferenceSource : public SecondsSource<reference::Spacecraft> {
  public:
-  explicit ReferenceSource(const ReferenceOptions& options);
+  ReferenceSource(const ReferenceOptions& options, Sender sender);
 };
 
 class HandwrittenSource : public SecondsSource<HandwrittenEps> {
  public:
-  explicit HandwrittenSource(const ReferenceOptions& options);
+  HandwrittenSource(const ReferenceOptions& options, Sender sender);
 };
 
 }  // namespace reident::satcs

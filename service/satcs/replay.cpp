@@ -126,8 +126,8 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
   return plan;
 }
 
-ReplaySource::ReplaySource(ReplayPlan plan)
-    : plan_(std::move(plan)), reader_(reopened(plan_.file)) {}
+ReplaySource::ReplaySource(ReplayPlan plan, Sender sender)
+    : plan_(std::move(plan)), reader_(reopened(plan_.file)), sender_(std::move(sender)) {}
 
 std::vector<storage::ParameterDescriptor> ReplaySource::parameters() const {
   std::vector<storage::ParameterDescriptor> parameters;
@@ -135,22 +135,25 @@ std::vector<storage::ParameterDescriptor> ReplaySource::parameters() const {
   return parameters;
 }
 
-bool ReplaySource::next(storage::Time& generation_time, std::vector<storage::Sample>& samples) {
+bool ReplaySource::next(storage::TelemetryFrame& frame) {
   while (true) {
     const Reader::Step step = reader_.next();
     if (step == Reader::Step::end) return false;
     if (step == Reader::Step::error) throw std::runtime_error(reader_.error().message);
     const auto time = reader_.time_at(plan_.time_position);
     if (const auto* error = std::get_if<Error>(&time)) throw std::runtime_error(error->message);
-    generation_time = std::get<std::int64_t>(time);
-    if (within(plan_.range, generation_time)) break;
+    frame.generation_time = frame.reception_time = std::get<std::int64_t>(time);
+    if (within(plan_.range, frame.generation_time)) break;
   }
-  samples.clear();
+  frame.source = sender_.source;
+  frame.origin = sender_.origin;
+  frame.sequence = sender_.first_sequence + rows_done_;
+  frame.samples.clear();
   for (const auto& column : plan_.columns) {
     const auto number = csv::to_number(reader_.cells()[column.position]);
-    samples.push_back({column.parameter.id,
-                       number ? storage::Quality::good : storage::Quality::invalid,
-                       number.value_or(std::numeric_limits<double>::quiet_NaN())});
+    frame.samples.push_back({column.parameter.id,
+                             number ? storage::Quality::good : storage::Quality::invalid,
+                             number.value_or(std::numeric_limits<double>::quiet_NaN())});
   }
   ++rows_done_;
   return true;

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "service/satcs/publisher.hpp"
+#include "service/satcs/frame_source.hpp"
 #include "service/support/csv.hpp"
 
 namespace reident::satcs {
@@ -61,20 +61,21 @@ struct ReplayPlan {
 /// Reads the whole file; every mistake in the options or the file is one sentence.
 std::variant<ReplayPlan, csv::Error> plan_replay(const ReplayOptions& options);
 
-/// Rows in the order of the file, whatever their times are. A cell without a finite number becomes
-/// a sample of quality invalid whose value is NaN.
+/// Rows in the order of the file, whatever their times are, each received when it was generated. A
+/// cell without a finite number becomes a sample of quality invalid whose value is NaN.
 class ReplaySource : public FrameSource {
  public:
   /// Throws std::runtime_error when the file cannot be opened any more.
-  explicit ReplaySource(ReplayPlan plan);
+  ReplaySource(ReplayPlan plan, Sender sender);
 
   std::vector<storage::ParameterDescriptor> parameters() const override;
-  bool next(storage::Time& generation_time, std::vector<storage::Sample>& samples) override;
+  bool next(storage::TelemetryFrame& frame) override;
   double progress() const override;
 
  private:
   ReplayPlan plan_;
   csv::Reader reader_;
+  Sender sender_;
   std::uint64_t rows_done_ = 0;
 };
 

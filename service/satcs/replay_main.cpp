@@ -60,7 +60,7 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
       ->type_name("TIME|OFFSET");
 }
 
-ReplaySource open_replay(const ReplayOptions& options) {
+ReplaySource open_replay(const ReplayOptions& options, const Sender& sender) {
   auto planned = plan_replay(options);
   if (const auto* error = std::get_if<reident::csv::Error>(&planned)) {
     throw BadRequest(error->message);
@@ -69,7 +69,7 @@ ReplaySource open_replay(const ReplayOptions& options) {
   for (const auto& column : plan.left_out) {
     reident::log::info("satcs", "column left out, there is no number in it", {{"column", column}});
   }
-  return ReplaySource(std::move(plan));
+  return ReplaySource(std::move(plan), sender);
 }
 
 }  // namespace
@@ -77,14 +77,14 @@ ReplaySource open_replay(const ReplayOptions& options) {
 int main(int argc, char** argv) {
   CLI::App app(about, "satcs-replay");
   ReplayOptions replay;
+  Sender sender{.source = "replay"};
   PublisherOptions publisher;
-  publisher.source = "replay";
   bool json = false;
   add_replay_options(app, replay);
-  add_publisher_options(app, publisher, json);
+  add_publisher_options(app, sender, publisher, json);
   app.get_option("--spacecraft")->required();
   return run_program(app, argc, argv, [&] {
-    ReplaySource source = open_replay(replay);
-    return publish_and_report(source, publisher, json);
+    ReplaySource source = open_replay(replay, sender);
+    return publish_and_report(source, sender, publisher, json);
   });
 }

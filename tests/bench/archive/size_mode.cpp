@@ -18,19 +18,20 @@ struct SizeOptions {
 
 std::vector<std::unique_ptr<satcs::FrameSource>> sources_of(const SizeOptions& options) {
   std::vector<std::unique_ptr<satcs::FrameSource>> sources;
+  const satcs::Sender sender{.source = "bench"};
   for (const std::string& file : options.csv) {
     satcs::ReplayOptions replay;
     replay.file = file;
     auto plan = satcs::plan_replay(replay);
     if (const auto* error = std::get_if<csv::Error>(&plan))
       throw std::runtime_error(error->message);
-    sources.push_back(
-        std::make_unique<satcs::ReplaySource>(std::get<satcs::ReplayPlan>(std::move(plan))));
+    sources.push_back(std::make_unique<satcs::ReplaySource>(
+        std::get<satcs::ReplayPlan>(std::move(plan)), sender));
   }
   if (options.reference_s > 0) {
     satcs::ReferenceOptions reference;
     reference.duration_ns = options.reference_s * 1'000'000'000;
-    sources.push_back(std::make_unique<satcs::ReferenceSource>(reference));
+    sources.push_back(std::make_unique<satcs::ReferenceSource>(reference, sender));
   }
   return sources;
 }
@@ -47,13 +48,10 @@ std::uint64_t store_all(satcs::FrameSource& source, TelemetryStore& archive, Tel
   while (more) {
     batch.resize(batch_frames);
     std::size_t count = 0;
-    while (count < batch.size() &&
-           (more = source.next(batch[count].generation_time, batch[count].samples))) {
+    while (count < batch.size() && (more = source.next(batch[count]))) {
       auto& frame = batch[count];
       frame.spacecraft = mission;
-      frame.source = "bench";
       frame.sequence = ++sequence;
-      frame.reception_time = frame.generation_time;
       samples += frame.samples.size();
       ++count;
     }

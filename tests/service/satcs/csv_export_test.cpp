@@ -11,23 +11,26 @@
 namespace reident::satcs {
 namespace {
 
-class TwoRows : public FrameSource {
+class ThreeRows : public FrameSource {
  public:
   std::vector<storage::ParameterDescriptor> parameters() const override {
     std::vector<storage::ParameterDescriptor> two(2);
+    two[0].id = 1;
     two[0].name.assign(1, 'a');
+    two[1].id = 2;
     two[1].name.assign(1, 'b');
     return two;
   }
-  bool next(storage::Time& time, std::vector<storage::Sample>& samples) override {
+  bool next(storage::TelemetryFrame& frame) override {
     using storage::Quality;
-    if (row_ == 2) return false;
-    time = row_ == 0 ? -500'000'000 : 1'700'000'000'000'000'001;
-    samples = {{1, Quality::good, row_ == 0 ? 0.1 : 28},
-               {2, row_ == 0 ? Quality::good : Quality::invalid,
-                row_ == 0 ? -1e-9 : std::numeric_limits<double>::quiet_NaN()}};
-    ++row_;
-    return true;
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    frame.generation_time = row_ == 0   ? -500'000'000
+                            : row_ == 1 ? 1'700'000'000'000'000'001
+                                        : 5'000'000'000;
+    if (row_ == 0) frame.samples = {{1, Quality::good, 0.1}, {2, Quality::good, -1e-9}};
+    if (row_ == 1) frame.samples = {{1, Quality::good, 28}, {2, Quality::invalid, nan}};
+    if (row_ == 2) frame.samples = {{2, Quality::suspect, 3}};
+    return row_++ < 3;
   }
   double progress() const override { return 0; }
 
@@ -35,19 +38,21 @@ class TwoRows : public FrameSource {
   int row_ = 0;
 };
 
-TEST(CsvExport, WritesEveryDigitAndBlanksForInvalidSamples) {
+TEST(CsvExport, WritesEveryDigitAndBlanksForInvalidAndForNoSamples) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("reident-export-" + std::to_string(getpid()) + ".csv");
-  TwoRows source;
+  ThreeRows source;
   write_csv(source, path);
   std::stringstream text;
   text << std::ifstream(path).rdbuf();
   std::filesystem::remove(path);
-  EXPECT_EQ(text.str(), "unix_s,a,b\n-0.500000000,0.1,-1e-09\n1700000000.000000001,28,\n");
+  EXPECT_EQ(text.str(),
+            "unix_s,a,b\n-0.500000000,0.1,-1e-09\n1700000000.000000001,28,\n"
+            "5,,3\n");
 }
 
 TEST(CsvExport, SaysWhyAFileCannotBeWritten) {
-  TwoRows source;
+  ThreeRows source;
   try {
     write_csv(source, "/nowhere/t.csv");
     FAIL() << "written";

@@ -206,7 +206,8 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
   write("t,a,b\n10,1,x\n9.5,,2\n9.5,nan,-0.5\n20,1e400,3\n");
   const auto replayed = plan();
   EXPECT_EQ(replayed.rows, 4U);
-  ReplaySource source(replayed);
+  ReplaySource source(replayed, {"station", storage::Origin::simulated, 7});
+  std::uint64_t sequence = 7;
   struct Row {
     std::int64_t time;
     double a, b;  // NaN: invalid
@@ -214,10 +215,14 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
   const double none = std::nan("");
   for (const Row& row : {Row{10 * second, 1, none}, Row{19 * second / 2, none, 2},
                          Row{19 * second / 2, none, -0.5}, Row{20 * second, none, 3}}) {
-    storage::Time time = 0;
-    std::vector<storage::Sample> samples;
-    ASSERT_TRUE(source.next(time, samples));
-    EXPECT_EQ(time, row.time);
+    storage::TelemetryFrame frame;
+    ASSERT_TRUE(source.next(frame));
+    EXPECT_EQ(frame.source, "station");
+    EXPECT_EQ(frame.origin, storage::Origin::simulated);
+    EXPECT_EQ(frame.sequence, sequence++);
+    EXPECT_EQ(frame.generation_time, row.time);
+    EXPECT_EQ(frame.reception_time, row.time);
+    const auto& samples = frame.samples;
     ASSERT_EQ(samples.size(), 2U);
     for (const auto& [sample, expected] : {std::pair(samples[0], row.a), {samples[1], row.b}}) {
       EXPECT_EQ(std::isnan(sample.value), std::isnan(expected));
@@ -228,20 +233,18 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
                 std::isnan(expected) ? storage::Quality::invalid : storage::Quality::good);
     }
   }
-  storage::Time time = 0;
-  std::vector<storage::Sample> samples;
-  EXPECT_FALSE(source.next(time, samples));
+  storage::TelemetryFrame frame;
+  EXPECT_FALSE(source.next(frame));
   EXPECT_EQ(source.progress(), 1);
 }
 
 TEST_F(Replay, KeepsToTheStretchAskedFor) {
   write("t,a\n12,3\n10,1\n11,2\n13,4\n");
   const auto values = [&] {
-    ReplaySource source(plan());
+    ReplaySource source(plan(), {"station"});
     std::vector<double> result;
-    storage::Time time = 0;
-    std::vector<storage::Sample> samples;
-    while (source.next(time, samples)) result.push_back(samples[0].value);
+    storage::TelemetryFrame frame;
+    while (source.next(frame)) result.push_back(frame.samples[0].value);
     return result;
   };
   options_.start = ReplayBound{true, second};  // from the earliest row, not the first
@@ -260,13 +263,12 @@ TEST_F(Replay, FailsWhenTheFileChangesUnderIt) {
   write("t,a\n1,2\n2,3\n");
   const auto replayed = plan();
   write("t,a\n1,2\nnoon,3\n");
-  ReplaySource source(replayed);
-  storage::Time time = 0;
-  std::vector<storage::Sample> samples;
-  EXPECT_TRUE(source.next(time, samples));
-  EXPECT_THROW(source.next(time, samples), std::runtime_error);
+  ReplaySource source(replayed, {"station"});
+  storage::TelemetryFrame frame;
+  EXPECT_TRUE(source.next(frame));
+  EXPECT_THROW(source.next(frame), std::runtime_error);
   std::filesystem::remove(options_.file);
-  EXPECT_THROW(ReplaySource{replayed}, std::runtime_error);
+  EXPECT_THROW(ReplaySource(replayed, {"station"}), std::runtime_error);
 }
 
 }  // namespace
