@@ -36,7 +36,7 @@ std::string unknown_parameter(std::string_view name,
                               std::span<const ParameterDescriptor> parameters) {
   std::string known;
   for (const auto& parameter : parameters) known += (known.empty() ? "" : ", ") + parameter.name;
-  return fmt::format("there is no parameter '{}'; the parameters are: {}", name, known);
+  return fmt::format("names no parameter: '{}'; the parameters are: {}", name, known);
 }
 
 const ParameterDescriptor* find(std::string_view name,
@@ -79,14 +79,14 @@ std::string wrong_magnitude(const Lie& lie) {
     case Magnitude::share:
       return magnitude >= 0 && magnitude <= 1
                  ? ""
-                 : fmt::format("has a share from 0 to 1 as its magnitude, and not {}", magnitude);
+                 : fmt::format("takes a share from 0 to 1 as its magnitude; {} is none", magnitude);
     case Magnitude::seconds: {
       constexpr double longest_s = 1e9;
       const bool comes_later = lie.kind == LieKind::backwards_playback ||
                                lie.kind == LieKind::duplicated_day ||
                                lie.kind == LieKind::repeated_day;
       if (std::abs(magnitude) <= longest_s && (!comes_later || magnitude >= 0)) return {};
-      return fmt::format("has seconds from {} to {:g} as its magnitude, and not {}",
+      return fmt::format("takes seconds from {} to {:g} as its magnitude; {} is out of that range",
                          comes_later ? "0" : "-1e+09", longest_s, magnitude);
     }
     case Magnitude::of_parameter:
@@ -105,7 +105,7 @@ std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start
   const auto at = text.find('@');
   const auto slash = text.find('/');
   if (at == std::string_view::npos || slash == std::string_view::npos || slash < at)
-    return wrong(fmt::format("is not {}", form));
+    return wrong(fmt::format("is not {}, such as stuck@+6h/+8h:V_BUS", form));
   Lie lie;
   const LieFacts* kind = find_facts(text.substr(0, at));
   if (kind == nullptr)
