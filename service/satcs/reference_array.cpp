@@ -26,14 +26,13 @@ double SolarArray::incidence(double beta) const {
   return std::cos(beta - constants_.cant_deg * std::numbers::pi / 180);
 }
 
-void SolarArray::step(double dt_s) {
+void SolarArray::step(double dt_s, double electrical_W) {
   constexpr double stefan_boltzmann = 5.670374e-8;  // [W/m2K4]
   const ArrayConstants& c = constants_;
   const double kelvin = temperature_C_ + 273.15;
-  const double absorbed =
-      c.solar_flux_W_m2 * flux_ * (c.absorptance - c.electrical_share) + c.earth_infrared_W_m2;
+  const double absorbed = c.solar_flux_W_m2 * flux_ * c.absorptance + c.earth_infrared_W_m2;
   const double emitted = 2 * c.emittance * stefan_boltzmann * kelvin * kelvin * kelvin * kelvin;
-  temperature_C_ += dt_s * (absorbed - emitted) / c.heat_capacity_J_m2K;
+  temperature_C_ += dt_s * (absorbed - emitted - electrical_W / c.area_m2) / c.heat_capacity_J_m2K;
 }
 
 }  // namespace reident::satcs::reference

@@ -16,11 +16,13 @@ class SolarArray {
   /// negative.
   double string_current(int cells, double node_V) const;
 
-  /// `incidence` is the cosine of the Sun's angle to the panels, `illumination` lies in [0, 1].
-  void set_sun(double illumination, double incidence) { flux_ = illumination * incidence; }
+  /// `flux` of the solar flux at 1 AU reaches the panels, whose angle to it has the cosine
+  /// `incidence`.
+  void set_sun(double flux, double incidence) { flux_ = flux * incidence; }
   /// The incidence at a beta angle [rad]: the wing follows the Sun in the orbit's plane.
   double incidence(double beta) const;
-  void step(double dt_s);
+  /// `electrical_W` are drawn from the panels, and do not heat them.
+  void step(double dt_s, double electrical_W);
 
   double temperature_C() const { return temperature_C_; }
 

@@ -14,7 +14,12 @@ Battery::Battery(const BatteryConstants& constants, double step_s)
       step_s_(step_s),
       fast_decay_(std::exp(-step_s / constants.fast_s)),
       slow_decay_(std::exp(-step_s / constants.slow_s)),
-      state_{.soc = constants.initial_soc, .temperature_C = constants.initial_C} {}
+      state_{.soc = constants.initial_soc, .temperature_C = constants.initial_C} {
+  const auto& table = constants.cell_open_V;
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    below_V_[i] = below_V_[i - 1] + (table[i - 1] + table[i]) / 2;
+  }
+}
 
 double Battery::open_circuit_V() const {
   const auto& table = constants_.cell_open_V;
@@ -24,6 +29,18 @@ double Battery::open_circuit_V() const {
   const double cell_V = table[left] + share * (table[left + 1] - table[left]) +
                         constants_.cell_open_V_per_K * (state_.temperature_C - rated_C);
   return constants_.cells * cell_V;
+}
+
+double Battery::chemical_J() const {
+  // The integral of the table's straight pieces.
+  const auto& table = constants_.cell_open_V;
+  const double at = state_.soc * static_cast<double>(table.size() - 1);
+  const auto left = std::min(static_cast<std::size_t>(at), table.size() - 2);
+  const double share = at - static_cast<double>(left);
+  const double pieces_V =
+      below_V_[left] + share * (table[left] + share / 2 * (table[left + 1] - table[left]));
+  return constants_.cells * 3600 * constants_.capacity_Ah * pieces_V /
+         static_cast<double>(table.size() - 1);
 }
 
 double Battery::charge_efficiency() const {
@@ -44,13 +61,13 @@ double Battery::stored_A(double current_A) const {
 
 void Battery::step(double current_A, double heater_W) {
   const BatteryConstants& c = constants_;
-  const double stored = stored_A(current_A);
-  // Lost in the resistances, and all of a charging current that is not stored.
-  const double heat_W = current_A * (c.series_ohm * current_A + state_.fast_V + state_.slow_V) +
-                        (current_A - stored) * open_circuit_V();
+  const double taken_W = current_A * (internal_V() + c.series_ohm * current_A);
+  const double before_J = chemical_J();
+  state_.soc =
+      std::clamp(state_.soc + stored_A(current_A) * step_s_ / (3600 * c.capacity_Ah), 0.0, 1.0);
+  heat_W_ = taken_W - (chemical_J() - before_J) / step_s_;
   const double lost_W = c.conductance_W_K * (state_.temperature_C - c.radiator_C);
-  state_.temperature_C += step_s_ * (heat_W + heater_W - lost_W) / c.heat_capacity_J_K;
-  state_.soc = std::clamp(state_.soc + stored * step_s_ / (3600 * c.capacity_Ah), 0.0, 1.0);
+  state_.temperature_C += step_s_ * (heat_W_ + heater_W - lost_W) / c.heat_capacity_J_K;
   const auto relax = [&](double& pair_V, double ohm, double decay) {
     pair_V = ohm * current_A + (pair_V - ohm * current_A) * decay;
   };

@@ -1,6 +1,8 @@
 // A battery: open-circuit voltage over charge and temperature, a series resistance and two
 // resistor-capacitor pairs, charge efficiency, and heat.
 //
+// Whatever power is not stored as charge is heat.
+//
 //   V = V_oc(soc, T) + R_0 I + v_fast + v_slow      I > 0 charges [A]
 //   dv/dt = (R I - v) / tau                         for each pair
 //   dsoc/dt = eta(soc, I) I / capacity
@@ -25,6 +27,9 @@ class Battery {
   const State& state() const { return state_; }
 
   double open_circuit_V() const;
+  /// Chemical energy above that of an empty battery [J], at 10 degC: what the temperature adds to
+  /// the voltage is heat that it takes from the cells or gives to them.
+  double chemical_J() const;
   /// What drives the current behind the series resistance: the terminal voltage at no current.
   double internal_V() const { return open_circuit_V() + state_.fast_V + state_.slow_V; }
   /// The share of a charging current that is stored at the present state of charge.
@@ -35,14 +40,19 @@ class Battery {
   /// The current that is stored, or taken from the store, of a terminal current.
   double stored_A(double current_A) const;
 
-  /// One step of constant terminal current; `heater_W` warms the cells.
+  /// One step of constant terminal current, at the voltage `internal_V() + R_0 current_A`;
+  /// `heater_W` warms the cells.
   void step(double current_A, double heater_W);
+  /// The heat of the last step, without the heater's [W].
+  double heat_W() const { return heat_W_; }
 
  private:
   BatteryConstants constants_;
   double step_s_;
-  double fast_decay_, slow_decay_;  // of the pairs in one step
+  std::array<double, 21> below_V_{};  // sum of the mean voltages of the table's pieces before each
+  double fast_decay_, slow_decay_;    // of the pairs in one step
   State state_;
+  double heat_W_ = 0;
 };
 
 }  // namespace reident::satcs::reference

@@ -19,11 +19,14 @@ double Bus::bdr_A(double mea_V, const Demand& demand) const {
   return demand.bdr_max_A * std::clamp(share, 0.0, 1.0);
 }
 
+double Bus::shunting(double mea_V, std::size_t channel) const {
+  return std::clamp((mea_V - corners_V_[channel + 2]) / mea_.shunt_step_V, 0.0, 1.0);
+}
+
 double Bus::shunt_A(double mea_V, const Demand& demand) const {
   double sum_A = 0;
   for (std::size_t c = 0; c < shunt_channels; ++c) {
-    const double share = (mea_V - corners_V_[c + 2]) / mea_.shunt_step_V;
-    sum_A += demand.channel_A[c] * std::clamp(share, 0.0, 1.0);
+    sum_A += demand.channel_A[c] * shunting(mea_V, c);
   }
   return sum_A;
 }
@@ -55,13 +58,16 @@ Bus::Solution Bus::step(const Demand& demand) {
   mea_V = std::max(mea_V, fold_back_mea_V);
   s.bdr_A = bdr_A(mea_V, demand);
   s.shunt_A = shunt_A(mea_V, demand);
+  for (std::size_t c = 0; c < shunt_channels; ++c) s.shunting[c] = shunting(mea_V, c);
   const double supply_A = s.bdr_A + s.array_A - s.shunt_A;
   if (brown_out) {
     const double available_A = supply_A + farad_s * (bus_V_ - bus_.fold_back_V);
     s.load_share = std::clamp(available_A / demand.load_A, 0.0, 1.0);
   }
   s.capacitor_A = supply_A - s.load_share * demand.load_A;
+  const double before_V = bus_V_;
   bus_V_ += s.capacitor_A / farad_s;
+  s.capacitor_J = bus_.capacitance_F * (bus_V_ - before_V) * (bus_V_ + before_V) / 2;
 
   mea_V_ = std::clamp(mea_V, 0.0, mea_.high_rail_V);
   // At a rail the integrator waits.

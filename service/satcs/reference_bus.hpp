@@ -29,8 +29,10 @@ class Bus {
   struct Solution {
     double bdr_A = 0;
     double shunt_A = 0;
+    Channels shunting{};     // the share of its time that each channel shunts
     double array_A = 0;      // of all channels
     double capacitor_A = 0;  // into the capacitor
+    double capacitor_J = 0;  // stored by the step; the rest is lost in its series resistance
     double load_share = 1;   // of the demand that the loads get; below 1 in a brown-out
   };
   Solution step(const Demand& demand);
@@ -41,6 +43,7 @@ class Bus {
  private:
   double bdr_A(double mea_V, const Demand& demand) const;
   double shunt_A(double mea_V, const Demand& demand) const;
+  double shunting(double mea_V, std::size_t channel) const;
 
   BusConstants bus_;
   ErrorAmplifierConstants mea_;

@@ -9,6 +9,7 @@ namespace reident::satcs::reference {
 
 inline constexpr std::size_t battery_count = 2;
 inline constexpr std::size_t shunt_channels = 6;
+inline constexpr std::size_t converter_count = 3;
 inline constexpr std::size_t section_count = 3;  // SAG1A, SAG1B, SAG2
 
 struct OrbitConstants {
@@ -19,6 +20,7 @@ struct OrbitConstants {
   double earth_radius_km = 6378.137;
   double sun_radius_deg = 0.2666;  // angular
   double obliquity_deg = 23.439;
+  double earth_eccentricity = 0.0167;
   double min_elevation_deg = 5;  // above which a station sees the spacecraft
 };
 
@@ -35,9 +37,10 @@ struct ArrayConstants {
   int bus_cells = 16;                                     // in series, SAG2
   std::array<int, shunt_channels> bus_strings{15, 15, 15, 15, 15, 15};
   std::array<double, section_count> section_share{1, 1, 1};  // of the new strings' current
-  double solar_flux_W_m2 = 1361;
+  double shunt_drop_V = 0.7;         // of a shunting switch, before the blocking diode
+  double area_m2 = 8;                // of all sections
+  double solar_flux_W_m2 = 1361;     // at 1 AU
   double absorptance = 0.85;         // of the front, before electrical power is taken out
-  double electrical_share = 0.20;    // of the flux
   double emittance = 0.85;           // of each face
   double earth_infrared_W_m2 = 160;  // absorbed
   double heat_capacity_J_m2K = 4500;
@@ -72,6 +75,8 @@ struct ChargerConstants {
   double cell_limit_V = 1.425;  // at 10 degC
   double cell_limit_V_per_K = -2.5e-3;
   double gain_per_Vs = 0.15;  // of the shunted share
+  double drop_V = 0.6;        // from the section to the battery
+  double series_ohm = 0.030;
 };
 
 /// Battery switching regulators: one module for each battery, one output.
@@ -104,23 +109,59 @@ struct ErrorAmplifierConstants {
 
 struct BusConstants {
   double capacitance_F = 0.02;
-  double fold_back_V = 20;  // loads take less current rather than pull the bus below it
+  double fold_back_V = 20;     // loads take less current rather than pull the bus below it
+  double harness_ohm = 0.004;  // from the bus to the distributor
+};
+
+/// A DC/DC converter and its secondary line.
+struct ConverterConstants {
+  double output_V = 5;       // without load
+  double output_ohm = 2e-3;  // droop
+  double idle_W = 6;
+  double drop_V = 0.35;
+  double series_ohm = 6e-3;  // at 25 degC
+};
+
+/// The converters' common plate.
+struct ConverterPlateConstants {
+  double series_per_K = 4e-3;
+  double heat_capacity_J_K = 3000;
+  double conductance_W_K = 2.2;
+  double base_C = 12;
+};
+
+/// The secondary lines: 5 V for logic, 15 V for analog electronics, 12 V for the cameras.
+enum SecondaryLine : std::size_t { logic_line, analog_line, camera_line };
+
+/// What a secondary line's users take.
+struct LineConstants {
+  double base_A = 0;
+  double payload_A = 0;      // more while the cameras are on
+  double transmitter_A = 0;  // more while the transmitter is on
+  double sigma_A = 0;        // slow variation
+  double correlation_s = 60;
+};
+
+struct ThermostatConstants {
+  double on_C = 0;
+  double off_C = 0;
 };
 
 struct LoadConstants {
-  double platform_W = 600;
-  double platform_safe_W = 430;  // in safe mode
+  double platform_W = 380;       // what runs on the bus itself
+  double platform_safe_W = 250;  // in safe mode
   double platform_sigma_W = 12;  // slow variation
   double platform_correlation_s = 240;
-  double payload_standby_W = 45;
-  double payload_W = 330;
+  std::array<LineConstants, converter_count> line{LineConstants{18, 2, 4, 0.6, 90},
+                                                  LineConstants{7, 0, 0, 0.35, 150},
+                                                  LineConstants{2.8, 21.2, 0, 0.3, 30}};
   double transmitter_W = 230;
-  double equipment_heater_W = 95;  // at 28 V
-  double battery_heater_W = 45;    // at 28 V
-  double battery_heater_on_C = 5;
-  double battery_heater_off_C = 7;
-  double equipment_heater_on_C = 17;
-  double equipment_heater_off_C = 20;
+  double equipment_heater_W = 95;                                                    // at 28 V
+  double battery_heater_W = 45;                                                      // at 28 V
+  std::array<ThermostatConstants, 2> battery_heater{ThermostatConstants{5, 7},       // main
+                                                    ThermostatConstants{4.2, 7.4}};  // redundant
+  std::array<std::size_t, battery_count> heater_in_use{0, 0};  // controller of each battery
+  ThermostatConstants equipment_heater{17, 20};
   double equipment_capacity_J_K = 9000;
   double equipment_conductance_W_K = 4.5;
   double equipment_sink_C = 2;        // in eclipse
@@ -142,6 +183,10 @@ struct Constants {
   DischargeRegulatorConstants bdr;
   ErrorAmplifierConstants mea;
   BusConstants bus;
+  std::array<ConverterConstants, converter_count> converter{
+      ConverterConstants{}, ConverterConstants{15, 8e-3, 5, 0.5, 30e-3},
+      ConverterConstants{12, 4e-3, 8, 0.6, 35e-3}};
+  ConverterPlateConstants converter_plate;
   LoadConstants load;
 };
 

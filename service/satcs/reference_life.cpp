@@ -30,10 +30,14 @@ constexpr std::array kinds{
              0, 0.5, 10},
     KindInfo{LifeKind::efficiency_drift, "efficiency_drift", Course::gradual, LifeUnit::none, 0,
              0.3, 10},
+    KindInfo{LifeKind::converter_drift, "converter_drift", Course::gradual, LifeUnit::converter, 0,
+             0.3, 10},
     KindInfo{LifeKind::lost_string, "lost_string", Course::step, LifeUnit::string_row, 3, 1, 13},
     KindInfo{LifeKind::failed_cell, "failed_cell", Course::step, LifeUnit::battery, 1, 1, 10},
     KindInfo{LifeKind::redundant_charger, "redundant_charger", Course::mode, LifeUnit::battery, 1,
              1, 1},
+    KindInfo{LifeKind::redundant_heater, "redundant_heater", Course::mode, LifeUnit::battery, 1, 1,
+             1},
     KindInfo{LifeKind::safe_mode, "safe_mode", Course::mode, LifeUnit::none, 0, 1, 1},
     KindInfo{LifeKind::quiet, "quiet", Course::mode, LifeUnit::none, 0, 1, 1},
 };
@@ -50,6 +54,8 @@ int most_unit(LifeUnit unit) {
       return battery_count;
     case LifeUnit::section:
       return battery_count + 1;
+    case LifeUnit::converter:
+      return converter_count;
     case LifeUnit::string_row:
       return battery_count + shunt_channels;
   }
@@ -93,6 +99,14 @@ void apply(const LifeEvent& event, double grown, Constants& c) {
       c.bdr.series_ohm *= 1 + change;
       c.bdr.switching *= 1 + change;
       break;
+    case LifeKind::converter_drift:
+      for (std::size_t l = 0; l < converter_count; ++l) {
+        if (!concerns(event, l + 1)) continue;
+        c.converter[l].idle_W *= 1 + change;
+        c.converter[l].drop_V *= 1 + change;
+        c.converter[l].series_ohm *= 1 + change;
+      }
+      break;
     case LifeKind::lost_string:
       if (grown > 0) lose_strings(c.array, event.unit, static_cast<int>(event.magnitude));
       break;
@@ -104,6 +118,10 @@ void apply(const LifeEvent& event, double grown, Constants& c) {
     case LifeKind::redundant_charger:
       for (std::size_t k = 0; k < battery_count; ++k)
         if (grown > 0 && concerns(event, k + 1)) c.charger_in_use[k] = 1;
+      break;
+    case LifeKind::redundant_heater:
+      for (std::size_t k = 0; k < battery_count; ++k)
+        if (grown > 0 && concerns(event, k + 1)) c.load.heater_in_use[k] = 1;
       break;
     case LifeKind::safe_mode:
     case LifeKind::quiet:

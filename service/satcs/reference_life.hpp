@@ -22,11 +22,13 @@ enum class LifeKind {
   array_degradation,  // magnitude: share of the strings' current lost; unit: section
   capacity_fade,      // magnitude: share of the capacity lost; unit: battery
   rising_resistance,  // magnitude: relative growth of every resistance; unit: battery
-  efficiency_drift,   // magnitude: relative growth of the regulators' losses; unit: none
+  efficiency_drift,   // magnitude: relative growth of the discharge regulators' losses; unit: none
+  converter_drift,    // magnitude: relative growth of a DC/DC converter's losses; unit: converter
   lost_string,        // magnitude: strings lost; unit: row of strings; always a step
   failed_cell,        // magnitude: cells shorted; unit: battery; always a step
   // Modes: from the beginning to the end, or for good when both are the same. No magnitude.
   redundant_charger,  // unit: battery
+  redundant_heater,   // the battery's heater controller; unit: battery
   safe_mode,          // the payload and the transmitter off, the platform at its least; unit: none
   quiet,              // neither imaging nor transmission; unit: none
 };
@@ -36,6 +38,7 @@ enum class LifeUnit {
   none,
   battery,     // 1, 2; 0: both
   section,     // 1 SAG1A, 2 SAG1B, 3 SAG2; 0: all
+  converter,   // 1 logic, 2 analog, 3 cameras; 0: all
   string_row,  // 1 SAG1A, 2 SAG1B, 3 to 8 the channels of SAG2
 };
 

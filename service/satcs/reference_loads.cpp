@@ -8,9 +8,13 @@ namespace {
 
 constexpr double rated_heater_V = 28;
 
-bool thermostat(bool on, double temperature_C, double on_C, double off_C) {
-  if (temperature_C < on_C) return true;
-  return on && temperature_C < off_C;
+bool thermostat(bool on, double temperature_C, const ThermostatConstants& limits) {
+  if (temperature_C < limits.on_C) return true;
+  return on && temperature_C < limits.off_C;
+}
+
+SlowVariation variation_of(const LineConstants& line) {
+  return {line.sigma_A, line.correlation_s};
 }
 
 }  // namespace
@@ -46,52 +50,56 @@ bool OperationsPlan::in_session(storage::Time time) const {
 
 Loads::Loads(const Orbit& orbit, const LoadConstants& constants, const std::vector<LifeEvent>& life,
              std::uint64_t seed)
-    : plan_(orbit, constants, life, seed), constants_(constants), random_(seed, 0) {}
+    : plan_(orbit, constants, life, seed),
+      constants_(constants),
+      random_(seed, 0),
+      platform_variation_(constants.platform_sigma_W, constants.platform_correlation_s),
+      line_variation_{variation_of(constants.line[0]), variation_of(constants.line[1]),
+                      variation_of(constants.line[2])} {}
 
 void Loads::update(storage::Time time, double illumination,
                    const std::array<double, battery_count>& battery_C) {
   const LoadConstants& c = constants_;
   on_ = plan_.at(time);
-  // Ornstein and Uhlenbeck's process, exact over one second.
-  const double keep = std::exp(-1 / c.platform_correlation_s);
-  variation_W_ =
-      keep * variation_W_ + c.platform_sigma_W * std::sqrt(1 - keep * keep) * random_.gaussian();
+  platform_variation_.advance(random_);
+  for (std::size_t l = 0; l < converter_count; ++l) {
+    const LineConstants& line = c.line[l];
+    line_variation_[l].advance(random_);
+    line_A_[l] = line.base_A + (on_.payload ? line.payload_A : 0.0) +
+                 (on_.transmitter ? line.transmitter_A : 0.0) + line_variation_[l].value();
+  }
+  if (on_.safe_mode) line_A_[camera_line] = 0;
+
   for (std::size_t k = 0; k < battery_count; ++k) {
-    battery_heater_on_[k] = thermostat(battery_heater_on_[k], battery_C[k], c.battery_heater_on_C,
-                                       c.battery_heater_off_C);
+    battery_heater_on_[k] =
+        thermostat(battery_heater_on_[k], battery_C[k], c.battery_heater[c.heater_in_use[k]]);
   }
   const double sink_C = c.equipment_sink_C + c.equipment_sun_K * illumination;
   const double heat_W = (equipment_heater_on_ ? c.equipment_heater_W : 0.0) -
                         c.equipment_conductance_W_K * (equipment_C_ - sink_C);
   equipment_C_ += heat_W / c.equipment_capacity_J_K;
-  equipment_heater_on_ = thermostat(equipment_heater_on_, equipment_C_, c.equipment_heater_on_C,
-                                    c.equipment_heater_off_C);
+  equipment_heater_on_ = thermostat(equipment_heater_on_, equipment_C_, c.equipment_heater);
 }
 
-double Loads::current_A(Load load, double bus_V) const {
+Loads::Currents Loads::currents_A(double distributor_V,
+                                  const std::array<double, converter_count>& converter_W) const {
   const LoadConstants& c = constants_;
-  const auto converter = [&](double power_W) { return power_W / bus_V; };
   const auto heater = [&](bool on, double power_W) {
-    return on ? power_W * bus_V / (rated_heater_V * rated_heater_V) : 0.0;
+    return on ? power_W * distributor_V / (rated_heater_V * rated_heater_V) : 0.0;
   };
-  switch (load) {
-    case platform:
-      return converter((on_.safe_mode ? c.platform_safe_W : c.platform_W) + variation_W_);
-    case payload:
-      if (on_.safe_mode) return 0;
-      return converter(on_.payload ? c.payload_W : c.payload_standby_W);
-    case transmitter:
-      return converter(on_.transmitter ? c.transmitter_W : 0.0);
-    case equipment_heater:
-      return heater(equipment_heater_on_, c.equipment_heater_W);
-    case battery_heater_1:
-      return heater(battery_heater_on_[0], c.battery_heater_W);
-    case battery_heater_2:
-      return heater(battery_heater_on_[1], c.battery_heater_W);
-    case load_count:
-      break;
+  Currents currents{};
+  currents[platform] =
+      ((on_.safe_mode ? c.platform_safe_W : c.platform_W) + platform_variation_.value()) /
+      distributor_V;
+  currents[transmitter] = on_.transmitter ? c.transmitter_W / distributor_V : 0;
+  currents[equipment_heater] = heater(equipment_heater_on_, c.equipment_heater_W);
+  for (std::size_t k = 0; k < battery_count; ++k) {
+    currents[battery_heater_1 + k] = heater(battery_heater_on_[k], c.battery_heater_W);
   }
-  return 0;
+  for (std::size_t l = 0; l < converter_count; ++l) {
+    currents[converter_1 + l] = converter_W[l] / distributor_V;
+  }
+  return currents;
 }
 
 }  // namespace reident::satcs::reference

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,14 +14,15 @@
 
 namespace reident::satcs::reference {
 
+/// What the distributor feeds.
 enum Load : std::size_t {
   platform,
-  payload,
   transmitter,
   equipment_heater,
   battery_heater_1,
   battery_heater_2,
-  load_count
+  converter_1,  // and so on for every line
+  load_count = converter_1 + converter_count
 };
 
 /// Which of the instruments and transmitters are on: a function of time, seed and modes alone.
@@ -49,21 +51,42 @@ class OperationsPlan {
   std::uint64_t seed_;
 };
 
-/// The demand of every load. Converters take constant power, heaters are resistors.
+/// A slow variation: Ornstein and Uhlenbeck's process, exact over one second.
+class SlowVariation {
+ public:
+  SlowVariation(double sigma, double correlation_s)
+      : keep_(std::exp(-1 / correlation_s)), kick_(sigma * std::sqrt(1 - keep_ * keep_)) {}
+  void advance(RandomStream& random) { value_ = keep_ * value_ + kick_ * random.gaussian(); }
+  double value() const { return value_; }
+
+ private:
+  double keep_, kick_;
+  double value_ = 0;
+};
+
+/// The demand of every user. The platform and the transmitter take constant power, heaters are
+/// resistors, and the users of the secondary lines take currents.
 class Loads {
  public:
   Loads(const Orbit& orbit, const LoadConstants& constants, const std::vector<LifeEvent>& life,
         std::uint64_t seed);
+  void age(const LoadConstants& constants) { constants_ = constants; }
 
-  /// Once a second: the plan, the platform's slow variation and the thermostats.
+  /// Once a second: the plan, the slow variations and the thermostats.
   void update(storage::Time time, double illumination,
               const std::array<double, battery_count>& battery_C);
 
-  /// Current of a load [A] at a bus voltage.
-  double current_A(Load load, double bus_V) const;
+  using Currents = std::array<double, load_count>;
+  /// Current of each load [A] at the distributor's voltage; of the converters, which take
+  /// `converter_W`.
+  Currents currents_A(double distributor_V,
+                      const std::array<double, converter_count>& converter_W) const;
+  /// Current that the users of a secondary line take [A].
+  double line_A(std::size_t line) const { return line_A_[line]; }
 
   OperationsPlan::On on() const { return on_; }
-  bool heater_on(std::size_t battery) const { return battery_heater_on_[battery]; }
+  bool battery_heater_on(std::size_t battery) const { return battery_heater_on_[battery]; }
+  bool equipment_heater_on() const { return equipment_heater_on_; }
   double equipment_C() const { return equipment_C_; }
 
  private:
@@ -71,7 +94,9 @@ class Loads {
   LoadConstants constants_;
   RandomStream random_;
   OperationsPlan::On on_;
-  double variation_W_ = 0;
+  SlowVariation platform_variation_;
+  std::array<SlowVariation, converter_count> line_variation_;
+  std::array<double, converter_count> line_A_{};
   double equipment_C_ = 18;
   bool equipment_heater_on_ = false;
   std::array<bool, battery_count> battery_heater_on_{};

@@ -17,6 +17,8 @@ constexpr double day_s = 86'400;
 constexpr double year_s = 365.2422 * day_s;
 /// From the reference instant to the following March equinox (2015-03-20T22:45Z).
 constexpr double equinox_s = (78 * 24 + 22.75) * 3600;
+/// From the reference instant to the following perihelion (2015-01-04T06:36Z).
+constexpr double perihelion_s = (3 * 24 + 6.6) * 3600;
 
 struct Station {
   double latitude_deg;
@@ -83,6 +85,12 @@ double Orbit::illumination(storage::Time time) const {
   if (radii >= 1) return 1;
   if (radii <= -1) return 0;
   return 1 - (std::acos(radii) - radii * std::sqrt(1 - radii * radii)) / pi;
+}
+
+double Orbit::relative_flux(storage::Time time) const {
+  const double anomaly = 2 * pi * (since_reference_s(time) - perihelion_s) / year_s;
+  const double distance_au = 1 - constants_.earth_eccentricity * std::cos(anomaly);
+  return 1 / (distance_au * distance_au);
 }
 
 bool Orbit::in_contact(storage::Time time) const {

@@ -18,6 +18,8 @@ class Orbit {
   double illumination(storage::Time time) const;
   /// Angle between the orbit's plane and the Sun [rad], positive on the side of the orbit's normal.
   double beta(storage::Time time) const;
+  /// The solar flux outside the shadow over that at 1 AU: the seasons of the Sun's distance.
+  double relative_flux(storage::Time time) const;
   /// Whether a ground station sees the spacecraft above the least elevation.
   bool in_contact(storage::Time time) const;
 

@@ -1,5 +1,8 @@
 #include "tests/bench/archive/mission_telemetry.hpp"
 
+#include <unordered_map>
+
+#include "service/satcs/parameter_id.hpp"
 #include "service/satcs/reference_spacecraft.hpp"
 
 namespace reident::bench {
@@ -19,10 +22,17 @@ MissionTelemetry::MissionTelemetry(std::size_t parameters)
   constexpr std::uint64_t seed = 1;
   reference::Spacecraft spacecraft(reference::Constants{}, {}, start, seed);
   day_.reserve(day_seconds * points_);
+  std::unordered_map<std::uint32_t, std::size_t> point_of;
+  for (const auto& point : reference::telemetry_points())
+    point_of.emplace(satcs::parameter_id(point.name), point_of.size());
+  // A point that is not due holds its value: the archive is measured with every parameter at 1 Hz.
+  std::vector<double> last = spacecraft.noise_free();
   std::vector<storage::Sample> samples;
   for (std::uint64_t k = 0; k < day_seconds; ++k, spacecraft.advance()) {
     spacecraft.read(samples);
-    for (const storage::Sample& sample : samples) day_.push_back(sample.value);
+    for (const storage::Sample& sample : samples)
+      last[point_of.at(sample.parameter)] = sample.value;
+    day_.insert(day_.end(), last.begin(), last.end());
   }
 }
 

@@ -57,9 +57,9 @@ TEST(ReferenceArray, SettlesWhereAbsorbedAndEmittedHeatAreEqual) {
   const ArrayConstants c;
   SolarArray array(c);
   array.set_sun(1, 1);
-  for (int s = 0; s < 20'000; ++s) array.step(1);
+  for (int s = 0; s < 20'000; ++s) array.step(1, 1600);
   const double absorbed =
-      c.solar_flux_W_m2 * (c.absorptance - c.electrical_share) + c.earth_infrared_W_m2;
+      c.solar_flux_W_m2 * c.absorptance + c.earth_infrared_W_m2 - 1600 / c.area_m2;
   EXPECT_NEAR(array.temperature_C() + 273.15,
               std::pow(absorbed / (2 * c.emittance * 5.670374e-8), 0.25), 1e-6);
 }
@@ -170,16 +170,20 @@ TEST(ReferenceLoads, PlanIsAFunctionOfTimeAndSeed) {
 TEST(ReferenceLoads, HeatersKeepTheBatteryBetweenTheirThresholds) {
   Loads loads(Orbit{OrbitConstants{}}, LoadConstants{}, {}, 1);
   loads.update(july, 1, {4.9, 8});
-  EXPECT_TRUE(loads.heater_on(0));
-  EXPECT_FALSE(loads.heater_on(1));
+  EXPECT_TRUE(loads.battery_heater_on(0));
+  EXPECT_FALSE(loads.battery_heater_on(1));
   loads.update(july, 1, {6, 6});
-  EXPECT_TRUE(loads.heater_on(0));
-  EXPECT_FALSE(loads.heater_on(1));
+  EXPECT_TRUE(loads.battery_heater_on(0));
+  EXPECT_FALSE(loads.battery_heater_on(1));
   loads.update(july, 1, {7.1, 4.9});
-  EXPECT_FALSE(loads.heater_on(0));
-  EXPECT_TRUE(loads.heater_on(1));
-  EXPECT_NEAR(loads.current_A(battery_heater_2, 28) * 28, LoadConstants{}.battery_heater_W, 1e-9);
-  EXPECT_NEAR(loads.current_A(payload, 25) * 25, loads.current_A(payload, 30) * 30, 1e-9);
+  EXPECT_FALSE(loads.battery_heater_on(0));
+  EXPECT_TRUE(loads.battery_heater_on(1));
+  const auto nominal = loads.currents_A(28, {100, 0, 0});
+  const auto low = loads.currents_A(25, {100, 0, 0});
+  EXPECT_NEAR(nominal[battery_heater_2] * 28, LoadConstants{}.battery_heater_W, 1e-9);
+  EXPECT_NEAR(nominal[battery_heater_2] / low[battery_heater_2], 28.0 / 25, 1e-12);
+  EXPECT_NEAR(nominal[platform] * 28, low[platform] * 25, 1e-9);
+  EXPECT_NEAR(nominal[converter_1] * 28, 100, 1e-9);
 }
 
 }  // namespace

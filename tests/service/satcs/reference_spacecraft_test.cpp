@@ -61,16 +61,39 @@ TEST(ReferenceSpacecraft, PublishesTheParametersOfThePaper) {
   }
 }
 
+TEST(ReferenceSpacecraft, ReadsEachPointAtItsRateAndPhase) {
+  Spacecraft spacecraft(Constants{}, {}, july, 1);
+  std::map<std::uint32_t, int> count;
+  std::vector<storage::Sample> samples;
+  for (int s = 0; s < 64; ++s, spacecraft.advance()) {
+    spacecraft.read(samples);
+    for (const storage::Sample& sample : samples) ++count[sample.parameter];
+  }
+  std::set<int> phases;
+  for (const TelemetryPoint& point : telemetry_points()) {
+    EXPECT_EQ(count[parameter_id(point.name)], 64 / point.every_s) << point.name;
+    if (point.every_s == 16) phases.insert(point.phase_s);
+  }
+  EXPECT_GT(phases.size(), 6U);  // sub-commutated, not all at once
+  EXPECT_TRUE(telemetry_points().front().due(-1));
+  TelemetryPoint fourth;
+  fourth.every_s = 4;
+  fourth.phase_s = 3;
+  EXPECT_TRUE(fourth.due(-1));
+  EXPECT_FALSE(fourth.due(0));
+}
+
 TEST(ReferenceSpacecraft, ReadsInStepsOfTheConverter) {
+  std::map<std::uint32_t, const TelemetryPoint*> of_id;
+  for (const TelemetryPoint& point : telemetry_points()) of_id[parameter_id(point.name)] = &point;
   Spacecraft spacecraft(Constants{}, {}, july, 1);
   std::vector<storage::Sample> samples;
   for (int s = 0; s < 600; ++s, spacecraft.advance()) {
     spacecraft.read(samples);
-    ASSERT_EQ(samples.size(), telemetry_points().size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const auto& point = telemetry_points()[i];
-      const double value = samples[i].value;
-      EXPECT_EQ(samples[i].quality, storage::Quality::good);
+    for (const storage::Sample& sample : samples) {
+      const TelemetryPoint& point = *of_id.at(sample.parameter);
+      const double value = sample.value;
+      EXPECT_EQ(sample.quality, storage::Quality::good);
       if (point.kind == storage::ParameterKind::digital) {
         EXPECT_TRUE(value == 0 || value == 1) << point.name;
         continue;
@@ -94,8 +117,10 @@ TEST(ReferenceSpacecraft, CurrentsOfTheBusAddUpButForNoise) {
     const auto exact = spacecraft.noise_free();
     ASSERT_NEAR(exact[at["I_BUS"]], exact[at["I_SG2"]] + exact[at["I_BDROUT"]], 1e-10);
     spacecraft.read(samples);
-    ASSERT_NEAR(samples[at["I_BUS"]].value,
-                samples[at["I_SG2"]].value + samples[at["I_BDROUT"]].value, most);
+    std::map<std::uint32_t, double> value;
+    for (const storage::Sample& sample : samples) value[sample.parameter] = sample.value;
+    ASSERT_NEAR(value.at(parameter_id("I_BUS")),
+                value.at(parameter_id("I_SG2")) + value.at(parameter_id("I_BDROUT")), most);
   }
 }
 
