@@ -50,7 +50,8 @@ double heaters_A(P p) {
   return load_A[equipment_heater] + load_A[battery_heater_1] + load_A[battery_heater_2];
 }
 
-constexpr std::array points = {
+// Generation, storage and regulation, every second.
+constexpr std::array power_points = {
     analog("I_BDRIN1", "A", "Discharge regulator, input current from battery 1", every_second,
            input_current, [](P p) { return p.flows().bdr_in_A[0]; }),
     analog("I_BDRIN2", "A", "Discharge regulator, input current from battery 2", every_second,
@@ -91,6 +92,10 @@ constexpr std::array points = {
            [](P p) { return p.flows().mea_V; }),
     analog("V_MEAB", "V", "Main error amplifier, output voltage, second measurement", every_second,
            amplifier_voltage, [](P p) { return p.flows().mea_V; }),
+};
+
+// What the loads take, every second.
+constexpr std::array load_points = {
     analog("I_PF", "A", "Platform on the bus itself, current", every_second, load_current,
            [](P p) { return p.flows().load_A[platform]; }),
     analog("I_TX", "A", "Transmitter, current", every_second, load_current,
@@ -119,6 +124,10 @@ constexpr std::array points = {
             [](P p) { return p.loads().on().payload ? 1.0 : 0.0; }),
     digital("S_TX", "Transmitter on", every_second,
             [](P p) { return p.loads().on().transmitter ? 1.0 : 0.0; }),
+};
+
+// Second measurements, output voltages and heaters, every 4 s.
+constexpr std::array slow_points = {
     analog("V_SAG1A", "V", "Solar array section 1A, voltage", Rate{4, 0}, battery_voltage,
            [](P p) { return p.flows().section_V[0]; }),
     analog("V_SAG1B", "V", "Solar array section 1B, voltage", Rate{4, 0}, battery_voltage,
@@ -147,6 +156,10 @@ constexpr std::array points = {
            [](P p) { return p.flows().load_A[battery_heater_2]; }),
     analog("I_EH", "A", "Heater of the equipment, current", Rate{4, 2}, heater_current,
            [](P p) { return p.flows().load_A[equipment_heater]; }),
+};
+
+// States, in turn.
+constexpr std::array state_points = {
     digital("S_BHC1", "Heater of battery 1 on", Rate{4, 0},
             [](P p) { return p.loads().battery_heater_on(0) ? 1.0 : 0.0; }),
     digital("S_BHC2", "Heater of battery 2 on", Rate{4, 1},
@@ -175,6 +188,10 @@ constexpr std::array points = {
             [](P p) { return (p.constants().load.heater_in_use[0] == 1) ? 1.0 : 0.0; }),
     digital("S_BHC2R", "Heater controller of battery 2: the redundant one works", Rate{16, 12},
             [](P p) { return (p.constants().load.heater_in_use[1] == 1) ? 1.0 : 0.0; }),
+};
+
+// Temperatures, in turn.
+constexpr std::array temperature_points = {
     analog("T_BAT1", "degC", "Battery 1, temperature", Rate{16, 2}, temperature,
            [](P p) { return p.battery(0).state().temperature_C; }),
     analog("T_BAT2", "degC", "Battery 2, temperature", Rate{16, 6}, temperature,
@@ -197,15 +214,29 @@ constexpr std::array points = {
            Rate{32, 28}, temperature, [](P p) { return p.converters().temperature_C(); }),
 };
 
+std::vector<TelemetryPoint> all_points() {
+  std::vector<TelemetryPoint> all;
+  const auto add = [&all](const auto& points) {
+    all.insert(all.end(), points.begin(), points.end());
+  };
+  add(power_points);
+  add(load_points);
+  add(slow_points);
+  add(state_points);
+  add(temperature_points);
+  return all;
+}
+
 }  // namespace
 
 std::span<const TelemetryPoint> telemetry_points() {
+  static const std::vector<TelemetryPoint> points = all_points();
   return points;
 }
 
 std::vector<storage::ParameterDescriptor> telemetry_descriptors(std::string_view spacecraft) {
   std::vector<storage::ParameterDescriptor> descriptors;
-  for (const TelemetryPoint& point : points) {
+  for (const TelemetryPoint& point : telemetry_points()) {
     storage::ParameterDescriptor d;
     d.spacecraft = spacecraft;
     d.id = parameter_id(point.name);
