@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "service/satcs/event_time.hpp"
 #include "service/satcs/lie_kind.hpp"
 #include "service/support/csv.hpp"
 #include "service/support/time_text.hpp"
@@ -15,22 +16,6 @@ using Subject = LieFacts::Subject;
 using storage::ParameterDescriptor;
 
 constexpr std::string_view form = "KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE]";
-
-std::optional<storage::Time> parse_moment(std::string_view text, storage::Time start) {
-  if (text.empty() || text.front() != '+') return parse_time(text);
-  const auto later = parse_duration(text.substr(1));
-  if (!later || *later < 0) return std::nullopt;
-  return start + *later;
-}
-
-/// The text before the last `mark`, and the one after it; nothing where there is no mark.
-std::optional<std::string_view> cut_after_last(std::string_view& text, char mark) {
-  const auto at = text.rfind(mark);
-  if (at == std::string_view::npos) return std::nullopt;
-  const auto after = text.substr(at + 1);
-  text = text.substr(0, at);
-  return after;
-}
 
 std::string unknown_parameter(std::string_view name,
                               std::span<const ParameterDescriptor> parameters) {
@@ -120,7 +105,7 @@ std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start
   }
   const std::string_view from = text.substr(at + 1, slash - at - 1);
   // Times have colons themselves.
-  if (!parse_moment(to, start)) {
+  if (!parse_event_time(to, start)) {
     if (const auto names = cut_after_last(to, ':')) {
       const auto comma = names->find(',');
       lie.parameter = names->substr(0, comma);
@@ -128,12 +113,8 @@ std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start
     }
   }
   for (const auto& [moment, bound] : {std::pair{from, &lie.when.begin}, {to, &lie.when.end}}) {
-    const auto time = parse_moment(moment, start);
-    if (!time)
-      return wrong(
-          fmt::format("'{}' is neither a time such as 2017-07-01T06:00:00Z nor a duration "
-                      "after the start such as +90min",
-                      moment));
+    const auto time = parse_event_time(moment, start);
+    if (!time) return wrong(fmt::format("'{}' is neither {}", moment, event_time_form));
     *bound = *time;
   }
   return lie;

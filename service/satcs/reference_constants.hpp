@@ -22,6 +22,8 @@ struct OrbitConstants {
   double obliquity_deg = 23.439;
   double earth_eccentricity = 0.0167;
   double min_elevation_deg = 5;  // above which a station sees the spacecraft
+
+  bool operator==(const OrbitConstants&) const = default;
 };
 
 struct ArrayConstants {
@@ -44,6 +46,8 @@ struct ArrayConstants {
   double emittance = 0.85;           // of each face
   double earth_infrared_W_m2 = 160;  // absorbed
   double heat_capacity_J_m2K = 4500;
+
+  bool operator==(const ArrayConstants&) const = default;
 };
 
 struct BatteryConstants {
@@ -67,6 +71,8 @@ struct BatteryConstants {
   double radiator_C = -8;
   double initial_soc = 0.95;
   double initial_C = 8;
+
+  bool operator==(const BatteryConstants&) const = default;
 };
 
 /// Battery charge controller: a shunt across the section, which limits the battery's voltage.
@@ -77,6 +83,8 @@ struct ChargerConstants {
   double gain_per_Vs = 0.15;  // of the shunted share
   double drop_V = 0.6;        // from the section to the battery
   double series_ohm = 0.030;
+
+  bool operator==(const ChargerConstants&) const = default;
 };
 
 /// Battery switching regulators: one module for each battery, one output.
@@ -92,6 +100,8 @@ struct DischargeRegulatorConstants {
   double heat_capacity_J_K = 5200;
   double conductance_W_K = 3.5;
   double base_C = 15;
+
+  bool operator==(const DischargeRegulatorConstants&) const = default;
 };
 
 /// Main error amplifier and the domains of its output.
@@ -105,12 +115,16 @@ struct ErrorAmplifierConstants {
   double bdr_zero_V = 5;
   double shunt_first_V = 6;  // the first channel begins to shunt
   double shunt_step_V = 1;   // from one channel to the next
+
+  bool operator==(const ErrorAmplifierConstants&) const = default;
 };
 
 struct BusConstants {
   double capacitance_F = 0.02;
   double fold_back_V = 20;     // loads take less current rather than pull the bus below it
   double harness_ohm = 0.004;  // from the bus to the distributor
+
+  bool operator==(const BusConstants&) const = default;
 };
 
 /// A DC/DC converter and its secondary line.
@@ -120,6 +134,8 @@ struct ConverterConstants {
   double idle_W = 6;
   double drop_V = 0.35;
   double series_ohm = 6e-3;  // at 25 degC
+
+  bool operator==(const ConverterConstants&) const = default;
 };
 
 /// The converters' common plate.
@@ -128,6 +144,8 @@ struct ConverterPlateConstants {
   double heat_capacity_J_K = 3000;
   double conductance_W_K = 2.2;
   double base_C = 12;
+
+  bool operator==(const ConverterPlateConstants&) const = default;
 };
 
 /// The secondary lines: 5 V for logic, 15 V for analog electronics, 12 V for the cameras.
@@ -140,11 +158,15 @@ struct LineConstants {
   double transmitter_A = 0;  // more while the transmitter is on
   double sigma_A = 0;        // slow variation
   double correlation_s = 60;
+
+  bool operator==(const LineConstants&) const = default;
 };
 
 struct ThermostatConstants {
   double on_C = 0;
   double off_C = 0;
+
+  bool operator==(const ThermostatConstants&) const = default;
 };
 
 struct LoadConstants {
@@ -169,6 +191,8 @@ struct LoadConstants {
   double session_probability = 0.55;  // of a recorded imaging session in an orbit
   double session_min_s = 240;
   double session_max_s = 660;
+
+  bool operator==(const LoadConstants&) const = default;
 };
 
 struct Constants {
@@ -188,6 +212,8 @@ struct Constants {
       ConverterConstants{12, 4e-3, 8, 0.6, 35e-3}};
   ConverterPlateConstants converter_plate;
   LoadConstants load;
+
+  bool operator==(const Constants&) const = default;
 };
 
 }  // namespace reident::satcs::reference

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "service/satcs/csv_export.hpp"
+#include "service/satcs/life_text.hpp"
 #include "service/satcs/lying_source.hpp"
 #include "service/satcs/program.hpp"
 #include "service/satcs/reference_source.hpp"
@@ -23,6 +24,8 @@ constexpr const char* about =
     "  satcs-reference --start 2017-07-01T06:00:00Z --duration 3d --speed max --seed 7 --json\n"
     "  satcs-reference --duration 6h --csv reference.csv\n"
     "  satcs-reference --duration 12h --speed 600 --simulated\n"
+    "  satcs-reference --duration 30d --speed max --life capacity_fade@+5d/+25d*0.2#1 \\\n"
+    "      --life lost_string@2017-07-11#4\n"
     "  satcs-reference --duration 2d --speed max --lie stuck@+6h/+8h:V_BUS \\\n"
     "      --lie bias_step@+1d/+30h:I_BUS*0.5 --lie passes_lost@+12h/+36h\n\n"
     "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
@@ -52,6 +55,20 @@ std::unique_ptr<FrameSource> source_of(const ReferenceOptions& options, const Se
   return std::make_unique<ReferenceSource>(options, sender);
 }
 
+/// Throws BadRequest.
+std::vector<reference::LifeEvent> parse_life(const std::vector<std::string>& texts,
+                                             reident::storage::Time start) {
+  std::vector<reference::LifeEvent> life;
+  for (const std::string& text : texts) {
+    const auto parsed = parse_life_event(text, start);
+    if (const auto* error = std::get_if<LifeError>(&parsed)) {
+      throw BadRequest("--life: " + error->message);
+    }
+    life.push_back(std::get<reference::LifeEvent>(parsed));
+  }
+  return life;
+}
+
 /// What the ground receives of `truth`. Throws BadRequest.
 std::unique_ptr<FrameSource> with_lies(std::unique_ptr<FrameSource> truth,
                                        const std::vector<std::string>& texts,
@@ -76,20 +93,26 @@ std::unique_ptr<FrameSource> with_lies(std::unique_ptr<FrameSource> truth,
 
 int main(int argc, char** argv) {
   CLI::App app(about, "satcs-reference");
-  ReferenceOptions reference;
+  ReferenceOptions options;
   Sender sender{.source = "reference"};
   PublisherOptions publisher;
   publisher.spacecraft = "REFERENCE";
   bool json = false;
   bool simulated = false;
   std::string csv;
-  std::vector<std::string> lies;
-  add_reference_options(app, reference);
+  std::vector<std::string> life, lies;
+  add_reference_options(app, options);
   app.add_option("--csv", csv, "Write the telemetry to this file and publish nothing")
       ->type_name("FILE");
   app.add_flag("--simulated", simulated,
                "The telemetry of a simplified, hand-written simulation of the same spacecraft and\n"
                "operations instead, from source 'simulator' with origin 'simulated'");
+  app.add_option("--life", life,
+                 "What happens to the spacecraft at a time, or between two, or as many durations\n"
+                 "after the start; may be given again. Kinds: " +
+                     life_kind_names())
+      ->type_name("KIND@TIME[/TIME][*MAGNITUDE][#UNIT]")
+      ->allow_extra_args(false);
   app.add_option("--lie", lies,
                  "What befalls the telemetry between two times, or two durations after the start;\n"
                  "may be given again. Kinds: " +
@@ -102,8 +125,9 @@ int main(int argc, char** argv) {
       sender.origin = reident::storage::Origin::simulated;
       if (app.count("--source") == 0) sender.source = "simulator";
     }
-    auto source = source_of(reference, sender, simulated);
-    if (!lies.empty()) source = with_lies(std::move(source), lies, reference);
+    options.life = parse_life(life, options.start);
+    auto source = source_of(options, sender, simulated);
+    if (!lies.empty()) source = with_lies(std::move(source), lies, options);
     if (csv.empty()) return publish_and_report(*source, sender, publisher, json);
     write_csv(*source, csv);
     return exit_complete;

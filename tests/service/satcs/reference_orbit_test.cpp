@@ -81,6 +81,12 @@ TEST(ReferenceOrbit, BetaGoesThroughTheYear) {
   EXPECT_LT(most, 32 * degree);
 }
 
+TEST(ReferenceOrbit, SunIsNearestInJanuary) {
+  const Orbit orbit{OrbitConstants{}};
+  EXPECT_NEAR(orbit.relative_flux(july + 3 * day), 0.967, 0.001);    // aphelion
+  EXPECT_NEAR(orbit.relative_flux(july + 186 * day), 1.034, 0.001);  // perihelion
+}
+
 TEST(ReferenceOrbit, StationsSeeItForMinutesAFewTimesADay) {
   const Orbit orbit{OrbitConstants{}};
   std::vector<int> passes_s;

@@ -7,6 +7,8 @@
 #include "service/satcs/reference_battery.hpp"
 #include "service/satcs/reference_bdr.hpp"
 #include "service/satcs/reference_bus.hpp"
+#include "service/satcs/reference_charger.hpp"
+#include "service/satcs/reference_converter.hpp"
 #include "service/satcs/reference_loads.hpp"
 
 namespace reident::satcs::reference {
@@ -85,6 +87,19 @@ TEST(ReferenceBattery, GivesConstantPowerAtTheVoltageThatItsResistanceLeaves) {
   EXPECT_EQ(battery.terminal_V(0, 1e9), battery.internal_V() / 2);
 }
 
+TEST(ReferenceBattery, ChemicalEnergyIsTheIntegralOfTheOpenCircuitVoltage) {
+  BatteryConstants c;
+  c.initial_C = 10;
+  double sum_J = 0;
+  constexpr int pieces = 4000;
+  for (int i = 0; i < pieces; ++i) {
+    c.initial_soc = 0.9 * (i + 0.5) / pieces;
+    sum_J += Battery(c, 1).open_circuit_V() * 3600 * c.capacity_Ah * 0.9 / pieces;
+  }
+  c.initial_soc = 0.9;
+  EXPECT_NEAR(Battery(c, 1).chemical_J(), sum_J, 1e-6 * sum_J);
+}
+
 TEST(ReferenceBattery, StoresLessTheFullerItIs) {
   BatteryConstants c;
   double before = 1;
@@ -135,6 +150,39 @@ TEST(ReferenceBus, AnswersALoadStepAtOnceAndThenTakesTheErrorOut) {
   EXPECT_NEAR(bus.bus_V(), 28 - 0.08, 0.004);
   run(32, mea.integral_s);
   EXPECT_NEAR(bus.bus_V(), 28 - 0.08 * std::exp(-1), 0.004);
+}
+
+TEST(ReferenceConverters, LoseTheirIdlePowerAndMoreWithCurrentAndTemperature) {
+  const Constants constants;
+  Converters converters(constants.converter, constants.converter_plate, 1);
+  const double idle_W = constants.converter[logic_line].idle_W;
+  EXPECT_EQ(converters.input_W(logic_line, 0), idle_W);
+  EXPECT_EQ(converters.output_V(logic_line, 20), 5 - 20 * 2e-3);
+  const auto loss_W = [&](double output_A) {
+    return converters.input_W(logic_line, output_A) -
+           converters.output_V(logic_line, output_A) * output_A;
+  };
+  EXPECT_GT(loss_W(20), 2 * loss_W(10) - idle_W);
+  const double before_W = loss_W(20);
+  for (int s = 0; s < 20'000; ++s) converters.step(60);
+  EXPECT_NEAR(converters.temperature_C(), 12 + 60 / 2.2, 1e-3);
+  EXPECT_GT(loss_W(20), before_W);
+}
+
+TEST(ReferenceCharger, LetsLessThroughAboveItsLimitWhichFallsWithTemperature) {
+  const ChargerConstants c;
+  Charger charger(c, 1);
+  EXPECT_NEAR(charger.limit_V(10), c.cells * 1.425, 1e-12);
+  EXPECT_LT(charger.limit_V(20), charger.limit_V(10));
+  charger.step(charger.limit_V(10) - 1, 10);
+  EXPECT_EQ(charger.share(), 1);
+  charger.step(charger.limit_V(10) + 1, 10);
+  EXPECT_NEAR(charger.share(), 1 - c.gain_per_Vs, 1e-12);
+  charger.age(Constants{}.charger[1]);
+  charger.step(charger.limit_V(10) + 1, 10);
+  EXPECT_NEAR(charger.share(), 1 - c.gain_per_Vs - Constants{}.charger[1].gain_per_Vs, 1e-12);
+  EXPECT_EQ(charger.section_V(50, 0), 50);
+  EXPECT_NEAR(charger.section_V(50, 6), 50 + 0.6 + 6 * 0.03, 0.02);
 }
 
 TEST(ReferenceLoads, CamerasRunInSunlightAndTheTransmitterOverStations) {
