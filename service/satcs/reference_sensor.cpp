@@ -6,17 +6,16 @@
 namespace reident::satcs::reference {
 
 Sensor::Sensor(const SensorSpec& spec, double step_s, std::uint64_t seed, std::uint64_t stream)
-    : spec_(spec), decay_(std::exp(-step_s / spec.time_constant_s)), random_(seed, stream) {}
-
-void Sensor::observe(double value) {
-  filtered_ = started_ ? value + (filtered_ - value) * decay_ : value;
-  started_ = true;
-}
+    : spec_(spec),
+      decay_(std::exp(-step_s / spec.time_constant_s)),
+      quantum_(spec.quantum()),
+      random_(seed, stream) {}
 
 double Sensor::read() {
   const double noisy = filtered_ + spec_.noise * random_.gaussian();
   const double held = std::clamp(noisy, spec_.low, spec_.high);
-  return spec_.low + spec_.quantum() * std::round((held - spec_.low) / spec_.quantum());
+  // The nearest step; the quotient is never negative.
+  return spec_.low + quantum_ * std::floor((held - spec_.low) / quantum_ + 0.5);
 }
 
 }  // namespace reident::satcs::reference

@@ -23,7 +23,10 @@ class Sensor {
   Sensor(const SensorSpec& spec, double step_s, std::uint64_t seed, std::uint64_t stream);
 
   /// The quantity during one step; the first one sets the filter.
-  void observe(double value);
+  void observe(double value) {
+    filtered_ = started_ ? value + (filtered_ - value) * decay_ : value;
+    started_ = true;
+  }
   /// After the filter, without noise and converter.
   double filtered() const { return filtered_; }
   /// One conversion.
@@ -32,6 +35,7 @@ class Sensor {
  private:
   SensorSpec spec_;
   double decay_;
+  double quantum_;
   double filtered_ = 0;
   bool started_ = false;
   RandomStream random_;

@@ -92,6 +92,10 @@ constexpr std::array power_points = {
            [](P p) { return p.flows().mea_V; }),
     analog("V_MEAB", "V", "Main error amplifier, output voltage, second measurement", every_second,
            amplifier_voltage, [](P p) { return p.flows().mea_V; }),
+    analog("I_CSH1", "A", "Charge controller 1, shunted current", every_second, section_current,
+           [](P p) { return p.flows().section_shunt_A[0]; }),
+    analog("I_CSH2", "A", "Charge controller 2, shunted current", every_second, section_current,
+           [](P p) { return p.flows().section_shunt_A[1]; }),
 };
 
 // What the loads take, every second.
@@ -124,9 +128,15 @@ constexpr std::array load_points = {
             [](P p) { return p.loads().on().payload ? 1.0 : 0.0; }),
     digital("S_TX", "Transmitter on", every_second,
             [](P p) { return p.loads().on().transmitter ? 1.0 : 0.0; }),
+    analog("I_BH1", "A", "Heater of battery 1, current", every_second, heater_current,
+           [](P p) { return p.flows().load_A[battery_heater_1]; }),
+    analog("I_BH2", "A", "Heater of battery 2, current", every_second, heater_current,
+           [](P p) { return p.flows().load_A[battery_heater_2]; }),
+    analog("I_EH", "A", "Heater of the equipment, current", every_second, heater_current,
+           [](P p) { return p.flows().load_A[equipment_heater]; }),
 };
 
-// Second measurements, output voltages and heaters, every 4 s.
+// Second measurements and output voltages, every 4 s.
 constexpr std::array slow_points = {
     analog("V_SAG1A", "V", "Solar array section 1A, voltage", Rate{4, 0}, battery_voltage,
            [](P p) { return p.flows().section_V[0]; }),
@@ -140,22 +150,12 @@ constexpr std::array slow_points = {
            battery_voltage, [](P p) { return p.flows().battery_V[0]; }),
     analog("V_BDRIN2", "V", "Discharge regulator, input voltage from battery 2", Rate{4, 2},
            battery_voltage, [](P p) { return p.flows().battery_V[1]; }),
-    analog("I_CSH1", "A", "Charge controller 1, shunted current", Rate{4, 3}, section_current,
-           [](P p) { return p.flows().section_shunt_A[0]; }),
-    analog("I_CSH2", "A", "Charge controller 2, shunted current", Rate{4, 3}, section_current,
-           [](P p) { return p.flows().section_shunt_A[1]; }),
     analog("V_DC1OUT", "V", "DC/DC converter 1 (logic, 5 V), output voltage", Rate{4, 0},
            line_voltage, [](P p) { return p.flows().line_V[0]; }),
     analog("V_DC2OUT", "V", "DC/DC converter 2 (analog, 15 V), output voltage", Rate{4, 1},
            line_voltage, [](P p) { return p.flows().line_V[1]; }),
     analog("V_DC3OUT", "V", "DC/DC converter 3 (cameras, 12 V), output voltage", Rate{4, 2},
            line_voltage, [](P p) { return p.flows().line_V[2]; }),
-    analog("I_BH1", "A", "Heater of battery 1, current", Rate{4, 0}, heater_current,
-           [](P p) { return p.flows().load_A[battery_heater_1]; }),
-    analog("I_BH2", "A", "Heater of battery 2, current", Rate{4, 1}, heater_current,
-           [](P p) { return p.flows().load_A[battery_heater_2]; }),
-    analog("I_EH", "A", "Heater of the equipment, current", Rate{4, 2}, heater_current,
-           [](P p) { return p.flows().load_A[equipment_heater]; }),
 };
 
 // States, in turn.
@@ -200,7 +200,7 @@ constexpr std::array temperature_points = {
            [](P p) { return p.bdr().temperature_C(); }),
     analog("T_SAG", "degC", "Solar array, temperature", Rate{16, 14}, array_temperature,
            [](P p) { return p.array().temperature_C(); }),
-    analog("T_DCC", "degC", "Plate of the DC/DC converters, temperature", Rate{16, 4}, temperature,
+    analog("T_DCC", "degC", "Plate of the DC/DC converters, temperature", Rate{16, 0}, temperature,
            [](P p) { return p.converters().temperature_C(); }),
     analog("T_EQ", "degC", "Equipment panel, temperature", Rate{32, 8}, temperature,
            [](P p) { return p.loads().equipment_C(); }),

@@ -22,7 +22,9 @@ struct TelemetryPoint {
   double (*read)(const Plant& plant) = nullptr;
   SensorSpec sensor;
 
-  bool due(std::int64_t second) const { return (second % every_s + every_s) % every_s == phase_s; }
+  bool due(std::int64_t second) const {
+    return every_s == 1 || (second % every_s + every_s) % every_s == phase_s;
+  }
 };
 
 /// Every point, in the order in which a reading holds those that are due. Their ids follow from
