@@ -53,7 +53,7 @@ storage::Time Plant::time() const {
 
 void Plant::step() {
   if (step_in_second_ == 0) begin_second();
-  const double share = static_cast<double>(step_in_second_ + 1) * step_s_;
+  const double share = (step_in_second_ + 0.5) * step_s_;  // its middle
   flows_.illumination = illumination_begin_ + share * (illumination_end_ - illumination_begin_);
   array_.set_sun(flows_.illumination * relative_flux_, incidence_);
 

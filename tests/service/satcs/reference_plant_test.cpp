@@ -94,24 +94,6 @@ TEST(ReferencePlant, BatteriesAreWarmedByWhatIsNotStored) {
   EXPECT_NEAR(heat_J, (before_C - begin_C) * c.heat_capacity_J_K, 1e-6);
 }
 
-TEST(ReferencePlant, FinerStepsGiveTheSameTelemetry) {
-  Plant plant(Constants{}, {}, july, 3);
-  Plant finer(Constants{}, {}, july, 3, 20);
-  double worst_bus_V = 0, worst_battery_V = 0, worst_A = 0;
-  for (int s = 0; s < 6016; ++s) {
-    for (int step = 0; step < plant.steps_per_second(); ++step) plant.step();
-    for (int step = 0; step < finer.steps_per_second(); ++step) finer.step();
-    const Flows& a = plant.flows();
-    const Flows& b = finer.flows();
-    worst_bus_V = std::max(worst_bus_V, std::abs(a.bus_V - b.bus_V));
-    worst_battery_V = std::max(worst_battery_V, std::abs(a.battery_V[0] - b.battery_V[0]));
-    worst_A = std::max(worst_A, std::abs(a.bdr_out_A - b.bdr_out_A));
-  }
-  EXPECT_LT(worst_bus_V, 0.01);
-  EXPECT_LT(worst_battery_V, 0.01);
-  EXPECT_LT(worst_A, 0.1);
-}
-
 TEST(ReferencePlant, BatteryVoltageFollowsFromItsCurrent) {
   const Constants constants;
   Plant plant(constants, {}, july, 3);

@@ -124,6 +124,44 @@ TEST(ReferenceSpacecraft, CurrentsOfTheBusAddUpButForNoise) {
   }
 }
 
+/// What every sensor has behind its filter, second by second.
+class Filtered {
+ public:
+  explicit Filtered(int steps_per_second) : plant_(Constants{}, {}, july, 3, steps_per_second) {
+    for (const TelemetryPoint& point : telemetry_points())
+      sensors_.emplace_back(point.sensor, plant_.step_s(), 1, 1);
+  }
+  void advance() {
+    for (int step = 0; step < plant_.steps_per_second(); ++step) {
+      plant_.step();
+      for (std::size_t i = 0; i < sensors_.size(); ++i)
+        sensors_[i].observe(telemetry_points()[i].read(plant_));
+    }
+  }
+  double operator[](std::size_t point) const { return sensors_[point].filtered(); }
+
+ private:
+  Plant plant_;
+  std::vector<Sensor> sensors_;
+};
+
+TEST(ReferenceSpacecraft, FinerStepsChangeReadingsByLessThanTheirNoise) {
+  Filtered usual(Plant::usual_steps_per_second), fine(5 * Plant::usual_steps_per_second);
+  const auto points = telemetry_points();
+  std::vector<double> square(points.size());
+  constexpr int orbit_s = 6016;
+  for (int s = 0; s < orbit_s; ++s) {
+    usual.advance();
+    fine.advance();
+    for (std::size_t i = 0; i < points.size(); ++i)
+      square[i] += std::pow(usual[i] - fine[i], 2) / orbit_s;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].kind == storage::ParameterKind::digital) continue;
+    EXPECT_LT(std::sqrt(square[i]), 0.25 * points[i].sensor.noise) << points[i].name;
+  }
+}
+
 TEST(ReferenceSpacecraft, StartsOnAWholeSecondAndGoesOnBySeconds) {
   Spacecraft spacecraft(Constants{}, {}, july + 1, 1);
   EXPECT_EQ(spacecraft.time(), july);
