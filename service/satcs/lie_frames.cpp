@@ -43,7 +43,7 @@ class PassesLost : public LieStage {
   }
 
  private:
-  static constexpr Time dump_speed = 32;
+  static constexpr Time dump_speed = 256;
 
   /// Around `time`, in which the spacecraft is or is not in contact all along.
   void find_stretch(Time time) {

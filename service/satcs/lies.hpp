@@ -39,7 +39,7 @@ enum class LieKind : std::uint8_t {
   wrong_validity,
   // Of frames.
   frames_lost,  // magnitude: the share that is lost, 0.1
-  // Frames in ground contact come at once, the others with the next pass, at 32 times their rate
+  // Frames in ground contact come at once, the others with the next pass, at 256 times their rate
   // or, should that come first, at the end of the stretch. Magnitude: the share of the passes that
   // is lost, with what was on board until then, 0.3.
   passes_lost,
