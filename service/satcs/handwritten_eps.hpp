@@ -5,9 +5,12 @@
 //   I_SG2    = min(loads, array),  I_BDROUT = loads - I_SG2,  V_BUS constant
 //   V_BAT I_BDRIN = V_BUS I_BDROUT / efficiency, half for each battery
 //   V_BAT    = open circuit + R I_BAT, the open circuit a straight line over charge
+//   28 V I_DCnIN = V_n I_DCnOUT / efficiency, V_n constant and the users' currents those of the
+//   plan
 //
-// The orbit and the operations plan are the spacecraft's own: operators know both. There is no
-// temperature, no dynamics but the charge, no noise, no sensor and no V_MEA (REFERENCE.md).
+// The orbit and the operations plan, with its safe modes and quiet stretches, are the spacecraft's
+// own: operators know them. There is no temperature, no thermostat, no dynamics but the charge, no
+// harness, no noise, no sensor and no error amplifier (REFERENCE.md).
 #pragma once
 
 #include <array>
@@ -24,12 +27,21 @@ namespace reident::satcs {
 
 struct HandwrittenConstants {
   double bus_V = 28;
-  double bus_array_A = 45;      // SAG2 in sunlight: 90 strings of 0.5 A
-  double charge_array_A = 6.5;  // SAG1A, SAG1B each: 13 strings of 0.5 A
-  double platform_W = 600;
-  double payload_standby_W = 45;
-  double payload_W = 330;
+  double bus_array_A = 45;       // SAG2 in sunlight: 90 strings of 0.5 A
+  double charge_array_A = 6.5;   // SAG1A, SAG1B each: 13 strings of 0.5 A
+  double platform_W = 400;       // on the bus itself
+  double platform_safe_W = 250;  // in safe mode
   double transmitter_W = 230;
+  /// The secondary lines' users, from their data sheets.
+  struct Line {
+    double output_V = 0;
+    double base_A = 0;
+    double payload_A = 0;      // more while the cameras are on
+    double transmitter_A = 0;  // more while the transmitter is on
+  };
+  std::array<Line, reference::converter_count> line{Line{5, 20, 0, 4}, Line{15, 7, 0, 0},
+                                                    Line{12, 3, 22, 0}};
+  double converter_efficiency = 0.85;
   double heaters_W = 92.5;  // all of them, half of the time
   double bdr_efficiency = 0.90;
   double capacity_Ah = 50;
@@ -47,14 +59,18 @@ class HandwrittenEps {
                  storage::Time start, std::uint64_t seed);
 
   storage::Time time() const { return time_; }
-  /// One sample for each of handwritten_descriptors(), now.
+  /// A sample for each of handwritten_descriptors() that is due now, as on the spacecraft.
   void read(std::vector<storage::Sample>& samples) const;
   /// Goes on by one second.
   void advance();
 
   struct Flows {
-    double load_A = 0, sg2_A = 0, shunt_A = 0, bdr_out_A = 0;
-    double section_A = 0;  // SAG1A, SAG1B: the same
+    double load_A = 0, array_A = 0, sg2_A = 0, shunt_A = 0, bdr_out_A = 0;
+    // Of load_A.
+    double platform_A = 0, transmitter_A = 0, heaters_A = 0;
+    std::array<double, reference::converter_count> converter_A{};
+    std::array<double, reference::converter_count> line_A{}, line_V{};  // behind the converters
+    double section_A = 0;                                               // SAG1A, SAG1B: the same
     // Of each battery; both are alike.
     double charge_A = 0, bdr_in_A = 0, battery_A = 0, battery_V = 0;
     double bus_V = 0;
@@ -65,6 +81,7 @@ class HandwrittenEps {
 
  private:
   void solve();
+  void solve_loads();
 
   HandwrittenConstants constants_;
   reference::Orbit orbit_;

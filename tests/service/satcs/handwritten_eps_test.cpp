@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -33,6 +34,9 @@ TEST(HandwrittenEps, BalancesItsCurrentsAndPowers) {
     EXPECT_GE(f.shunt_A, 0);
     EXPECT_LE(f.charge_A, f.section_A);
     EXPECT_EQ(f.bus_V, 28);
+    EXPECT_NEAR(f.platform_A + f.transmitter_A + f.heaters_A + f.converter_A[0] + f.converter_A[1] +
+                    f.converter_A[2],
+                f.load_A, 1e-12);
     EXPECT_GE(eps.charge(), 0);
     EXPECT_LE(eps.charge(), 1);
   }
@@ -76,6 +80,39 @@ TEST(HandwrittenEps, NamesItsPointsAsTheSpacecraftAndHasNoAmplifier) {
     EXPECT_NE(d.name, "V_MEA");
   }
   EXPECT_LT(descriptors.size(), of_spacecraft.size());
+}
+
+TEST(HandwrittenEps, SendsItsPointsWhenTheSpacecraftDoes) {
+  reference::Spacecraft spacecraft({}, {}, start, 1);
+  HandwrittenEps eps({}, {}, start, 1);
+  std::set<std::uint32_t> known, sent;
+  for (const auto& d : handwritten_descriptors("S")) known.insert(d.id);
+  std::vector<storage::Sample> of_spacecraft, of_eps;
+  for (int k = 0; k < 64; ++k, eps.advance(), spacecraft.advance()) {
+    spacecraft.read(of_spacecraft);
+    eps.read(of_eps);
+    std::set<std::uint32_t> due, read;
+    for (const auto& sample : of_spacecraft)
+      if (known.contains(sample.parameter)) due.insert(sample.parameter);
+    for (const auto& sample : of_eps) read.insert(sample.parameter);
+    EXPECT_EQ(read, due);
+    sent.merge(read);
+  }
+  EXPECT_EQ(sent, known);
+}
+
+TEST(HandwrittenEps, TurnsItsLoadsOffInSafeMode) {
+  constexpr storage::Time hour = 3'600'000'000'000;
+  const std::vector<reference::LifeEvent> safe_hour = {
+      reference::usual(reference::LifeKind::safe_mode, start, start + hour)};
+  HandwrittenEps eps({}, safe_hour, start, 1);
+  EXPECT_TRUE(eps.flows().on.safe_mode);
+  EXPECT_EQ(eps.flows().line_A[reference::camera_line], 0);
+  const double safe_A = eps.flows().load_A;
+  for (int k = 0; k < 3600; ++k) eps.advance();
+  EXPECT_FALSE(eps.flows().on.safe_mode);
+  EXPECT_GT(eps.flows().line_A[reference::camera_line], 0);
+  EXPECT_GT(eps.flows().load_A, safe_A + 5);
 }
 
 TEST(HandwrittenEps, IsOfTheSizeOfTheSpacecraftButNotLikeIt) {
