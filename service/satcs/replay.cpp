@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "service/satcs/replay_columns.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::satcs {
@@ -108,6 +109,7 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
 
   ReplayPlan plan;
   plan.file = options.file;
+  plan.skip_blanks = options.skip_blanks;
   plan.time_position = std::get<std::size_t>(time_position);
   plan.time_column = head.columns()[plan.time_position];
   auto surveyed = survey(options, plan.time_position);
@@ -150,7 +152,9 @@ bool ReplaySource::next(storage::TelemetryFrame& frame) {
   frame.sequence = sender_.first_sequence + rows_done_;
   frame.samples.clear();
   for (const auto& column : plan_.columns) {
-    const auto number = csv::to_number(reader_.cells()[column.position]);
+    const auto& cell = reader_.cells()[column.position];
+    if (plan_.skip_blanks && trimmed(cell).empty()) continue;
+    const auto number = csv::to_number(cell);
     frame.samples.push_back({column.parameter.id,
                              number ? storage::Quality::good : storage::Quality::invalid,
                              number.value_or(std::numeric_limits<double>::quiet_NaN())});

@@ -38,6 +38,7 @@ struct ReplayOptions {
   /// Unmapped columns keep their names; otherwise a unit at the end of a name becomes the
   /// parameter's unit: bus_u_mv is bus_u in mV.
   bool keep_names = false;
+  bool skip_blanks = false;          // a blank cell is no sample, and not an invalid one
   std::vector<std::string> only;     // columns to replay; empty: all
   std::optional<ReplayBound> start;  // rows with start <= time < end
   std::optional<ReplayBound> end;
@@ -53,6 +54,7 @@ struct ReplayPlan {
   std::size_t time_position = 0;
   std::string time_column;
   std::vector<Column> columns;
+  bool skip_blanks = false;
   std::vector<std::string> left_out;  // columns without a single number
   storage::TimeRange range;           // of the rows to replay
   std::uint64_t rows = 0;             // in that range
@@ -62,7 +64,8 @@ struct ReplayPlan {
 std::variant<ReplayPlan, csv::Error> plan_replay(const ReplayOptions& options);
 
 /// Rows in the order of the file, whatever their times are, each received when it was generated. A
-/// cell without a finite number becomes a sample of quality invalid whose value is NaN.
+/// cell without a finite number becomes a sample of quality invalid whose value is NaN, or none
+/// where it is blank and blanks are skipped.
 class ReplaySource : public FrameSource {
  public:
   /// Throws std::runtime_error when the file cannot be opened any more.

@@ -49,6 +49,9 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
       ->allow_extra_args(false);
   app.add_flag("--keep-names", options.keep_names,
                "Do not take units from names (bus_u_mv is bus_u in mV)");
+  app.add_flag("--skip-blanks", options.skip_blanks,
+               "A blank cell is no sample, as of a parameter that comes more seldom than others,\n"
+               "instead of an invalid one");
   app.add_option("--only", options.only, "Columns to publish, separated by commas")
       ->delimiter(',')
       ->type_name("COLUMNS");

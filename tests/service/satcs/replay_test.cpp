@@ -238,6 +238,19 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
   EXPECT_EQ(source.progress(), 1);
 }
 
+TEST_F(Replay, SkipsBlankCellsWhereAsked) {
+  write("t,a,b\n1,1, \n2,,nan\n");
+  options_.skip_blanks = true;
+  ReplaySource source(plan(), {"station"});
+  storage::TelemetryFrame frame;
+  ASSERT_TRUE(source.next(frame));
+  ASSERT_EQ(frame.samples.size(), 1U);
+  EXPECT_EQ(frame.samples[0].value, 1);
+  ASSERT_TRUE(source.next(frame));
+  ASSERT_EQ(frame.samples.size(), 1U);
+  EXPECT_EQ(frame.samples[0].quality, storage::Quality::invalid);
+}
+
 TEST_F(Replay, KeepsToTheStretchAskedFor) {
   write("t,a\n12,3\n10,1\n11,2\n13,4\n");
   const auto values = [&] {
