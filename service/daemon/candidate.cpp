@@ -44,31 +44,13 @@ std::string method_text(const identification::Recipe& recipe) {
   return text;
 }
 
-/// The identified model, or that with its poles moved where it errs less on the rows for choices;
-/// and the gain with which it follows telemetry.
+/// The identified model, or that with its poles moved where it errs less on the rows for choices.
 struct ChosenModel {
   identification::StateSpaceModel dynamics;
   identification::Vector x0;
   std::string method;
-  std::optional<identification::TrackingGain> gain;
-  ordered_json pole_placement, integral_feedback;
+  ordered_json pole_placement;
 };
-
-void choose_tracking(const identification::Record& record, const WindowParts& parts,
-                     ChosenModel& chosen) {
-  const auto result = search_tracking(chosen.dynamics, record, parts.identify, parts.tune);
-  if (const auto* verdict = std::get_if<identification::Verdict>(&result)) {
-    chosen.integral_feedback = {{"rejected", name(verdict->code)}, {"reason", verdict->reason}};
-    return;
-  }
-  const auto& found = std::get<identification::TrackingSearch>(result);
-  chosen.gain = found.gain;
-  chosen.integral_feedback = {{"scale", found.scale},
-                              {"tau_samples", found.tau_samples},
-                              {"free_run_tune_mrse_percent", found.free_run.mrse()},
-                              {"tracking_tune_mrse_percent", found.tracking.mrse()},
-                              {"uncontrollable_poles", found.uncontrollable.size()}};
-}
 
 void place(const identification::Correction& best, const identification::Record& record,
            ChosenModel& chosen) {
@@ -85,18 +67,17 @@ void place(const identification::Correction& best, const identification::Record&
 
 ChosenModel corrected(const identification::Record& record, const Identified& identified,
                       const WindowParts& parts) {
-  ChosenModel chosen{identified.model, identified.x0, method_text(identified.recipe), {}, {}, {}};
+  ChosenModel chosen{identified.model, identified.x0, method_text(identified.recipe), {}};
   const auto search = search_correction(identified.model, record, parts.identify, parts.tune);
   chosen.pole_placement = {{"plain_tune_mrse_percent", search.plain.mrse()}};
   if (search.best) place(*search.best, record, chosen);
-  choose_tracking(record, parts, chosen);
   return chosen;
 }
 
 Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
                        const ChosenModel& chosen, const WindowParts& parts) {
   const Duration period = request.equipment.sample_period;
-  Candidate candidate{.model = {}, .parts = parts, .y_hat = {}, .tuned_on = {}};
+  Candidate candidate{.model = {}, .parts = parts, .x0 = chosen.x0, .y_hat = {}, .tuned_on = {}};
   EquipmentModel& model = candidate.model;
   model.spacecraft = request.spacecraft;
   model.equipment = request.equipment.name;
@@ -115,13 +96,7 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   const auto validation = [&](const Matrix& samples) -> Matrix {
     return samples.middleRows(parts.validate.begin, parts.validate.size());
   };
-  const Matrix y = validation(data.record.y);
-  model.validation = identification::score(y, validation(candidate.y_hat));
-  if (chosen.gain) {
-    const Matrix tracked =
-        tracked_run(chosen.dynamics, *chosen.gain, data.record, data.record.all(), chosen.x0);
-    model.tracking = {*chosen.gain, identification::score(y, validation(tracked))};
-  }
+  model.validation = identification::score(validation(data.record.y), validation(candidate.y_hat));
   return candidate;
 }
 
@@ -134,8 +109,6 @@ void describe(const Identified& identified, const ChosenModel& chosen, PreparedW
   json["weighting"] = name(identified.recipe.weighting);
   json["spectral_radius"] = spectral_radius(model.dynamics);
   json["pole_placement"] = chosen.pole_placement;
-  json["integral_feedback"] = chosen.integral_feedback;
-  if (model.tracking) json["tracking_mrse_percent"] = model.tracking->validation.mrse();
   json["mrse_percent"] = model.validation.mrse();
   json["fit_percent"] = model.validation.fit();
   json["per_output"] = {{"mrse_percent", to_json(model.validation.mrse_percent)},
@@ -190,6 +163,31 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
 }
 
 }  // namespace
+
+void let_follow(PreparedWindow& prepared) {
+  const identification::Record& record = prepared.data.record;
+  const auto& [identify, tune, validate] = prepared.candidate->parts;
+  EquipmentModel& model = prepared.candidate->model;
+  prepared.timer.begin("follow");
+  const auto result = search_tracking(model.dynamics, record, identify, tune);
+  if (const auto* verdict = std::get_if<identification::Verdict>(&result)) {
+    prepared.evidence["integral_feedback"] = {{"rejected", name(verdict->code)},
+                                              {"reason", verdict->reason}};
+    return;
+  }
+  const auto& found = std::get<identification::TrackingSearch>(result);
+  const Matrix y_hat =
+      tracked_run(model.dynamics, found.gain, record, record.all(), prepared.candidate->x0);
+  model.tracking = {found.gain,
+                    identification::score(record.y.middleRows(validate.begin, validate.size()),
+                                          y_hat.middleRows(validate.begin, validate.size()))};
+  prepared.evidence["integral_feedback"] = {{"scale", found.scale},
+                                            {"tau_samples", found.tau_samples},
+                                            {"free_run_tune_mrse_percent", found.free_run.mrse()},
+                                            {"tracking_tune_mrse_percent", found.tracking.mrse()},
+                                            {"uncontrollable_poles", found.uncontrollable.size()}};
+  prepared.evidence["tracking_mrse_percent"] = model.tracking->validation.mrse();
+}
 
 WindowParts parts_of(identification::Index rows, const EquipmentConfig& equipment) {
   const auto share = [rows](double part) {

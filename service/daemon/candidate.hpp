@@ -40,6 +40,7 @@ WindowParts parts_of(identification::Index rows, const EquipmentConfig& equipmen
 struct Candidate {
   EquipmentModel model;
   WindowParts parts;
+  identification::Vector x0;     // at the window's first row
   identification::Matrix y_hat;  // free run over all rows of the window
   storage::TimeRange tuned_on;
 };
@@ -58,6 +59,11 @@ void refuse_damaged(PreparedWindow& prepared, const storage::Error& error);
 
 /// Thrown when `stop` answered true; nothing was decided.
 class Stopped : public std::exception {};
+
+/// Searches the gain with which the candidate follows telemetry, by integral feedback, and scores
+/// it. Apart from prepare_window: most candidates are turned away, and this would take a quarter of
+/// their time.
+void let_follow(PreparedWindow& prepared);
 
 /// The options that an equipment's configuration stands for.
 identification::IdentifyOptions options_of(const EquipmentConfig& equipment);

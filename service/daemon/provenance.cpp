@@ -133,6 +133,15 @@ storage::Archive as_it_was(const storage::Archive& archive, const RefreshRequest
   return archive;
 }
 
+/// Whether it has a gain for that; those that the gate turns away are given none.
+bool follows_telemetry(const storage::Version& version) {
+  try {
+    return equipment_model_from_json(version.model_json).tracking.has_value();
+  } catch (const std::invalid_argument&) {
+    return false;  // damaged: it will not be the same
+  }
+}
+
 }  // namespace
 
 std::string digest_of_samples(const identification::Record& record, const WindowRequest& request) {
@@ -197,14 +206,14 @@ Reproduction reproduce(const storage::Archive& archive, const storage::Version& 
   KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
   const storage::Archive then =
       as_it_was(archive, request, version.samples_digest, result.revisions);
-  const PreparedWindow prepared =
-      prepare_window(then, request, kept, for_each, [] { return false; });
+  PreparedWindow prepared = prepare_window(then, request, kept, for_each, [] { return false; });
   result.samples_digest = digest_of_samples(prepared.data.record, prepared.loaded);
   result.same_samples = result.samples_digest == version.samples_digest;
   if (!prepared.candidate) {
     result.reason = prepared.attempt.reason;
     return result;
   }
+  if (follows_telemetry(version)) let_follow(prepared);
   const EquipmentModel& model = prepared.candidate->model;
   result.model_digest = model_digest(model);
   result.same_model =

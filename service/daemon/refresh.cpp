@@ -137,6 +137,7 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
     prepared.attempt.outcome = name(decision.outcome);
     prepared.attempt.reason = decision.reason;
     result.decision = storage::NewDecision{kind_of(decision.outcome), "gate", decision.reason};
+    if (result.decision->kind != storage::DecisionKind::reject) let_follow(prepared);
     result.version = version_of(request, prepared);
     result.candidate = std::move(prepared.candidate->model);
   }

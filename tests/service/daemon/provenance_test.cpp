@@ -23,8 +23,8 @@ class Provenance : public DaemonTest {
     const RefreshResult result =
         refresh(archive, registry, {"SAT", plant(), {end - plant().window, end}, "slide", "digest"},
                 kept, {}, [] { return false; });
-    registry.record(result.attempt, result.version, *result.decision);
-    return *registry.version("SAT", "PLANT", 1);
+    const std::int64_t number = registry.record(result.attempt, result.version, *result.decision);
+    return *registry.version("SAT", "PLANT", number);
   }
 
   std::vector<storage::TelemetryFrame> late;  // of 20 seconds that the archive does not have yet
@@ -48,6 +48,16 @@ TEST_F(Provenance, IsEnoughToIdentifyTheVersionAgainToTheLastBit) {
   KeptWindow kept = kept_window_of("SAT", plant());
   record(day + 10 * minute, kept);
   const Reproduction again = reproduce(archive, *registry.version("SAT", "PLANT", 1), {});
+  EXPECT_TRUE(again.same_samples);
+  EXPECT_TRUE(again.same_model);
+}
+
+TEST_F(Provenance, IsEnoughForAVersionThatTheGateTurnedAway) {
+  KeptWindow kept = kept_window_of("SAT", plant());
+  record(day + 10 * minute, kept);
+  const storage::Version turned_away = record(day + 15 * minute, kept);
+  ASSERT_EQ(registry.champion("SAT", "PLANT")->number, 1);
+  const Reproduction again = reproduce(archive, turned_away, {});
   EXPECT_TRUE(again.same_samples);
   EXPECT_TRUE(again.same_model);
 }

@@ -55,6 +55,17 @@ TEST_F(Refresh, ApprovesAGoodFirstVersionAndExplainsIt) {
   EXPECT_TRUE(evidence["timing_ms"].contains("load"));
 }
 
+TEST_F(Refresh, LooksForATrackingGainOnlyOfACandidateThatMayRun) {
+  archive.append(telemetry(day, 1201));
+  const RefreshResult first = run(day + 10 * minute);
+  EXPECT_TRUE(nlohmann::json::parse(first.attempt.evidence_json).contains("integral_feedback"));
+  record(first);
+  const RefreshResult turned_away = run(day + 15 * minute);
+  ASSERT_EQ(turned_away.attempt.outcome, "not_better_than_champion");
+  EXPECT_FALSE(
+      nlohmann::json::parse(turned_away.attempt.evidence_json).contains("integral_feedback"));
+}
+
 TEST_F(Refresh, SaysThatTelemetryIsDamagedAndWhich) {
   archive.append(telemetry(day, 601));
   archive.compact();
