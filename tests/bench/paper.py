@@ -2,11 +2,12 @@
 one, with pole placement, and with integral feedback, on rows that nothing was chosen on. The error of
 the output as it was a sample before stands beside that of integral feedback, which has seen it too.
 
-    paper.py BUILD [DATA_FOLDER]
+    paper.py BUILD [DATA_FOLDER] [--pictures FOLDER]
 
 BDR, BAT1 and MEA are those of the reference spacecraft; with DATA_FOLDER, which holds BUPT-1's
 files, MPPT2 and BUS follow, of which there is no simulator. Prints a table as Markdown and, as the
-last line, one JSON object of the figures.
+last line, one JSON object of the figures. With --pictures the reference spacecraft's lines are
+drawn there, as SVG.
 """
 
 import argparse
@@ -45,7 +46,7 @@ def line(build, file, inputs, output, identify, validate, more):
         "--output", output, "--identify", f"0:{identify}", "--validate", validate, *more]))
 
 
-def reference_lines(build, folder, rows, identify, tune):
+def reference_lines(build, folder, rows, identify, tune, pictures):
     simulator = build / "service/satcs/satcs-reference"
     real, simulated = folder / "real.csv", folder / "simulated.csv"
     run([simulator, "--duration", f"{rows}s", "--csv", real])
@@ -54,6 +55,8 @@ def reference_lines(build, folder, rows, identify, tune):
         more = ["--time", "unix_s"]
         if name in SIMULATED:
             more += ["--baseline", simulated]
+        if pictures:
+            more += ["--picture", pictures / f"{name.lower()}.svg"]
         yield name, line(build, real, inputs, output, identify, f"{identify + tune}:{rows}", more)
 
 
@@ -75,12 +78,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", type=Path, help="folder that the programs were built in")
     parser.add_argument("data", type=Path, nargs="?", help="folder of BUPT-1's files")
+    parser.add_argument("--pictures", type=Path, help="folder to draw the lines to")
     parser.add_argument("--quick", action="store_true",
                         help="few rows, to test the table itself: the figures say nothing")
     arguments = parser.parse_args()
     sizes = (6000, 3000, 1000) if arguments.quick else (150000, 15000, 15000)
+    if arguments.pictures:
+        arguments.pictures.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="reident-paper-") as folder:
-        lines = list(reference_lines(arguments.build.resolve(), Path(folder), *sizes))
+        lines = list(reference_lines(arguments.build.resolve(), Path(folder), *sizes,
+                                     arguments.pictures))
     if arguments.data:
         lines += recorded_lines(arguments.build.resolve(), arguments.data)
     print("| equipment | order | rows to identify, tune, validate | simulator's own | identified |"
