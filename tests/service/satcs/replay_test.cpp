@@ -239,7 +239,7 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
 }
 
 TEST_F(Replay, SkipsBlankCellsWhereAsked) {
-  write("t,a,b\n1,1, \n2,,nan\n");
+  write("t,a,b\n1,1, \n2,,nan\n3,4,5\n");
   options_.skip_blanks = true;
   ReplaySource source(plan(), {"station"});
   storage::TelemetryFrame frame;
@@ -249,6 +249,8 @@ TEST_F(Replay, SkipsBlankCellsWhereAsked) {
   ASSERT_TRUE(source.next(frame));
   ASSERT_EQ(frame.samples.size(), 1U);
   EXPECT_EQ(frame.samples[0].quality, storage::Quality::invalid);
+  ASSERT_TRUE(source.next(frame));
+  EXPECT_EQ(frame.samples.size(), 2U);
 }
 
 TEST_F(Replay, KeepsToTheStretchAskedFor) {
