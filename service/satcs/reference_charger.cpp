@@ -9,8 +9,7 @@ constexpr double rated_C = 10;
 }
 
 double Charger::section_V(double battery_V, double charge_A) const {
-  constexpr double knee_A = 0.1;  // far below the currents of a sunlit section
-  const double drop_V = constants_.drop_V * charge_A / (charge_A + knee_A);
+  const double drop_V = constants_.drop_V * charge_A / (charge_A + constants_.knee_A);
   return battery_V + drop_V + constants_.series_ohm * charge_A;
 }
 

@@ -82,6 +82,7 @@ struct ChargerConstants {
   double cell_limit_V_per_K = -2.5e-3;
   double gain_per_Vs = 0.15;  // of the shunted share
   double drop_V = 0.6;        // from the section to the battery
+  double knee_A = 0.1;        // at which the drop is half of that
   double series_ohm = 0.030;
 
   bool operator==(const ChargerConstants&) const = default;

@@ -480,6 +480,9 @@ TEST(ConfigExamples, AreCompleteAndRight) {
   const auto bupt = load_config(REIDENT_EXAMPLES "/bupt1.toml");
   ASSERT_TRUE(std::holds_alternative<Config>(bupt));
   EXPECT_THAT(std::get<Config>(bupt).spacecraft.at(0).equipment, SizeIs(2));
+  const auto reference = load_config(REIDENT_EXAMPLES "/reference.toml");
+  ASSERT_TRUE(std::holds_alternative<Config>(reference));
+  EXPECT_THAT(std::get<Config>(reference).spacecraft.at(0).equipment, SizeIs(9));
 }
 
 }  // namespace
