@@ -15,7 +15,7 @@ class DischargeRegulator {
   void age(const DischargeRegulatorConstants& constants) { constants_ = constants; }
 
   using Modules = std::array<double, battery_count>;
-  using Supplied = std::array<bool, battery_count>;  // modules whose battery is not empty
+  using Supplied = std::array<bool, battery_count>;  // modules whose battery has charge and voltage
   double max_output_A(const Supplied& supplied) const;
   /// Output current of each module [A]: the fuller battery gives more, after a while.
   Modules share(double output_A, const Supplied& supplied) const;

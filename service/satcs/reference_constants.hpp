@@ -90,8 +90,9 @@ struct ChargerConstants {
 
 /// Battery switching regulators: one module for each battery, one output.
 struct DischargeRegulatorConstants {
-  double max_output_A = 60;  // both modules
-  double idle_W = 5;         // of each module
+  double max_output_A = 60;   // both modules
+  double least_input_V = 32;  // of the battery without current; a module stops below it
+  double idle_W = 5;          // of each module
   double drop_V = 0.55;
   double series_ohm = 0.035;  // at 25 degC
   double series_per_K = 5e-3;

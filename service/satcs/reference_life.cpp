@@ -27,11 +27,11 @@ constexpr std::array kinds{
     KindInfo{LifeKind::capacity_fade, "capacity_fade", Course::gradual, LifeUnit::battery, 0, 0.10,
              0.9},
     KindInfo{LifeKind::rising_resistance, "rising_resistance", Course::gradual, LifeUnit::battery,
-             0, 0.5, 10},
+             0, 0.5, 3},
     KindInfo{LifeKind::efficiency_drift, "efficiency_drift", Course::gradual, LifeUnit::none, 0,
-             0.3, 10},
+             0.3, 3},
     KindInfo{LifeKind::converter_drift, "converter_drift", Course::gradual, LifeUnit::converter, 0,
-             0.3, 10},
+             0.3, 3},
     KindInfo{LifeKind::lost_string, "lost_string", Course::step, LifeUnit::string_row, 3, 1, 13},
     KindInfo{LifeKind::failed_cell, "failed_cell", Course::step, LifeUnit::battery, 1, 1, 10},
     KindInfo{LifeKind::redundant_charger, "redundant_charger", Course::mode, LifeUnit::battery, 1,
@@ -113,7 +113,7 @@ void apply(const LifeEvent& event, double grown, Constants& c) {
     case LifeKind::failed_cell:
       for (std::size_t k = 0; k < battery_count; ++k)
         if (grown > 0 && concerns(event, k + 1))
-          c.battery[k].cells -= static_cast<int>(event.magnitude);
+          c.battery[k].cells = std::max(1, c.battery[k].cells - static_cast<int>(event.magnitude));
       break;
     case LifeKind::redundant_charger:
       for (std::size_t k = 0; k < battery_count; ++k)

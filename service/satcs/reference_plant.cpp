@@ -95,7 +95,10 @@ void Plant::age() {
 }
 
 DischargeRegulator::Supplied Plant::modules_supplied() const {
-  return {batteries_[0].state().soc > 0, batteries_[1].state().soc > 0};
+  const auto supplied = [this](const Battery& battery) {
+    return battery.state().soc > 0 && battery.internal_V() > constants_.bdr.least_input_V;
+  };
+  return {supplied(batteries_[0]), supplied(batteries_[1])};
 }
 
 void Plant::solve_bus() {

@@ -169,6 +169,24 @@ TEST(ReferenceLife, ModesSwitchTheLoadsOff) {
   EXPECT_LT(half, on({}));
 }
 
+TEST(ReferenceLife, WornOutSpacecraftStaysFinite) {
+  const storage::Time at = sunlit + 600 * second;
+  Plant plant(Constants{},
+              {{LifeKind::capacity_fade, at, at, 0.9, 0},
+               {LifeKind::failed_cell, at, at, 10, 1},
+               {LifeKind::rising_resistance, at, at, 3, 0},
+               {LifeKind::array_degradation, at, at + hour, 0.9, 0},
+               {LifeKind::efficiency_drift, at, at, 3, 0}},
+              sunlit, 1);
+  for (int step = 0; step < 4 * 6016 * Plant::usual_steps_per_second; ++step) {
+    plant.step();
+    const PowerBalance p = plant.power_balance();
+    ASSERT_GE(plant.flows().bus_V, Constants{}.bus.fold_back_V - 1e-9);
+    ASSERT_GT(plant.flows().battery_V[0], 0);
+    ASSERT_NEAR(p.array, p.use() + p.losses() + p.stored(), 1e-9);
+  }
+}
+
 TEST(LifeText, GivesTheEventThatItNames) {
   const auto parsed = [](std::string_view text) {
     return std::get<LifeEvent>(parse_life_event(text, july));

@@ -46,7 +46,7 @@ TEST(ReferencePlant, ArraysPowerIsUsedLostOrStoredInEveryStep) {
   Plant plant(Constants{}, {}, july, 2);
   run(plant, two_orbits, [&](const Flows& f) {
     const PowerBalance p = plant.power_balance();
-    EXPECT_NEAR(p.array, p.use() + p.losses() + p.stored(), 1e-6);  // of 2 kW; stored 7 MJ / 0.25 s
+    EXPECT_NEAR(p.array, p.use() + p.losses() + p.stored(), 1e-9);  // of 2 kW
     for (const double loss :
          {p.blocking_diodes, p.shunt_switches, p.chargers, p.discharge_regulators, p.harness,
           p.converters, p.capacitor_resistance}) {
