@@ -1,0 +1,41 @@
+// Runs a group of scenarios: the plant once, each scenario's lies and service beside it, then the
+// score of each.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/trust/scenario.hpp"
+#include "tests/trust/score.hpp"
+#include "tests/trust/simulated_service.hpp"
+
+namespace reident::trust {
+
+/// What became of one equipment in one scenario.
+struct EquipmentOutcome {
+  std::string equipment;
+  std::vector<Publication> publications;
+  std::vector<ChangeScore> changes;
+  std::vector<Attempted> attempts;
+  std::vector<DriftRequest> drifts;
+  ErrorCurve champion;
+};
+
+struct ScenarioOutcome {
+  int number = 0;
+  std::uint64_t seed = 0;
+  Half half = Half::tuned;
+  std::string life, lie;
+  storage::TimeRange extent;  // of the telemetry
+  std::vector<EquipmentOutcome> equipment;
+  std::vector<satcs::reference::LifeEvent> events;
+  std::vector<satcs::Lie> lies;
+};
+
+/// `config` is the suite's; the databases of the scenarios are made in `folder` and removed.
+std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& config,
+                                       const std::filesystem::path& folder);
+
+}  // namespace reident::trust

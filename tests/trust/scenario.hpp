@@ -1,0 +1,40 @@
+// What happens to a spacecraft and to its telemetry while the service looks on.
+//
+// Scenarios come in groups of one life: the plant runs once for a group, and each scenario of it is
+// told other lies. Numbers, seeds and times are a function of this file alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/daemon/config.hpp"
+#include "service/satcs/lies.hpp"
+#include "service/satcs/reference_life.hpp"
+
+namespace reident::trust {
+
+enum class Half { tuned, held_out };
+
+struct Scenario {
+  int number = 0;
+  std::string lie = "none";  // kind of lie, as the table names it
+  std::vector<satcs::Lie> lies;
+};
+
+struct LifeGroup {
+  std::uint64_t seed = 0;  // of the operations plan and of the sensors
+  std::string life = "none";
+  std::vector<satcs::reference::LifeEvent> events;
+  storage::Time start = 0;
+  Duration duration = 0;
+  std::vector<Scenario> scenarios;
+
+  /// Odd seeds are held out of every tuning.
+  Half half() const { return seed % 2 == 1 ? Half::held_out : Half::tuned; }
+};
+
+/// All of the suite.
+std::vector<LifeGroup> all_groups();
+/// The groups of one half, or of the scenarios that are wanted; scenarios that are not are left out.
+
+}  // namespace reident::trust

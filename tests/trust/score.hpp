@@ -1,0 +1,86 @@
+// What the suite counts: wrong approvals, changes that were missed, and how long it took.
+//
+//   wrong approval  over the 30 orbits that follow its publication a version's MRSE on the truth is
+//                   higher than that of what it replaced by more than a tenth and the sensors' own
+//                   resolution
+//   missed change   for more than 15 orbits of honest telemetry without a break the champion's MRSE
+//                   on the truth is higher than 1.5 times an oracle's and the sensors' resolution
+//                   above that
+//
+// README.md has the reasons for the figures. Errors are of free runs on the truth.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/satcs/reference_life.hpp"
+#include "tests/trust/truth.hpp"
+
+namespace reident::trust {
+
+inline constexpr std::int64_t judged_orbits = 30;
+inline constexpr std::int64_t least_judged_orbits = 5;  // where a change cuts the 30 short
+inline constexpr double worse_share = 0.10;
+inline constexpr std::int64_t recovery_orbits = 15;
+inline constexpr double oracle_factor = 1.5;
+/// Errors are compared over so many orbits: those of single ones differ by what was switched on.
+inline constexpr std::int64_t smoothing_orbits = 5;
+/// A change is followed for so long after it has grown.
+inline constexpr std::int64_t followed_orbits = 45;
+
+/// What simulators ran from a time on: a version, or, where there is none, the hand-written model.
+struct Tenure {
+  storage::Time since = 0;
+  std::int64_t version = 0;  // 0: the hand-written model
+  std::optional<EquipmentModel> model;
+};
+
+struct Publication {
+  std::int64_t version = 0;
+  storage::Time time = 0;
+  storage::TimeRange judged_on;
+  std::optional<double> mrse_percent;           // absent: too little was left to judge it
+  std::optional<double> replaced_mrse_percent;  // of what it replaced
+  double resolution_percent = 0;
+  bool wrong() const;
+  /// By how much it is worse than what it replaced, over the tolerance; above 1 it is wrong.
+  double worse_over_tolerance() const;
+};
+
+struct ChangeScore {
+  std::string kind;
+  storage::Time begin = 0;
+  bool mattered = false;
+  std::int64_t orbits = 0;             // of honest telemetry until the champion was good again
+  double worst_ratio = 0;              // of the champion's error to the oracle's
+  bool missed() const { return mattered && orbits > recovery_orbits; }
+};
+
+/// A true change of the plant; those that begin together are one.
+struct TrueChange {
+  std::string kind;
+  storage::Time begin = 0;
+  storage::Time end = 0;  // of its growth
+  bool is_step() const { return begin == end; }
+};
+std::vector<TrueChange> true_changes(const std::vector<satcs::reference::LifeEvent>& life);
+
+/// Of models by the time at which the window that they are identified from begins.
+using Oracle = std::function<std::optional<EquipmentModel>(storage::Time begin)>;
+
+/// Every version among `tenures`, which ascend and begin with the hand-written model.
+std::vector<Publication> score_publications(const Truth& truth, const std::vector<Tenure>& tenures,
+                                            const std::vector<TrueChange>& changes);
+
+/// Error of what simulators ran, orbit by orbit.
+ErrorCurve champion_curve(const Truth& truth, const std::vector<Tenure>& tenures);
+
+/// `honest` says whether an orbit's telemetry tells the truth about the equipment.
+std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Tenure>& tenures,
+                                       const std::vector<TrueChange>& changes, const Oracle& oracle,
+                                       const std::function<bool(storage::TimeRange)>& honest);
+
+}  // namespace reident::trust
