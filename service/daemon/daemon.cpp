@@ -146,27 +146,18 @@ void Daemon::identify_windows() {
 
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
                       const storage::Registry& registry) {
-  const storage::TimeRange window = job.window.window;
-  KeptWindow& kept = kept_[job.window.equipment];
-  for (const storage::TimeRange& changed : job.changed) kept.forget(changed);
+  const AttemptContext context{
+      config_.digest, [this](const AttemptContext::Task& task) { writer_.post(task).get(); },
+      clock_,
+      [this](std::size_t count, const std::function<void(std::size_t)>& task) {
+        search_.for_each(count, task);
+      },
+      [this] { return stopping_.load(); }};
   try {
-    // From here on the archive marks what still falls into the window.
-    writer_
-        .post([&job, window](auto&, storage::Archive& stored) {
-          stored.seal(*job.spacecraft, window.end);
-        })
-        .get();
-    RefreshRequest request{*job.spacecraft, *job.equipment, window, job.window.cause,
-                           config_.digest};
-    const auto on_all_cores = [this](std::size_t count,
-                                     const std::function<void(std::size_t)>& task) {
-      search_.for_each(count, task);
-    };
-    // Read before the refresh looks at the champion and the hold.
-    const storage::Standing standing = registry.standing(*job.spacecraft, job.equipment->name);
-    return conclude(refresh(archive, registry, request, kept, on_all_cores,
-                            [this] { return stopping_.load(); }),
-                    standing, registry);
+    const auto attempt =
+        attempt_window(job, archive, registry, kept_[job.window.equipment], context);
+    if (attempt) publish(*attempt, registry);
+    return attempt.has_value();
   } catch (const Stopped&) {
     return false;
   } catch (const std::future_error&) {  // the writer has ended
@@ -174,31 +165,17 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
   }
 }
 
-bool Daemon::conclude(RefreshResult&& result, const storage::Standing& standing,
-                      const storage::Registry& reader) {
-  std::optional<std::int64_t> number;
-  writer_
-      .post([&](storage::Registry& registry, auto&) {
-        result.attempt.time = clock_();
-        if (!result.candidate) {
-          registry.record(result.attempt);
-          number = 0;
-          return;
-        }
-        number = registry.record_if(standing, result.attempt, result.version, *result.decision);
-      })
-      .get();
-  if (!number) return false;
+void Daemon::publish(const RecordedAttempt& attempt, const storage::Registry& registry) {
+  const RefreshResult& result = attempt.result;
   ++attempts_;
   if (result.decision && result.decision->kind == storage::DecisionKind::approve) {
     ++approvals_;
-    publisher_.publish_champion(reader, {result.attempt.spacecraft, result.attempt.equipment});
+    publisher_.publish_champion(registry, {result.attempt.spacecraft, result.attempt.equipment});
   }
   IdentificationReport report = report_of(result);
-  report.version = *number;
+  report.version = attempt.version;
   publisher_.report(report);
   log_attempt(report);
-  return true;
 }
 
 void Daemon::answer_operators() {
@@ -238,38 +215,10 @@ void Daemon::watch_champions() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Archive archive(database);
   const storage::Registry registry(database);
-  struct Watched {
-    const std::string* spacecraft;
-    const EquipmentConfig* equipment;
-    ChampionMonitor monitor;
-  };
-  std::vector<Watched> watched;
-  for (const SpacecraftConfig& spacecraft : config_.spacecraft)
-    for (const EquipmentConfig& equipment : spacecraft.equipment)
-      watched.push_back({&spacecraft.name, &equipment, {spacecraft.name, equipment.name}});
+  ChampionWatch watch(config_);
   std::uint64_t seen = 0;
-  std::string last_error;  // said once, not at each look
   while (feed_.wait_for_telemetry(seen))
-    for (std::size_t i = 0; i < watched.size() && !stopping_; ++i) {
-      const storage::Time reached = feed_.reached(i);
-      if (reached == INT64_MIN) continue;  // none of its telemetry has come
-      auto& [spacecraft, equipment, monitor] = watched[i];
-      std::optional<ChampionMonitor::Drift> drift;
-      try {
-        drift = monitor.look(archive, registry, reached - config_.settle, equipment->window);
-      } catch (const storage::Error& error) {
-        if (error.what() != std::exchange(last_error, error.what()))
-          log::error("monitor", "the champion cannot be looked at; it is tried again",
-                     {{"equipment", *spacecraft + "/" + equipment->name}, {"error", error.what()}});
-      }
-      if (!drift) continue;
-      feed_.ask(*spacecraft, equipment->name, "drift", drift->end);
-      log::warning("monitor", "the champion drifts; its equipment is identified anew",
-                   {{"equipment", *spacecraft + "/" + equipment->name},
-                    {"version", drift->version},
-                    {"window_end", time_text(drift->end)},
-                    {"error_ratio", drift->error_ratio}});
-    }
+    watch.look(archive, registry, feed_, [this] { return stopping_.load(); });
 }
 
 void Daemon::heartbeat() {

@@ -18,13 +18,13 @@
 #include "service/daemon/archive_keeper.hpp"
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
-#include "service/daemon/champion_monitor.hpp"
+#include "service/daemon/champion_watch.hpp"
 #include "service/daemon/command_desk.hpp"
 #include "service/daemon/config.hpp"
 #include "service/daemon/history_desk.hpp"
 #include "service/daemon/ingest.hpp"
 #include "service/daemon/publisher.hpp"
-#include "service/daemon/refresh.hpp"
+#include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"
 #include "service/dds/dds.hpp"
 #include "service/support/parallel.hpp"
@@ -56,10 +56,8 @@ class Daemon {
   /// False when the service stops before the window is decided.
   bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
                 const storage::Registry& registry);
-  /// Commits the attempt, then publishes what follows from it. False when the equipment's standing
-  /// is not the one that the attempt saw any more.
-  bool conclude(RefreshResult&& result, const storage::Standing& standing,
-                const storage::Registry& registry);
+  /// What follows from an attempt that was committed.
+  void publish(const RecordedAttempt& attempt, const storage::Registry& registry);
   void answer_operators();
   void answer_history();
   void watch_champions();

@@ -229,15 +229,24 @@ storage::Time WindowFeed::reached(std::size_t equipment) const {
   return scheduler_.reached(equipment);
 }
 
+std::optional<WindowFeed::Job> WindowFeed::take_due(storage::Time now) {
+  const auto job = scheduler_.next(now);
+  if (!job) return std::nullopt;
+  const Equipment& equipment = equipment_[job->equipment];
+  return Job{*job, &equipment.spacecraft, equipment.config,
+             std::exchange(altered_[job->equipment], {})};
+}
+
+std::optional<WindowFeed::Job> WindowFeed::next_due() {
+  MutexLock lock(mutex_);
+  return take_due(clock_());
+}
+
 std::optional<WindowFeed::Job> WindowFeed::next() {
   MutexLock lock(mutex_);
   while (!stopped_) {
     const storage::Time now = clock_();
-    if (const auto job = scheduler_.next(now)) {
-      const Equipment& equipment = equipment_[job->equipment];
-      return Job{*job, &equipment.spacecraft, equipment.config,
-                 std::exchange(altered_[job->equipment], {})};
-    }
+    if (auto job = take_due(now)) return job;
     if (const auto due = scheduler_.next_due())
       changed_.wait_for(mutex_, std::chrono::nanoseconds(std::max<Duration>(*due - now, 1)));
     else

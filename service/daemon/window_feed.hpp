@@ -52,6 +52,8 @@ class WindowFeed : public ArchiveListener {
 
   /// Waits for a window that is due. Absent after stop().
   std::optional<Job> next();
+  /// A window that is due now; absent where none is.
+  std::optional<Job> next_due();
   void finished(const Job& job, bool completed);
   void stop();
 
@@ -81,6 +83,7 @@ class WindowFeed : public ArchiveListener {
   /// Equipment that a parameter belongs to, by spacecraft and parameter id.
   using Membership = std::map<std::string, std::unordered_map<std::uint32_t, EquipmentIds>>;
 
+  std::optional<Job> take_due(storage::Time now) REIDENT_REQUIRES(mutex_);
   const EquipmentIds* members(const std::string& spacecraft, std::uint32_t parameter) const
       REIDENT_REQUIRES(mutex_);
   /// Makes the parameter known to the equipment that names it, and touches the windows that were

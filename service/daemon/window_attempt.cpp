@@ -1,0 +1,46 @@
+#include "service/daemon/window_attempt.hpp"
+
+#include <utility>
+
+namespace reident {
+namespace {
+
+/// The version's number, 0 without one; absent where the standing has changed.
+std::optional<std::int64_t> record(const storage::Standing& standing, RefreshResult& result,
+                                   const AttemptContext& context) {
+  std::optional<std::int64_t> number;
+  context.write([&](storage::Registry& registry, auto&) {
+    result.attempt.time = context.clock();
+    if (!result.candidate) {
+      registry.record(result.attempt);
+      number = 0;
+      return;
+    }
+    number = registry.record_if(standing, result.attempt, result.version, *result.decision);
+  });
+  return number;
+}
+
+}  // namespace
+
+std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
+                                              const storage::Archive& archive,
+                                              const storage::Registry& registry, KeptWindow& kept,
+                                              const AttemptContext& context) {
+  for (const storage::TimeRange& changed : job.changed) kept.forget(changed);
+  const storage::TimeRange window = job.window.window;
+  // From here on the archive marks what still falls into the window.
+  context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, window.end); });
+  const RefreshRequest request{*job.spacecraft, *job.equipment, window, job.window.cause,
+                               context.configuration_digest};
+  // Read before the refresh looks at the champion and the hold.
+  const storage::Standing standing = registry.standing(*job.spacecraft, job.equipment->name);
+  RecordedAttempt attempt{
+      refresh(archive, registry, request, kept, context.for_each, context.stop)};
+  const auto number = record(standing, attempt.result, context);
+  if (!number) return std::nullopt;
+  attempt.version = *number;
+  return attempt;
+}
+
+}  // namespace reident

@@ -1,0 +1,39 @@
+// One window from its seal to its record, wherever the database's writer is.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "service/daemon/refresh.hpp"
+#include "service/daemon/window_feed.hpp"
+
+namespace reident {
+
+/// What an attempt at a window needs of the program around it.
+struct AttemptContext {
+  using Task = std::function<void(storage::Registry&, storage::Archive&)>;
+  std::string configuration_digest;
+  /// Runs a task on the thread that writes the database, and returns when it is done.
+  std::function<void(const Task&)> write;
+  Clock clock;
+  identification::ForEach for_each;  // the search runs on it; absent: on the calling thread
+  std::function<bool()> stop;
+};
+
+struct RecordedAttempt {
+  RefreshResult result;
+  std::int64_t version = 0;  // 0 where the window gave no model
+};
+
+/// Seals the window, tries it and commits what came out; nothing is published. Absent, and nothing
+/// recorded, where the equipment's standing is not the one that the attempt saw any more. `archive`
+/// and `registry` are of the calling thread; `kept` is of the job's equipment. Throws Stopped where
+/// `stop` answered true.
+std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
+                                              const storage::Archive& archive,
+                                              const storage::Registry& registry, KeptWindow& kept,
+                                              const AttemptContext& context);
+
+}  // namespace reident
