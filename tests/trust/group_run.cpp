@@ -49,6 +49,7 @@ class Telling {
           const std::vector<storage::ParameterDescriptor>& descriptors,
           const std::filesystem::path& folder)
       : scenario_(scenario), folder_(folder), config_(config) {
+    std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     config_.database = folder_ / "reident.db";
     satcs::LiarOptions options;
@@ -104,7 +105,8 @@ struct Known {
       : truth(spacecraft, names), clean(spacecraft, names), simulated(simulator, names) {}
 };
 
-/// Goes through the life second by second; a frame every `period`.
+/// Goes through the life second by second; a frame every `period`, which holds the last sample of
+/// each point that was due since the one before.
 class Flight {
  public:
   Flight(const LifeGroup& group, const std::string& spacecraft, Duration period,
@@ -113,33 +115,60 @@ class Flight {
         period_(period),
         plant_({}, group.events, group.start, group.seed),
         simulator_({}, group.events, group.start, group.seed) {
-    for (const std::string& name : names) wanted_.insert(satcs::parameter_id(name));
+    const auto points = satcs::reference::telemetry_points();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (std::find(names.begin(), names.end(), points[i].name) == names.end()) continue;
+      wanted_.emplace(satcs::parameter_id(points[i].name),
+                      Point{i, points[i].every_s > 1});
+    }
   }
 
   storage::Time time() const { return plant_.time(); }
-  void advance() {
-    for (Duration passed = 0; passed < period_; passed += second) {
+
+  /// Goes on to the next frame, beside which `truth` has what perfect sensors would have sent in it
+  /// and `simulated` what the simulator says.
+  void next(storage::TelemetryFrame& frame, std::vector<storage::Sample>& truth,
+            storage::TelemetryFrame& simulated) {
+    frame.samples.clear();
+    truth.clear();
+    for (Duration passed = second; passed <= period_; passed += second) {
       plant_.advance();
       simulator_.advance();
+      take(passed == period_, frame.samples, truth);
     }
     ++sequence_;
-  }
-
-  void read(storage::TelemetryFrame& frame, std::vector<storage::Sample>& truth,
-            storage::TelemetryFrame& simulated) {
     head(frame, "station", storage::Origin::real);
-    plant_.read(frame.samples);
-    const std::vector<double> values = plant_.noise_free();
-    truth = frame.samples;
-    for (std::size_t i = 0; i < truth.size(); ++i) truth[i].value = values[i];
     head(simulated, "simulator", storage::Origin::simulated);
     simulator_.read(simulated.samples);
-    for (auto* samples : {&frame.samples, &truth, &simulated.samples})
-      std::erase_if(*samples,
-                    [this](const auto& sample) { return !wanted_.contains(sample.parameter); });
+    std::erase_if(simulated.samples, [this](const storage::Sample& sample) {
+      return !wanted_.contains(sample.parameter);
+    });
   }
 
  private:
+  struct Point {
+    std::size_t index;  // among the telemetry points
+    bool slow;          // less than one sample a second
+  };
+
+  void take(bool is_frame, std::vector<storage::Sample>& samples,
+            std::vector<storage::Sample>& truth) {
+    plant_.read(due_);
+    std::vector<double> noise_free;
+    for (const storage::Sample& sample : due_) {
+      const auto point = wanted_.find(sample.parameter);
+      if (point == wanted_.end() || (!is_frame && !point->second.slow)) continue;
+      if (noise_free.empty()) noise_free = plant_.noise_free();
+      const auto replaced = [&sample](const storage::Sample& before) {
+        return before.parameter == sample.parameter;
+      };
+      std::erase_if(samples, replaced);
+      std::erase_if(truth, replaced);
+      samples.push_back(sample);
+      truth.push_back({sample.parameter, sample.quality, noise_free[point->second.index]});
+    }
+  }
+
   void head(storage::TelemetryFrame& frame, const char* source, storage::Origin origin) const {
     frame.spacecraft = spacecraft_;
     frame.source = source;
@@ -152,7 +181,8 @@ class Flight {
   Duration period_;
   Spacecraft plant_;
   satcs::HandwrittenEps simulator_;
-  std::set<std::uint32_t> wanted_;
+  std::map<std::uint32_t, Point> wanted_;
+  std::vector<storage::Sample> due_;
   std::uint64_t sequence_ = 0;
 };
 
@@ -267,7 +297,12 @@ class Judge {
 
 std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& config,
                                        const std::filesystem::path& folder) {
-  const SpacecraftConfig& spacecraft = config.spacecraft.front();
+  Config chosen = config;
+  SpacecraftConfig& spacecraft = chosen.spacecraft.front();
+  std::erase_if(spacecraft.equipment, [&group](const EquipmentConfig& equipment) {
+    return std::find(group.equipment.begin(), group.equipment.end(), equipment.name) ==
+           group.equipment.end();
+  });
   const Duration period = spacecraft.equipment.front().sample_period;
   const auto names = parameter_names(spacecraft);
   const auto descriptors = descriptors_of(spacecraft.name, names);
@@ -275,15 +310,15 @@ std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& con
   Flight flight(group, spacecraft.name, period, names);
   std::vector<std::unique_ptr<Telling>> tellings;
   for (const Scenario& scenario : group.scenarios)
-    tellings.push_back(std::make_unique<Telling>(scenario, group, config, descriptors,
+    tellings.push_back(std::make_unique<Telling>(scenario, group, chosen, descriptors,
                                                  folder / std::to_string(scenario.number)));
   const storage::Time end = group.start + group.duration;
   // The last versions are judged on what comes after the telemetry.
   const storage::TimeRange extent{group.start, end + judged_orbits * orbit_ns()};
   storage::TelemetryFrame frame, simulated;
   std::vector<storage::Sample> truth;
-  for (; flight.time() < extent.end; flight.advance()) {
-    flight.read(frame, truth, simulated);
+  while (flight.time() < extent.end) {
+    flight.next(frame, truth, simulated);
     known.truth.append(flight.time(), truth);
     known.clean.append(flight.time(), frame.samples);
     known.simulated.append(flight.time(), simulated.samples);

@@ -13,6 +13,7 @@
 
 namespace reident::trust {
 
+/// Half of the suite is held out of every tuning: nobody looks at its scenarios one by one.
 enum class Half { tuned, held_out };
 
 struct Scenario {
@@ -22,19 +23,18 @@ struct Scenario {
 };
 
 struct LifeGroup {
-  std::uint64_t seed = 0;  // of the operations plan and of the sensors
+  std::uint64_t seed = 0;  // of the operations plan, the sensors and the times; odd: held out
   std::string life = "none";
   std::vector<satcs::reference::LifeEvent> events;
+  std::vector<std::string> equipment;  // of the suite's configuration
   storage::Time start = 0;
-  Duration duration = 0;
+  Duration duration = 0;  // of the telemetry
   std::vector<Scenario> scenarios;
 
-  /// Odd seeds are held out of every tuning.
   Half half() const { return seed % 2 == 1 ? Half::held_out : Half::tuned; }
 };
 
-/// All of the suite.
-std::vector<LifeGroup> all_groups();
-/// The groups of one half, or of the scenarios that are wanted; scenarios that are not are left out.
+/// All of the suite, for the equipment of its configuration.
+std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft);
 
 }  // namespace reident::trust

@@ -1,19 +1,166 @@
-#include <chrono>
+// The trust suite: scenarios of life and lies through the real service on a simulated clock.
+
+#include <atomic>
 #include <cstdio>
+#include <exception>
+#include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <sstream>
-#include "tests/trust/group_run.hpp"
-using namespace reident; using namespace reident::trust;
-int main(int,char**argv){
-  std::ifstream f(argv[1]); std::stringstream s; s<<f.rdbuf();
-  auto parsed=parse_config(s.str(),"."); if(auto*m=std::get_if<1>(&parsed)){ for(auto&x:*m) std::printf("%s\n",x.message.c_str()); return 1;}
-  Config c=std::get<0>(parsed); 
-  for(auto&g:all_groups()){ auto t=std::chrono::steady_clock::now(); auto o=run_group(g,c,"/tmp/h3/scratch/run");
-   for(auto&x:o) for(auto&e:x.equipment){ std::printf("%d %s %s attempts %zu drifts %zu\n",x.number,x.life.c_str(),e.equipment.c_str(),e.attempts.size(),e.drifts.size());
-     std::map<std::string,int> n; for(auto&a:e.attempts) n[a.outcome]++; for(auto&[k,v]:n) std::printf("   %s %d\n",k.c_str(),v);
-     for(auto&p:e.publications) std::printf("   v%ld day %.2f new %.3f old %.3f res %.3f wot %.2f\n",p.version,double(p.time-g.start)/86400e9,p.mrse_percent.value_or(-1),p.replaced_mrse_percent.value_or(-1),p.resolution_percent,p.worse_over_tolerance());
-     for(auto&h:e.changes) std::printf("   change %s mattered %d orbits %ld worst %.2f\n",h.kind.c_str(),h.mattered,h.orbits,h.worst_ratio);
-   }
-   std::printf("%.1f s\n",std::chrono::duration<double>(std::chrono::steady_clock::now()-t).count()); std::fflush(stdout);
+#include <thread>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/support/log.hpp"
+#include "tests/trust/report.hpp"
+
+namespace {
+
+using namespace reident;
+using namespace reident::trust;
+
+struct Options {
+  std::string config = REIDENT_TRUST_CONFIG;
+  bool list = false, all = false, json = false;
+  std::vector<int> scenarios;
+  std::string half;
+  std::string life, lie;
+  unsigned jobs = 2;
+};
+
+Config read_config(const std::string& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  if (!file) throw std::runtime_error(path + ": cannot be read");
+  auto parsed = parse_config(text.str(), ".");
+  if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&parsed))
+    throw std::runtime_error(fmt::format("{}:{}: {}", path, mistakes->front().line,
+                                         mistakes->front().message));
+  return std::get<Config>(std::move(parsed));
+}
+
+bool is_wanted(const LifeGroup& group, const Scenario& scenario, const Options& options) {
+  if (!options.scenarios.empty())
+    return std::find(options.scenarios.begin(), options.scenarios.end(), scenario.number) !=
+           options.scenarios.end();
+  if (options.half == "tuned" && group.half() != Half::tuned) return false;
+  if (options.half == "held-out" && group.half() != Half::held_out) return false;
+  if (!options.life.empty() && group.life != options.life) return false;
+  return options.lie.empty() || scenario.lie == options.lie;
+}
+
+std::vector<LifeGroup> wanted_groups(const Config& config, const Options& options) {
+  std::vector<LifeGroup> groups = all_groups(config.spacecraft.front());
+  for (LifeGroup& group : groups)
+    std::erase_if(group.scenarios, [&](const Scenario& scenario) {
+      return !is_wanted(group, scenario, options);
+    });
+  std::erase_if(groups, [](const LifeGroup& group) { return group.scenarios.empty(); });
+  return groups;
+}
+
+void list(const std::vector<LifeGroup>& groups) {
+  for (const LifeGroup& group : groups)
+    for (const Scenario& scenario : group.scenarios)
+      fmt::print("{:4} {} {} with {}\n", scenario.number,
+                 group.half() == Half::tuned ? "tuned   " : "held out", group.life, scenario.lie);
+}
+
+/// A folder of its own, gone at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "reident-trust-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder can be made");
+    path_ = name;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Groups side by side on `jobs` threads; the outcomes in the order of the scenarios' numbers.
+std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Config& config,
+                                 const Options& options) {
+  const TemporaryFolder folder;
+  std::vector<std::vector<ScenarioOutcome>> outcomes(groups.size());
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr error;
+  const auto work = [&] {
+    try {
+      for (std::size_t i = next++; i < groups.size(); i = next++) {
+        outcomes[i] = run_group(groups[i], config, folder.path());
+        const std::lock_guard lock(mutex);
+        for (const ScenarioOutcome& outcome : outcomes[i]) {
+          if (outcome.half == Half::tuned || !options.scenarios.empty())
+            fmt::print(stderr, "{}", story(outcome));
+        }
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      error = std::current_exception();
+      next = groups.size();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (unsigned i = 1; i < options.jobs; ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  if (error) std::rethrow_exception(error);
+  std::vector<ScenarioOutcome> all;
+  for (auto& group : outcomes)
+    all.insert(all.end(), std::make_move_iterator(group.begin()),
+               std::make_move_iterator(group.end()));
+  return all;
+}
+
+void report(const std::vector<ScenarioOutcome>& outcomes) {
+  nlohmann::ordered_json json;
+  for (const auto& [half, name] : {std::pair{Half::tuned, "tuned"}, {Half::held_out, "held_out"}}) {
+    std::vector<ScenarioOutcome> of_half;
+    for (const ScenarioOutcome& outcome : outcomes)
+      if (outcome.half == half) of_half.push_back(outcome);
+    if (of_half.empty()) continue;
+    fmt::print("{}\n\n{}\n", half == Half::tuned ? "Tuned seeds" : "Held-out seeds",
+               table(of_half, half == Half::tuned));
+    json[name] = to_json(figures_of(of_half));
+  }
+  fmt::print("{}\n", json.dump());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("The trust suite: life and lies through the real service", "reident_trust");
+  Options options;
+  app.add_option("--config", options.config, "configuration of the service under test");
+  app.add_flag("--list", options.list, "list the scenarios that are chosen, and run none");
+  app.add_option("--scenario", options.scenarios, "run these scenarios alone, by number");
+  app.add_option("--half", options.half, "run the tuned or the held-out half alone")
+      ->check(CLI::IsMember({"tuned", "held-out"}));
+  app.add_option("--life", options.life, "run the scenarios of this life alone");
+  app.add_option("--lie", options.lie, "run the scenarios of this lie alone");
+  app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
+  CLI11_PARSE(app, argc, argv);
+  try {
+    log::set_level("error");
+    const Config config = read_config(options.config);
+    const std::vector<LifeGroup> groups = wanted_groups(config, options);
+    if (options.list) {
+      list(groups);
+      return 0;
+    }
+    report(run(groups, config, options));
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "reident_trust: {}\n", error.what());
+    return 1;
   }
 }

@@ -1,0 +1,187 @@
+#include "tests/trust/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/support/time_text.hpp"
+
+namespace reident::trust {
+namespace {
+
+constexpr double month_ns = 30.0 * 86'400e9;
+
+double days_after(storage::Time start, storage::Time time) {
+  return static_cast<double>(time - start) / 86'400e9;
+}
+
+/// How bad an outcome is: any wrong approval before any missed change.
+struct Badness {
+  double value = 0;
+  std::string words;
+};
+
+Badness badness_of(const ScenarioOutcome& outcome) {
+  Badness worst;
+  const auto consider = [&](double value, std::string words) {
+    if (value > worst.value) worst = {value, std::move(words)};
+  };
+  for (const EquipmentOutcome& equipment : outcome.equipment) {
+    for (const Publication& publication : equipment.publications)
+      if (publication.wrong())
+        consider(1e6 * publication.worse_over_tolerance(),
+                 fmt::format("{} version {}: {:.3g} % after {:.3g} %", equipment.equipment,
+                             publication.version, *publication.mrse_percent,
+                             *publication.replaced_mrse_percent));
+    for (const ChangeScore& change : equipment.changes)
+      if (change.missed())
+        consider(static_cast<double>(change.orbits),
+                 fmt::format("{} bad for {} orbits, {:.3g} times the oracle", equipment.equipment,
+                             change.orbits, change.worst_ratio));
+  }
+  return worst;
+}
+
+void add_row(std::string& text, const std::string& name,
+             const std::vector<const ScenarioOutcome*>& outcomes, bool details) {
+  Figures figures;
+  for (const ScenarioOutcome* outcome : outcomes) figures.add(*outcome);
+  text += fmt::format("| {} | {} | {} | {} | {} of {} | {} | {:.2g} |", name, figures.scenarios,
+                      figures.versions, figures.wrong_approvals, figures.recovered, figures.changes,
+                      figures.changes > 0 ? fmt::format("{} ({})", figures.recovery_quantile(0.5),
+                                                        figures.recovery_quantile(1))
+                                          : "",
+                      figures.publications_per_month());
+  if (details) {
+    const auto worst = std::max_element(
+        outcomes.begin(), outcomes.end(), [](const ScenarioOutcome* a, const ScenarioOutcome* b) {
+          return badness_of(*a).value < badness_of(*b).value;
+        });
+    const Badness badness = badness_of(**worst);
+    text += badness.value > 0 ? fmt::format(" {}: {} |", (*worst)->number, badness.words) : " |";
+  }
+  text += '\n';
+}
+
+void add_rows(std::string& text, std::string_view by,
+              const std::map<std::string, std::vector<const ScenarioOutcome*>>& rows,
+              bool details) {
+  text += fmt::format(
+      "| {} | scenarios | versions judged | wrong approvals | changes recovered | orbits, median "
+      "(worst) | publications a month, nothing changing |{}\n|---|---|---|---|---|---|---|{}\n",
+      by, details ? " worst case |" : "", details ? "---|" : "");
+  for (const auto& [name, outcomes] : rows) add_row(text, name, outcomes, details);
+}
+
+}  // namespace
+
+void Figures::add(const ScenarioOutcome& outcome) {
+  ++scenarios;
+  for (const EquipmentOutcome& equipment : outcome.equipment) {
+    for (const Publication& publication : equipment.publications) {
+      versions += publication.mrse_percent.has_value();
+      wrong_approvals += publication.wrong();
+    }
+    for (const ChangeScore& change : equipment.changes) {
+      if (!change.mattered) continue;
+      ++changes;
+      recovered += !change.missed();
+      orbits_to_recover.push_back(change.orbits);
+    }
+    if (!outcome.events.empty()) continue;
+    quiet_months += static_cast<double>(outcome.extent.end - outcome.extent.begin) / month_ns;
+    quiet_publications +=
+        std::max(0, static_cast<int>(equipment.publications.size()) - 1);
+    false_alarms += static_cast<int>(equipment.drifts.size());
+  }
+}
+
+double Figures::recovered_fraction() const {
+  return changes > 0 ? static_cast<double>(recovered) / changes : 1;
+}
+
+double Figures::publications_per_month() const {
+  return quiet_months > 0 ? quiet_publications / quiet_months : 0;
+}
+
+double Figures::false_alarms_per_month() const {
+  return quiet_months > 0 ? false_alarms / quiet_months : 0;
+}
+
+std::int64_t Figures::recovery_quantile(double share) const {
+  if (orbits_to_recover.empty()) return 0;
+  std::vector<std::int64_t> sorted = orbits_to_recover;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+Figures figures_of(const std::vector<ScenarioOutcome>& outcomes) {
+  Figures figures;
+  for (const ScenarioOutcome& outcome : outcomes) figures.add(outcome);
+  return figures;
+}
+
+nlohmann::ordered_json to_json(const Figures& figures) {
+  return {{"scenarios", figures.scenarios},
+          {"wrong_approvals", figures.wrong_approvals},
+          {"versions", figures.versions},
+          {"changes", figures.changes},
+          {"recovered_fraction", figures.recovered_fraction()},
+          {"orbits_to_recover_median", figures.recovery_quantile(0.5)},
+          {"publications_per_month", figures.publications_per_month()},
+          {"false_alarms_per_month", figures.false_alarms_per_month()}};
+}
+
+std::string table(const std::vector<ScenarioOutcome>& outcomes, bool details) {
+  std::map<std::string, std::vector<const ScenarioOutcome*>> by_life, by_lie;
+  for (const ScenarioOutcome& outcome : outcomes) {
+    by_life[outcome.life].push_back(&outcome);
+    by_lie[outcome.lie].push_back(&outcome);
+  }
+  std::string text;
+  add_rows(text, "life", by_life, details);
+  text += '\n';
+  add_rows(text, "lie", by_lie, details);
+  return text;
+}
+
+std::string story(const ScenarioOutcome& outcome) {
+  std::string text = fmt::format("scenario {}: life {}, lie {}, seed {}, from {}\n",
+                                 outcome.number, outcome.life, outcome.lie, outcome.seed,
+                                 time_text(outcome.extent.begin));
+  const storage::Time start = outcome.extent.begin;
+  for (const auto& event : outcome.events)
+    text += fmt::format("  day {:.2f} to {:.2f}: {} {:g} of unit {}\n",
+                        days_after(start, event.begin), days_after(start, event.end),
+                        name(event.kind), event.magnitude, event.unit);
+  for (const satcs::Lie& lie : outcome.lies)
+    text += fmt::format("  day {:.2f} to {:.2f}: {} {} {} {}\n", days_after(start, lie.when.begin),
+                        days_after(start, lie.when.end), name(lie.kind), lie.parameter, lie.other,
+                        lie.magnitude ? fmt::format("{:.3g}", *lie.magnitude) : "");
+  for (const EquipmentOutcome& equipment : outcome.equipment) {
+    std::map<std::string, int> outcomes;
+    for (const Attempted& attempt : equipment.attempts) ++outcomes[attempt.outcome];
+    text += fmt::format("  {}: {} windows", equipment.equipment, equipment.attempts.size());
+    for (const auto& [what, count] : outcomes) text += fmt::format(", {} {}", what, count);
+    text += fmt::format("; {} drift requests\n", equipment.drifts.size());
+    for (const Publication& publication : equipment.publications)
+      text += fmt::format(
+          "    day {:.2f} version {}: {:.4g} % after {:.4g} %, {:.2f} of the tolerance{}\n",
+          days_after(start, publication.time), publication.version,
+          publication.mrse_percent.value_or(NAN),
+          publication.replaced_mrse_percent.value_or(NAN), publication.worse_over_tolerance(),
+          publication.wrong() ? " WRONG" : "");
+    for (const ChangeScore& change : equipment.changes)
+      text += fmt::format("    day {:.2f} {}: {}, bad for {} orbits, at most {:.3g} times the "
+                          "oracle{}\n",
+                          days_after(start, change.begin), change.kind,
+                          change.mattered ? "mattered" : "did not matter", change.orbits,
+                          change.worst_ratio, change.missed() ? " MISSED" : "");
+  }
+  return text;
+}
+
+}  // namespace reident::trust

@@ -1,0 +1,41 @@
+// What the suite prints: the table by kind of scenario, one scenario in words, and the figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tests/trust/group_run.hpp"
+
+namespace reident::trust {
+
+/// The figures that are asked for, over some scenarios.
+struct Figures {
+  int scenarios = 0;
+  int versions = 0;  // published and judged
+  int wrong_approvals = 0;
+  int changes = 0;  // that mattered
+  int recovered = 0;
+  double quiet_months = 0;  // of equipment to which nothing happened
+  int quiet_publications = 0;
+  int false_alarms = 0;  // drift requests there
+  std::vector<std::int64_t> orbits_to_recover{};
+
+  void add(const ScenarioOutcome& outcome);
+  double recovered_fraction() const;       // 1 where nothing changed
+  double publications_per_month() const;   // that replace a version, of one equipment
+  double false_alarms_per_month() const;
+  std::int64_t recovery_quantile(double share) const;  // orbits; 0 where nothing changed
+};
+
+Figures figures_of(const std::vector<ScenarioOutcome>& outcomes);
+nlohmann::ordered_json to_json(const Figures& figures);
+
+/// Rows by life, and rows by lie, in Markdown. With `details`, the worst case of each row is named.
+std::string table(const std::vector<ScenarioOutcome>& outcomes, bool details);
+
+/// What happened in one scenario, for a person.
+std::string story(const ScenarioOutcome& outcome);
+
+}  // namespace reident::trust
