@@ -207,7 +207,7 @@ std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft) {
   int number = 0;
   for (const std::uint64_t half : {0U, 1U}) {
     // Walks through all lies, far apart from one to the next.
-    constexpr std::size_t stride = 17;
+    constexpr std::size_t stride = 31;
     std::size_t next_lie = 5 * half;
     for (std::size_t i = 0; i < lives.size(); ++i) {
       const LifePlan& life = lives[i];
