@@ -118,8 +118,7 @@ class Flight {
     const auto points = satcs::reference::telemetry_points();
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (std::find(names.begin(), names.end(), points[i].name) == names.end()) continue;
-      wanted_.emplace(satcs::parameter_id(points[i].name),
-                      Point{i, points[i].every_s > 1});
+      wanted_.emplace(satcs::parameter_id(points[i].name), Point{i, points[i].every_s > 1});
     }
   }
 
@@ -261,15 +260,16 @@ class Judge {
                                    misleads(lie, parameters);
                           });
     };
-    EquipmentOutcome outcome{equipment.name,
-                             score_publications(truth, tenures, changes_),
-                             score_changes(
-                                 truth, tenures, changes_,
-                                 [&](storage::Time begin) { return oracle_of(equipment, begin); },
-                                 honest),
-                             {},
-                             {},
-                             champion_curve(truth, tenures)};
+    EquipmentOutcome outcome{
+        equipment.name,
+        score_publications(truth, tenures, changes_),
+        score_changes(
+            truth, tenures, changes_,
+            [&](storage::Time begin) { return oracle_of(equipment, begin); }, honest),
+        {},
+        {},
+        champion_curve(truth, tenures),
+        truth.output_extremes({group_.start, group_.start + group_.duration}, orbit_ns() / 10)};
     for (const Attempted& attempt : service.attempts())
       if (attempt.equipment == equipment.name) outcome.attempts.push_back(attempt);
     for (const DriftRequest& drift : service.drifts())

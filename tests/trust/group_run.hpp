@@ -20,7 +20,8 @@ struct EquipmentOutcome {
   std::vector<ChangeScore> changes;
   std::vector<Attempted> attempts;
   std::vector<DriftRequest> drifts;
-  ErrorCurve champion;
+  ErrorCurve champion;           // of what simulators ran
+  std::vector<Extremes> output;  // of the truth, a tenth of an orbit each
 };
 
 struct ScenarioOutcome {

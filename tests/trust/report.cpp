@@ -56,10 +56,10 @@ void add_row(std::string& text, const std::string& name,
                                           : "",
                       figures.publications_per_month());
   if (details) {
-    const auto worst = std::max_element(
-        outcomes.begin(), outcomes.end(), [](const ScenarioOutcome* a, const ScenarioOutcome* b) {
-          return badness_of(*a).value < badness_of(*b).value;
-        });
+    const auto worst = std::max_element(outcomes.begin(), outcomes.end(),
+                                        [](const ScenarioOutcome* a, const ScenarioOutcome* b) {
+                                          return badness_of(*a).value < badness_of(*b).value;
+                                        });
     const Badness badness = badness_of(**worst);
     text += badness.value > 0 ? fmt::format(" {}: {} |", (*worst)->number, badness.words) : " |";
   }
@@ -93,8 +93,7 @@ void Figures::add(const ScenarioOutcome& outcome) {
     }
     if (!outcome.events.empty()) continue;
     quiet_months += static_cast<double>(outcome.extent.end - outcome.extent.begin) / month_ns;
-    quiet_publications +=
-        std::max(0, static_cast<int>(equipment.publications.size()) - 1);
+    quiet_publications += std::max(0, static_cast<int>(equipment.publications.size()) - 1);
     false_alarms += static_cast<int>(equipment.drifts.size());
   }
 }
@@ -149,14 +148,14 @@ std::string table(const std::vector<ScenarioOutcome>& outcomes, bool details) {
 }
 
 std::string story(const ScenarioOutcome& outcome) {
-  std::string text = fmt::format("scenario {}: life {}, lie {}, seed {}, from {}\n",
-                                 outcome.number, outcome.life, outcome.lie, outcome.seed,
-                                 time_text(outcome.extent.begin));
+  std::string text =
+      fmt::format("scenario {}: life {}, lie {}, seed {}, from {}\n", outcome.number, outcome.life,
+                  outcome.lie, outcome.seed, time_text(outcome.extent.begin));
   const storage::Time start = outcome.extent.begin;
   for (const auto& event : outcome.events)
-    text += fmt::format("  day {:.2f} to {:.2f}: {} {:g} of unit {}\n",
-                        days_after(start, event.begin), days_after(start, event.end),
-                        name(event.kind), event.magnitude, event.unit);
+    text +=
+        fmt::format("  day {:.2f} to {:.2f}: {} {:g} of unit {}\n", days_after(start, event.begin),
+                    days_after(start, event.end), name(event.kind), event.magnitude, event.unit);
   for (const satcs::Lie& lie : outcome.lies)
     text += fmt::format("  day {:.2f} to {:.2f}: {} {} {} {}\n", days_after(start, lie.when.begin),
                         days_after(start, lie.when.end), name(lie.kind), lie.parameter, lie.other,
@@ -171,15 +170,15 @@ std::string story(const ScenarioOutcome& outcome) {
       text += fmt::format(
           "    day {:.2f} version {}: {:.4g} % after {:.4g} %, {:.2f} of the tolerance{}\n",
           days_after(start, publication.time), publication.version,
-          publication.mrse_percent.value_or(NAN),
-          publication.replaced_mrse_percent.value_or(NAN), publication.worse_over_tolerance(),
-          publication.wrong() ? " WRONG" : "");
+          publication.mrse_percent.value_or(NAN), publication.replaced_mrse_percent.value_or(NAN),
+          publication.worse_over_tolerance(), publication.wrong() ? " WRONG" : "");
     for (const ChangeScore& change : equipment.changes)
-      text += fmt::format("    day {:.2f} {}: {}, bad for {} orbits, at most {:.3g} times the "
-                          "oracle{}\n",
-                          days_after(start, change.begin), change.kind,
-                          change.mattered ? "mattered" : "did not matter", change.orbits,
-                          change.worst_ratio, change.missed() ? " MISSED" : "");
+      text += fmt::format(
+          "    day {:.2f} {}: {}, bad for {} orbits, at most {:.3g} times the "
+          "oracle{}\n",
+          days_after(start, change.begin), change.kind,
+          change.mattered ? "mattered" : "did not matter", change.orbits, change.worst_ratio,
+          change.missed() ? " MISSED" : "");
   }
   return text;
 }

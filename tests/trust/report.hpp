@@ -23,8 +23,8 @@ struct Figures {
   std::vector<std::int64_t> orbits_to_recover{};
 
   void add(const ScenarioOutcome& outcome);
-  double recovered_fraction() const;       // 1 where nothing changed
-  double publications_per_month() const;   // that replace a version, of one equipment
+  double recovered_fraction() const;      // 1 where nothing changed
+  double publications_per_month() const;  // that replace a version, of one equipment
   double false_alarms_per_month() const;
   std::int64_t recovery_quantile(double share) const;  // orbits; 0 where nothing changed
 };

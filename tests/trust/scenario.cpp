@@ -83,13 +83,14 @@ std::vector<LifePlan> life_plans() {
        {{failed_cell, 1, 1, 0, 0}, {efficiency_drift, 1.0, 0, 6, 0}},
        {"BDR", "BAT1"},
        20},
-      {"failure_in_safe_mode",
-       {{safe_mode, 1, 0, -0.2, 1}, {lost_string, 4, 4, 0, 0}},
-       {"MEA"}},
+      {"failure_in_safe_mode", {{safe_mode, 1, 0, -0.2, 1}, {lost_string, 4, 4, 0, 0}}, {"MEA"}},
       {"failure_in_safe_mode",
        {{safe_mode, 1, 0, -0.2, 1}, {failed_cell, 1, 1, 0, 0}},
        {"BAT1"},
        130},
+      {"converter_drift", {{converter_drift, 1.0, 3, 0, 0}}, {"DCC3"}},
+      {"converter_drift", {{converter_drift, 0.5, 0, 0, 12}}, {"DCC3"}, 250},
+      {"redundant_heater", {{redundant_heater, 1, 1, 0, 0}}, {"BAT1"}, 10},
   };
 }
 
@@ -143,8 +144,7 @@ std::vector<LifeEvent> events_of(const LifePlan& plan, storage::Time change) {
   std::vector<LifeEvent> events;
   for (const LifePlan::Event& event : plan.events) {
     const storage::Time begin = after(change, event.begin_day);
-    events.push_back(
-        {event.kind, begin, after(begin, event.days), event.magnitude, event.unit});
+    events.push_back({event.kind, begin, after(begin, event.days), event.magnitude, event.unit});
   }
   return events;
 }
@@ -181,13 +181,16 @@ satcs::Lie lie_of(const LiePlan& plan, const EquipmentConfig& equipment, storage
   const double lasts = days[dice.below(days.size())];
   storage::Time begin = after(change, dice.between(-1.0, 1.0));
   if (!on_the_change)
-    begin = dice.below(2) == 0 ? after(start, dice.between(2, 6)) : after(change, dice.between(6, 9));
+    begin =
+        dice.below(2) == 0 ? after(start, dice.between(2, 6)) : after(change, dice.between(6, 9));
   Lie lie{plan.kind, {begin, after(begin, lasts)}, {}, {}, plan.magnitude, dice.below(1 << 20)};
   if (plan.role == Role::none) return lie;
   lie.parameter = parameter_of(plan.role, equipment);
   if (plan.kind == LieKind::swapped)
-    lie.other = parameter_of(plan.role == Role::output ? Role::first_input : Role::output, equipment);
-  if (plan.magnitude) lie.magnitude = *plan.magnitude * usual_share(plan.kind) * span_of(lie.parameter);
+    lie.other =
+        parameter_of(plan.role == Role::output ? Role::first_input : Role::output, equipment);
+  if (plan.magnitude)
+    lie.magnitude = *plan.magnitude * usual_share(plan.kind) * span_of(lie.parameter);
   return lie;
 }
 
@@ -226,7 +229,8 @@ std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft) {
         const EquipmentConfig& equipment =
             named(spacecraft, life.equipment[dice.below(life.equipment.size())]);
         group.scenarios.push_back(
-            {++number, std::string(name(plan.kind)),
+            {++number,
+             std::string(name(plan.kind)),
              {lie_of(plan, equipment, group.start, change, k % 2 == 0, dice)}});
       }
       groups.push_back(std::move(group));

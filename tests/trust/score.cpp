@@ -86,7 +86,7 @@ std::vector<TrueChange> true_changes(const std::vector<satcs::reference::LifeEve
   for (const auto& event : life) {
     const std::string kind(name(event.kind));
     if (event.kind == LifeKind::safe_mode || event.kind == LifeKind::quiet) continue;
-    if (event.kind == LifeKind::redundant_charger) {
+    if (event.kind == LifeKind::redundant_charger || event.kind == LifeKind::redundant_heater) {
       add({kind, event.begin, event.begin});
       if (event.end > event.begin) add({kind, event.end, event.end});
     } else {
@@ -125,8 +125,7 @@ std::vector<Publication> score_publications(const Truth& truth, const std::vecto
 ErrorCurve champion_curve(const Truth& truth, const std::vector<Tenure>& tenures) {
   ErrorCurve curve = truth.empty_curve();
   for (std::size_t i = 0; i < tenures.size(); ++i) {
-    const storage::Time until =
-        i + 1 < tenures.size() ? tenures[i + 1].since : truth.extent().end;
+    const storage::Time until = i + 1 < tenures.size() ? tenures[i + 1].since : truth.extent().end;
     if (until > tenures[i].since) curve.add(run(truth, tenures[i], {tenures[i].since, until}));
   }
   return curve;
@@ -142,12 +141,11 @@ std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Ten
     const TrueChange& change = changes[i];
     const storage::Time next = i + 1 < changes.size() ? changes[i + 1].begin : INT64_MAX;
     const storage::TimeRange followed{
-        change.begin,
-        std::min({next, truth.extent().end, change.end + followed_orbits * orbit})};
+        change.begin, std::min({next, truth.extent().end, change.end + followed_orbits * orbit})};
     const ErrorCurve best = oracle_curve(truth, change, followed, oracle);
     const ErrorCurve old = run(truth, at(tenures, change.begin), followed);
     const double resolution = truth.resolution_percent(followed);
-    ChangeScore score{.kind = change.kind, .begin = change.begin};
+    ChangeScore score{.kind = change.kind, .begin = change.begin, .oracle = best};
     std::int64_t bad = 0;
     // The first orbit of the change is half of the old spacecraft.
     for (std::int64_t block = champion.block_of(followed.begin) + 1;

@@ -56,8 +56,8 @@ void SimulatedService::commit() {
 
 void SimulatedService::try_due_windows() {
   while (const auto job = feed_.next_due()) {
-    auto recorded = attempt_window(*job, archive_, registry_, kept_[job->window.equipment],
-                                   context_);
+    auto recorded =
+        attempt_window(*job, archive_, registry_, kept_[job->window.equipment], context_);
     feed_.finished(*job, recorded.has_value());
     if (!recorded) continue;
     feed_.forget_settled(*job->spacecraft, archive_);

@@ -1,21 +1,21 @@
 // The trust suite: scenarios of life and lies through the real service on a simulated clock.
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <fstream>
 #include <mutex>
-#include <sstream>
 #include <thread>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "service/support/log.hpp"
+#include "tests/trust/picture.hpp"
 #include "tests/trust/report.hpp"
+#include "tests/trust/suite_config.hpp"
 
 namespace {
 
@@ -23,25 +23,13 @@ using namespace reident;
 using namespace reident::trust;
 
 struct Options {
-  std::string config = REIDENT_TRUST_CONFIG;
-  bool list = false, all = false, json = false;
+  bool list = false;
   std::vector<int> scenarios;
   std::string half;
   std::string life, lie;
+  std::string plot;  // a file, of one scenario
   unsigned jobs = 2;
 };
-
-Config read_config(const std::string& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  if (!file) throw std::runtime_error(path + ": cannot be read");
-  auto parsed = parse_config(text.str(), ".");
-  if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&parsed))
-    throw std::runtime_error(fmt::format("{}:{}: {}", path, mistakes->front().line,
-                                         mistakes->front().message));
-  return std::get<Config>(std::move(parsed));
-}
 
 bool is_wanted(const LifeGroup& group, const Scenario& scenario, const Options& options) {
   if (!options.scenarios.empty())
@@ -56,9 +44,8 @@ bool is_wanted(const LifeGroup& group, const Scenario& scenario, const Options& 
 std::vector<LifeGroup> wanted_groups(const Config& config, const Options& options) {
   std::vector<LifeGroup> groups = all_groups(config.spacecraft.front());
   for (LifeGroup& group : groups)
-    std::erase_if(group.scenarios, [&](const Scenario& scenario) {
-      return !is_wanted(group, scenario, options);
-    });
+    std::erase_if(group.scenarios,
+                  [&](const Scenario& scenario) { return !is_wanted(group, scenario, options); });
   std::erase_if(groups, [](const LifeGroup& group) { return group.scenarios.empty(); });
   return groups;
 }
@@ -69,21 +56,6 @@ void list(const std::vector<LifeGroup>& groups) {
       fmt::print("{:4} {} {} with {}\n", scenario.number,
                  group.half() == Half::tuned ? "tuned   " : "held out", group.life, scenario.lie);
 }
-
-/// A folder of its own, gone at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "reident-trust-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder can be made");
-    path_ = name;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Groups side by side on `jobs` threads; the outcomes in the order of the scenarios' numbers.
 std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Config& config,
@@ -140,24 +112,31 @@ void report(const std::vector<ScenarioOutcome>& outcomes) {
 int main(int argc, char** argv) {
   CLI::App app("The trust suite: life and lies through the real service", "reident_trust");
   Options options;
-  app.add_option("--config", options.config, "configuration of the service under test");
   app.add_flag("--list", options.list, "list the scenarios that are chosen, and run none");
   app.add_option("--scenario", options.scenarios, "run these scenarios alone, by number");
   app.add_option("--half", options.half, "run the tuned or the held-out half alone")
       ->check(CLI::IsMember({"tuned", "held-out"}));
   app.add_option("--life", options.life, "run the scenarios of this life alone");
   app.add_option("--lie", options.lie, "run the scenarios of this lie alone");
+  app.add_option("--plot", options.plot, "write an SVG picture of the one scenario that is run");
   app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
   try {
     log::set_level("error");
-    const Config config = read_config(options.config);
+    const Config config = suite_config();
     const std::vector<LifeGroup> groups = wanted_groups(config, options);
     if (options.list) {
       list(groups);
       return 0;
     }
-    report(run(groups, config, options));
+    const std::vector<ScenarioOutcome> outcomes = run(groups, config, options);
+    if (!options.plot.empty()) {
+      if (outcomes.size() != 1) throw std::runtime_error("--plot needs one --scenario");
+      std::ofstream file(options.plot);
+      file << picture(outcomes.front());
+      if (!file.flush()) throw std::runtime_error(options.plot + ": cannot be written");
+    }
+    report(outcomes);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "reident_trust: {}\n", error.what());

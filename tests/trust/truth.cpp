@@ -18,8 +18,7 @@ using identification::Index;
 using identification::Matrix;
 
 /// Of the truth, which has no holes.
-WindowData load(const KnownSeries& series, const WindowRequest& request,
-                storage::TimeRange range) {
+WindowData load(const KnownSeries& series, const WindowRequest& request, storage::TimeRange range) {
   auto loaded = load_window(series, request, range);
   if (const auto* unknown = std::get_if<UnknownParameter>(&loaded))
     throw std::logic_error("the truth has no parameter " + unknown->name);
@@ -116,14 +115,11 @@ ErrorCurve Truth::free_run(const EquipmentModel& model, storage::TimeRange range
 }
 
 ErrorCurve Truth::baseline(storage::TimeRange range) const {
-  WindowRequest request = request_of(spacecraft_, equipment_);
-  request.inputs.clear();
-  request.derived.clear();
+  const WindowRequest request = outputs_alone();
   const identification::Record record = load(truth_, request, range).record;
-  const bool has_outputs =
-      std::all_of(request.outputs.begin(), request.outputs.end(), [this](const auto& name) {
-        return simulated_.parameter(spacecraft_, name).has_value();
-      });
+  const bool has_outputs = std::all_of(
+      request.outputs.begin(), request.outputs.end(),
+      [this](const auto& name) { return simulated_.parameter(spacecraft_, name).has_value(); });
   ErrorCurve curve = empty_curve();
   if (has_outputs) {
     const identification::Record simulated = load(simulated_, request, range).record;
@@ -144,10 +140,29 @@ ErrorCurve Truth::baseline(storage::TimeRange range) const {
   return curve;
 }
 
-double Truth::resolution_percent(storage::TimeRange range) const {
+WindowRequest Truth::outputs_alone() const {
   WindowRequest request = request_of(spacecraft_, equipment_);
   request.inputs.clear();
   request.derived.clear();
+  return request;
+}
+
+std::vector<Extremes> Truth::output_extremes(storage::TimeRange range, Duration step) const {
+  const WindowRequest request = outputs_alone();
+  const identification::Record record = load(truth_, request, range).record;
+  const Index rows = step / request.period;
+  std::vector<Extremes> extremes;
+  for (const identification::Segment& segment : record.segments)
+    for (Index row = segment.begin; row < segment.end; row += rows) {
+      const auto values = record.y.col(0).segment(row, std::min(rows, segment.end - row));
+      extremes.push_back({(segment.first_tick + row - segment.begin) * request.period,
+                          values.minCoeff(), values.maxCoeff()});
+    }
+  return extremes;
+}
+
+double Truth::resolution_percent(storage::TimeRange range) const {
+  const WindowRequest request = outputs_alone();
   const Matrix y = load(truth_, request, range).record.y;
   double total = 0;
   for (Index q = 0; q < y.cols(); ++q) {

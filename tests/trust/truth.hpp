@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "service/daemon/config.hpp"
+#include "service/daemon/window_data.hpp"
 #include "service/model/model_version.hpp"
 #include "tests/trust/known_series.hpp"
 
@@ -41,6 +42,13 @@ class ErrorCurve {
   std::vector<Sums> sums_;  // of block b and output q at b * outputs_ + q
 };
 
+/// Of a stretch of a signal.
+struct Extremes {
+  storage::Time time = 0;
+  double low = 0;
+  double high = 0;
+};
+
 /// The truth of one life as one equipment's models see it.
 class Truth {
  public:
@@ -57,11 +65,16 @@ class Truth {
   /// converter's quantum together.
   double resolution_percent(storage::TimeRange range) const;
 
+  /// Of the first output over `range`, in stretches of `step`.
+  std::vector<Extremes> output_extremes(storage::TimeRange range, Duration step) const;
+
   const EquipmentConfig& equipment() const { return equipment_; }
   storage::TimeRange extent() const { return extent_; }
   ErrorCurve empty_curve() const;
 
  private:
+  WindowRequest outputs_alone() const;
+
   const KnownSeries& truth_;
   const KnownSeries& simulated_;
   const std::string& spacecraft_;

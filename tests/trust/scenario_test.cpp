@@ -1,0 +1,64 @@
+#include "tests/trust/scenario.hpp"
+
+#include <map>
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "service/satcs/reference_telemetry.hpp"
+#include "tests/trust/suite_config.hpp"
+
+namespace reident::trust {
+namespace {
+
+TEST(Scenarios, AreManyAndNumberedOnce) {
+  std::set<int> numbers;
+  std::size_t scenarios = 0;
+  for (const LifeGroup& group : all_groups(suite_config().spacecraft.front()))
+    for (const Scenario& scenario : group.scenarios) {
+      numbers.insert(scenario.number);
+      ++scenarios;
+    }
+  EXPECT_GE(scenarios, 300U);
+  EXPECT_EQ(numbers.size(), scenarios);
+}
+
+TEST(Scenarios, HaveEveryLifeAndEveryLieInBothHalves) {
+  std::map<Half, std::set<satcs::reference::LifeKind>> lives;
+  std::map<Half, std::set<std::string>> lies;
+  for (const LifeGroup& group : all_groups(suite_config().spacecraft.front())) {
+    for (const auto& event : group.events) lives[group.half()].insert(event.kind);
+    for (const Scenario& scenario : group.scenarios) lies[group.half()].insert(scenario.lie);
+  }
+  for (const Half half : {Half::tuned, Half::held_out}) {
+    EXPECT_EQ(lives[half].size(), satcs::reference::life_kinds().size());
+    EXPECT_EQ(lies[half].size(), satcs::lie_kinds + 1);  // and none
+  }
+}
+
+TEST(Scenarios, CanHappen) {
+  const auto descriptors = satcs::reference::telemetry_descriptors("REFERENCE");
+  for (const LifeGroup& group : all_groups(suite_config().spacecraft.front())) {
+    for (const auto& event : group.events) EXPECT_EQ(life_mistake(event), "") << group.life;
+    for (const Scenario& scenario : group.scenarios)
+      for (const satcs::Lie& lie : scenario.lies) {
+        const auto why = obstacle(lie, descriptors);
+        EXPECT_FALSE(why) << scenario.number << ": " << why->message;
+      }
+  }
+}
+
+TEST(Scenarios, AreTheSameEachTime) {
+  const auto one = all_groups(suite_config().spacecraft.front());
+  const auto two = all_groups(suite_config().spacecraft.front());
+  ASSERT_EQ(one.size(), two.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].start, two[i].start);
+    for (std::size_t k = 0; k < one[i].scenarios.size(); ++k)
+      for (std::size_t l = 0; l < one[i].scenarios[k].lies.size(); ++l)
+        EXPECT_EQ(one[i].scenarios[k].lies[l].when, two[i].scenarios[k].lies[l].when);
+  }
+}
+
+}  // namespace
+}  // namespace reident::trust

@@ -1,0 +1,66 @@
+// The suite's fast part: some short scenarios through the real service.
+
+#include <gmock/gmock.h>
+
+#include "tests/trust/report.hpp"
+#include "tests/trust/suite_config.hpp"
+
+namespace reident::trust {
+namespace {
+
+using satcs::LieKind;
+using satcs::reference::LifeKind;
+
+constexpr Duration hour = 3'600'000'000'000;
+constexpr storage::Time start = 1'498'867'200'000'000'000;  // 2017-07-01T00:00:00Z
+
+LifeGroup group_of(std::string equipment, int hours) {
+  LifeGroup group;
+  group.seed = 1000;
+  group.equipment = {std::move(equipment)};
+  group.start = start;
+  group.duration = hours * hour;
+  return group;
+}
+
+std::vector<ScenarioOutcome> run(const LifeGroup& group) {
+  const TemporaryFolder folder;
+  return run_group(group, suite_config(), folder.path());
+}
+
+TEST(Trust, AFailedCellIsFollowedAndALyingSensorIsNot) {
+  LifeGroup group = group_of("BAT1", 110);
+  const storage::Time change = start + 50 * hour;
+  group.life = "failed_cell";
+  group.events = {{LifeKind::failed_cell, change, change, 2, 1}};
+  group.scenarios = {
+      {1, "none", {}},
+      {2,
+       "stuck",
+       {{LieKind::stuck, {start + 30 * hour, start + 34 * hour}, "V_BAT1", {}, {}, 1}}}};
+  for (const ScenarioOutcome& outcome : run(group)) {
+    const Figures figures = figures_of({outcome});
+    EXPECT_EQ(figures.wrong_approvals, 0) << story(outcome);
+    EXPECT_EQ(figures.changes, 1) << story(outcome);
+    EXPECT_EQ(figures.recovered, 1) << story(outcome);
+    EXPECT_GE(figures.versions, 2) << story(outcome);
+  }
+}
+
+TEST(Trust, AQuietSpacecraftGetsAModelAndTheSameOneEachTime) {
+  LifeGroup group = group_of("BDR", 30);
+  group.scenarios = {{1, "none", {}}, {2, "none", {}}};
+  const auto outcomes = run(group);
+  const auto& one = outcomes[0].equipment[0];
+  const auto& two = outcomes[1].equipment[0];
+  EXPECT_GE(one.publications.size(), 1U);
+  ASSERT_EQ(one.publications.size(), two.publications.size());
+  for (std::size_t i = 0; i < one.publications.size(); ++i) {
+    EXPECT_EQ(one.publications[i].time, two.publications[i].time);
+    EXPECT_EQ(one.publications[i].mrse_percent, two.publications[i].mrse_percent);
+    EXPECT_FALSE(one.publications[i].wrong());
+  }
+}
+
+}  // namespace
+}  // namespace reident::trust
