@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "service/support/time_text.hpp"
+#include "tests/trust/picture.hpp"
 
 namespace reident::trust {
 namespace {
@@ -45,10 +48,9 @@ Badness badness_of(const ScenarioOutcome& outcome) {
   return worst;
 }
 
-void add_row(std::string& text, const std::string& name,
-             const std::vector<const ScenarioOutcome*>& outcomes, bool details) {
-  Figures figures;
-  for (const ScenarioOutcome* outcome : outcomes) figures.add(*outcome);
+void add_row(std::string& text, const std::string& name, const Outcomes& outcomes, bool details,
+             Outcomes* all_worst) {
+  const Figures figures = figures_of(outcomes);
   text += fmt::format("| {} | {} | {} | {} | {} of {} | {} | {:.2g} |", name, figures.scenarios,
                       figures.versions, figures.wrong_approvals, figures.recovered, figures.changes,
                       figures.changes > 0 ? fmt::format("{} ({})", figures.recovery_quantile(0.5),
@@ -61,22 +63,34 @@ void add_row(std::string& text, const std::string& name,
                                           return badness_of(*a).value < badness_of(*b).value;
                                         });
     const Badness badness = badness_of(**worst);
-    text += badness.value > 0 ? fmt::format(" {}: {} |", (*worst)->number, badness.words) : " |";
+    if (badness.value > 0) {
+      const int number = (*worst)->number;
+      text += fmt::format(" [{}]({}): {} |", number, picture_name(number), badness.words);
+      if (all_worst) all_worst->push_back(*worst);
+    } else {
+      text += " |";
+    }
   }
   text += '\n';
 }
 
-void add_rows(std::string& text, std::string_view by,
-              const std::map<std::string, std::vector<const ScenarioOutcome*>>& rows,
-              bool details) {
+void add_rows(std::string& text, std::string_view by, const std::map<std::string, Outcomes>& rows,
+              bool details, Outcomes* worst) {
   text += fmt::format(
       "| {} | scenarios | versions judged | wrong approvals | changes recovered | orbits, median "
       "(worst) | publications a month, nothing changing |{}\n|---|---|---|---|---|---|---|{}\n",
       by, details ? " worst case |" : "", details ? "---|" : "");
-  for (const auto& [name, outcomes] : rows) add_row(text, name, outcomes, details);
+  for (const auto& [name, outcomes] : rows) add_row(text, name, outcomes, details, worst);
 }
 
 }  // namespace
+
+Outcomes half_of(const std::vector<ScenarioOutcome>& outcomes, Half half) {
+  Outcomes result;
+  for (const ScenarioOutcome& outcome : outcomes)
+    if (outcome.half == half) result.push_back(&outcome);
+  return result;
+}
 
 void Figures::add(const ScenarioOutcome& outcome) {
   ++scenarios;
@@ -117,9 +131,9 @@ std::int64_t Figures::recovery_quantile(double share) const {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-Figures figures_of(const std::vector<ScenarioOutcome>& outcomes) {
+Figures figures_of(const Outcomes& outcomes) {
   Figures figures;
-  for (const ScenarioOutcome& outcome : outcomes) figures.add(outcome);
+  for (const ScenarioOutcome* outcome : outcomes) figures.add(*outcome);
   return figures;
 }
 
@@ -134,17 +148,52 @@ nlohmann::ordered_json to_json(const Figures& figures) {
           {"false_alarms_per_month", figures.false_alarms_per_month()}};
 }
 
-std::string table(const std::vector<ScenarioOutcome>& outcomes, bool details) {
-  std::map<std::string, std::vector<const ScenarioOutcome*>> by_life, by_lie;
-  for (const ScenarioOutcome& outcome : outcomes) {
-    by_life[outcome.life].push_back(&outcome);
-    by_lie[outcome.lie].push_back(&outcome);
+std::string table(const Outcomes& outcomes, bool details, Outcomes* worst) {
+  std::map<std::string, Outcomes> by_life, by_lie;
+  for (const ScenarioOutcome* outcome : outcomes) {
+    by_life[outcome->life].push_back(outcome);
+    by_lie[outcome->lie].push_back(outcome);
   }
   std::string text;
-  add_rows(text, "life", by_life, details);
+  add_rows(text, "life", by_life, details, worst);
   text += '\n';
-  add_rows(text, "lie", by_lie, details);
+  add_rows(text, "lie", by_lie, details, worst);
   return text;
+}
+
+std::string picture_name(int scenario) {
+  return fmt::format("scenario-{}.svg", scenario);
+}
+
+std::string tables(const std::vector<ScenarioOutcome>& outcomes, Outcomes* worst) {
+  std::string text;
+  const auto tuned = half_of(outcomes, Half::tuned);
+  const auto held_out = half_of(outcomes, Half::held_out);
+  if (!tuned.empty()) text += "## Tuned seeds\n\n" + table(tuned, true, worst) + '\n';
+  if (!held_out.empty()) text += "## Held-out seeds\n\n" + table(held_out, false) + '\n';
+  return text;
+}
+
+nlohmann::ordered_json figures_json(const std::vector<ScenarioOutcome>& outcomes) {
+  nlohmann::ordered_json json;
+  json["tuned"] = to_json(figures_of(half_of(outcomes, Half::tuned)));
+  json["held_out"] = to_json(figures_of(half_of(outcomes, Half::held_out)));
+  return json;
+}
+
+void write_report(const std::vector<ScenarioOutcome>& outcomes,
+                  const std::filesystem::path& folder) {
+  const auto write = [&folder](const std::string& name, const std::string& text) {
+    std::ofstream file(folder / name);
+    file << text;
+    if (!file.flush()) throw std::runtime_error((folder / name).string() + " cannot be written");
+  };
+  std::filesystem::create_directories(folder);
+  Outcomes worst;
+  write("report.md", "# The trust suite\n\n" + tables(outcomes, &worst) + "```\n" +
+                         figures_json(outcomes).dump() + "\n```\n");
+  for (const ScenarioOutcome* outcome : worst)
+    write(picture_name(outcome->number), picture(*outcome));
 }
 
 std::string story(const ScenarioOutcome& outcome) {

@@ -1,6 +1,7 @@
 // What the suite prints: the table by kind of scenario, one scenario in words, and the figures.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,11 @@
 #include "tests/trust/group_run.hpp"
 
 namespace reident::trust {
+
+using Outcomes = std::vector<const ScenarioOutcome*>;
+
+/// Those of one half.
+Outcomes half_of(const std::vector<ScenarioOutcome>& outcomes, Half half);
 
 /// The figures that are asked for, over some scenarios.
 struct Figures {
@@ -29,11 +35,25 @@ struct Figures {
   std::int64_t recovery_quantile(double share) const;  // orbits; 0 where nothing changed
 };
 
-Figures figures_of(const std::vector<ScenarioOutcome>& outcomes);
+Figures figures_of(const Outcomes& outcomes);
 nlohmann::ordered_json to_json(const Figures& figures);
 
-/// Rows by life, and rows by lie, in Markdown. With `details`, the worst case of each row is named.
-std::string table(const std::vector<ScenarioOutcome>& outcomes, bool details);
+/// Rows by life, and rows by lie, in Markdown. With `details`, the worst case of each row is named
+/// and linked to its picture (picture_name), and collected in `worst`.
+std::string table(const Outcomes& outcomes, bool details, Outcomes* worst = nullptr);
+
+std::string picture_name(int scenario);
+
+/// Both halves, apart; no scenario of the held-out one is named.
+std::string tables(const std::vector<ScenarioOutcome>& outcomes, Outcomes* worst = nullptr);
+
+/// The figures of both halves as one object.
+nlohmann::ordered_json figures_json(const std::vector<ScenarioOutcome>& outcomes);
+
+/// report.md, and beside it the pictures that it links to. Throws std::runtime_error where a file
+/// cannot be written.
+void write_report(const std::vector<ScenarioOutcome>& outcomes,
+                  const std::filesystem::path& folder);
 
 /// What happened in one scenario, for a person.
 std::string story(const ScenarioOutcome& outcome);

@@ -27,7 +27,8 @@ struct Options {
   std::vector<int> scenarios;
   std::string half;
   std::string life, lie;
-  std::string plot;  // a file, of one scenario
+  std::string plot;    // a file, of one scenario
+  std::string report;  // a folder
   unsigned jobs = 2;
 };
 
@@ -93,20 +94,6 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
   return all;
 }
 
-void report(const std::vector<ScenarioOutcome>& outcomes) {
-  nlohmann::ordered_json json;
-  for (const auto& [half, name] : {std::pair{Half::tuned, "tuned"}, {Half::held_out, "held_out"}}) {
-    std::vector<ScenarioOutcome> of_half;
-    for (const ScenarioOutcome& outcome : outcomes)
-      if (outcome.half == half) of_half.push_back(outcome);
-    if (of_half.empty()) continue;
-    fmt::print("{}\n\n{}\n", half == Half::tuned ? "Tuned seeds" : "Held-out seeds",
-               table(of_half, half == Half::tuned));
-    json[name] = to_json(figures_of(of_half));
-  }
-  fmt::print("{}\n", json.dump());
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -119,6 +106,8 @@ int main(int argc, char** argv) {
   app.add_option("--life", options.life, "run the scenarios of this life alone");
   app.add_option("--lie", options.lie, "run the scenarios of this lie alone");
   app.add_option("--plot", options.plot, "write an SVG picture of the one scenario that is run");
+  app.add_option("--report", options.report,
+                 "write report.md and pictures of the worst cases into this folder");
   app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
   try {
@@ -136,7 +125,8 @@ int main(int argc, char** argv) {
       file << picture(outcomes.front());
       if (!file.flush()) throw std::runtime_error(options.plot + ": cannot be written");
     }
-    report(outcomes);
+    if (!options.report.empty()) write_report(outcomes, options.report);
+    fmt::print("{}{}\n", tables(outcomes), figures_json(outcomes).dump());
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "reident_trust: {}\n", error.what());
