@@ -5,7 +5,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "service/daemon/window_data.hpp"
+#include "service/model/derived_inputs.hpp"
 #include "service/satcs/reference_telemetry.hpp"
 
 namespace reident::trust {
@@ -42,9 +42,9 @@ std::vector<LifePlan> life_plans() {
       {"none", {}, {"BDR"}},
       {"none", {}, {"BAT1"}, 120},
       {"none", {}, {"MEA"}, 240},
-      {"none", {}, {"BDR", "BAT1"}, 300},
-      {"array_degradation", {{array_degradation, 0.05, 0, 0, 12}}, {"MEA"}},
-      {"array_degradation", {{array_degradation, 0.20, 3, 0, 0}}, {"MEA"}, 90},
+      {"none", {}, {"SAG2", "DCDC3"}, 300},
+      {"array_degradation", {{array_degradation, 0.05, 0, 0, 12}}, {"SAG2"}},
+      {"array_degradation", {{array_degradation, 0.20, 3, 0, 0}}, {"MEA", "SAG2"}, 90},
       {"capacity_fade", {{capacity_fade, 0.10, 0, 0, 12}}, {"BAT1"}, 30},
       {"capacity_fade", {{capacity_fade, 0.30, 1, 0, 0}}, {"BAT1"}, 200},
       {"capacity_fade", {{capacity_fade, 0.50, 1, 0, 0}}, {"BAT1"}},
@@ -56,16 +56,16 @@ std::vector<LifePlan> life_plans() {
       {"efficiency_drift", {{efficiency_drift, 3.0, 0, 0, 10}}, {"BDR"}, 180},
       {"lost_string", {{lost_string, 1, 1, 0, 0}}, {"BAT1"}},
       {"lost_string", {{lost_string, 6, 1, 0, 0}}, {"BAT1"}, 330},
-      {"lost_string", {{lost_string, 3, 3, 0, 0}}, {"MEA"}},
+      {"lost_string", {{lost_string, 3, 3, 0, 0}}, {"SAG2"}},
       {"failed_cell", {{failed_cell, 1, 1, 0, 0}}, {"BAT1"}},
       {"failed_cell", {{failed_cell, 2, 1, 0, 0}}, {"BDR", "BAT1"}, 100},
-      {"failed_cell", {{failed_cell, 2, 2, 0, 0}}, {"BDR"}},
-      {"redundant_charger", {{redundant_charger, 1, 1, 0, 0}}, {"BAT1"}, 45},
+      {"failed_cell", {{failed_cell, 2, 2, 0, 0}}, {"BAT2"}},
+      {"redundant_charger", {{redundant_charger, 1, 1, 0, 0}}, {"CHC1"}, 45},
       {"redundant_charger", {{redundant_charger, 1, 1, 0, 5}}, {"BAT1"}},
-      {"safe_mode", {{safe_mode, 1, 0, 0, 1}}, {"BDR"}},
+      {"safe_mode", {{safe_mode, 1, 0, 0, 1}}, {"DIST"}},
       {"safe_mode", {{safe_mode, 1, 0, 0, 3}}, {"MEA"}, 210},
       {"quiet", {{quiet, 1, 0, 0, 7}}, {"BAT1"}},
-      {"quiet", {{quiet, 1, 0, 0, 7}}, {"BDR"}, 75},
+      {"quiet", {{quiet, 1, 0, 0, 7}}, {"DIST"}, 75},
       {"ageing",
        {{array_degradation, 0.03, 0, 0, 12},
         {capacity_fade, 0.08, 0, 0, 12},
@@ -88,8 +88,8 @@ std::vector<LifePlan> life_plans() {
        {{safe_mode, 1, 0, -0.2, 1}, {failed_cell, 1, 1, 0, 0}},
        {"BAT1"},
        130},
-      {"converter_drift", {{converter_drift, 1.0, 3, 0, 0}}, {"DCC3"}},
-      {"converter_drift", {{converter_drift, 0.5, 0, 0, 12}}, {"DCC3"}, 250},
+      {"converter_drift", {{converter_drift, 1.0, 3, 0, 0}}, {"DCDC3"}},
+      {"converter_drift", {{converter_drift, 0.5, 0, 0, 12}}, {"DCDC3"}, 250},
       {"redundant_heater", {{redundant_heater, 1, 1, 0, 0}}, {"BAT1"}, 10},
   };
 }
@@ -161,17 +161,25 @@ double usual_share(LieKind kind) {
   }
 }
 
-double span_of(const std::string& parameter) {
+const satcs::reference::TelemetryPoint& point_of(const std::string& parameter) {
   for (const auto& point : satcs::reference::telemetry_points())
-    if (point.name == parameter) return point.sensor.high - point.sensor.low;
+    if (point.name == parameter) return point;
   throw std::logic_error("no telemetry point " + parameter);
+}
+
+double span_of(const std::string& parameter) {
+  const auto& sensor = point_of(parameter).sensor;
+  return sensor.high - sensor.low;
+}
+
+bool is_digital(const std::string& parameter) {
+  return point_of(parameter).kind == storage::ParameterKind::digital;
 }
 
 std::string parameter_of(Role role, const EquipmentConfig& equipment) {
   if (role == Role::output) return equipment.outputs.front();
-  const auto parameters = parameters_of(equipment);  // outputs last
-  const std::size_t inputs = parameters.size() - equipment.outputs.size();
-  return role == Role::first_input ? parameters.front() : parameters[inputs - 1];
+  const auto inputs = InputExpressions(equipment.inputs, equipment.derived).parameters();
+  return role == Role::first_input ? inputs.front() : inputs.back();
 }
 
 /// Half of the lies fall on the change, the others lie apart from it, before or after.
@@ -189,6 +197,9 @@ satcs::Lie lie_of(const LiePlan& plan, const EquipmentConfig& equipment, storage
   if (plan.kind == LieKind::swapped)
     lie.other =
         parameter_of(plan.role == Role::output ? Role::first_input : Role::output, equipment);
+  // A switch has no analog sensor to lie.
+  else if (plan.kind != LieKind::stops && is_digital(lie.parameter))
+    lie.parameter = parameter_of(Role::output, equipment);
   if (plan.magnitude)
     lie.magnitude = *plan.magnitude * usual_share(plan.kind) * span_of(lie.parameter);
   return lie;
