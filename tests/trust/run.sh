@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# The trust suite: did any simulator get a worse model, and how soon did it get a better one?
+# Builds the release preset first. The last line is one JSON object.
+#   tests/trust/run.sh              a few minutes: one scenario of each life, of the tuned half
+#   tests/trust/run.sh --all        all scenarios, both halves, and a month of the whole subsystem
+#                                   at 1 Hz; about an hour on two cores. Writes
+#                                   build/release/trust/report.md with pictures of the worst cases
+#   tests/trust/run.sh OPTION...    any options of reident_trust, such as --scenario 2 --plot 2.svg
+#                                   (--help lists them)
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+deploy/install_packages.sh --with-tests
+cmake --preset release -DBUILD_TESTING=ON >/dev/null
+cmake --build --preset release --target reident_trust >/dev/null
+# The databases are read and written all the time, and thrown away.
+if [ -z "${TMPDIR:-}" ] && [ -w /dev/shm ]; then
+  export TMPDIR=/dev/shm
+fi
+program=build/release/tests/trust/reident_trust
+case ${1:-} in
+  "")
+    exec "$program" --quick
+    ;;
+  --all)
+    shift
+    exec "$program" --all --month --report build/release/trust "$@"
+    ;;
+  *)
+    exec "$program" "$@"
+    ;;
+esac
