@@ -129,6 +129,16 @@ void refuse(PreparedWindow& prepared, std::string_view outcome, std::string reas
   prepared.attempt.reason = std::move(reason);
 }
 
+/// Where sensors are not believed on so much of the window that too little is left.
+void refuse_implausible(const RefreshRequest& request, PreparedWindow& prepared) {
+  const WindowData& data = prepared.data;
+  refuse(prepared, name(Outcome::implausible),
+         fmt::format("Telemetry is not believed: {}. {:.1f} % of the window is left, {:g} % are "
+                     "needed.",
+                     worst_of(data.plausibility, request.equipment.sample_period),
+                     100 * data.coverage, 100 * request.equipment.min_coverage));
+}
+
 void identify_window(const RefreshRequest& request, KeptWindow& kept,
                      const identification::ForEach& for_each, const std::function<bool()>& stop,
                      PreparedWindow& prepared) {
@@ -138,6 +148,12 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
   prepared.evidence["rows_tuned"] = parts.tune.size();
   prepared.evidence["rows_validated"] = parts.validate.size();
   prepared.evidence["coverage"] = data.coverage;
+  if (!data.plausibility.found.empty() || !data.plausibility.not_applied.empty())
+    prepared.evidence["implausible"] = to_json(data.plausibility, request.equipment.sample_period);
+  const bool left_out_too_much = data.read_coverage >= request.equipment.min_coverage &&
+                                 data.coverage < request.equipment.min_coverage;
+  if (left_out_too_much && !data.plausibility.found.empty())
+    return refuse_implausible(request, prepared);
   if (data.coverage < request.equipment.min_coverage || parts.validate.size() == 0)
     return refuse(
         prepared, name(Outcome::low_coverage),
@@ -209,7 +225,8 @@ identification::IdentifyOptions options_of(const EquipmentConfig& equipment) {
 }
 
 KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
-  return {request_of(spacecraft, equipment), block_rows_needed(options_of(equipment))};
+  return {request_of(spacecraft, equipment), block_rows_needed(options_of(equipment)),
+          checks_of(equipment)};
 }
 
 void refuse_damaged(PreparedWindow& prepared, const storage::Error& error) {
@@ -228,6 +245,7 @@ PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequ
   prepared.attempt.configuration_digest = request.configuration_digest;
   prepared.attempt.program_version = program_version();
   prepared.loaded = kept.request();
+  prepared.checks = checks_of(request.equipment);
   prepared.timer.begin("load");
   std::variant<WindowData, UnknownParameter> outcome = UnknownParameter{};
   try {

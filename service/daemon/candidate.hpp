@@ -48,6 +48,7 @@ struct Candidate {
 struct PreparedWindow {
   storage::NewAttempt attempt;  // outcome and reason are there where there is no candidate
   WindowRequest loaded;
+  Checks checks;
   WindowData data;
   std::optional<Candidate> candidate;
   nlohmann::ordered_json evidence = nlohmann::ordered_json::object();

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "identification/simulate.hpp"
-#include "service/daemon/window_data.hpp"
 #include "service/model/model_json.hpp"
+#include "service/support/floor_divide.hpp"
 
 namespace reident {
 namespace {
@@ -24,10 +24,17 @@ Duration period_of(const EquipmentModel& model) {
   return static_cast<Duration>(std::llround(model.dynamics.period_s * 1e9));
 }
 
+/// First tick at or after a time.
+std::int64_t tick_at(storage::Time time, Duration period) {
+  return -floor_divide(-time, period);
+}
+
 }  // namespace
 
-ChampionMonitor::ChampionMonitor(std::string spacecraft, std::string equipment)
-    : spacecraft_(std::move(spacecraft)), equipment_(std::move(equipment)) {}
+ChampionMonitor::ChampionMonitor(std::string spacecraft, const EquipmentConfig& equipment)
+    : spacecraft_(std::move(spacecraft)),
+      equipment_(equipment.name),
+      checks_(checks_of(equipment)) {}
 
 void ChampionMonitor::watch(const storage::Archive& archive, const storage::Version& version) {
   version_ = version.number;
@@ -43,9 +50,12 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
   block_ = (validated.end - validated.begin) / reference_blocks / period * period;
   next_ = validated.end;
   if (block_ < period * identification::initial_rows(model_.dynamics)) return;
+  telemetry_.emplace(request_of(model_), 1, checks_);
+  const auto record = believed(archive, validated);
+  if (!record) return;
   std::vector<double> errors;
   for (storage::Time begin = validated.begin; begin + block_ <= validated.end; begin += block_)
-    if (const auto error = log_error(archive, {begin, begin + block_})) errors.push_back(*error);
+    if (const auto error = log_error(*record, {begin, begin + block_})) errors.push_back(*error);
   if (errors.size() < std::size_t{identification::ChangeDetector::least_blocks}) return;
   detector_.emplace(
       Eigen::Map<const identification::Vector>(errors.data(), static_cast<Index>(errors.size())));
@@ -66,20 +76,25 @@ identification::Matrix ChampionMonitor::run(const identification::Record& record
   return outputs;
 }
 
-std::optional<double> ChampionMonitor::log_error(const storage::Archive& archive,
-                                                 storage::TimeRange block) {
-  const WindowRequest request = request_of(model_);
+std::optional<identification::Record> ChampionMonitor::believed(const storage::Archive& archive,
+                                                                storage::TimeRange range) {
   std::variant<WindowData, UnknownParameter> loaded = UnknownParameter{};
   try {
-    loaded = load_window(archive, request, block);
+    loaded = telemetry_->load(archive, range);
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::corrupt) throw;
   }
-  const auto* data = std::get_if<WindowData>(&loaded);
-  if (!data) return std::nullopt;
-  const identification::Record& record = data->record;
+  if (auto* data = std::get_if<WindowData>(&loaded)) return std::move(data->record);
+  return std::nullopt;
+}
+
+std::optional<double> ChampionMonitor::log_error(const identification::Record& record,
+                                                 storage::TimeRange block) {
+  const Duration period = period_of(model_);
+  const identification::RowRange rows{first_row_at(record, tick_at(block.begin, period)),
+                                      first_row_at(record, tick_at(block.end, period))};
   double squares = 0;
-  for (const identification::Segment& segment : record.segments) {
+  for (const identification::Segment& segment : segments_within(record, rows)) {
     const identification::Matrix errors =
         record.y.middleRows(segment.begin, segment.size()) - run(record, segment);
     for (Index q = 0; q < errors.cols(); ++q) {
@@ -88,8 +103,10 @@ std::optional<double> ChampionMonitor::log_error(const storage::Archive& archive
       squares += errors.col(q).squaredNorm() / (range * range);
     }
   }
-  if (data->coverage < least_coverage) return std::nullopt;
-  const double rms = std::sqrt(squares / static_cast<double>(record.y.size()));
+  const auto ticks = static_cast<double>((block.end - block.begin) / period);
+  if (static_cast<double>(rows.size()) < least_coverage * ticks) return std::nullopt;
+  const auto values = static_cast<double>(rows.size() * record.y.cols());
+  const double rms = std::sqrt(squares / values);
   return std::log(std::max(rms, least_error));
 }
 
@@ -106,7 +123,8 @@ std::optional<ChampionMonitor::Drift> ChampionMonitor::look(const storage::Archi
   std::optional<Drift> drift;
   for (; next_ + block_ <= reached; next_ += block_) {
     const storage::TimeRange block{next_, next_ + block_};
-    const auto error = log_error(archive, block);
+    const auto record = believed(archive, {block.end - reference_blocks * block_, block.end});
+    const auto error = record ? log_error(*record, block) : std::nullopt;
     if (error && detector_->add(*error))
       drift = Drift{version_, block.end, std::exp(*error - detector_->mean())};
   }

@@ -4,6 +4,8 @@
 // A block is a sixteenth of the stretch that the champion was validated on, whose blocks are the
 // reference (identification/change_detection.hpp). The free run goes on from block to block, as a
 // simulator's does; after a gap its state is the one that agrees with the first telemetry behind.
+// Telemetry that is not believed (plausibility.hpp), judged beside the blocks before, is a gap: a
+// sensor that lies is no drift of the champion.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +14,7 @@
 
 #include "identification/change_detection.hpp"
 #include "service/daemon/config.hpp"
+#include "service/daemon/kept_window.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/archive.hpp"
 #include "storage/registry.hpp"
@@ -20,7 +23,7 @@ namespace reident {
 
 class ChampionMonitor {
  public:
-  ChampionMonitor(std::string spacecraft, std::string equipment);
+  ChampionMonitor(std::string spacecraft, const EquipmentConfig& equipment);
 
   struct Drift {
     std::int64_t version = 0;
@@ -36,17 +39,22 @@ class ChampionMonitor {
 
  private:
   void watch(const storage::Archive& archive, const storage::Version& version);
-  /// Runs the champion over a block. Logarithm of its error there; absent where telemetry covers
-  /// less than half of it or is damaged.
-  std::optional<double> log_error(const storage::Archive& archive, storage::TimeRange block);
+  /// What is believed of the telemetry in `range`; absent where it is damaged.
+  std::optional<identification::Record> believed(const storage::Archive& archive,
+                                                 storage::TimeRange range);
+  /// Runs the champion over a block of a record. Logarithm of its error there; absent where rows
+  /// cover less than half of it.
+  std::optional<double> log_error(const identification::Record& record, storage::TimeRange block);
   /// Outputs over a segment, from where the run is or, after a gap, anew.
   identification::Matrix run(const identification::Record& record,
                              const identification::Segment& segment);
 
   const std::string spacecraft_;
   const std::string equipment_;
+  const Checks checks_;
   std::int64_t version_ = 0;  // that is watched; 0 before the first
   EquipmentModel model_;
+  std::optional<KeptWindow> telemetry_;  // of as many blocks as the reference
   Duration block_ = 0;
   storage::Time next_ = 0;        // begin of the next block
   identification::Vector state_;  // of the run, at the tick state_tick_

@@ -10,7 +10,7 @@ namespace reident {
 ChampionWatch::ChampionWatch(const Config& config) : settle_(config.settle) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      watched_.push_back({&spacecraft.name, &equipment, {spacecraft.name, equipment.name}});
+      watched_.push_back({&spacecraft.name, &equipment, {spacecraft.name, equipment}});
 }
 
 std::optional<ChampionMonitor::Drift> ChampionWatch::look(Watched& watched,

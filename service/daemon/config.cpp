@@ -25,6 +25,7 @@ constexpr std::size_t max_file_bytes = 4u << 20;
 constexpr std::size_t max_name_bytes = 128;
 constexpr std::int64_t max_window_ticks = 50'000'000;  // 8 bytes for each channel of each
 constexpr std::uint64_t least_max_size = 1'000'000;
+constexpr double least_tolerance = 1e-12;
 constexpr int max_order = 100;
 constexpr int max_horizon = 500;
 
@@ -315,8 +316,58 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
   assign(equipment.baseline_mrse_percent, reader.number("baseline_mrse", 0, 1e6));
   read_choice(reader, "approval", equipment.approval,
               {{"automatic", ApprovalPolicy::automatic}, {"by_hand", ApprovalPolicy::by_hand}});
+  read_choice(reader, "screening", equipment.screening, {{"on", true}, {"off", false}});
   reader.refuse_unknown_keys();
   siblings.push_back(std::move(equipment));
+}
+
+std::string expression_mistake(const std::string& text) {
+  const auto parsed = Expression::parse(text);
+  if (const auto* mistake = std::get_if<ExpressionMistake>(&parsed)) return mistake->message;
+  if (std::get<Expression>(parsed).variables().empty())
+    return "uses no parameter; name the parameters that it binds";
+  return {};
+}
+
+void read_relation(const toml::table& table, ConfigDocument& document,
+                   std::vector<Relation>& siblings) {
+  TableReader reader(table, "[[spacecraft.relation]]", document);
+  Relation relation;
+  reader.require("name", "\"bus currents\"");
+  if (const auto name = reader.text("name")) {
+    relation.name = *name;
+    check_name(reader, "name", *name);
+    const auto same = [&](const Relation& other) { return other.name == *name; };
+    if (std::any_of(siblings.begin(), siblings.end(), same))
+      reader.mistake("name", fmt::format("name {} is taken by a relation above", *name));
+    reader.set_title(fmt::format("relation {}:", *name));
+  }
+  reader.require("expression", "\"I_SG2 + I_BDROUT - I_BUS\"");
+  if (const auto expression = reader.text("expression")) {
+    relation.expression = *expression;
+    if (const std::string mistake = expression_mistake(*expression); !mistake.empty())
+      reader.mistake("expression", fmt::format("expression {}", mistake));
+  }
+  reader.require("tolerance", "0.5");
+  assign(relation.tolerance, reader.number("tolerance", least_tolerance, 1e12));
+  reader.refuse_unknown_keys();
+  siblings.push_back(std::move(relation));
+}
+
+/// Gives each equipment the relations that name one of its parameters. Of what was read without a
+/// mistake.
+void apply_relations(SpacecraftConfig& spacecraft) {
+  for (EquipmentConfig& equipment : spacecraft.equipment) {
+    std::vector<std::string> own =
+        InputExpressions(equipment.inputs, equipment.derived).parameters();
+    own.insert(own.end(), equipment.outputs.begin(), equipment.outputs.end());
+    for (const Relation& relation : spacecraft.relations) {
+      const auto parsed = Expression::parse(relation.expression);
+      const auto& bound = std::get<Expression>(parsed).variables();
+      if (std::find_first_of(own.begin(), own.end(), bound.begin(), bound.end()) != own.end())
+        equipment.relations.push_back(relation);
+    }
+  }
 }
 
 void read_spacecraft(const toml::table& table, ConfigDocument& document, Config& config) {
@@ -336,7 +387,10 @@ void read_spacecraft(const toml::table& table, ConfigDocument& document, Config&
     reader.mistake("equipment", "has no equipment; add [[spacecraft.equipment]]");
   for (const toml::table* equipment : tables)
     read_equipment(*equipment, document, spacecraft.equipment);
+  for (const toml::table* relation : reader.sections("relation"))
+    read_relation(*relation, document, spacecraft.relations);
   reader.refuse_unknown_keys();
+  if (document.mistakes.empty()) apply_relations(spacecraft);
   config.spacecraft.push_back(std::move(spacecraft));
 }
 

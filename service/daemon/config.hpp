@@ -19,6 +19,15 @@ using Duration = std::int64_t;
 
 enum class ApprovalPolicy { automatic, by_hand };
 
+/// What binds parameters of a spacecraft as long as their sensors tell the truth: a sum of currents
+/// at a node, two measurements of one voltage.
+struct Relation {
+  std::string name;
+  std::string expression;  // over SATCS parameters; about 0
+  double tolerance = 0;    // in its unit
+  bool operator==(const Relation&) const = default;
+};
+
 struct EquipmentConfig {
   std::string name;
   std::vector<std::string> inputs;  // SATCS parameters, or names of derived inputs
@@ -45,11 +54,14 @@ struct EquipmentConfig {
   std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where its
                                                 // telemetry does not tell it
   ApprovalPolicy approval = ApprovalPolicy::automatic;
+  bool screening = true;            // whether sensor faults are looked for
+  std::vector<Relation> relations;  // the spacecraft's that name a parameter of this equipment
 };
 
 struct SpacecraftConfig {
   std::string name;
   std::vector<EquipmentConfig> equipment;
+  std::vector<Relation> relations{};
 };
 
 struct Config {

@@ -25,6 +25,7 @@ constexpr std::array names{
     std::pair{Outcome::unknown_parameter, std::string_view("unknown_parameter")},
     std::pair{Outcome::telemetry_damaged, std::string_view("telemetry_damaged")},
     std::pair{Outcome::low_coverage, std::string_view("low_coverage")},
+    std::pair{Outcome::implausible, std::string_view("implausible")},
     std::pair{Outcome::validation_says_nothing, std::string_view("validation_says_nothing")},
     std::pair{Outcome::not_finite, std::string_view("not_finite")},
     std::pair{Outcome::unstable, std::string_view("unstable")},

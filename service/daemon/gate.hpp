@@ -22,6 +22,7 @@ enum class Outcome {
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   telemetry_damaged,  // samples that the attempt needs cannot be decoded any more
   low_coverage,
+  implausible,  // sensors contradict each other, or themselves, on too much of the window
   validation_says_nothing,
   not_finite,
   unstable,

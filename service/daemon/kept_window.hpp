@@ -2,15 +2,18 @@
 // their sums. A window that slides reads and sums only what is new.
 //
 // Time is cut into chunks that do not depend on the window, so that what is kept gives the same
-// bits as what is read again.
+// bits as what is read again. What is not believed of a window depends on all of it: its holes are
+// made anew each time, and sums are kept as long as the holes in them stay the same.
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <variant>
 
 #include "identification/lag_sums.hpp"
 #include "identification/record.hpp"
+#include "identification/tick_ranges.hpp"
+#include "service/daemon/kept_chunks.hpp"
+#include "service/daemon/plausibility.hpp"
 #include "service/daemon/window_data.hpp"
 #include "storage/archive.hpp"
 
@@ -19,11 +22,13 @@ namespace reident {
 class KeptWindow {
  public:
   /// `block_rows` as identification::block_rows_needed says.
-  KeptWindow(const WindowRequest& request, identification::Index block_rows);
+  KeptWindow(const WindowRequest& request, identification::Index block_rows,
+             const Checks& checks = {});
 
   const WindowRequest& request() const { return request_; }
 
-  /// The same as load_window; what lies before the window is forgotten.
+  /// The same as load_window without what the checks do not believe; what lies before the window is
+  /// forgotten.
   std::variant<WindowData, UnknownParameter> load(const storage::Archive& archive,
                                                   storage::TimeRange window);
 
@@ -37,16 +42,16 @@ class KeptWindow {
   std::int64_t ticks_read() const { return ticks_read_; }
 
  private:
-  static constexpr std::int64_t chunk_ticks = 512;
-
   identification::TickRange ticks_of(storage::TimeRange range) const;
-  /// Reads `ticks` and keeps the whole chunks of them.
-  identification::Record read(const storage::Archive& archive, identification::TickRange ticks);
+  /// Forgets the sums in which these holes differ from those that they were made with.
+  void make_holes(const identification::TickSet& holes, identification::TickRange ticks);
 
   WindowRequest request_;
-  std::vector<std::uint32_t> parameters_;  // that the chunks were read of
-  std::map<std::int64_t, identification::Record> chunks_;
+  PlausibilityChecks checks_;
+  std::vector<Channel> channels_;  // that the chunks were read of
+  KeptChunks samples_;             // u holds the input channels
   identification::LagSums sums_;
+  identification::TickSet holes_;  // in the samples that the sums are of
   std::int64_t ticks_read_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "service/daemon/provenance.hpp"
 #include "service/daemon/window_data.hpp"
 #include "service/model/model_json.hpp"
 
@@ -50,7 +51,10 @@ void add(std::vector<ProtectedStretch>& stretches, const Descriptors& descriptor
       range.end = std::max(range.end, part.end);
     }
     range.begin = before(range.begin, model.hold_ns);
-    add(stretches, version.spacecraft, descriptors, parameters_of(model), range);
+    std::vector<std::string> names = parameters_of(model);
+    for (const Relation& relation : relations_of(version))
+      for (std::string& name : parameters_of(relation)) names.push_back(std::move(name));
+    add(stretches, version.spacecraft, descriptors, names, range);
   } catch (const std::invalid_argument&) {
     stretches.push_back({version.spacecraft, std::nullopt, version.window});
   }

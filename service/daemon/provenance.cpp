@@ -39,11 +39,26 @@ ordered_json to_json(const EquipmentConfig& equipment) {
                        {"min_coverage", equipment.min_coverage},
                        {"min_order", equipment.min_order},
                        {"max_order", equipment.max_order}};
+  if (equipment.screening) json["screening"] = true;
+  for (const Relation& relation : equipment.relations)
+    json["relations"].push_back({{"name", relation.name},
+                                 {"expression", relation.expression},
+                                 {"tolerance", relation.tolerance}});
   json["horizon"] = equipment.horizon ? ordered_json(*equipment.horizon) : ordered_json(nullptr);
   for (const DerivedInput& derived : equipment.derived)
     json["derived"].push_back(
         {{"name", derived.name}, {"expression", derived.expression}, {"unit", derived.unit}});
   return json;
+}
+
+std::vector<Relation> relations_from(const ordered_json& equipment) {
+  std::vector<Relation> relations;
+  if (const auto found = equipment.find("relations"); found != equipment.end())
+    for (const ordered_json& one : *found)
+      relations.push_back({one.at("name").get<std::string>(),
+                           one.at("expression").get<std::string>(),
+                           one.at("tolerance").get<double>()});
+  return relations;
 }
 
 EquipmentConfig equipment_from(const ordered_json& json) {
@@ -60,6 +75,8 @@ EquipmentConfig equipment_from(const ordered_json& json) {
   json.at("max_order").get_to(equipment.max_order);
   if (const auto& horizon = json.at("horizon"); !horizon.is_null())
     equipment.horizon = horizon.get<int>();
+  equipment.screening = json.value("screening", false);  // older versions were not screened
+  equipment.relations = relations_from(json);
   if (const auto derived = json.find("derived"); derived != json.end())
     for (const ordered_json& one : *derived)
       equipment.derived.push_back({one.at("name").get<std::string>(),
@@ -95,10 +112,10 @@ RefreshRequest request_from(const ordered_json& provenance) {
 }
 
 std::string digest_of_window(const storage::Archive& archive, const RefreshRequest& request) {
-  const WindowRequest wanted = request_of(request.spacecraft, request.equipment);
-  const auto loaded = load_window(archive, wanted, request.window);
+  KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
+  const auto loaded = kept.load(archive, request.window);
   const auto* data = std::get_if<WindowData>(&loaded);
-  return data ? digest_of_samples(data->record, wanted) : "";
+  return data ? digest_of_samples(data->record, kept.request()) : "";
 }
 
 /// Batches that changed telemetry of the window after it was sealed, the latest first.
@@ -165,6 +182,14 @@ storage::NewVersion version_of(const RefreshRequest& request, const PreparedWind
           .digest = model_digest(model),
           .provenance_json = provenance_of(request, prepared).dump(),
           .samples_digest = digest_of_samples(prepared.data.record, prepared.loaded)};
+}
+
+std::vector<Relation> relations_of(const storage::Version& version) {
+  try {
+    return relations_from(ordered_json::parse(version.provenance_json).at("equipment"));
+  } catch (const nlohmann::json::exception&) {
+    return {};
+  }
 }
 
 std::optional<std::string> mistake_in(const storage::Version& version) {

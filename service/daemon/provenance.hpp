@@ -19,6 +19,9 @@ storage::NewVersion version_of(const RefreshRequest& request, const PreparedWind
 /// integers and doubles, after the names of inputs and outputs, each ended by a line feed.
 std::string digest_of_samples(const identification::Record& record, const WindowRequest& request);
 
+/// The relations that its window was checked with; none where its provenance does not say.
+std::vector<Relation> relations_of(const storage::Version& version);
+
 struct Reproduction {
   std::string samples_digest;   // of the samples that it was identified from this time
   std::string model_digest;     // empty where the window gives no model

@@ -98,12 +98,12 @@ bool reaches_beyond(const std::vector<Signal>& champion, const std::vector<Signa
 /// hold. Absent where there are too few such samples to tell, or no telemetry of then.
 std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
                                                        const EquipmentModel& champion,
-                                                       const EquipmentModel& candidate,
-                                                       const WindowRequest& loaded) {
+                                                       const PreparedWindow& prepared) {
   constexpr std::size_t least_rows = 30;
+  const EquipmentModel& candidate = prepared.candidate->model;
   if (!reaches_beyond(champion.inputs, candidate.inputs)) return std::nullopt;
   const storage::TimeRange then = champion.validated_on;
-  const auto seen = load_window(archive, loaded, then);
+  const auto seen = KeptWindow(prepared.loaded, 1, prepared.checks).load(archive, then);
   const auto championed = load_window(archive, request_of(champion), then);
   if (!std::holds_alternative<WindowData>(seen) || !std::holds_alternative<WindowData>(championed))
     return std::nullopt;
@@ -203,7 +203,7 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
   else if (const auto loaded = load_window(archive, request, prepared.attempt.window);
            std::holds_alternative<WindowData>(loaded))
     compare_over(std::get<WindowData>(loaded).record);
-  evidence.elsewhere = elsewhere(archive, champion, candidate, prepared.loaded);
+  evidence.elsewhere = elsewhere(archive, champion, prepared);
   return evidence;
 }
 

@@ -10,21 +10,21 @@
 namespace reident {
 namespace {
 
-struct Channel {
+struct ReadChannel {
   storage::Series series;
   std::vector<std::uint8_t> usable;
 
-  explicit Channel(storage::Series&& read) : series(std::move(read)) {
+  explicit ReadChannel(storage::Series&& read) : series(std::move(read)) {
     usable.reserve(series.quality.size());
     for (const storage::Quality quality : series.quality)
       usable.push_back(quality <= storage::Quality::out_of_limits);
   }
 };
 
-std::vector<identification::ChannelSamples> views(const std::vector<Channel>& channels) {
+std::vector<identification::ChannelSamples> views(const std::vector<ReadChannel>& channels) {
   std::vector<identification::ChannelSamples> samples;
   samples.reserve(channels.size());
-  for (const Channel& channel : channels)
+  for (const ReadChannel& channel : channels)
     samples.push_back({channel.series.time, channel.series.value, channel.usable});
   return samples;
 }
@@ -49,27 +49,34 @@ std::vector<std::string> parameters_of(const EquipmentConfig& equipment) {
   std::vector<std::string> names =
       InputExpressions(equipment.inputs, equipment.derived).parameters();
   names.insert(names.end(), equipment.outputs.begin(), equipment.outputs.end());
+  for (const Relation& relation : equipment.relations)
+    for (const std::string& name : parameters_of(relation))
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   return names;
+}
+
+std::vector<std::string> parameters_of(const Relation& relation) {
+  return InputExpressions({relation.name}, {{relation.name, relation.expression, ""}}).parameters();
 }
 
 std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleSource& archive,
                                                            const WindowRequest& request) {
   WindowData data;
   std::map<std::string, std::string> units;
-  const auto describe = [&](const std::vector<std::string>& names,
-                            std::vector<std::uint32_t>& parameters) {
+  const auto describe = [&](const std::vector<std::string>& names, std::vector<Channel>& channels) {
     for (const std::string& name : names) {
       const auto descriptor = archive.parameter(request.spacecraft, name);
       if (!descriptor) return &name;
-      parameters.push_back(descriptor->id);
+      channels.push_back(
+          {name, descriptor->id, descriptor->kind == storage::ParameterKind::analog});
       units[name] = descriptor->unit;
     }
     return static_cast<const std::string*>(nullptr);
   };
   const InputExpressions expressions(request.inputs, request.derived);
-  if (const auto* name = describe(expressions.parameters(), data.parameters))
+  if (const auto* name = describe(expressions.parameters(), data.input_channels))
     return UnknownParameter{*name};
-  if (const auto* name = describe(request.outputs, data.output_parameters))
+  if (const auto* name = describe(request.outputs, data.output_channels))
     return UnknownParameter{*name};
   for (const std::string& name : request.inputs) data.inputs.push_back({name, units[name]});
   for (const std::string& name : request.outputs) data.outputs.push_back({name, units[name]});
@@ -88,26 +95,31 @@ double coverage_of(const identification::Record& record, storage::TimeRange wind
   return std::min(1.0, static_cast<double>(record.rows()) / ticks);
 }
 
+identification::Record load_samples(const storage::SampleSource& archive,
+                                    const WindowRequest& request, const WindowData& described,
+                                    storage::TimeRange window) {
+  const storage::TimeRange read{window.begin - request.hold, window.end};
+  const auto channels = [&](const std::vector<Channel>& wanted) {
+    std::vector<ReadChannel> result;
+    for (const Channel& channel : wanted)
+      result.emplace_back(archive.read(request.spacecraft, request.origin, channel.id, read));
+    return result;
+  };
+  const std::vector<ReadChannel> inputs = channels(described.input_channels);
+  const std::vector<ReadChannel> outputs = channels(described.output_channels);
+  return identification::make_record(views(inputs), views(outputs), window.begin, window.end,
+                                     {.period_ns = request.period, .hold_ns = request.hold});
+}
+
 std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window) {
   auto described = describe_window(archive, request);
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
   WindowData data = std::get<WindowData>(std::move(described));
-  const storage::TimeRange read{window.begin - request.hold, window.end};
-  const auto channels = [&](const std::vector<std::uint32_t>& parameters) {
-    std::vector<Channel> result;
-    for (const std::uint32_t parameter : parameters)
-      result.emplace_back(archive.read(request.spacecraft, request.origin, parameter, read));
-    return result;
-  };
-  const std::vector<Channel> inputs = channels(data.parameters);
-  const std::vector<Channel> outputs = channels(data.output_parameters);
   data.record = InputExpressions(request.inputs, request.derived)
-                    .evaluate(identification::make_record(
-                        views(inputs), views(outputs), window.begin, window.end,
-                        {.period_ns = request.period, .hold_ns = request.hold}));
-  data.coverage = coverage_of(data.record, window, request.period);
+                    .evaluate(load_samples(archive, request, data, window));
+  data.coverage = data.read_coverage = coverage_of(data.record, window, request.period);
   return data;
 }
 

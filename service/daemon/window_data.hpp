@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identification/record.hpp"
+#include "identification/tick_ranges.hpp"
 #include "service/daemon/config.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/sample_source.hpp"
@@ -28,15 +29,43 @@ struct WindowRequest {
 WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment);
 WindowRequest request_of(const EquipmentModel& model);
 
-/// The parameters that the equipment's signals are, or are computed from, each once.
+/// The parameters that the equipment's signals are, or are computed from, and those that are bound
+/// to them by relations.
 std::vector<std::string> parameters_of(const EquipmentConfig& equipment);
+/// Those that a relation binds.
+std::vector<std::string> parameters_of(const Relation& relation);
+
+/// A parameter as telemetry describes it.
+struct Channel {
+  std::string name;
+  std::uint32_t id = 0;
+  bool is_analog = true;
+  bool operator==(const Channel&) const = default;
+};
+
+/// A stretch that is not believed.
+struct Implausible {
+  std::string check;                    // "relation", "shift", "stuck", "spike" or "noise"
+  Relation relation;                    // of the first two
+  std::vector<std::string> parameters;  // one of which is wrong
+  identification::TickRange ticks;
+  double residual = 0;  // the relation's median there
+};
+
+struct Plausibility {
+  std::vector<Implausible> found;
+  std::vector<std::string> not_applied;  // relations, each with the reason
+  identification::TickSet holes;         // all that was found
+};
 
 struct WindowData {
   identification::Record record;
-  std::vector<Signal> inputs, outputs;    // as they are described; their ranges are not set
-  std::vector<std::uint32_t> parameters;  // ids of those that the inputs are computed from
-  std::vector<std::uint32_t> output_parameters;
-  double coverage = 0;  // share of the window's ticks at which every channel is valid
+  std::vector<Signal> inputs, outputs;  // as they are described; their ranges are not set
+  std::vector<Channel> input_channels;  // that the inputs are computed from
+  std::vector<Channel> output_channels;
+  Plausibility plausibility;  // of a KeptWindow with checks: its holes are not in the record
+  double coverage = 0;        // share of the window's ticks at which every channel is valid
+  double read_coverage = 0;   // the same before holes were made of what is not believed
 };
 
 /// A parameter that telemetry has not described yet, so that nobody knows its samples.
@@ -47,6 +76,11 @@ struct UnknownParameter {
 /// What the request's signals and parameters are, and no rows.
 std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleSource& archive,
                                                            const WindowRequest& request);
+
+/// The rows at which every channel of the request is valid; u holds the input channels.
+identification::Record load_samples(const storage::SampleSource& archive,
+                                    const WindowRequest& request, const WindowData& described,
+                                    storage::TimeRange window);
 
 /// Share of the window's ticks that are rows of the record.
 double coverage_of(const identification::Record& record, storage::TimeRange window,

@@ -37,7 +37,7 @@ class Monitor : public DaemonTest {
   storage::Database database = open();
   storage::Archive archive{database};
   storage::Registry registry{database};
-  ChampionMonitor monitor{"SAT", "PLANT"};
+  ChampionMonitor monitor{"SAT", equipment()};
 };
 
 TEST_F(Monitor, IsSilentWhileThePlantIsAsItWas) {
@@ -78,14 +78,16 @@ TEST_F(Monitor, WatchesTheNextChampionAfterwards) {
 }
 
 TEST_F(Monitor, HasNothingToSayWithoutAChampion) {
-  ChampionMonitor other("SAT", "OTHER");
+  EquipmentConfig unknown = equipment();
+  unknown.name = "OTHER";
+  ChampionMonitor other("SAT", unknown);
   EXPECT_FALSE(other.look(archive, registry, day + 20 * minute, 60 * minute));
 }
 
 TEST_F(Monitor, ThatBeginsLateLooksAtTheRecentPastAlone) {
   archive.append(telemetry(day + 20 * minute + second, 600, 1.5));
   archive.append(telemetry(day + 30 * minute + 2 * second, 7200));
-  ChampionMonitor later("SAT", "PLANT");
+  ChampionMonitor later("SAT", equipment());
   EXPECT_FALSE(later.look(archive, registry, day + 150 * minute, 60 * minute));
   EXPECT_TRUE(look(day + 79 * minute)) << "one that began in time";
 }
