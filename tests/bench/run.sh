@@ -9,11 +9,12 @@
 #                                         beside SLICOT and Octave and SLICOT's published figures.
 #                                         The last line is one JSON object. Without SLICOT or
 #                                         Octave it says what it leaves out
-#   tests/bench/run.sh paper [DATA_FOLDER]
+#   tests/bench/run.sh paper [DATA_FOLDER] [--pictures FOLDER]
 #                                         the paper's table: errors of the simulator's own model,
 #                                         the identified one, with pole placement and with integral
 #                                         feedback, on the reference spacecraft and, with
-#                                         DATA_FOLDER, on BUPT-1's files (bupt1_eps_*.csv) in it.
+#                                         DATA_FOLDER, on BUPT-1's files (bupt1_eps_*.csv) in it;
+#                                         drawn to FOLDER as SVG.
 #                                         The last line is one JSON object
 #   tests/bench/run.sh archive [DATA_FOLDER] [--billion | --samples N] [--folder FOLDER]
 #                                         the archive beside a plain SQLite table: bytes a sample,
@@ -48,8 +49,8 @@ case $what in
     deploy/install_packages.sh --with-bench || echo "going on without the tools that are missing"
     ;;
   paper)
-    [ $# -le 1 ] || usage
-    [ $# -eq 0 ] || [ -d "$1" ] || { echo "$1 is no folder of telemetry" >&2; exit 2; }
+    [ $# -eq 0 ] || [[ $1 == --* ]] || [ -d "$1" ] ||
+      { echo "$1 is no folder of telemetry" >&2; exit 2; }
     arguments=(build/release "$@")
     targets=(reident_paper_bench satcs-reference)
     ;;
