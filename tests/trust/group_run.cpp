@@ -252,7 +252,8 @@ class Judge {
     const SimulatedService& service = telling.service();
     const auto tenures =
         tenures_of(service.registry(), spacecraft_.name, equipment.name, extent_.begin);
-    const auto parameters = parameters_of(equipment);
+    auto parameters = InputExpressions(equipment.inputs, equipment.derived).parameters();
+    parameters.insert(parameters.end(), equipment.outputs.begin(), equipment.outputs.end());
     const auto honest = [&](storage::TimeRange range) {
       return std::none_of(telling.scenario().lies.begin(), telling.scenario().lies.end(),
                           [&](const satcs::Lie& lie) {

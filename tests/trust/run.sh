@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # The trust suite: did any simulator get a worse model, and how soon did it get a better one?
 # Builds the release preset first. The last line is one JSON object.
-#   tests/trust/run.sh              a few minutes: one scenario of each life, of the tuned half
-#   tests/trust/run.sh --all        all scenarios, both halves, and a month of the whole subsystem
-#                                   at 1 Hz; about an hour on two cores. Writes
+#   tests/trust/run.sh              a few minutes: two scenarios of every sixth life, of the tuned half
+#   tests/trust/run.sh --all        all scenarios, both halves; about an hour on two cores. Writes
 #                                   build/release/trust/report.md with pictures of the worst cases
 #   tests/trust/run.sh OPTION...    any options of reident_trust, such as --scenario 2 --plot 2.svg
 #                                   (--help lists them)
@@ -23,7 +22,7 @@ case ${1:-} in
     ;;
   --all)
     shift
-    exec "$program" --all --month --report build/release/trust "$@"
+    exec "$program" --report build/release/trust "$@"
     ;;
   *)
     exec "$program" "$@"
