@@ -32,15 +32,18 @@ const Tenure& at(const std::vector<Tenure>& tenures, storage::Time time) {
   return *std::prev(next);
 }
 
-/// The oracle's error over a change: one model for a step, one for each window while it grows.
+/// The oracle's error over a change. While it grows, the model of the window before runs over each
+/// window, which is the best that one who identifies without delay can have.
 ErrorCurve oracle_curve(const Truth& truth, const TrueChange& change, storage::TimeRange followed,
                         const Oracle& oracle) {
   ErrorCurve curve = truth.empty_curve();
   const Duration window = truth.equipment().window;
   for (storage::Time begin = followed.begin; begin < followed.end;) {
-    const bool last = begin >= change.end || begin + 2 * window > truth.extent().end;
-    const storage::Time end = last ? followed.end : std::min(followed.end, begin + window);
-    if (const auto model = oracle(begin)) curve.add(truth.free_run(*model, {begin, end}));
+    const bool growing = begin < change.end;
+    const storage::Time end = growing ? std::min(followed.end, begin + window) : followed.end;
+    const bool whole = begin + window <= truth.extent().end;
+    if (const auto model = oracle(growing || !whole ? begin - window : begin))
+      curve.add(truth.free_run(*model, {begin, end}));
     begin = end;
   }
   return curve;
