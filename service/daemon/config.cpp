@@ -316,6 +316,8 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
   assign(equipment.baseline_mrse_percent, reader.number("baseline_mrse", 0, 1e6));
   read_choice(reader, "approval", equipment.approval,
               {{"automatic", ApprovalPolicy::automatic}, {"by_hand", ApprovalPolicy::by_hand}});
+  read_choice(reader, "unvouched", equipment.unvouched,
+              {{"wait", UnvouchedPolicy::wait}, {"approve", UnvouchedPolicy::approve}});
   read_choice(reader, "screening", equipment.screening, {{"on", true}, {"off", false}});
   reader.refuse_unknown_keys();
   siblings.push_back(std::move(equipment));

@@ -19,6 +19,10 @@ using Duration = std::int64_t;
 
 enum class ApprovalPolicy { automatic, by_hand };
 
+/// What becomes of a candidate whose gain on the champion is a constant offset that a sensor which
+/// no relation binds would show alike.
+enum class UnvouchedPolicy { wait, approve };
+
 /// What binds parameters of a spacecraft as long as their sensors tell the truth: a sum of currents
 /// at a node, two measurements of one voltage.
 struct Relation {
@@ -46,7 +50,7 @@ struct EquipmentConfig {
   double max_mrse_percent = 20;  // limit of the gate
   double min_fit_percent = 0;    // limit of the gate, at least 0
   double margin_percent =
-      2;  // relative reduction of the champion's error that a swap surely brings
+      15;  // relative reduction of the champion's error that a swap surely brings
   double confidence_percent = 99;        // how sure: of the lower bound of the reduction
   double max_disagreement_percent = 10;  // from the champion where the window was not, of the
                                          // output's range
@@ -54,6 +58,7 @@ struct EquipmentConfig {
   std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where its
                                                 // telemetry does not tell it
   ApprovalPolicy approval = ApprovalPolicy::automatic;
+  UnvouchedPolicy unvouched = UnvouchedPolicy::wait;
   bool screening = true;            // whether sensor faults are looked for
   std::vector<Relation> relations;  // the spacecraft's that name a parameter of this equipment
 };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "service/support/time_text.hpp"
 
@@ -21,6 +22,7 @@ constexpr double outside_limit = 0.5;
 constexpr std::array names{
     std::pair{Outcome::approved, std::string_view("approved")},
     std::pair{Outcome::waiting, std::string_view("waiting")},
+    std::pair{Outcome::unvouched, std::string_view("unvouched")},
     std::pair{Outcome::held, std::string_view("held")},
     std::pair{Outcome::unknown_parameter, std::string_view("unknown_parameter")},
     std::pair{Outcome::telemetry_damaged, std::string_view("telemetry_damaged")},
@@ -163,6 +165,16 @@ Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
   return std::nullopt;
 }
 
+/// A sensor that went off by a constant and an equipment that did are the same telemetry, unless
+/// another sensor vouches for the first.
+bool is_unvouched(const Evidence& e, const EquipmentConfig& limits) {
+  if (limits.unvouched == UnvouchedPolicy::approve || !has_run(e.champion)) return false;
+  const Evidence::Champion& champion = *e.champion;
+  if (champion.unbound.empty() || !champion.without_offset) return false;
+  const auto& sure = champion.without_offset->sure_percent;
+  return !sure || !(*sure > limits.margin_percent);
+}
+
 std::string praise(const Evidence& e) {
   if (!e.champion)
     return fmt::format("First version: MRSE {:.3f} %, fit {:.1f} % on unseen data.", e.mrse_percent,
@@ -192,6 +204,13 @@ GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {
     return {Outcome::held,
             praise(evidence) + fmt::format(" Waits: {} holds the equipment ({}).",
                                            evidence.hold->actor, evidence.hold->reason)};
+  if (is_unvouched(evidence, limits))
+    return {Outcome::unvouched,
+            praise(evidence) +
+                fmt::format(" But for a constant offset the champion is not surely worse, and a "
+                            "sensor of {} would show the same; no relation binds it. Waits for an "
+                            "operator's approval.",
+                            fmt::join(evidence.champion->unbound, ", "))};
   if (limits.approval == ApprovalPolicy::by_hand)
     return {Outcome::waiting, praise(evidence) + " Waits for an operator's approval."};
   return {Outcome::approved, praise(evidence)};

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "service/daemon/config.hpp"
 #include "storage/telemetry.hpp"
@@ -18,6 +19,7 @@ namespace reident {
 enum class Outcome {
   approved,
   waiting,            // good enough; the policy leaves the decision to an operator
+  unvouched,          // better by a constant offset, which may be a sensor's; waits for an operator
   held,               // good enough; an operator holds the equipment's version
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   telemetry_damaged,  // samples that the attempt needs cannot be decoded any more
@@ -76,6 +78,10 @@ struct Evidence {
       double champion_mrse_percent = 0;
     };
     std::optional<Elsewhere> elsewhere;  // absent: there is no such place
+    /// The comparison with the champion's mean error on these samples taken from it.
+    std::optional<Comparison> without_offset{};
+    /// Parameters whose sensors could show that mean error, and which no relation binds.
+    std::vector<std::string> unbound{};
   };
   std::optional<Champion> champion;
 

@@ -79,6 +79,8 @@ ordered_json to_json(const Evidence::Champion& champion) {
   if (champion.comparison) {
     json["mrse_percent"] = champion.comparison->rival_mrse_percent;
     json["comparison"] = to_json(*champion.comparison);
+    if (champion.without_offset) json["without_offset"] = to_json(*champion.without_offset);
+    if (!champion.unbound.empty()) json["unbound"] = champion.unbound;
   }
   if (const auto& elsewhere = champion.elsewhere)
     json["elsewhere"] = {{"rows", elsewhere->rows},
@@ -95,6 +97,7 @@ ordered_json limits_json(const EquipmentConfig& limits) {
           {"confidence_percent", limits.confidence_percent},
           {"max_disagreement_percent", limits.max_disagreement_percent},
           {"min_interval_ns", limits.min_interval},
+          {"unvouched", limits.unvouched == UnvouchedPolicy::wait ? "wait" : "approve"},
           {"approval", limits.approval == ApprovalPolicy::by_hand ? "by_hand" : "automatic"}};
 }
 
@@ -110,7 +113,8 @@ void describe(const Evidence& evidence, ordered_json& json) {
 
 storage::DecisionKind kind_of(Outcome outcome) {
   if (outcome == Outcome::approved) return storage::DecisionKind::approve;
-  if (outcome == Outcome::waiting || outcome == Outcome::held) return storage::DecisionKind::wait;
+  if (outcome == Outcome::waiting || outcome == Outcome::held || outcome == Outcome::unvouched)
+    return storage::DecisionKind::wait;
   return storage::DecisionKind::reject;
 }
 

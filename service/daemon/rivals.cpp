@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identification/comparison.hpp"
+#include "identification/correction.hpp"
 #include "service/model/model_json.hpp"
 
 namespace reident {
@@ -67,18 +68,25 @@ Evidence::Comparison comparison_of(const Matrix& y, const Matrix& rival, const M
   return result;
 }
 
-/// The candidate against outputs of another run over `record`, where both have rows.
+/// The candidate against outputs of another run over `record`, where both have rows. `offset`,
+/// where it is given, is the other run's mean error, which is taken from it.
 std::optional<Evidence::Comparison> against_run(const PreparedWindow& prepared,
                                                 const Record& record, const Matrix& outputs,
-                                                double confidence_percent) {
+                                                double confidence_percent,
+                                                identification::Vector* offset = nullptr) {
   const Candidate& candidate = *prepared.candidate;
   const RowRange validate = candidate.parts.validate;
   const CommonRows common = common_rows(prepared.data.record, validate, record);
   const double needed = least_common_share * static_cast<double>(validate.size());
   if (static_cast<double>(common.one.size()) < needed) return std::nullopt;
-  return comparison_of(prepared.data.record.y(common.one, Eigen::all),
-                       outputs(common.other, Eigen::all), candidate.y_hat(common.one, Eigen::all),
-                       common.stretches, confidence_percent);
+  const Matrix y = prepared.data.record.y(common.one, Eigen::all);
+  Matrix rival = outputs(common.other, Eigen::all);
+  if (offset != nullptr) {
+    *offset = (y - rival).colwise().mean().transpose();
+    rival.rowwise() += offset->transpose();
+  }
+  return comparison_of(y, rival, candidate.y_hat(common.one, Eigen::all), common.stretches,
+                       confidence_percent);
 }
 
 bool is_outside(const Signal& signal, double value) {
@@ -133,6 +141,32 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
     result.disagreement_percent = std::max(result.disagreement_percent, share);
   }
   return result;
+}
+
+/// Of an input's range: a bias of its sensor that no limit would show.
+constexpr double unseen_bias_share = 0.1;
+
+/// Parameters of the champion, bound by no relation, of which a bias could be what makes its mean
+/// error: outputs, and inputs that a small bias of would do it.
+std::vector<std::string> unbound_of(const EquipmentModel& champion, const Plausibility& checked,
+                                    const identification::Vector& offset) {
+  std::vector<std::string> suspects = signal_names(champion.outputs);
+  const auto gain = static_gain(champion.dynamics);
+  std::vector<std::string> inputs;
+  for (std::size_t j = 0; j < champion.inputs.size(); ++j) {
+    const Signal& input = champion.inputs[j];
+    const double bias = unseen_bias_share * (input.high - input.low);
+    if (!gain ||
+        (bias * gain->col(static_cast<Index>(j)).cwiseAbs().array() >= offset.cwiseAbs().array())
+            .any())
+      inputs.push_back(input.name);
+  }
+  const InputExpressions expressions(inputs, derived_inputs(champion.inputs));
+  suspects.insert(suspects.end(), expressions.parameters().begin(), expressions.parameters().end());
+  std::erase_if(suspects, [&checked](const std::string& name) {
+    return std::find(checked.bound.begin(), checked.bound.end(), name) != checked.bound.end();
+  });
+  return suspects;
 }
 
 bool same_outputs(const EquipmentModel& one, const EquipmentModel& other) {
@@ -194,8 +228,12 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
   }
   if (!same_outputs(champion, candidate)) return std::nullopt;
   const auto compare_over = [&](const Record& record) {
-    evidence.comparison = against_run(
-        prepared, record, free_run(champion.dynamics, record, record.all()), confidence_percent);
+    const Matrix run = free_run(champion.dynamics, record, record.all());
+    evidence.comparison = against_run(prepared, record, run, confidence_percent);
+    identification::Vector offset;
+    evidence.without_offset = against_run(prepared, record, run, confidence_percent, &offset);
+    if (evidence.without_offset)
+      evidence.unbound = unbound_of(champion, prepared.data.plausibility, offset);
   };
   const WindowRequest request = request_of(champion);
   if (request == prepared.loaded)

@@ -55,6 +55,7 @@ struct Implausible {
 struct Plausibility {
   std::vector<Implausible> found;
   std::vector<std::string> not_applied;  // relations, each with the reason
+  std::vector<std::string> bound;        // parameters of relations that applied, each once
   identification::TickSet holes;         // all that was found
 };
 

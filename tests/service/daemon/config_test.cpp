@@ -2,13 +2,13 @@
 
 #include <filesystem>
 #include <fstream>
-#include <ostream>
 #include <unistd.h>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/service/daemon/config_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace reident {
@@ -19,39 +19,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using ::testing::StartsWith;
-
-constexpr Duration ms = 1'000'000;
-constexpr Duration s = 1'000 * ms;
-constexpr Duration min = 60 * s;
-
-// Lines 1 to 8; what a test adds comes after.
-const std::string minimal = R"([[spacecraft]]
-name = "CBERS-4"
-[[spacecraft.equipment]]
-name = "BDR"
-inputs = ["I_BDRIN1", "I_BDRIN2"]
-outputs = ["I_BDROUT"]
-sample_period = "1s"
-window = "100min"
-)";
-
-Config config_of(const std::string& text) {
-  const auto parsed = parse_config(text, "/folder");
-  if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&parsed))
-    for (const ConfigMistake& mistake : *mistakes)
-      ADD_FAILURE() << mistake.line << ": " << mistake.message;
-  return std::holds_alternative<Config>(parsed) ? std::get<Config>(parsed) : Config();
-}
-
-/// "line: message" of every mistake.
-std::vector<std::string> mistakes_of(const std::string& text) {
-  std::vector<std::string> found;
-  const auto parsed = parse_config(text, "/folder");
-  if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&parsed))
-    for (const ConfigMistake& mistake : *mistakes)
-      found.push_back(fmt::format("{}: {}", mistake.line, mistake.message));
-  return found;
-}
 
 TEST(Config, SaysHowLongTelemetryIsKeptAndInHowMuchRoom) {
   const Config config = config_of("[archive]\nkeep = \"400 d\"\nmax_size = \"200 GB\"\n" + minimal);
@@ -179,15 +146,6 @@ horizon = "auto"
   EXPECT_EQ(y.min_order, 3);
   EXPECT_EQ(y.max_order, 3);
   EXPECT_EQ(y.horizon, std::nullopt);
-}
-
-struct Mistake {
-  const char* name;
-  std::string text;
-  std::string expected;  // "line: beginning of the message"
-};
-std::ostream& operator<<(std::ostream& out, const Mistake& mistake) {
-  return out << mistake.name;
 }
 
 class ConfigMistakes : public ::testing::TestWithParam<Mistake> {};
@@ -386,43 +344,9 @@ const Mistake derived[] = {
     {"no_table", minimal + "derived = 3", "9: equipment BDR: derived must be tables in double"},
 };
 
-/// The minimal file with a relation, one line of which is another.
-std::string with_relation(std::size_t line, const std::string& text) {
-  const std::vector<std::string> table = {"[[spacecraft.relation]]", "name = \"sum\"",
-                                          "expression = \"I_BDROUT + I_SG2 - I_BUS\"",
-                                          "tolerance = 0.5"};
-  std::string result = minimal;
-  for (std::size_t i = 0; i < table.size(); ++i) result += (9 + i == line ? text : table[i]) + "\n";
-  return result;
-}
-
-const Mistake relation[] = {
-    {"no_name", with_relation(10, ""), "9: [[spacecraft.relation]] name is missing"},
-    {"no_expression", with_relation(11, ""), "9: relation sum: expression is missing"},
-    {"no_tolerance", with_relation(12, ""),
-     "9: relation sum: tolerance is missing; add a line such as tolerance = 0.5"},
-    {"no_tolerance_at_all", with_relation(12, "tolerance = 0"),
-     "12: relation sum: tolerance must be a number from 1e-12"},
-    {"tolerance_in_quotes", with_relation(12, "tolerance = \"0.5\""),
-     "12: relation sum: tolerance must be a number"},
-    {"unknown_key", with_relation(12, "tolerance = 0.5\nunit = \"A\""),
-     "13: relation sum: unit is not known"},
-    {"syntax", with_relation(11, "expression = \"I_BUS -\""),
-     "11: relation sum: expression at byte"},
-    {"constant", with_relation(11, "expression = \"1 - 1\""),
-     "11: relation sum: expression uses no parameter"},
-    {"name_twice", with_relation(0, "") + with_relation(0, "").substr(minimal.size()),
-     "14: [[spacecraft.relation]] name sum is taken by a relation above"},
-};
-
-std::string name_of(const ::testing::TestParamInfo<Mistake>& tested) {
-  return tested.param.name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Structure, ConfigMistakes, ::testing::ValuesIn(structure), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, ConfigMistakes, ::testing::ValuesIn(values), name_of);
 INSTANTIATE_TEST_SUITE_P(Derived, ConfigMistakes, ::testing::ValuesIn(derived), name_of);
-INSTANTIATE_TEST_SUITE_P(Relation, ConfigMistakes, ::testing::ValuesIn(relation), name_of);
 INSTANTIATE_TEST_SUITE_P(Syntax, ConfigMistakes, ::testing::ValuesIn(syntax), name_of);
 
 TEST(Config, AllMistakesAreReportedAtOnceByLine) {
@@ -451,34 +375,6 @@ TEST(Config, AnInputMayFollowFromParameters) {
   const EquipmentConfig bdr = config_of(with_derived(0, "")).spacecraft.at(0).equipment.at(0);
   EXPECT_THAT(bdr.inputs, ElementsAre("I_BDRIN1", "P"));
   EXPECT_THAT(bdr.derived, ElementsAre(DerivedInput{"P", "U * I_BDRIN1", "W"}));
-}
-
-TEST(Config, ARelationAppliesToTheEquipmentThatUsesOneOfItsParameters) {
-  const std::string other = R"(
-[[spacecraft.equipment]]
-name = "BAT"
-inputs = ["P"]
-outputs = ["V_BAT"]
-sample_period = "1s"
-window = "100min"
-screening = "off"
-[[spacecraft.equipment.derived]]
-name = "P"
-expression = "I_BAT * V_BUS"
-unit = "W"
-[[spacecraft.relation]]
-name = "battery"
-expression = "I_BAT - I_CHARGE"
-tolerance = 1
-)";
-  const SpacecraftConfig spacecraft = config_of(with_relation(0, "") + other).spacecraft.at(0);
-  const Relation sum{"sum", "I_BDROUT + I_SG2 - I_BUS", 0.5};
-  const Relation battery{"battery", "I_BAT - I_CHARGE", 1};
-  EXPECT_THAT(spacecraft.relations, ElementsAre(sum, battery));
-  EXPECT_THAT(spacecraft.equipment.at(0).relations, ElementsAre(sum));
-  EXPECT_THAT(spacecraft.equipment.at(1).relations, ElementsAre(battery));
-  EXPECT_TRUE(spacecraft.equipment.at(0).screening);
-  EXPECT_FALSE(spacecraft.equipment.at(1).screening);
 }
 
 TEST(Config, VersionsAreAQuarterOfTheSlideApart) {

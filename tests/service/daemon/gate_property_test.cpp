@@ -63,6 +63,7 @@ Outcome outcome(const Trial& one, const StateSpaceModel& candidate) {
   evidence.mean.sure_percent = 80;
   evidence.window_end = 1000;
   EquipmentConfig limits;
+  limits.margin_percent = 2;
   limits.max_mrse_percent = 1e6;
   const auto paired = identification::compare_runs(record.y, of_champion, run, {{0, rows}},
                                                    limits.confidence_percent / 100);

@@ -67,6 +67,29 @@ TEST_P(Gate, Decides) {
 // Each reason, and the evidence that just misses it.
 const Case of_the_candidate[] = {
     {"Good", [](auto&, auto&) {}, Outcome::approved},
+    {"ConstantOffsetThatNobodyVouchesFor",
+     [](auto& e, auto&) {
+       e.champion->without_offset = e.champion->comparison;
+       e.champion->without_offset->sure_percent = 5;
+       e.champion->unbound = {"y"};
+     },
+     Outcome::unvouched},
+    {"ConstantOffsetAndMore",
+     [](auto& e, auto&) {
+       e.champion->without_offset = e.champion->comparison;
+       e.champion->unbound = {"y"};
+     },
+     Outcome::approved},
+    {"ConstantOffsetOfSensorsThatARelationBinds",
+     [](auto& e, auto&) { e.champion->without_offset = Evidence::Comparison{}; },
+     Outcome::approved},
+    {"ConstantOffsetThatMayBe",
+     [](auto& e, auto& c) {
+       e.champion->without_offset = Evidence::Comparison{};
+       e.champion->unbound = {"y"};
+       c.unvouched = UnvouchedPolicy::approve;
+     },
+     Outcome::approved},
     {"ByHand", [](auto&, auto& c) { c.approval = ApprovalPolicy::by_hand; }, Outcome::waiting},
     {"ConstantOutput", [](auto& e, auto&) { e.validation_moves = false; },
      Outcome::validation_says_nothing},

@@ -157,6 +157,37 @@ TEST_F(LyingSensors, WithoutARelationAreFoundWhereOneIsStuck) {
               testing::Not(HasSubstr("implausible")));
 }
 
+TEST_F(LyingSensors, ThatNothingVouchesForWaitForAnOperator) {
+  EquipmentConfig equipment = bound();
+  equipment.relations[0].tolerance = 0.5;
+  archive.append(frames(day, 1201));
+  const RefreshResult first = run(day + 20 * minute, equipment);
+  registry.record(first.attempt, first.version, *first.decision);
+  auto lied = frames(day + 20 * minute + second, 1200);
+  bias(lied, 0, 1200, 0.4);  // more than a small bias of an input would do
+  archive.append(lied);
+
+  EXPECT_EQ(run(day + 40 * minute, equipment).attempt.outcome, "approved");
+  equipment.relations.clear();
+  const RefreshResult result = run(day + 40 * minute, equipment);
+  EXPECT_EQ(result.attempt.outcome, "unvouched") << result.attempt.reason;
+  EXPECT_THAT(result.attempt.reason, HasSubstr("a sensor of y"));
+  ASSERT_TRUE(result.decision);
+  EXPECT_EQ(result.decision->kind, storage::DecisionKind::wait);
+  equipment.unvouched = UnvouchedPolicy::approve;
+  EXPECT_EQ(run(day + 40 * minute, equipment).attempt.outcome, "approved");
+}
+
+TEST_F(LyingSensors, AreNotSuspectedWhereTheEquipmentHasChanged) {
+  EquipmentConfig equipment = bound();
+  equipment.relations.clear();
+  archive.append(frames(day, 1201));
+  const RefreshResult first = run(day + 20 * minute, equipment);
+  registry.record(first.attempt, first.version, *first.decision);
+  archive.append(telemetry(day + 20 * minute + second, 1200, 1.5));
+  EXPECT_EQ(run(day + 40 * minute, equipment).attempt.outcome, "approved");
+}
+
 TEST_F(LyingSensors, AreNoDriftOfTheChampion) {
   EquipmentConfig equipment = bound();
   equipment.window = 60 * minute;  // blocks of more than a minute
