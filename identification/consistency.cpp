@@ -21,38 +21,41 @@ double median(std::vector<double> sorted) {
   return *middle;
 }
 
-/// The rows whose surrounding stretch of `length` rows has its median more than `limit` away from
-/// `centre`. At either end the stretch is the first or the last.
-std::vector<RowRange> stretches_beyond(const Vector& r, double centre, double limit, Index length) {
+/// The rows of whose surrounding stretch of `length` rows more than half are more than `limit` away
+/// from `centre`: on one side of it, or on both together. At either end the stretch is the first
+/// or the last.
+std::vector<RowRange> stretches_beyond(const Vector& r, double centre, double limit, Index length,
+                                       bool on_one_side) {
   const Index rows = r.size();
-  const auto side = [&](Index row) {
-    const double away = r(row) - centre;
-    return away > limit ? 1 : away < -limit ? -1 : 0;
-  };
   Index above = 0, below = 0;
   const auto count = [&](Index row, Index one) {
-    const int at = side(row);
-    if (at > 0) above += one;
-    if (at < 0) below += one;
+    const double away = r(row) - centre;
+    if (away > limit) above += one;
+    if (away < -limit) below += one;
   };
   for (Index row = 0; row < length; ++row) count(row, 1);
   std::vector<RowRange> found;
-  const auto add = [&found](RowRange range) {
-    if (!found.empty() && found.back().end >= range.begin)
-      found.back().end = range.end;
-    else
-      found.push_back(range);
-  };
-  const Index half = length / 2;
-  for (Index begin = 0; begin + length <= rows; ++begin) {
-    const Index centre_row = begin + half;
-    if (2 * std::max(above, below) > length)
-      add({begin == 0 ? 0 : centre_row, begin + length == rows ? rows : centre_row + 1});
-    if (begin + length == rows) break;
+  for (Index begin = 0;; ++begin) {
+    if (2 * (on_one_side ? std::max(above, below) : above + below) > length) {
+      const RowRange here{begin == 0 ? 0 : begin + length / 2,
+                          begin + length == rows ? rows : begin + length / 2 + 1};
+      if (!found.empty() && found.back().end >= here.begin)
+        found.back().end = here.end;
+      else
+        found.push_back(here);
+    }
+    if (begin + length == rows) return found;
     count(begin, -1);
     count(begin + length, 1);
   }
-  return found;
+}
+
+double residual_of(const Vector& r, RowRange rows, bool is_shift) {
+  std::vector<double> values(r.begin() + rows.begin, r.begin() + rows.end);
+  const double middle = median(values);
+  if (is_shift) return middle;
+  for (double& value : values) value = std::abs(value);
+  return std::copysign(median(std::move(values)), middle);
 }
 
 std::int64_t tick_of(const Record& record, Index row) {
@@ -69,11 +72,11 @@ std::vector<Inconsistency> inconsistencies(const Record& residual, double tolera
   std::vector<Inconsistency> found;
   const auto take = [&](double centre, double limit, Index length, bool is_shift) {
     if (r.size() < length) return;
-    for (const RowRange& rows : stretches_beyond(r, centre, limit, length)) {
+    for (const RowRange& rows : stretches_beyond(r, centre, limit, length, is_shift)) {
       const RowRange wide{std::max<Index>(0, rows.begin - margin_rows),
                           std::min(r.size(), rows.end + margin_rows)};
       found.push_back({{tick_of(residual, wide.begin), tick_of(residual, wide.end - 1) + 1},
-                       median({r.begin() + rows.begin, r.begin() + rows.end}),
+                       residual_of(r, rows, is_shift),
                        is_shift});
     }
   };

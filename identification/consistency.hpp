@@ -3,11 +3,11 @@
 // The residual r of a balance (a sum of currents at a node, two measurements of one voltage) is
 // zero but for noise, calibration and the lag of its sensors; a sensor that lies moves it (E. Y.
 // Chow, A. S. Willsky, "Analytical redundancy and the design of robust failure detection systems",
-// IEEE Transactions on Automatic Control 29(7), 1984). What is looked at is the median of r over
+// IEEE Transactions on Automatic Control 29(7), 1984). What is looked at is the median over
 // a stretch of rows: neither spikes nor the lag of a sensor at a load step move it as long as they
 // take less than half of the stretch, and a bias moves it by its size.
 //
-//   level   |median of r over 121 rows| > tolerance
+//   level   median of |r| over 121 rows > tolerance: a bias, or noise that is larger
 //   shift   |median of r over 1201 rows - usual| > tolerance / 2, usual the median over all rows
 //   within
 //                                                              the tolerance
@@ -26,7 +26,7 @@ namespace reident::identification {
 
 struct Inconsistency {
   TickRange ticks;
-  double residual = 0;    // median of r there
+  double residual = 0;    // median of r there; of |r|, with the sign of that, where it is a level
   bool is_shift = false;  // within the tolerance, but away from the usual value
 };
 

@@ -60,6 +60,17 @@ TEST(Consistency, IsNotBrokenBySpikesOrShortLags) {
   EXPECT_TRUE(found_in(r).empty());
 }
 
+TEST(Consistency, IsBrokenByNoiseThatNeverEnds) {
+  Vector r = honest(20'000);
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise(0, 2);
+  for (double& value : r) value += noise(random);
+  const auto found = found_in(r);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].ticks, (TickRange{0, 20'000}));
+  EXPECT_NEAR(std::abs(found[0].residual), 1.35, 0.2);
+}
+
 TEST(Consistency, OfTooFewRowsIsNotJudged) {
   EXPECT_TRUE(found_in(Vector::Constant(120, 9)).empty());
   ASSERT_EQ(found_in(Vector::Constant(121, 9)).size(), 1U);
