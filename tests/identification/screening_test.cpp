@@ -29,7 +29,7 @@ struct Telemetry {
       const bool is_dark = phase > 0.65;
       u(t, 0) =
           is_dark ? 0 : quantised(10 + 3 * std::sin(2 * pi * phase) + 0.05 * noise(random), 0.02);
-      u(t, 1) = quantised(5 + (t / 431 % 3) + 0.05 * noise(random), 0.02);
+      u(t, 1) = quantised(5 + double(t / 431 % 3) + 0.05 * noise(random), 0.02);
       u(t, 2) = is_dark ? quantised(27.5 - 0.3 * phase + 0.01 * noise(random), 0.01) : 28;
       u(t, 3) = quantised(15 + 5 * std::sin(2 * pi * phase), 0.25);
       y(t, 0) = quantised(50 + 3 * std::sin(2 * pi * phase) + 0.03 * noise(random), 0.02);
