@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <limits>
+#include <pthread.h>
 #include <thread>
 #include <utility>
 
@@ -111,6 +112,7 @@ void Daemon::start() {
 
 std::thread Daemon::spawn(const char* name, std::function<void()> body) {
   return std::thread([this, name, body = std::move(body)] {
+    pthread_setname_np(pthread_self(), name);  // for top, perf and debuggers
     try {
       body();
     } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <exception>
+#include <pthread.h>
 #include <system_error>
 #include <utility>
 
@@ -85,6 +86,7 @@ WorkerPool::Call* WorkerPool::oldest_call() const {
 }
 
 void WorkerPool::help_until_stopped() {
+  pthread_setname_np(pthread_self(), "worker");  // for top, perf and debuggers
   const MutexLock lock(mutex_);
   while (!stopped_) {
     if (Call* call = oldest_call()) {

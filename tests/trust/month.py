@@ -1,0 +1,105 @@
+"""A month of the whole reference subsystem through the real processes: satcs-reference at full speed
+over DDS to reidentd with deploy/reference.toml, until no window is pending.
+
+    month.py PROGRAMS CONFIGURATION [--days N] [--speed N|max]
+
+PROGRAMS is the folder service of a build; the database is made beside it, on the disk of the build,
+and thrown away. Prints one JSON object: wall seconds for the month, what was stored, tried and
+approved, and where processor time went, in seconds.
+"""
+
+import argparse
+import collections
+import json
+import os
+import random
+import signal
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+TICKS_A_SECOND = os.sysconf("SC_CLK_TCK")
+
+
+def processor_seconds(stat):
+    """Of a text of /proc: user and system time."""
+    fields = stat.rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / TICKS_A_SECOND
+
+
+def processor_seconds_of_threads(process):
+    """By the name of the thread."""
+    seconds = collections.Counter()
+    for task in Path(f"/proc/{process.pid}/task").iterdir():
+        seconds[(task / "comm").read_text().strip()] += processor_seconds(
+            (task / "stat").read_text())
+    return {name: round(spent, 1) for name, spent in seconds.most_common() if spent >= 0.5}
+
+
+def measure(programs, configuration, folder, days, speed):
+    domain = random.SystemRandom().randint(1, 200)
+    endpoint = ["--domain", str(domain), "--partition", "month"]
+    environment = {k: v for k, v in os.environ.items() if k != "CYCLONEDDS_URI"}
+    (folder / "month.toml").write_text(
+        f'[dds]\ndomain = {domain}\npartition = "month"\n\n{configuration.read_text()}')
+
+    def run(program, *arguments):
+        done = subprocess.run([programs / program, *arguments], check=True, env=environment,
+                              stdout=subprocess.PIPE, text=True)
+        return json.loads(done.stdout)
+
+    with open(folder / "reidentd.log", "w") as log:
+        service = subprocess.Popen(
+            [programs / "daemon/reidentd", "--config", folder / "month.toml"], stdout=log,
+            stderr=log, env=environment)
+    try:
+        began = time.monotonic()
+        before = os.times()
+        sent = run("satcs/satcs-reference", "--duration", f"{days}d", "--speed", speed,
+                   "--wait-readers", "1", "--json", *endpoint)
+        after = os.times()
+        ingested = time.monotonic() - began
+        status = run("cli/reident", "status", "--wait", "idle", "--timeout", "3600", "--json",
+                     *endpoint)
+        seconds = time.monotonic() - began
+        threads = processor_seconds_of_threads(service)
+        total = processor_seconds(Path(f"/proc/{service.pid}/stat").read_text())
+    finally:
+        service.send_signal(signal.SIGTERM)
+        service.wait()
+    attempts = run("cli/reident", "history", "--database", folder / "reference.db",
+                   "--json")["attempts"]
+    outcomes = collections.Counter(
+        (attempt["equipment"], attempt["trigger"], attempt["outcome"]) for attempt in attempts)
+    spacecraft = after.children_user + after.children_system - (
+        before.children_user + before.children_system)
+    return {
+        "month_seconds": round(seconds, 1), "days": days, "until_sent_s": round(ingested, 1),
+        "frames": sent["frames"], "samples": sent["samples"],
+        "samples_stored": status["samples_stored"],
+        "windows": len(attempts),
+        "approved": sum(count for (*_, outcome), count in outcomes.items()
+                        if outcome == "approved"),
+        "outcomes": {" ".join(key): count for key, count in sorted(outcomes.items())},
+        "processor_s": {"total": round(spacecraft + total, 1),
+                        "satcs-reference": round(spacecraft, 1), "reidentd": round(total, 1),
+                        "reidentd_threads": threads},
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=Path)
+    parser.add_argument("configuration", type=Path)
+    parser.add_argument("--days", type=int, default=30)
+    parser.add_argument("--speed", default="max")
+    chosen = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="month-", dir=chosen.programs.parent) as folder:
+        print(json.dumps(measure(chosen.programs.resolve(), chosen.configuration, Path(folder),
+                                 chosen.days, chosen.speed)))
+
+
+if __name__ == "__main__":
+    main()
