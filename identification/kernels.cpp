@@ -135,44 +135,95 @@ bool cholesky(double* A, Index size) {
 
 namespace {
 
-// Small sizes known to the compiler keep their vectors in registers; 0 stands for any size.
+// Sizes known to the compiler keep sums in registers. Vectors are padded with zeros to whole fours:
+// without, the compiler works on some sizes entry by entry.
 #define REIDENT_SMALL_SIZES(CASE) \
   CASE(1) CASE(2) CASE(3) CASE(4) CASE(5) CASE(6) CASE(7) CASE(8) CASE(9) CASE(10) CASE(11) CASE(12)
 
-template <int Rows>
+constexpr std::size_t most_columns = 32;  // of [A B] on the stack
+constexpr Index inputs_at_once = 16;
+
+/// A step waits for the state of the one before: what the inputs add is summed first, and the
+/// columns of the state in two sums.
+template <std::size_t Quads>
 REIDENT_INLINE void state_space_steps(const double* M, Index n, Index m, Index p, const double* v,
-                                      Index count, double* state, double* work, double* y) {
-  const Index rows = Rows > 0 ? Rows : n + p;
-  double registers[static_cast<std::size_t>(Rows > 0 ? Rows : 1)];
-  double* __restrict next = Rows > 0 ? registers : work;
+                                      Index count, double* state, double* y) {
+  Four columns[most_columns][Quads] = {};
+  for (Index j = 0; j < n + m; ++j)
+    __builtin_memcpy(columns[j], M + j * (n + p), static_cast<std::size_t>(n + p) * sizeof(double));
+  double next[4 * Quads] = {};
+  __builtin_memcpy(next, state, static_cast<std::size_t>(n) * sizeof(double));
   for (Index k = 0; k < count; ++k, v += m, y += p) {
-    for (Index i = 0; i < rows; ++i) next[i] = 0;
+    Four even[Quads] = {}, odd[Quads] = {};
+    for (Index j = 0; j < m; ++j)
+      for (std::size_t q = 0; q < Quads; ++q) even[q] += columns[n + j][q] * v[j];
+    for (Index j = 0; j < n; j += 2)
+      for (std::size_t q = 0; q < Quads; ++q) even[q] += columns[j][q] * next[j];
+    for (Index j = 1; j < n; j += 2)
+      for (std::size_t q = 0; q < Quads; ++q) odd[q] += columns[j][q] * next[j];
+    for (std::size_t q = 0; q < Quads; ++q) store(next + 4 * q, even[q] + odd[q]);
+    for (Index i = 0; i < p; ++i) y[i] = next[n + i];
+  }
+  __builtin_memcpy(state, next, static_cast<std::size_t>(n) * sizeof(double));
+}
+
+/// The same for any size.
+REIDENT_INLINE void state_space_steps_of_any_size(const double* M, Index n, Index m, Index p,
+                                                  const double* v, Index count, double* state,
+                                                  double* work, double* y) {
+  const Index rows = n + p;
+  for (Index k = 0; k < count; ++k, v += m, y += p) {
+    for (Index i = 0; i < rows; ++i) work[i] = 0;
     const double* column = M;
     for (Index j = 0; j < n; ++j, column += rows)
-      for (Index i = 0; i < rows; ++i) next[i] += column[i] * state[j];
+      for (Index i = 0; i < rows; ++i) work[i] += column[i] * state[j];
     for (Index j = 0; j < m; ++j, column += rows)
-      for (Index i = 0; i < rows; ++i) next[i] += column[i] * v[j];
-    for (Index i = 0; i < n; ++i) state[i] = next[i];
-    for (Index i = n; i < rows; ++i) y[i - n] = next[i];
+      for (Index i = 0; i < rows; ++i) work[i] += column[i] * v[j];
+    for (Index i = 0; i < n; ++i) state[i] = work[i];
+    for (Index i = n; i < rows; ++i) y[i - n] = work[i];
   }
 }
 
-template <int Order>
-REIDENT_INLINE void dual_filter_steps(const double* At, const double* c, Index n, Index inputs,
+/// The filters of at most `inputs_at_once` inputs: while one waits for its sums, the others go on.
+template <std::size_t Order>
+REIDENT_INLINE void dual_filter_steps(const double* At, const double* c, Index inputs, Index stride,
                                       const double* v, Index count, double* states, double* out,
                                       Index out_stride) {
-  const Index order = Order > 0 ? Order : n;
-  for (Index k = 0; k < count; ++k, out += out_stride, v += inputs) {
+  constexpr std::size_t quads = (Order + 3) / 4, bytes = Order * sizeof(double);
+  constexpr Index order = Index(Order), padded = 4 * Index(quads);
+  Four columns[Order][quads] = {}, driven[quads] = {};
+  for (std::size_t l = 0; l < Order; ++l)
+    __builtin_memcpy(columns[l], At + Index(l) * order, bytes);
+  __builtin_memcpy(driven, c, bytes);
+  double x[std::size_t{inputs_at_once} * 4 * quads] = {};
+  for (Index j = 0; j < inputs; ++j) __builtin_memcpy(x + j * padded, states + j * order, bytes);
+  for (Index k = 0; k < count; ++k, out += out_stride, v += stride)
     for (Index j = 0; j < inputs; ++j) {
-      double* __restrict x = out + j * order;
-      double* __restrict next = states + j * order;
-      for (Index i = 0; i < order; ++i) x[i] = next[i];
-      for (Index i = 0; i < order; ++i) next[i] = c[i] * v[j];
-      const double* column = At;
-      for (Index l = 0; l < order; ++l, column += order)
-        for (Index i = 0; i < order; ++i) next[i] += column[i] * x[l];
+      double* own = x + j * padded;
+      __builtin_memcpy(out + j * order, own, bytes);
+      Four next[quads];
+      for (std::size_t q = 0; q < quads; ++q) next[q] = driven[q] * v[j];
+      for (std::size_t l = 0; l < Order; ++l)
+        for (std::size_t q = 0; q < quads; ++q) next[q] += columns[l][q] * own[l];
+      for (std::size_t q = 0; q < quads; ++q) store(own + 4 * q, next[q]);
     }
-  }
+  for (Index j = 0; j < inputs; ++j) __builtin_memcpy(states + j * order, x + j * padded, bytes);
+}
+
+/// The same for any size.
+REIDENT_INLINE void dual_filter_steps_of_any_size(const double* At, const double* c, Index n,
+                                                  Index inputs, const double* v, Index count,
+                                                  double* states, double* out, Index out_stride) {
+  for (Index k = 0; k < count; ++k, out += out_stride, v += inputs)
+    for (Index j = 0; j < inputs; ++j) {
+      double* __restrict x = out + j * n;
+      double* __restrict next = states + j * n;
+      for (Index i = 0; i < n; ++i) x[i] = next[i];
+      for (Index i = 0; i < n; ++i) next[i] = c[i] * v[j];
+      const double* column = At;
+      for (Index l = 0; l < n; ++l, column += n)
+        for (Index i = 0; i < n; ++i) next[i] += column[i] * x[l];
+    }
 }
 
 }  // namespace
@@ -180,30 +231,32 @@ REIDENT_INLINE void dual_filter_steps(const double* At, const double* c, Index n
 REIDENT_CLONES
 void run_state_space(const double* M, Index n, Index m, Index p, const double* v, Index count,
                      double* state, double* work, double* y) {
-  switch (n + p) {
-#define REIDENT_CASE(size)                                                                   \
-  case size:                                                                                 \
-    /* one output: all sizes but that of the inputs are known */                             \
-    if (p == 1) return state_space_steps<size>(M, size - 1, m, 1, v, count, state, work, y); \
-    return state_space_steps<size>(M, n, m, p, v, count, state, work, y);
-    REIDENT_SMALL_SIZES(REIDENT_CASE)
-#undef REIDENT_CASE
-    default:
-      state_space_steps<0>(M, n, m, p, v, count, state, work, y);
-  }
+  if (n + p > 12 || n + m > Index(most_columns))
+    return state_space_steps_of_any_size(M, n, m, p, v, count, state, work, y);
+  if (n + p <= 4) return state_space_steps<1>(M, n, m, p, v, count, state, y);
+  if (n + p <= 8) return state_space_steps<2>(M, n, m, p, v, count, state, y);
+  return state_space_steps<3>(M, n, m, p, v, count, state, y);
 }
 
 REIDENT_CLONES
 void run_dual_filters(const double* At, const double* c, Index n, Index inputs, const double* v,
                       Index count, double* states, double* out, Index out_stride) {
-  switch (n) {
-#define REIDENT_CASE(size) \
-  case size:               \
-    return dual_filter_steps<size>(At, c, n, inputs, v, count, states, out, out_stride);
-    REIDENT_SMALL_SIZES(REIDENT_CASE)
+  if (n == 0) return;
+  if (n > 12)
+    return dual_filter_steps_of_any_size(At, c, n, inputs, v, count, states, out, out_stride);
+  for (Index first = 0; first < inputs; first += inputs_at_once) {
+    const Index some = inputs - first < inputs_at_once ? inputs - first : inputs_at_once;
+    switch (n) {
+#define REIDENT_CASE(size)                                                             \
+  case size:                                                                           \
+    dual_filter_steps<size>(At, c, some, inputs, v + first, count, states + first * n, \
+                            out + first * n, out_stride);                              \
+    break;
+      REIDENT_SMALL_SIZES(REIDENT_CASE)
 #undef REIDENT_CASE
-    default:
-      return dual_filter_steps<0>(At, c, n, inputs, v, count, states, out, out_stride);
+      default:
+        break;
+    }
   }
 }
 

@@ -72,6 +72,9 @@ def measure(programs, configuration, folder, days, speed):
                    "--json")["attempts"]
     outcomes = collections.Counter(
         (attempt["equipment"], attempt["trigger"], attempt["outcome"]) for attempt in attempts)
+    phases = collections.Counter()
+    for attempt in attempts:
+        phases.update(attempt["evidence"].get("timing_ms", {}))
     spacecraft = after.children_user + after.children_system - (
         before.children_user + before.children_system)
     return {
@@ -82,6 +85,8 @@ def measure(programs, configuration, folder, days, speed):
         "approved": sum(count for (*_, outcome), count in outcomes.items()
                         if outcome == "approved"),
         "outcomes": {" ".join(key): count for key, count in sorted(outcomes.items())},
+        "phases_of_windows_s": {phase: round(spent / 1000, 1)
+                                for phase, spent in phases.most_common()},
         "processor_s": {"total": round(spacecraft + total, 1),
                         "satcs-reference": round(spacecraft, 1), "reidentd": round(total, 1),
                         "reidentd_threads": threads},
