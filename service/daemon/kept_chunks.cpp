@@ -1,6 +1,7 @@
 #include "service/daemon/kept_chunks.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,15 +23,16 @@ Record KeptChunks::read_and_keep(TickRange ticks, const Read& read) {
 Record KeptChunks::over(TickRange ticks, const Read& read) {
   const std::int64_t first_chunk = floor_divide(ticks.begin, chunk_ticks);
   chunks_.erase(chunks_.begin(), chunks_.lower_bound(first_chunk));
-  const auto kept_at = [this, &ticks](std::int64_t at) {
-    return at % chunk_ticks == 0 && at + chunk_ticks <= ticks.end &&
-           chunks_.contains(floor_divide(at, chunk_ticks));
+  const auto end_of_chunk_at = [](std::int64_t at) {
+    return (floor_divide(at, chunk_ticks) + 1) * chunk_ticks;
+  };
+  const auto is_kept = [&](std::int64_t at) {
+    return end_of_chunk_at(at) <= ticks.end && chunks_.contains(floor_divide(at, chunk_ticks));
   };
   std::vector<TickRange> missing;
   for (std::int64_t tick = ticks.begin; tick < ticks.end;) {
-    const std::int64_t next =
-        std::min(ticks.end, (floor_divide(tick, chunk_ticks) + 1) * chunk_ticks);
-    if (!kept_at(tick)) {
+    const std::int64_t next = std::min(ticks.end, end_of_chunk_at(tick));
+    if (!is_kept(tick)) {
       if (!missing.empty() && missing.back().end == tick)
         missing.back().end = next;
       else
@@ -41,16 +43,22 @@ Record KeptChunks::over(TickRange ticks, const Read& read) {
   std::map<std::int64_t, Record> fresh;  // by first tick: what was read now
   for (const TickRange& stretch : missing) fresh[stretch.begin] = read_and_keep(stretch, read);
 
+  std::optional<Record> first;  // of a chunk that begins before
   std::vector<const Record*> parts;
   auto stretch = missing.begin();
   for (std::int64_t tick = ticks.begin; tick < ticks.end;) {
     if (stretch != missing.end() && stretch->begin == tick) {
       parts.push_back(&fresh.at(tick));
       tick = stretch++->end;
-    } else {
-      parts.push_back(&chunks_.at(floor_divide(tick, chunk_ticks)));
-      tick += chunk_ticks;
+      continue;
     }
+    const Record& chunk = chunks_.at(floor_divide(tick, chunk_ticks));
+    const std::int64_t end = end_of_chunk_at(tick);
+    if (end - tick < chunk_ticks)
+      parts.push_back(&first.emplace(rows_at(chunk, {tick, end})));
+    else
+      parts.push_back(&chunk);
+    tick = end;
   }
   return parts.empty() ? read({ticks.begin, ticks.begin}) : joined(parts);
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "service/daemon/read_once.hpp"
 #include "service/support/floor_divide.hpp"
 
 namespace reident {
@@ -35,7 +36,8 @@ void KeptWindow::make_holes(const TickSet& holes, TickRange ticks) {
 
 std::variant<WindowData, UnknownParameter> KeptWindow::load(const storage::Archive& archive,
                                                             storage::TimeRange window) {
-  auto described = describe_window(archive, request_);
+  const ReadOnce source(archive);
+  auto described = describe_window(source, request_);
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
   WindowData data = std::get<WindowData>(std::move(described));
   std::vector<Channel> channels = data.input_channels;
@@ -54,10 +56,10 @@ std::variant<WindowData, UnknownParameter> KeptWindow::load(const storage::Archi
   holes_ = outside(holes_, past);
   Record samples = samples_.over(ticks, [&](TickRange missing) {
     ticks_read_ += missing.end - missing.begin;
-    return load_samples(archive, request_, data,
+    return load_samples(source, request_, data,
                         {missing.begin * request_.period, missing.end * request_.period});
   });
-  data.plausibility = checks_.look(archive, data, samples, ticks);
+  data.plausibility = checks_.look(source, data, samples, ticks);
   make_holes(inside(data.plausibility.holes, ticks), ticks);
   data.read_coverage = coverage_of(samples, window, request_.period);
   data.record = InputExpressions(request_.inputs, request_.derived)
