@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "service/support/log.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/trust/report.hpp"
 #include "tests/trust/suite_config.hpp"
 
@@ -26,7 +27,7 @@ LifeGroup group_of(std::string equipment, int hours) {
 
 std::vector<ScenarioOutcome> run(const LifeGroup& group) {
   log::set_level("error");  // drift is a warning, and expected
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   return run_group(group, suite_config(), folder.path());
 }
 

@@ -1,8 +1,8 @@
 #include "tests/trust/suite_config.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
-#include <stdlib.h>
 
 #include <fmt/format.h>
 
@@ -17,6 +17,7 @@ Config suite_config() {
         fmt::format("{}:{}: {}", path.string(), mistakes->front().line, mistakes->front().message));
   Config config = std::get<Config>(std::move(loaded));
   config.durability = storage::Durability::kill;  // the databases are thrown away
+  config.recent_samples = 20'000;
   for (EquipmentConfig& equipment : config.spacecraft.front().equipment) {
     equipment.sample_period = suite_period;
     equipment.hold = std::max(equipment.hold, 3 * suite_period);
@@ -27,17 +28,6 @@ Config suite_config() {
     equipment.max_order = 6;
   }
   return config;
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "reident-trust-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a folder at " + name);
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace reident::trust

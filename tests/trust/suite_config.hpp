@@ -1,8 +1,6 @@
 // The configuration of the service under test.
 #pragma once
 
-#include <filesystem>
-
 #include "service/daemon/config.hpp"
 
 namespace reident::trust {
@@ -15,20 +13,8 @@ inline constexpr Duration suite_period = 8'000'000'000;
 ///   sample_period = "8s", window = "48000s" (eight orbits), slide = "18000s" (three),
 ///   validation_share = 0.4, order = [1, 6]
 ///
+/// and so few recent samples that months of them are in chunks, as at 1 Hz.
 /// Throws std::runtime_error with the first mistake in the file.
 Config suite_config();
-
-/// A folder of its own, gone at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace reident::trust

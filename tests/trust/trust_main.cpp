@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/support/log.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/trust/picture.hpp"
 #include "tests/trust/report.hpp"
 #include "tests/trust/suite_config.hpp"
@@ -69,7 +70,7 @@ void list(const std::vector<LifeGroup>& groups) {
 /// Groups side by side on `jobs` threads; the outcomes in the order of the scenarios' numbers.
 std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Config& config,
                                  const Options& options) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   std::vector<std::vector<ScenarioOutcome>> outcomes(groups.size());
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
