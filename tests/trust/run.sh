@@ -2,27 +2,39 @@
 # The trust suite: did any simulator get a worse model, and how soon did it get a better one?
 # Builds the release preset first. The last line is one JSON object.
 #   tests/trust/run.sh              a few minutes: two scenarios of every sixth life, of the tuned half
-#   tests/trust/run.sh --all        all scenarios, both halves; about an hour on two cores. Writes
-#                                   build/release/trust/report.md with pictures of the worst cases
+#   tests/trust/run.sh --all        first the month, then all scenarios, both halves; about an hour
+#                                   on two cores. Writes build/release/trust/report.md with pictures
+#                                   of the worst cases
+#   tests/trust/run.sh --month      a month of the whole subsystem through the real processes: how
+#                                   long it takes, and where processor time goes
 #   tests/trust/run.sh OPTION...    any options of reident_trust, such as --scenario 2 --plot 2.svg
 #                                   (--help lists them)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 deploy/install_packages.sh --with-tests
 cmake --preset release -DBUILD_TESTING=ON >/dev/null
-cmake --build --preset release --target reident_trust >/dev/null
+cmake --build --preset release --target reident_trust satcs-reference reidentd reident \
+  >/dev/null
 # The databases are read and written all the time, and thrown away.
 if [ -z "${TMPDIR:-}" ] && [ -w /dev/shm ]; then
   export TMPDIR=/dev/shm
 fi
 program=build/release/tests/trust/reident_trust
+month() {  # its database is on the disk of the build
+  python3 tests/trust/month.py build/release/service deploy/reference.toml
+}
 case ${1:-} in
   "")
     exec "$program" --quick
     ;;
   --all)
     shift
-    exec "$program" --report build/release/trust "$@"
+    mkdir -p build/release/trust
+    month >build/release/trust/month.json
+    exec "$program" --report build/release/trust --month build/release/trust/month.json "$@"
+    ;;
+  --month)
+    month
     ;;
   *)
     exec "$program" "$@"
