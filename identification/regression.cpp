@@ -10,6 +10,9 @@ namespace reident::identification {
 namespace {
 
 constexpr Index stretch = 64;
+/// That are folded into a triangular factor: fewer cost more for the factor that comes with them,
+/// more leave the cache.
+constexpr Index rows_at_once = 8 * stretch;
 
 /// The dual system of one output: since C A^j B is linear in B, the regressors of a column of B are
 /// the states of x[k+1] = A' x[k] + c' v[k] driven by that column's input. All inputs v at once.
@@ -176,16 +179,28 @@ Matrix folded(const Matrix& factor, const Eigen::Ref<const Matrix>& rows) {
 }  // namespace
 
 OrthogonalFactor::OrthogonalFactor(const Columns& columns)
-    : columns_(columns), open_(0, columns.count()), factor_(0, columns.count() - columns.n) {}
+    : columns_(columns),
+      waiting_(rows_at_once, columns.count()),
+      open_(0, columns.count()),
+      factor_(0, columns.count() - columns.n) {}
 
 void OrthogonalFactor::add(const RegressionRows& rows) {
-  Matrix all = Matrix::Zero(rows.values.cols(), columns_.count());
+  if (waiting_rows_ + rows.values.cols() > rows_at_once) fold();
+  auto own = waiting_.middleRows(waiting_rows_, rows.values.cols());
+  own.setZero();
   for (Index i = 0; i < rows.values.rows(); ++i)
-    all.col(global(columns_, rows.output, i)) = rows.values.row(i).transpose();
-  open_ = folded(open_, all);
+    own.col(global(columns_, rows.output, i)) = rows.values.row(i).transpose();
+  waiting_rows_ += rows.values.cols();
+}
+
+void OrthogonalFactor::fold() {
+  if (waiting_rows_ == 0) return;
+  open_ = folded(open_, waiting_.topRows(waiting_rows_));
+  waiting_rows_ = 0;
 }
 
 void OrthogonalFactor::end_segment() {
+  fold();
   const Index own = std::min(columns_.n, open_.rows()), rest = columns_.count() - columns_.n;
   segments_.push_back(open_.topRows(own));
   factor_ = folded(factor_, open_.bottomRightCorner(open_.rows() - own, rest));

@@ -86,7 +86,11 @@ class OrthogonalFactor {
   RegressionSolution solve() const;
 
  private:
+  void fold();
+
   Columns columns_;
+  Matrix waiting_;  // rows of the open segment that are not folded in
+  Index waiting_rows_ = 0;
   Matrix open_;    // triangular factor of the open segment
   Matrix factor_;  // triangular factor of the closed segments, over the columns after x0
   std::vector<Matrix> segments_;  // rows of each segment that determine its initial state
