@@ -2,7 +2,7 @@
 # The trust suite: did any simulator get a worse model, and how soon did it get a better one?
 # Builds the release preset first. The last line is one JSON object.
 #   tests/trust/run.sh              a few minutes: two scenarios of every sixth life, of the tuned half
-#   tests/trust/run.sh --all        first the month, then all scenarios, both halves; about an hour
+#   tests/trust/run.sh --all        first the month, then all scenarios, both halves; more than an hour
 #                                   on two cores. Writes build/release/trust/report.md with pictures
 #                                   of the worst cases
 #   tests/trust/run.sh --month      a month of the whole subsystem through the real processes: how
