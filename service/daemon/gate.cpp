@@ -1,5 +1,6 @@
 #include "service/daemon/gate.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -18,6 +19,10 @@ constexpr double residual_limit = 1.0;
 
 /// Where the inputs are elsewhere on most rows, the scores say nothing of what was identified.
 constexpr double outside_limit = 0.5;
+
+/// What a change of the equipment explains of the candidate's error before it, over the champion's
+/// error after it.
+constexpr double past_limit = 2;
 
 constexpr std::array names{
     std::pair{Outcome::approved, std::string_view("approved")},
@@ -40,6 +45,7 @@ constexpr std::array names{
     std::pair{Outcome::comparison_says_nothing, std::string_view("comparison_says_nothing")},
     std::pair{Outcome::not_better_than_champion, std::string_view("not_better_than_champion")},
     std::pair{Outcome::disagrees_with_champion, std::string_view("disagrees_with_champion")},
+    std::pair{Outcome::astray_in_the_past, std::string_view("astray_in_the_past")},
     std::pair{Outcome::too_soon, std::string_view("too_soon")},
 };
 
@@ -145,6 +151,24 @@ Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentCon
                   limits.max_disagreement_percent)};
 }
 
+/// Where the equipment has changed from one model to another, the new one errs on the past about as
+/// much as the old one errs now. One that errs much more there runs away by itself: over so long a
+/// run its slow poles show, which no validation part is long enough for.
+Refusal against_past(const Evidence::Champion& champion) {
+  if (!champion.past) return std::nullopt;
+  const Evidence::Champion::Past& past = *champion.past;
+  const double now = champion.comparison->rival_mrse_percent;
+  if (past.error_percent <= past_limit * std::max(now, past.champion_error_percent))
+    return std::nullopt;
+  return GateDecision{
+      Outcome::astray_in_the_past,
+      fmt::format("On the {} samples before the window that were looked at, the candidate errs by "
+                  "{:.3f} % and champion {} by {:.3f} %. The champion's error now, {:.3f} %, does "
+                  "not explain that: the candidate goes astray in a long run.",
+                  past.rows, past.error_percent, champion.version, past.champion_error_percent,
+                  now)};
+}
+
 Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
   const Evidence::Champion& champion = *e.champion;
   if (e.window_end < champion.window_end)
@@ -152,8 +176,10 @@ Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
         Outcome::older_than_champion,
         fmt::format("Champion {} was identified from newer telemetry.", champion.version)};
   // One that cannot run here, or runs astray, loses to any candidate that holds the rest.
-  if (has_run(champion))
+  if (has_run(champion)) {
     if (auto refusal = against_comparison(champion, limits)) return refusal;
+    if (auto refusal = against_past(champion)) return refusal;
+  }
   if (auto refusal = against_elsewhere(champion, limits)) return refusal;
   const Duration since = e.window_end - champion.window_end;
   if (since < limits.min_interval)

@@ -37,6 +37,7 @@ enum class Outcome {
   comparison_says_nothing,
   not_better_than_champion,
   disagrees_with_champion,
+  astray_in_the_past,
   too_soon,
 };
 std::string_view name(Outcome outcome);
@@ -78,6 +79,14 @@ struct Evidence {
       double champion_mrse_percent = 0;
     };
     std::optional<Elsewhere> elsewhere;  // absent: there is no such place
+    /// Long before the window. Errors are in percent of the outputs' size on the validation part,
+    /// as those of the comparison are.
+    struct Past {
+      std::int64_t rows = 0;
+      double error_percent = 0;  // the candidate's there
+      double champion_error_percent = 0;
+    };
+    std::optional<Past> past{};  // absent: too little telemetry of then
     /// The comparison with the champion's mean error on these samples taken from it.
     std::optional<Comparison> without_offset{};
     /// Parameters whose sensors could show that mean error, and which no relation binds.

@@ -87,6 +87,10 @@ ordered_json to_json(const Evidence::Champion& champion) {
                          {"disagreement_percent", elsewhere->disagreement_percent},
                          {"mrse_percent", elsewhere->mrse_percent},
                          {"champion_mrse_percent", elsewhere->champion_mrse_percent}};
+  if (const auto& past = champion.past)
+    json["past"] = {{"rows", past->rows},
+                    {"error_percent", past->error_percent},
+                    {"champion_error_percent", past->champion_error_percent}};
   return json;
 }
 
@@ -133,11 +137,17 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
     }
   }
   if (prepared.candidate) {
+    GateDecision decision = decide(result.evidence, request.equipment);
+    if (kind_of(decision.outcome) != storage::DecisionKind::reject && result.evidence.champion &&
+        result.evidence.champion->comparison) {
+      // Long to read, and only those that may run have to hold there too.
+      result.evidence.champion->past = in_the_past(archive, registry, prepared);
+      decision = decide(result.evidence, request.equipment);
+    }
     describe(result.evidence, prepared.evidence);
     prepared.evidence["limits"] = limits_json(request.equipment);
     if (!result.evidence.baseline && request.equipment.baseline_mrse_percent)
       prepared.evidence["baseline_mrse_percent"] = *request.equipment.baseline_mrse_percent;
-    const GateDecision decision = decide(result.evidence, request.equipment);
     prepared.attempt.outcome = name(decision.outcome);
     prepared.attempt.reason = decision.reason;
     result.decision = storage::NewDecision{kind_of(decision.outcome), "gate", decision.reason};

@@ -102,6 +102,29 @@ bool reaches_beyond(const std::vector<Signal>& champion, const std::vector<Signa
                      });
 }
 
+/// Free runs of the candidate and the champion, each on its own inputs, where both have rows.
+struct BothRuns {
+  Record record;               // with the candidate's inputs
+  std::vector<Index> rows;     // of the record
+  Matrix candidate, champion;  // of these rows
+};
+
+std::optional<BothRuns> run_both(const storage::Archive& archive, const EquipmentModel& champion,
+                                 const PreparedWindow& prepared, storage::TimeRange range) {
+  auto seen = KeptWindow(prepared.loaded, 1, prepared.checks).load(archive, range);
+  const auto championed = load_window(archive, request_of(champion), range);
+  if (!std::holds_alternative<WindowData>(seen) || !std::holds_alternative<WindowData>(championed))
+    return std::nullopt;
+  BothRuns both{std::move(std::get<WindowData>(seen).record), {}, {}, {}};
+  const Record& own = std::get<WindowData>(championed).record;
+  CommonRows common = common_rows(both.record, both.record.all(), own);
+  both.candidate = free_run(prepared.candidate->model.dynamics, both.record, both.record.all())(
+      common.one, Eigen::all);
+  both.champion = free_run(champion.dynamics, own, own.all())(common.other, Eigen::all);
+  both.rows = std::move(common.one);
+  return both;
+}
+
 /// The two runs where the champion was validated with inputs that the candidate's window does not
 /// hold. Absent where there are too few such samples to tell, or no telemetry of then.
 std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
@@ -110,32 +133,25 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
   constexpr std::size_t least_rows = 30;
   const EquipmentModel& candidate = prepared.candidate->model;
   if (!reaches_beyond(champion.inputs, candidate.inputs)) return std::nullopt;
-  const storage::TimeRange then = champion.validated_on;
-  const auto seen = KeptWindow(prepared.loaded, 1, prepared.checks).load(archive, then);
-  const auto championed = load_window(archive, request_of(champion), then);
-  if (!std::holds_alternative<WindowData>(seen) || !std::holds_alternative<WindowData>(championed))
-    return std::nullopt;
-  const Record& record = std::get<WindowData>(seen).record;
-  const Record& own = std::get<WindowData>(championed).record;
-  const CommonRows common = common_rows(record, record.all(), own);
-  const Matrix candidate_run = free_run(candidate.dynamics, record, record.all());
-  const Matrix champion_run = free_run(champion.dynamics, own, own.all());
-  const std::vector<Index> outside = rows_outside(record.u, candidate.inputs);
-  std::vector<Index> rows, own_rows;
-  for (std::size_t i = 0; i < common.one.size(); ++i)
-    if (std::binary_search(outside.begin(), outside.end(), common.one[i])) {
-      rows.push_back(common.one[i]);
-      own_rows.push_back(common.other[i]);
+  const auto both = run_both(archive, champion, prepared, champion.validated_on);
+  if (!both) return std::nullopt;
+  const std::vector<Index> outside = rows_outside(both->record.u, candidate.inputs);
+  std::vector<Index> rows, places;
+  for (std::size_t i = 0; i < both->rows.size(); ++i)
+    if (std::binary_search(outside.begin(), outside.end(), both->rows[i])) {
+      rows.push_back(both->rows[i]);
+      places.push_back(static_cast<Index>(i));
     }
   if (rows.size() < least_rows) return std::nullopt;
-  const Matrix y = record.y(rows, Eigen::all);
-  const Matrix one = candidate_run(rows, Eigen::all), other = champion_run(own_rows, Eigen::all);
+  const Matrix& all_y = both->record.y;
+  const Matrix y = all_y(rows, Eigen::all), one = both->candidate(places, Eigen::all),
+               other = both->champion(places, Eigen::all);
   Evidence::Champion::Elsewhere result;
   result.rows = y.rows();
   result.mrse_percent = identification::score(y, one).mrse();
   result.champion_mrse_percent = identification::score(y, other).mrse();
   for (Index q = 0; q < y.cols(); ++q) {
-    const double range = record.y.col(q).maxCoeff() - record.y.col(q).minCoeff();
+    const double range = all_y.col(q).maxCoeff() - all_y.col(q).minCoeff();
     const double rms = std::sqrt((one.col(q) - other.col(q)).squaredNorm() / double(y.rows()));
     const double share = rms == 0 ? 0 : 100 * rms / range;
     result.disagreement_percent = std::max(result.disagreement_percent, share);
@@ -243,6 +259,34 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
     compare_over(std::get<WindowData>(loaded).record);
   evidence.elsewhere = elsewhere(archive, champion, prepared);
   return evidence;
+}
+
+std::optional<Evidence::Champion::Past> in_the_past(const storage::Archive& archive,
+                                                    const storage::Registry& registry,
+                                                    const PreparedWindow& prepared) {
+  constexpr int windows = 4;
+  const storage::TimeRange window = prepared.attempt.window;
+  const EquipmentModel& candidate = prepared.candidate->model;
+  const auto version = registry.champion(candidate.spacecraft, candidate.equipment);
+  if (!version) return std::nullopt;
+  std::optional<BothRuns> both;
+  try {
+    both = run_both(archive, equipment_model_from_json(version->model_json), prepared,
+                    {window.begin - windows * (window.end - window.begin), window.begin});
+  } catch (const storage::Error& error) {
+    if (error.kind() != storage::Error::Kind::corrupt) throw;
+    return std::nullopt;  // damage long before the window does not hold it up
+  }
+  const RowRange rows = prepared.candidate->parts.validate;
+  if (!both || static_cast<Index>(both->rows.size()) < rows.size()) return std::nullopt;
+  const auto rms = [](const Matrix& values) -> Eigen::ArrayXd {
+    return (values.colwise().squaredNorm() / double(values.rows())).cwiseSqrt().transpose().array();
+  };
+  const Eigen::ArrayXd size = rms(prepared.data.record.y.middleRows(rows.begin, rows.size()));
+  const Matrix y = both->record.y(both->rows, Eigen::all);
+  const auto error = [&](const Matrix& run) { return 100 * (rms(y - run) / size).mean(); };
+  return Evidence::Champion::Past{static_cast<std::int64_t>(y.rows()), error(both->candidate),
+                                  error(both->champion)};
 }
 
 }  // namespace reident

@@ -154,6 +154,21 @@ const Case beside_its_rivals[] = {
        e.champion->elsewhere = {100, 10, 6, 5};
      },
      Outcome::approved},
+    {"RunsAwayInTheLongPast",
+     [](auto& e, auto&) {
+       e.champion->past = {100, 2.1 * e.champion->comparison->rival_mrse_percent, 1};
+     },
+     Outcome::astray_in_the_past},
+    {"ErrsInThePastAsTheChampionNow",
+     [](auto& e, auto&) {
+       e.champion->past = {100, 1.9 * e.champion->comparison->rival_mrse_percent, 1};
+     },
+     Outcome::approved},
+    {"ErrsInThePastAsTheChampionThere",
+     [](auto& e, auto&) {
+       e.champion->past = {100, 190, 100};
+     },
+     Outcome::approved},
     {"DisagreesElsewhereAndIsRight",
      [](auto& e, auto&) {
        e.champion->elsewhere = {100, 50, 4.9, 5};
