@@ -53,6 +53,21 @@ void check_name(TableReader& reader, std::string_view key, const std::string& na
   if (!mistake.empty()) reader.mistake(key, fmt::format("{} {}", key, mistake));
 }
 
+/// The name of one of several, which those before it do not have; `kind` is what they are.
+template <class Named>
+void read_name(TableReader& reader, std::string_view kind, const std::vector<Named>& siblings,
+               Named& target) {
+  const std::optional<std::string> name = reader.text("name");
+  if (!name) return;
+  target.name = *name;
+  check_name(reader, "name", *name);
+  const auto same = [&](const Named& other) { return other.name == *name; };
+  if (std::any_of(siblings.begin(), siblings.end(), same))
+    reader.mistake("name", fmt::format("name {} is taken by {} {} above", *name,
+                                       kind == "equipment" ? "an" : "a", kind));
+  reader.set_title(fmt::format("{} {}:", kind, *name));
+}
+
 template <class Enum>
 void read_choice(TableReader& reader, std::string_view key, Enum& target,
                  std::initializer_list<std::pair<std::string_view, Enum>> choices) {
@@ -280,14 +295,7 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
   TableReader reader(table, "[[spacecraft.equipment]]", document);
   EquipmentConfig equipment;
   reader.require("name", "\"BDR\"");
-  if (const auto name = reader.text("name")) {
-    equipment.name = *name;
-    check_name(reader, "name", *name);
-    const auto same = [&](const EquipmentConfig& other) { return other.name == *name; };
-    if (std::any_of(siblings.begin(), siblings.end(), same))
-      reader.mistake("name", fmt::format("name {} is taken by an equipment above", *name));
-    reader.set_title(fmt::format("equipment {}:", *name));
-  }
+  read_name(reader, "equipment", siblings, equipment);
   const std::size_t before = document.mistakes.size();
   read_signals(reader, equipment);
   read_derived(reader, document, equipment);
@@ -336,14 +344,7 @@ void read_relation(const toml::table& table, ConfigDocument& document,
   TableReader reader(table, "[[spacecraft.relation]]", document);
   Relation relation;
   reader.require("name", "\"bus currents\"");
-  if (const auto name = reader.text("name")) {
-    relation.name = *name;
-    check_name(reader, "name", *name);
-    const auto same = [&](const Relation& other) { return other.name == *name; };
-    if (std::any_of(siblings.begin(), siblings.end(), same))
-      reader.mistake("name", fmt::format("name {} is taken by a relation above", *name));
-    reader.set_title(fmt::format("relation {}:", *name));
-  }
+  read_name(reader, "relation", siblings, relation);
   reader.require("expression", "\"I_SG2 + I_BDROUT - I_BUS\"");
   if (const auto expression = reader.text("expression")) {
     relation.expression = *expression;
@@ -376,14 +377,7 @@ void read_spacecraft(const toml::table& table, ConfigDocument& document, Config&
   TableReader reader(table, "[[spacecraft]]", document);
   SpacecraftConfig spacecraft;
   reader.require("name", "\"CBERS-4\"");
-  if (const auto name = reader.text("name")) {
-    spacecraft.name = *name;
-    check_name(reader, "name", *name);
-    const auto same = [&](const SpacecraftConfig& other) { return other.name == *name; };
-    if (std::any_of(config.spacecraft.begin(), config.spacecraft.end(), same))
-      reader.mistake("name", fmt::format("name {} is taken by a spacecraft above", *name));
-    reader.set_title(fmt::format("spacecraft {}:", *name));
-  }
+  read_name(reader, "spacecraft", config.spacecraft, spacecraft);
   const std::vector<const toml::table*> tables = reader.sections("equipment");
   if (!reader.has("equipment") && document.complete)
     reader.mistake("equipment", "has no equipment; add [[spacecraft.equipment]]");

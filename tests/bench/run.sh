@@ -23,6 +23,9 @@
 #                                         (bupt1_eps_*.csv). The large archive has 100 million
 #                                         samples, or N, or a billion, and is made in FOLDER.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh screening FILE.csv --input NAME... --output NAME... [--time NAME] [--window ROWS]
+#                                         what the screens for sensor faults leave out of a file's
+#                                         telemetry, as one JSON object
 #   tests/bench/run.sh simulator          a version's way from the service to a step in another
 #                                         process beside ddsperf's round trip, a step beside the
 #                                         bare products, what a step allocates, a hundred
@@ -60,6 +63,10 @@ case $what in
     arguments=(build/release "$@")
     targets=(reident_archive_bench reident_bench_publisher reidentd)
     ;;
+  screening)
+    [ $# -gt 0 ] || usage
+    targets=(reident_screening_bench)
+    ;;
   simulator)
     [ $# -eq 0 ] || usage
     arguments=(build/release)
@@ -83,4 +90,7 @@ if [ "$what" = archive ] &&
   targets+=(reident_telemetry)
 fi
 cmake --build --preset release --target "${targets[@]}" >/dev/null
+if [ "$what" = screening ]; then
+  exec build/release/tests/bench/screening/reident_screening_bench "$@"
+fi
 exec python3 "tests/bench/$what.py" "${arguments[@]}"

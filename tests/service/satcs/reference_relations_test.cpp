@@ -1,4 +1,4 @@
-// The relations of REFERENCE.md between readings, with their tolerances.
+// The relations of REFERENCE.md between readings, second by second.
 #include <cmath>
 #include <limits>
 #include <map>
