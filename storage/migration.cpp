@@ -39,9 +39,12 @@ void samples_to_chunks(sqlite::Connection& connection) {
 
 void migrate(sqlite::Connection& connection, std::int64_t version) {
   if (version < 2) connection.execute(schema::from_1_to_2());
-  connection.execute(schema::from_2_to_3());
-  samples_to_chunks(connection);
-  connection.execute(schema::without_samples_of_2());
+  if (version < 3) {
+    connection.execute(schema::from_2_to_3());
+    samples_to_chunks(connection);
+    connection.execute(schema::without_samples_of_2());
+  }
+  connection.execute(schema::from_3_to_4());
 }
 
 }  // namespace reident::storage

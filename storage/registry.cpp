@@ -30,10 +30,10 @@ std::int64_t add_decision(sqlite::Connection& connection, const std::string& spa
                           const NewDecision& decision, Time time) {
   connection
       .query(
-          "INSERT INTO decision (spacecraft, equipment, version, kind, actor, reason, time) "
-          "VALUES (?, ?, ?, ?, ?, ?, ?)")
+          "INSERT INTO decision (spacecraft, equipment, version, kind, actor, reason, time, "
+          "evidence_json) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
       .run(spacecraft, equipment, version, name(decision.kind), decision.actor, decision.reason,
-           time);
+           time, decision.evidence_json);
   return connection.last_id();
 }
 
@@ -58,6 +58,22 @@ bool follows(DecisionKind kind, std::string_view status) {
       break;
   }
   return false;  // a version waits from its first decision on, or never
+}
+
+/// The version, which may get a decision of this kind. Throws Error where it may not.
+Version version_to_decide(const Registry& registry, const std::string& spacecraft,
+                          const std::string& equipment, std::int64_t version, DecisionKind kind) {
+  std::optional<Version> found = registry.version(spacecraft, equipment, version);
+  if (!found)
+    throw Error(Error::Kind::failed, equipment + " of " + spacecraft + " has no version " +
+                                         std::to_string(version) +
+                                         ": 'reident history' lists those that exist");
+  if (!follows(kind, found->status))
+    throw Error(Error::Kind::failed, "version " + std::to_string(version) + " of " + equipment +
+                                         " of " + spacecraft + " is " + found->status +
+                                         ": it cannot get a decision of kind '" +
+                                         std::string(name(kind)) + "'");
+  return std::move(*found);
 }
 
 }  // namespace
@@ -98,26 +114,17 @@ std::int64_t Registry::decide(const std::string& spacecraft, const std::string& 
                               std::int64_t version, const NewDecision& decision, Time time) {
   sqlite::Connection& db = connection(database_);
   sqlite::Transaction transaction(db);
-  const std::optional<Version> found = this->version(spacecraft, equipment, version);
-  if (!found)
-    throw Error(Error::Kind::failed, equipment + " of " + spacecraft + " has no version " +
-                                         std::to_string(version) +
-                                         ": 'reident history' lists those that exist");
-  if (!follows(decision.kind, found->status))
-    throw Error(Error::Kind::failed, "version " + std::to_string(version) + " of " + equipment +
-                                         " of " + spacecraft + " is " + found->status +
-                                         ": it cannot get a decision of kind '" +
-                                         std::string(name(decision.kind)) + "'");
+  const Version found = version_to_decide(*this, spacecraft, equipment, version, decision.kind);
   if (decision.kind == DecisionKind::approve) {
     const auto champion = champion_decision(spacecraft, equipment);
-    if (found->parent != (champion ? std::optional(champion->version) : std::nullopt))
+    if (found.parent != (champion ? std::optional(champion->version) : std::nullopt))
       throw Error(Error::Kind::failed, "version " + std::to_string(version) + " of " + equipment +
                                            " of " + spacecraft +
                                            " was judged against another champion than today's: "
                                            "it cannot be approved");
   }
   std::optional<Version> previous;
-  if (decision.kind == DecisionKind::withdraw && found->status == "approved")
+  if (decision.kind == DecisionKind::withdraw && found.status == "approved")
     previous = previous_champion(spacecraft, equipment);
   const std::int64_t id = add_decision(db, spacecraft, equipment, version, decision, time);
   if (previous)
@@ -127,6 +134,19 @@ std::int64_t Registry::decide(const std::string& spacecraft, const std::string& 
          .actor = decision.actor,
          .reason = "version " + std::to_string(version) + " was withdrawn: " + decision.reason},
         time);
+  transaction.commit();
+  return id;
+}
+
+std::optional<std::int64_t> Registry::decide_if(const Standing& standing,
+                                                const std::string& spacecraft,
+                                                const std::string& equipment, std::int64_t version,
+                                                const NewDecision& decision, Time time) {
+  sqlite::Connection& db = connection(database_);
+  sqlite::Transaction transaction(db);
+  if (this->standing(spacecraft, equipment) != standing) return std::nullopt;
+  version_to_decide(*this, spacecraft, equipment, version, decision.kind);
+  const std::int64_t id = add_decision(db, spacecraft, equipment, version, decision, time);
   transaction.commit();
   return id;
 }
@@ -192,6 +212,25 @@ std::vector<VersionSummary> Registry::summaries(const std::string& spacecraft,
     summaries.push_back({row.integer(0), row.text(1),
                          row.is_null(2) ? std::nullopt : std::optional(row.integer(2))});
   return summaries;
+}
+
+std::vector<std::int64_t> Registry::undecided(const std::string& spacecraft,
+                                              const std::string& equipment,
+                                              const std::string& outcome) const {
+  std::vector<std::int64_t> numbers;
+  sqlite::Query row = connection(database_).query(
+      "SELECT own.version FROM decision AS own "
+      "JOIN version ON version.spacecraft = ?1 AND version.equipment = ?2 "
+      "            AND version.number = own.version "
+      "JOIN attempt ON attempt.id = version.attempt "
+      "WHERE own.spacecraft = ?1 AND own.equipment = ?2 AND own.kind = 'wait' AND outcome = ?3 "
+      "AND NOT EXISTS (SELECT 1 FROM decision AS other "
+      "                WHERE other.spacecraft = ?1 AND other.equipment = ?2 "
+      "                AND other.version = own.version AND other.id <> own.id) "
+      "ORDER BY own.version",
+      spacecraft, equipment, outcome);
+  while (row.step()) numbers.push_back(row.integer(0));
+  return numbers;
 }
 
 std::vector<Decision> Registry::decisions(const std::string& spacecraft,

@@ -56,6 +56,7 @@ struct NewDecision {
   DecisionKind kind = DecisionKind::reject;
   std::string actor;  // "gate" or an operator's name
   std::string reason;
+  std::string evidence_json{};  // what it looked at beside the attempt; empty: nothing
 };
 
 struct Attempt : NewAttempt {
@@ -176,6 +177,12 @@ class Registry {
   std::int64_t decide(const std::string& spacecraft, const std::string& equipment,
                       std::int64_t version, const NewDecision& decision, Time time);
 
+  /// The same by one who judged a waiting version against today's champion, whatever its parent was
+  /// till then, unless the equipment's standing is not the given one any more.
+  std::optional<std::int64_t> decide_if(const Standing& standing, const std::string& spacecraft,
+                                        const std::string& equipment, std::int64_t version,
+                                        const NewDecision& decision, Time time);
+
   /// Holds the equipment's champion, or releases it. Throws Error where it is held, or not held,
   /// already.
   void put_on_hold(const std::string& spacecraft, const std::string& equipment, const Hold& hold);
@@ -203,6 +210,9 @@ class Registry {
   /// Every version of an equipment, ascending.
   std::vector<VersionSummary> summaries(const std::string& spacecraft,
                                         const std::string& equipment) const;
+  /// Versions of attempts with this outcome whose only decision is to wait, ascending.
+  std::vector<std::int64_t> undecided(const std::string& spacecraft, const std::string& equipment,
+                                      const std::string& outcome) const;
   /// Ascending by id.
   std::vector<Decision> decisions(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<std::int64_t> version = std::nullopt) const;

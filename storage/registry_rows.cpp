@@ -67,7 +67,8 @@ Version read_version(const sqlite::Query& row) {
 }
 
 std::string decision_sql(std::string_view rest) {
-  return "SELECT id, spacecraft, equipment, version, kind, actor, reason, time FROM decision " +
+  return "SELECT id, spacecraft, equipment, version, kind, actor, reason, time, evidence_json "
+         "FROM decision " +
          std::string(rest);
 }
 
@@ -81,6 +82,7 @@ Decision read_decision(const sqlite::Query& row) {
   decision.actor = row.text(5);
   decision.reason = row.text(6);
   decision.time = row.integer(7);
+  decision.evidence_json = row.text(8);
   return decision;
 }
 

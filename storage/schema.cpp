@@ -136,6 +136,11 @@ CREATE INDEX decision_for_champion ON decision (spacecraft, equipment)
   WHERE kind IN ('approve', 'roll_back');
 )sql";
 
+constexpr std::string_view decision_of_4 = R"sql(
+ALTER TABLE decision ADD COLUMN evidence_json TEXT NOT NULL DEFAULT '';
+CREATE INDEX decision_to_wait ON decision (spacecraft, equipment, version) WHERE kind = 'wait';
+)sql";
+
 constexpr std::string_view operator_tables = R"sql(
 CREATE TABLE hold (
   id INTEGER PRIMARY KEY,
@@ -216,8 +221,9 @@ CREATE VIEW telemetry_removed AS
                       AND parameter.id = series.parameter;
 )sql";
 
-constexpr std::string_view registry_views = R"sql(
--- Each version with the champion that it was judged against: the one before its first decision.
+constexpr std::string_view lineage_view = R"sql(
+-- Each version with the champion that it was judged against: the one before its approval, or else
+-- before its first decision.
 CREATE VIEW lineage AS
   SELECT spacecraft, equipment, version,
          (SELECT before.version FROM decision AS before
@@ -233,10 +239,12 @@ CREATE VIEW lineage AS
                               AND withdrawal.kind = 'withdraw'
                               AND withdrawal.id < own.id)) AS parent
   FROM decision AS own
-  WHERE id = (SELECT min(id) FROM decision AS first WHERE first.spacecraft = own.spacecraft
-                                                      AND first.equipment = own.equipment
-                                                      AND first.version = own.version);
+  WHERE id = (SELECT coalesce(min(iif(kind = 'approve', id, NULL)), min(id)) FROM decision AS any
+              WHERE any.spacecraft = own.spacecraft AND any.equipment = own.equipment
+                AND any.version = own.version);
+)sql";
 
+constexpr std::string_view registry_views = R"sql(
 CREATE VIEW model_version AS
   SELECT version.spacecraft, version.equipment, number AS version, attempt, window_begin,
          window_end, attempt.time AS created,
@@ -320,8 +328,8 @@ std::string user_version() {
 
 std::string creation() {
   return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
-                 decision_table, operator_tables, telemetry_views, hole_view, removal_view,
-                 registry_views}) +
+                 decision_table, decision_of_4, operator_tables, telemetry_views, hole_view,
+                 removal_view, lineage_view, registry_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
@@ -349,7 +357,7 @@ INSERT INTO decision (id, spacecraft, equipment, version, kind, actor, reason, t
   ORDER BY id;
 DROP TABLE decision_of_1;
 )sql";
-  return joined({before, decision_table, move, operator_tables, registry_views}) +
+  return joined({before, decision_table, move, operator_tables, lineage_view, registry_views}) +
          append_only_decisions();
 }
 
@@ -362,7 +370,11 @@ ALTER TABLE series ADD COLUMN moved INTEGER NOT NULL DEFAULT 0;
 }
 
 std::string without_samples_of_2() {
-  return "DROP TABLE sample;" + user_version();
+  return "DROP TABLE sample;";
+}
+
+std::string from_3_to_4() {
+  return joined({"DROP VIEW lineage;", lineage_view, decision_of_4}) + user_version();
 }
 
 }  // namespace reident::storage::schema

@@ -126,6 +126,10 @@ constexpr Rule rules[] = {
      "evidence that is no JSON' FROM attempt "
      "WHERE evidence_json <> '' AND NOT json_valid(evidence_json)",
      as_backup},
+    {"decisions",
+     "SELECT spacecraft, equipment, NULL, NULL, NULL, 'decision ' || id || ' has evidence that is "
+     "no JSON' FROM decision WHERE evidence_json <> '' AND NOT json_valid(evidence_json)",
+     as_backup},
     {"attempts",
      "SELECT spacecraft, equipment, NULL, window_begin, window_end, 'attempt ' || id || ' has a "
      "window that ends before it begins' FROM attempt WHERE window_end < window_begin",

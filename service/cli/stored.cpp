@@ -80,11 +80,14 @@ ordered_json hold_json(const storage::Hold& hold) {
 
 ordered_json decisions_json(const std::vector<storage::Decision>& decisions) {
   ordered_json list = ordered_json::array();
-  for (const storage::Decision& decision : decisions)
+  for (const storage::Decision& decision : decisions) {
     list.push_back({{"kind", storage::name(decision.kind)},
                     {"time", time_text(decision.time)},
                     {"actor", decision.actor},
                     {"reason", decision.reason}});
+    ordered_json evidence = ordered_json::parse(decision.evidence_json, nullptr, false);
+    if (evidence.is_object()) list.back()["evidence"] = std::move(evidence);
+  }
   return list;
 }
 

@@ -77,7 +77,8 @@ Json row_of(const storage::Decision& decision) {
           {"kind", storage::name(decision.kind)},
           {"actor", text_value(decision.actor)},
           {"reason", text_value(decision.reason)},
-          {"time_ns", decision.time}};
+          {"time_ns", decision.time},
+          {"evidence", document_value(decision.evidence_json)}};
 }
 
 void read_row(const Json& row, storage::Decision& decision) {
@@ -89,6 +90,8 @@ void read_row(const Json& row, storage::Decision& decision) {
   decision.actor = read_text(row.at("actor"));
   decision.reason = read_text(row.at("reason"));
   decision.time = row.at("time_ns").get<storage::Time>();
+  // Services of before schema 4 send none.
+  if (row.contains("evidence")) decision.evidence_json = read_document(row["evidence"]);
 }
 
 Json row_of(const ChampionRow& row) {

@@ -43,9 +43,10 @@ struct Ledger {
                        [&](const Row& row) { return row.version == version && row.kind == kind; });
   }
   std::int64_t parent(std::int64_t version) const {
+    std::optional<std::size_t> judged;
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (rows[i].version == version) return champion(i);
-    return 0;
+      if (rows[i].version == version && (!judged || rows[i].kind == approve)) judged = i;
+    return judged ? champion(*judged) : 0;
   }
   std::int64_t previous() const {
     std::int64_t version = champion();
@@ -110,9 +111,15 @@ RC_GTEST_PROP(DecisionsProperty, FollowTheRulesInWhateverOrderAndWhateverTheCloc
     }
     const auto version = *rc::gen::inRange<std::int64_t>(1, ledger.versions + 1);
     const DecisionKind kind = *rc::gen::element(approve, reject, wait, roll_back, withdraw);
-    const bool allowed = ledger.allows(version, kind);
+    const bool is_anew = (kind == approve || kind == reject) && *rc::gen::inRange(0, 2) == 0;
+    const bool allowed =
+        is_anew ? ledger.status(version) == "waiting" : ledger.allows(version, kind);
     const std::string error = error_of([&] {
-      registry.decide("CB4", "BDR", version, {kind, "Ana", ""}, time);
+      if (is_anew)
+        registry.decide_if(registry.standing("CB4", "BDR"), "CB4", "BDR", version,
+                           {kind, "gate", ""}, time);
+      else
+        registry.decide("CB4", "BDR", version, {kind, "Ana", ""}, time);
     });
     RC_ASSERT((error == "no error") == allowed);
     if (allowed) ledger.decide(version, kind, time);

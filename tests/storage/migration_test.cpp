@@ -5,6 +5,7 @@
 #include "registry_fixture.hpp"
 #include "schema_1.hpp"
 #include "schema_2.hpp"
+#include "schema_3.hpp"
 
 namespace reident::storage::testing {
 namespace {
@@ -49,23 +50,24 @@ class Migration : public ::testing::Test {
 };
 
 TEST_F(Migration, KeepsEveryRowAndItsMeaning) {
-  const char* tables[] = {"attempt", "decision"};
+  const char* tables[] = {"SELECT * FROM attempt",
+                          "SELECT id, spacecraft, equipment, version, kind, actor, reason, time "
+                          "FROM decision"};
   std::vector<std::vector<std::string>> before;
-  for (const std::string table : tables) before.push_back(rows(path, "SELECT * FROM " + table));
+  for (const char* table : tables) before.push_back(rows(path, table));
   Database database(path, Mode::read_write);
   EXPECT_THAT(rows(path, "SELECT id, spacecraft, parameter, samples FROM series"),
               ElementsAre("1|CB4|7|1"));
   EXPECT_THAT(Archive(database).read("CB4", Origin::real, 7, {0, 100}).value, ElementsAre(28.5));
   for (std::size_t i = 0; i < std::size(tables); ++i)
-    EXPECT_THAT(rows(path, "SELECT * FROM " + std::string(tables[i])), ElementsAreArray(before[i]))
-        << tables[i];
+    EXPECT_THAT(rows(path, tables[i]), ElementsAreArray(before[i])) << tables[i];
   EXPECT_THAT(rows(path,
                    "SELECT equipment, version, status, parent, digest, model_json, "
                    "samples_digest, provenance_json FROM model_version"),
               ElementsAre("BDR|1|approved|NULL|d1|{\"a\":1}||", "BDR|2|superseded|1|d2|{\"a\":2}||",
                           "MEA|1|waiting|NULL|d3|{\"a\":3}||"));
   EXPECT_THAT(rows(path, "PRAGMA user_version; PRAGMA integrity_check; PRAGMA foreign_key_check"),
-              ElementsAre("3", "ok"));
+              ElementsAre("4", "ok"));
 }
 
 TEST_F(Migration, GoesOnWhereTheOldProgramStopped) {
@@ -117,6 +119,32 @@ TEST_F(Migration, IsLeftToAWriterAndAReaderSaysSo) {
   EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre("1"));
   { const Database writer(path, Mode::read_write); }
   EXPECT_EQ(error_of(reading), "no error");
+}
+
+TEST(MigrationFrom3, KeepsDecisionsAndTheirMeaning) {
+  const TemporaryFolder folder;
+  const auto path = folder / "old.db";
+  rows(path, schema_3);
+  rows(path, R"sql(
+PRAGMA journal_mode = WAL;
+INSERT INTO attempt VALUES
+  (1, 'CB4', 'BDR', 0, 100, 'slide', 110, 'approved', 'good', '{}', 'c', '0.1'),
+  (2, 'CB4', 'BDR', 50, 150, 'slide', 160, 'waiting', 'better', '{}', 'c', '0.1');
+INSERT INTO version (spacecraft, equipment, number, attempt, model_json, digest) VALUES
+  ('CB4', 'BDR', 1, 1, '{"a":1}', 'd1'), ('CB4', 'BDR', 2, 2, '{"a":2}', 'd2');
+INSERT INTO decision VALUES
+  (1, 'CB4', 'BDR', 1, 'approve', 'gate', 'good', 110),
+  (2, 'CB4', 'BDR', 2, 'wait', 'gate', 'better', 160);
+)sql");
+  Database database(path, Mode::read_write);
+  Registry registry(database);
+  EXPECT_EQ(registry.decide("CB4", "BDR", 2, {DecisionKind::approve, "Ana", "fine"}, 170), 3);
+  EXPECT_THAT(rows(path, "SELECT version, status, parent FROM model_version"),
+              ElementsAre("1|superseded|NULL", "2|approved|1"));
+  EXPECT_EQ(registry.decisions("CB4", "BDR").front().evidence_json, "");
+  { const Database made(folder / "new.db", Mode::read_write); }
+  const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
+  EXPECT_THAT(rows(path, schema), ElementsAreArray(rows(folder / "new.db", schema)));
 }
 
 // Three series of several chunks each: a ramp of unusual values, one sample, a long one.

@@ -83,6 +83,43 @@ TEST_F(RegistryTest, CountsTheVersionsOfEachEquipmentFromOne) {
   EXPECT_THAT(registry.champions(), SizeIs(3));
 }
 
+TEST_F(RegistryTest, TellsWhichVersionsOfAnOutcomeAreUndecided) {
+  const auto wait = [this](const std::string& outcome) {
+    NewAttempt tried = attempt(1);
+    tried.outcome = outcome;
+    return registry.record(tried, {"{}", "d"}, decision(DecisionKind::wait));
+  };
+  EXPECT_THAT(registry.undecided("CB4", "BDR", "on_probation"), IsEmpty());
+  for (const char* outcome : {"on_probation", "waiting", "on_probation", "on_probation"})
+    wait(outcome);
+  EXPECT_THAT(registry.undecided("CB4", "BDR", "on_probation"), ElementsAre(1, 3, 4));
+  decide(3, DecisionKind::reject, 2);
+  EXPECT_THAT(registry.undecided("CB4", "BDR", "on_probation"), ElementsAre(1, 4));
+  EXPECT_THAT(registry.undecided("CB4", "BDR", "waiting"), ElementsAre(2));
+  EXPECT_THAT(registry.undecided("CB4", "MEA", "on_probation"), IsEmpty());
+}
+
+TEST_F(RegistryTest, LetsWhoJudgedAnewApproveAfterTheChampionChanged) {
+  version(10, DecisionKind::approve);
+  version(20, DecisionKind::wait);
+  version(30, DecisionKind::approve);
+  const Standing standing = registry.standing("CB4", "BDR");
+  EXPECT_THAT(error_of([&] { decide(2, DecisionKind::approve, 35); }),
+              HasSubstr("judged against another champion"));
+  const NewDecision confirmed{DecisionKind::approve, "gate", "confirmed", R"({"rows":9})"};
+  EXPECT_TRUE(registry.decide_if(standing, "CB4", "BDR", 2, confirmed, 40));
+  EXPECT_EQ(registry.version("CB4", "BDR", 2)->parent, 3);
+  EXPECT_EQ(registry.decisions("CB4", "BDR", 2).back().evidence_json, R"({"rows":9})");
+  EXPECT_EQ(champion_at(std::nullopt), 2);
+  version(50, DecisionKind::wait);
+  EXPECT_FALSE(registry.decide_if(standing, "CB4", "BDR", 4, confirmed, 60))
+      << "decisions were made since";
+  EXPECT_THAT(error_of([&] {
+                registry.decide_if(registry.standing("CB4", "BDR"), "CB4", "BDR", 3, confirmed, 60);
+              }),
+              HasSubstr("is superseded"));
+}
+
 TEST_F(RegistryTest, DerivesTheStatusFromTheDecisions) {
   version(10, DecisionKind::approve);
   EXPECT_THAT(statuses(), ElementsAre("approved"));
@@ -213,7 +250,7 @@ TEST_F(RegistryTest, NothingRecordedCanBeChangedOrRemoved) {
       "UPDATE decision SET kind = 'reject'",
       "DELETE FROM decision",
       "INSERT OR REPLACE INTO decision SELECT id, spacecraft, equipment, version, 'reject', actor, "
-      "reason, time FROM decision",
+      "reason, time, evidence_json FROM decision",
       "UPDATE hold SET kind = 'release'",
       "DELETE FROM hold",
       "INSERT OR REPLACE INTO hold SELECT id, spacecraft, equipment, 'release', actor, reason, "
