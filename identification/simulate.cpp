@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "identification/kernels.hpp"
@@ -9,9 +10,10 @@
 namespace reident::identification {
 namespace {
 
-/// Runs one segment from `x`; writes its outputs into y_hat from row `out` on.
-void run_segment(const StateSpaceModel& model, const Record& record, const Segment& segment,
-                 Vector x, Matrix& y_hat, Index out) {
+/// Runs one segment from `x`; writes its outputs into y_hat from row `out` on. Gives the state
+/// after its last row.
+Vector run_segment(const StateSpaceModel& model, const Record& record, const Segment& segment,
+                   Vector x, Matrix& y_hat, Index out) {
   constexpr Index stretch = 1024;  // of rows at once, so that the work space stays small
   const Index n = model.order(), m = model.inputs(), p = model.outputs();
   Matrix M(n + p, n + m);
@@ -28,9 +30,109 @@ void run_segment(const StateSpaceModel& model, const Record& record, const Segme
       y_hat.col(q).segment(out + (begin - segment.begin), count) =
           y.row(q).head(count).transpose().array() + model.y0(q);
   }
+  return x;
+}
+
+/// Longer holes say too little of the inputs within them.
+std::int64_t most_bridged_ticks(const Record& record) {
+  return std::max<std::int64_t>(60, record.rows() / 100);
+}
+
+/// A state and a root of its covariance: P = L L'.
+struct UncertainState {
+  Vector x;
+  Matrix L;
+};
+
+/// The state behind the hole by inputs that are interpolated over it; they may be off by about as
+/// much as inputs change over a quarter of the hole.
+UncertainState through_hole(const StateSpaceModel& model, const Record& record,
+                            const Segment& before, const Segment& after, const Vector& x,
+                            const Vector& square_changes) {
+  const std::int64_t hole = after.first_tick - (before.first_tick + before.size());
+  const Vector from = record.u.row(before.end - 1).transpose() - model.u0;
+  const Vector to = record.u.row(after.begin).transpose() - model.u0;
+  const Vector variance = square_changes * (1 + double(hole) / 4);
+  UncertainState result{x, Matrix::Zero(x.size(), x.size())};
+  Matrix P = Matrix::Zero(x.size(), x.size());
+  for (std::int64_t k = 1; k <= hole; ++k) {
+    const double share = double(k) / double(hole + 1);
+    result.x = (model.A * result.x + model.B * ((1 - share) * from + share * to)).eval();
+    P = (model.A * P * model.A.transpose() + model.B * variance.asDiagonal() * model.B.transpose())
+            .eval();
+  }
+  if (!P.allFinite()) return result;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(P);
+  result.L = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  return result;
+}
+
+/// C A^k, k = 0 ... count - 1, below each other.
+Matrix observability_of(const StateSpaceModel& model, Index count) {
+  const Index p = model.outputs();
+  Matrix observability(count * p, model.order());
+  Matrix CAk = model.C;
+  for (Index k = 0; k < count; ++k) {
+    observability.middleRows(k * p, p) = CAk;
+    CAk = (CAk * model.A).eval();
+  }
+  return observability;
+}
+
+/// y[k] less the response from the state x, below each other.
+Vector remainder_of(const StateSpaceModel& model, const Record& record, const Segment& segment,
+                    Index count, const Vector& x) {
+  const Index p = model.outputs();
+  Matrix response(count, p);
+  run_segment(model, record, {segment.begin, segment.begin + count, segment.first_tick}, x,
+              response, 0);
+  Vector remainder(count * p);
+  for (Index k = 0; k < count; ++k)
+    remainder.segment(k * p, p) = (record.y.row(segment.begin + k) - response.row(k)).transpose();
+  return remainder;
 }
 
 }  // namespace
+
+Vector square_changes(const Record& record) {
+  Vector sum = Vector::Zero(record.u.cols());
+  Index count = 0;
+  for (const Segment& segment : record.segments) {
+    const Index changes = segment.size() - 1;
+    sum += (record.u.middleRows(segment.begin + 1, changes) -
+            record.u.middleRows(segment.begin, changes))
+               .cwiseAbs2()
+               .colwise()
+               .sum()
+               .transpose();
+    count += changes;
+  }
+  return sum / double(std::max<Index>(1, count));
+}
+
+std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Record& record,
+                                       const Segment& before, const Segment& after, const Vector& x,
+                                       const RunNoise& noise) {
+  constexpr double least_error = 1e-10;  // of the output's size: smaller ones are rounding
+  const std::int64_t hole = after.first_tick - (before.first_tick + before.size());
+  if (hole > most_bridged_ticks(record)) return std::nullopt;
+  const UncertainState prior =
+      through_hole(model, record, before, after, x, noise.square_input_changes);
+  const Index n = model.order(), count = std::min(state_rows, after.size());
+  if (n == 0 || count == 0 || !prior.x.allFinite()) return prior.x;
+  const Vector size = record.y.middleRows(after.begin, count).cwiseAbs().colwise().maxCoeff();
+  const Vector weight = noise.square_errors.cwiseSqrt()
+                            .cwiseMax(least_error * size)
+                            .cwiseInverse()
+                            .replicate(count, 1);
+  Matrix left(weight.size() + n, n);
+  Vector right = Vector::Zero(weight.size() + n);
+  left << weight.asDiagonal() * observability_of(model, count) * prior.L, Matrix::Identity(n, n);
+  right.head(weight.size()) =
+      weight.cwiseProduct(remainder_of(model, record, after, count, prior.x));
+  if (!left.allFinite() || !right.allFinite()) return prior.x;
+  return prior.x + prior.L * left.colPivHouseholderQr().solve(right);
+}
 
 Index initial_rows(const StateSpaceModel& model) {
   return std::max<Index>(1, 3 * model.order());
@@ -38,22 +140,12 @@ Index initial_rows(const StateSpaceModel& model) {
 
 Vector estimate_initial_state(const StateSpaceModel& model, const Record& record,
                               const Segment& segment, Index rows) {
-  const Index n = model.order(), p = model.outputs();
+  const Index n = model.order();
   const Index count = std::min(rows, segment.size());
   if (n == 0 || count == 0) return Vector::Zero(n);
 
-  // y[k] - (response from the zero state) = C A^k x0
-  Matrix forced(count, p);
-  run_segment(model, record, {segment.begin, segment.begin + count, segment.first_tick},
-              Vector::Zero(n), forced, 0);
-  Matrix observability(count * p, n);
-  Vector free_response(count * p);
-  Matrix CAk = model.C;
-  for (Index k = 0; k < count; ++k) {
-    observability.middleRows(k * p, p) = CAk;
-    free_response.segment(k * p, p) = (record.y.row(segment.begin + k) - forced.row(k)).transpose();
-    CAk = (CAk * model.A).eval();
-  }
+  const Matrix observability = observability_of(model, count);
+  const Vector free_response = remainder_of(model, record, segment, count, Vector::Zero(n));
   if (!observability.allFinite() || !free_response.allFinite()) return Vector::Zero(n);
   return observability.completeOrthogonalDecomposition().solve(free_response);
 }
@@ -62,11 +154,24 @@ Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange row
                 const std::optional<Vector>& x0) {
   Matrix y_hat(rows.size(), model.outputs());
   Index out = 0;
-  for (const Segment& segment : segments_within(record, rows)) {
-    const bool given = x0 && out == 0;
-    run_segment(model, record, segment,
-                given ? *x0 : estimate_initial_state(model, record, segment, initial_rows(model)),
-                y_hat, out);
+  Vector x;
+  Vector square_errors = Vector::Zero(model.outputs());
+  const std::vector<Segment> segments = segments_within(record, rows);
+  const Vector changes = segments.size() > 1 ? square_changes(record) : Vector();
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& segment = segments[i];
+    const auto given = i == 0 ? x0
+                              : state_after_hole(model, record, segments[i - 1], segment, x,
+                                                 {changes, square_errors / double(out)});
+    x = run_segment(model, record, segment,
+                    given ? *given : estimate_initial_state(model, record, segment, state_rows),
+                    y_hat, out);
+    square_errors +=
+        (record.y.middleRows(segment.begin, segment.size()) - y_hat.middleRows(out, segment.size()))
+            .cwiseAbs2()
+            .colwise()
+            .sum()
+            .transpose();
     out += segment.size();
   }
   eigen_assert(out == rows.size());

@@ -9,18 +9,41 @@
 
 namespace reident::identification {
 
-/// Outputs (rows.size() x p) of the model driven by the record's inputs alone. A segment's initial
-/// state is the least-squares estimate from its first `initial_rows(model)` outputs; the first
-/// segment starts from `x0` where one is given. Values may be non-finite for an unstable model.
+/// Rows that the state at the beginning of a run is estimated from where there is no hurry; more
+/// would say little of it. Fewer leave noise in the slow states, which stays for as long as these
+/// last.
+constexpr Index state_rows = 500;
+
+/// Outputs (rows.size() x p) of the model driven by the record's inputs alone. It starts from `x0`
+/// where one is given, and else from the least-squares estimate from the first `state_rows`
+/// outputs, as it does after a hole that state_after_hole does not bridge. Values may be non-finite
+/// for an unstable model.
 Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange rows,
                 const std::optional<Vector>& x0 = std::nullopt);
 
-/// Rows that the estimate of an initial state looks at: three times the order, at least one.
-Index initial_rows(const StateSpaceModel& model);
+/// Mean squares (m) of the inputs' changes from one tick to the next.
+Vector square_changes(const Record& record);
 
-/// Rows that the state at the beginning of a run is estimated from where there is no hurry; more
-/// would say little of it.
-constexpr Index state_rows = 500;
+/// How uncertain a run is.
+struct RunNoise {
+  Vector square_input_changes;  // m, as above
+  Vector square_errors;         // p, means over the run so far
+};
+
+/// State (n) at the first row of the segment `after` of a run that has come to the state `x` at the
+/// tick behind the segment `before`. The run goes through the hole between them with interpolated
+/// inputs, which are off by about as much as inputs change from tick to tick; what that makes
+/// uncertain of the state is estimated from the first `state_rows` outputs behind the hole: least
+/// squares with the one as the prior and the run's errors as the noise (a step of a Kalman
+/// smoother). Slow states so come from the run, and fast ones from the outputs. A run that began
+/// anew behind each hole would never show that it drifts. Absent where the hole is longer than 60
+/// ticks and than a hundredth of the record's rows.
+std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Record& record,
+                                       const Segment& before, const Segment& after, const Vector& x,
+                                       const RunNoise& noise);
+
+/// Rows that an estimate of the initial state needs: three times the order, at least one.
+Index initial_rows(const StateSpaceModel& model);
 
 /// Least-squares initial state at `segment.begin` from the outputs of the segment's first `rows`
 /// rows (all of them where the segment is shorter), minimum norm where they do not determine it.

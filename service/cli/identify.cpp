@@ -66,20 +66,19 @@ void warn_of_useless_outputs(IdentifyOutcome& outcome) {
 }
 
 /// What happens to the state in a simulation of `rows`.
-void warn_of_states(const Identified& identified, const IdentifyData& data, RowRange rows,
-                    bool from_x0, std::vector<std::string>& warnings) {
+void warn_of_states(const IdentifyData& data, RowRange rows, bool from_x0,
+                    std::vector<std::string>& warnings) {
   const std::size_t stretches = segments_within(data.record, rows).size();
-  const Index looked_at = initial_rows(identified.model);
   if (!from_x0)
     warnings.push_back(fmt::format(
         "the validation rows begin before the identification rows: their initial state is the "
         "least-squares estimate from their first {} rows",
-        looked_at));
+        identification::state_rows));
   if (stretches > 1)
     warnings.push_back(fmt::format(
         "gaps split the simulated rows into {} stretches: the state at the start of each after the "
         "first is the least-squares estimate from its first {} rows",
-        stretches, looked_at));
+        stretches, identification::state_rows));
 }
 
 /// One simulation from x0 at the first identification row to the last row of both ranges; rows
@@ -89,10 +88,10 @@ void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
   const bool before = data.validate.begin < data.identify.begin;
   const RowRange run{data.identify.begin,
                      before ? data.identify.end : std::max(data.identify.end, data.validate.end)};
-  warn_of_states(identified, data, run, true, outcome.warnings);
+  warn_of_states(data, run, true, outcome.warnings);
   outcome.identify =
       score_free_run(identified.model, data.record, run, data.identify, identified.x0);
-  if (before) warn_of_states(identified, data, data.validate, false, outcome.warnings);
+  if (before) warn_of_states(data, data.validate, false, outcome.warnings);
   outcome.diagnostics =
       before ? diagnose(identified.model, data.record, data.validate, data.validate)
              : diagnose(identified.model, data.record, run, data.validate, identified.x0);

@@ -40,8 +40,10 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
   version_ = version.number;
   detector_.reset();
   state_tick_.reset();
+  run_rows_ = 0;
   try {
     model_ = equipment_model_from_json(version.model_json);
+    square_errors_ = identification::Vector::Zero(model_.dynamics.outputs());
   } catch (const std::invalid_argument&) {  // damaged: it is not published either
     return;
   }
@@ -64,8 +66,16 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
 identification::Matrix ChampionMonitor::run(const identification::Record& record,
                                             const identification::Segment& segment) {
   const identification::StateSpaceModel& model = model_.dynamics;
-  if (state_tick_ != segment.first_tick)
-    state_ = estimate_initial_state(model, record, segment, initial_rows(model));
+  if (state_tick_ != segment.first_tick) {
+    const auto before = segments_within(record, {0, segment.begin});
+    std::optional<identification::Vector> bridged;
+    if (!before.empty() && state_tick_ == before.back().first_tick + before.back().size())
+      bridged = state_after_hole(
+          model, record, before.back(), segment, state_,
+          {square_changes(record), square_errors_ / static_cast<double>(run_rows_)});
+    state_ = bridged ? std::move(*bridged)
+                     : estimate_initial_state(model, record, segment, identification::state_rows);
+  }
   identification::Matrix outputs(segment.size(), model.outputs());
   for (Index k = 0; k < segment.size(); ++k) {
     const identification::Vector du = record.u.row(segment.begin + k).transpose() - model.u0;
@@ -73,6 +83,11 @@ identification::Matrix ChampionMonitor::run(const identification::Record& record
     state_ = (model.A * state_ + model.B * du).eval();
   }
   state_tick_ = segment.first_tick + segment.size();
+  square_errors_ += (record.y.middleRows(segment.begin, segment.size()) - outputs)
+                        .colwise()
+                        .squaredNorm()
+                        .transpose();
+  run_rows_ += segment.size();
   return outputs;
 }
 

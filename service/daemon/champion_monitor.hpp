@@ -59,6 +59,8 @@ class ChampionMonitor {
   storage::Time next_ = 0;        // begin of the next block
   identification::Vector state_;  // of the run, at the tick state_tick_
   std::optional<std::int64_t> state_tick_;
+  identification::Vector square_errors_;  // of the run so far, summed over its rows
+  identification::Index run_rows_ = 0;
   std::optional<identification::ChangeDetector> detector_;  // absent: nothing to compare with
 };
 

@@ -59,9 +59,12 @@ TEST(Predictor, StartsAgainAfterAGap) {
   Setting s = setting(2);
   s.record = testing::with_gap(s.record, 30, 40);
   const RowRange run{10, 60};
-  const Predictor predictor(s.model, s.record, run, free_run(s.model, s.record, run));
+  const Matrix y_hat = free_run(s.model, s.record, run);
+  const Predictor predictor(s.model, s.record, run, y_hat);
   const Segment after{30, 60, 40};
-  const Vector x = estimate_initial_state(s.model, s.record, after, initial_rows(s.model));
+  Record as_run = s.record;
+  as_run.y.middleRows(run.begin, run.size()) = y_hat;
+  const Vector x = estimate_initial_state(s.model, as_run, after, initial_rows(s.model));
   for (const Index steps : {1, 4, 25})
     EXPECT_LT((predictor.outputs(steps).bottomRows(30) - foretold(s, after, x, steps))
                   .cwiseAbs()

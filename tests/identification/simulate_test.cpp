@@ -37,6 +37,46 @@ TEST(FreeRun, EstimatesTheStateOfEverySegment) {
   EXPECT_LT((free_run(model, record, {20, 70}) - record.y.middleRows(20, 50)).norm(), 1e-9);
 }
 
+/// An integrator beside a fast state, measured with noise of 0.1; rows 400 to 403 are missing.
+struct Holed {
+  StateSpaceModel model{(Matrix(2, 2) << 1, 0, 0, 0.2).finished(),
+                        (Matrix(2, 1) << 0.01, 1).finished(),
+                        Matrix::Ones(1, 2),
+                        Matrix::Zero(1, 1),
+                        {},
+                        Vector::Zero(1),
+                        Vector::Zero(1),
+                        1};
+  Matrix y;  // without noise
+  Record record;
+
+  Holed(testing::Noise& noise, const Matrix& u) {
+    y = testing::simulated(model, u, Vector::Zero(2));
+    record =
+        testing::with_gap(contiguous_record(1, u, y + 0.1 * noise.normal(u.rows(), 1)), 400, 404);
+  }
+  double error_behind_the_hole() const {
+    const Matrix run = free_run(model, record, record.all(), Vector::Zero(2));
+    const Index rows = record.rows() - 400;
+    return (run.bottomRows(rows) - y.bottomRows(rows)).norm() / std::sqrt(double(rows));
+  }
+};
+
+TEST(FreeRun, CarriesSlowStatesThroughAHoleAndTakesFastOnesFromTheOutputsBehindIt) {
+  testing::Noise noise(7);
+  const Matrix fast = noise.normal(600, 1);
+  EXPECT_LT(Holed(noise, fast).error_behind_the_hole(), 0.05) << "of inputs unknown in the hole";
+  Matrix slow(600, 1);
+  for (Index k = 0; k < 600; ++k) slow(k, 0) = std::sin(double(k) * 0.01);
+  const Holed holed(noise, slow);
+  EXPECT_LT(holed.error_behind_the_hole(), 0.01);
+  // Outputs that drift away from the run do not take it with them.
+  Record drifted = holed.record;
+  for (Index k = 0; k < drifted.rows(); ++k) drifted.y(k, 0) += 0.01 * double(k);
+  const Matrix run = free_run(holed.model, drifted, drifted.all(), Vector::Zero(2));
+  EXPECT_NEAR(run(run.rows() - 1, 0), holed.y(599, 0), 0.1);
+}
+
 TEST(FreeRun, OfAnUnstableModelMayOverflowButEnds) {
   StateSpaceModel model{Matrix::Constant(1, 1, 1e10),
                         Matrix::Ones(1, 1),
