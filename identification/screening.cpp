@@ -40,6 +40,7 @@ struct Channel {
   bool is_analog = false;
   double low = 0, high = 0;
   std::vector<Run> runs;
+  double least_jump = 0;  // of analog channels; any change of the others is one
 
   double range() const { return high - low; }
 };
@@ -108,18 +109,34 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(place)];
 }
 
+/// The least change from one value to the next that is no usual one.
+double least_jump(const Channel& channel) {
+  const std::vector<Run>& runs = channel.runs;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < runs.size(); ++i)
+    if (runs[i].segment == runs[i - 1].segment)
+      steps.push_back(std::abs(runs[i].value - runs[i - 1].value));
+  const double usual = steps.empty() ? 0 : quantile(std::move(steps), 0.5);
+  return std::max(spike_steps * usual, spike_range_share * channel.range());
+}
+
+/// Whether another channel jumps beside the spike, so that it may be what the equipment does then.
+bool another_jumps(const std::vector<Channel>& channels, std::size_t self, const Run& spike) {
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (c == self || !(channels[c].range() > 0)) continue;
+    const auto there = channels[c].values.segment(spike.begin - 1, spike.size() + 2);
+    if (there.maxCoeff() - there.minCoeff() > channels[c].least_jump) return true;
+  }
+  return false;
+}
+
 /// Runs that stand out from both neighbours.
 std::vector<Run> spikes_of(const Channel& channel) {
   const std::vector<Run>& runs = channel.runs;
-  std::vector<double> steps, lengths;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    lengths.push_back(double(runs[i].size()));
-    if (i > 0 && runs[i].segment == runs[i - 1].segment)
-      steps.push_back(std::abs(runs[i].value - runs[i - 1].value));
-  }
-  if (steps.empty()) return {};
-  const double least =
-      std::max(spike_steps * quantile(steps, 0.5), spike_range_share * channel.range());
+  std::vector<double> lengths;
+  for (const Run& run : runs) lengths.push_back(double(run.size()));
+  if (runs.size() < 3) return {};
+  const double least = channel.least_jump;
   const double longest = 2 * quantile(lengths, 0.5);
   std::vector<Run> spikes;
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) {
@@ -133,10 +150,6 @@ std::vector<Run> spikes_of(const Channel& channel) {
   }
   if (double(spikes.size()) > most_spikes * double(runs.size())) return {};
   return spikes;
-}
-
-bool overlaps(const Run& one, const Run& other) {
-  return one.begin <= other.end && other.begin <= one.end;
 }
 
 /// Blocks of rows that lie within one segment.
@@ -228,8 +241,11 @@ std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<b
   for (Index c = 0; c < inputs + outputs; ++c) {
     const auto values = c < inputs ? record.u.col(c) : record.y.col(c - inputs);
     channels.push_back(
-        {values, analog[static_cast<std::size_t>(c)], values.minCoeff(), values.maxCoeff(), {}});
-    if (channels.back().is_analog) channels.back().runs = runs_of(values, record.segments);
+        {values, analog[static_cast<std::size_t>(c)], values.minCoeff(), values.maxCoeff(), {}, 0});
+    Channel& channel = channels.back();
+    if (!channel.is_analog) continue;
+    channel.runs = runs_of(values, record.segments);
+    channel.least_jump = least_jump(channel);
   }
   std::vector<std::vector<Run>> spikes;
   for (const Channel& channel : channels)
@@ -245,14 +261,7 @@ std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<b
     for (const Run& run : stuck_runs(channels, c))
       add(SensorFaultKind::stuck, ticks_of(record, run.segment, run.begin, run.end));
     for (const Run& spike : spikes[c]) {
-      const bool is_shared = [&] {
-        for (std::size_t other = 0; other < channels.size(); ++other)
-          if (other != c && std::any_of(spikes[other].begin(), spikes[other].end(),
-                                        [&](const Run& run) { return overlaps(spike, run); }))
-            return true;
-        return false;
-      }();
-      if (!is_shared)
+      if (!another_jumps(channels, c, spike))
         add(SensorFaultKind::spike, ticks_of(record, spike.segment, spike.begin, spike.end));
     }
     if (ratios[c].empty()) continue;

@@ -85,6 +85,18 @@ TEST(Screening, FindsSpikesAndLeavesMomentsThatTwoSensorsSawAlone) {
   EXPECT_EQ(faults[1].ticks, (TickRange{2'000, 2'001}));
 }
 
+TEST(Screening, LeavesAMomentInWhichAnotherSensorStepsAlone) {
+  Telemetry telemetry;
+  for (Index t = 3'900; t < 30'000; t += 6'000)  // the array goes dark, and the bus gives way
+    telemetry.channel(Telemetry::bus)(t) = 27;
+  EXPECT_TRUE(telemetry.faults().empty());
+  telemetry.channel(Telemetry::bus)(2'000) = 27;
+  const auto faults = telemetry.faults();
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].kind, SensorFaultKind::spike);
+  EXPECT_EQ(faults[0].ticks.begin, 2'000);
+}
+
 TEST(Screening, FindsABurstOfNoiseInOneSensor) {
   Telemetry telemetry;
   std::mt19937 random(3);
