@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "service/daemon/probation.hpp"
 #include "service/daemon/refresh.hpp"
 #include "service/support/floor_divide.hpp"
 #include "storage/archive.hpp"
@@ -119,6 +120,11 @@ class Backfill {
   }
 
   bool record(const RefreshRequest& request, PreparedWindow&& prepared) {
+    look_at_probation(archive_, registry_, request.spacecraft, request.equipment,
+                      request.window.end,
+                      [this](const storage::Standing& standing, const ProbationDecision& found) {
+                        return record(standing, found);
+                      });
     RefreshResult result = judge(archive_, registry_, request, std::move(prepared));
     result.attempt.time = clock_();
     if (result.candidate)
@@ -130,6 +136,14 @@ class Backfill {
       ++progress_.approved;
     progress_.window_end = request.window.end;
     return report_(progress_);
+  }
+
+  bool record(const storage::Standing& standing, const ProbationDecision& found) {
+    const storage::Version& version = found.version;
+    const auto decision = registry_.decide_if(standing, version.spacecraft, version.equipment,
+                                              version.number, found.decision, clock_());
+    if (decision && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
+    return decision.has_value();
   }
 
   const Config& config_;

@@ -287,6 +287,7 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
   // Shorter than it takes to notice that a champion drifts.
   equipment.min_interval =
       reader.duration("min_interval", 0, 3650 * day).value_or(equipment.slide / 4);
+  equipment.confirmation = reader.duration("confirmation", 0, 3650 * day).value_or(equipment.slide);
   if (slide || !reader.has("slide")) check_slide(reader, equipment);
 }
 
@@ -395,10 +396,11 @@ void check_keep(const toml::table& archive, ConfigDocument& document, const Conf
   if (!config.keep) return;
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      if (const Duration needed = equipment.window + equipment.slide; *config.keep < needed)
+      if (const Duration needed = equipment.window + equipment.slide + equipment.confirmation;
+          *config.keep < needed)
         return TableReader(archive, "[archive]", document)
-            .mistake("keep", fmt::format("keep {} is shorter than window and slide of {}/{}; make "
-                                         "it at least {}",
+            .mistake("keep", fmt::format("keep {} is shorter than window, slide and confirmation "
+                                         "of {}/{}; make it at least {}",
                                          duration_text(*config.keep), spacecraft.name,
                                          equipment.name, duration_text(needed)));
 }

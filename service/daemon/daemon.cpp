@@ -149,12 +149,14 @@ void Daemon::identify_windows() {
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
                       const storage::Registry& registry) {
   const AttemptContext context{
-      config_.digest, [this](const AttemptContext::Task& task) { writer_.post(task).get(); },
+      config_.digest,
+      [this](const AttemptContext::Task& task) { writer_.post(task).get(); },
       clock_,
       [this](std::size_t count, const std::function<void(std::size_t)>& task) {
         search_.for_each(count, task);
       },
-      [this] { return stopping_.load(); }};
+      [this] { return stopping_.load(); },
+      [this, &registry](const ProbationDecision& decided) { publish(decided, registry); }};
   try {
     const auto attempt =
         attempt_window(job, archive, registry, kept_[job.window.equipment], context);
@@ -178,6 +180,19 @@ void Daemon::publish(const RecordedAttempt& attempt, const storage::Registry& re
   report.version = attempt.version;
   publisher_.report(report);
   log_attempt(report);
+}
+
+void Daemon::publish(const ProbationDecision& decided, const storage::Registry& registry) {
+  const storage::Version& version = decided.version;
+  const bool approved = decided.decision.kind == storage::DecisionKind::approve;
+  if (approved) {
+    ++approvals_;
+    publisher_.publish_champion(registry, {version.spacecraft, version.equipment});
+  }
+  log::info("identify", approved ? "version confirmed" : "version not confirmed",
+            {{"equipment", version.spacecraft + "/" + version.equipment},
+             {"version", version.number},
+             {"reason", decided.decision.reason}});
 }
 
 void Daemon::answer_operators() {

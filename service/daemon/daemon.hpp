@@ -58,6 +58,7 @@ class Daemon {
                 const storage::Registry& registry);
   /// What follows from an attempt that was committed.
   void publish(const RecordedAttempt& attempt, const storage::Registry& registry);
+  void publish(const ProbationDecision& decided, const storage::Registry& registry);
   void answer_operators();
   void answer_history();
   void watch_champions();

@@ -20,15 +20,16 @@ constexpr double residual_limit = 1.0;
 /// Where the inputs are elsewhere on most rows, the scores say nothing of what was identified.
 constexpr double outside_limit = 0.5;
 
-/// What a change of the equipment explains of the candidate's error before it, over the champion's
-/// error after it.
-constexpr double past_limit = 2;
+/// A time constant of more windows than this is an integrator as far as the window can tell: what
+/// little drives it adds up.
+constexpr double slowest_limit = 1.0;
 
 constexpr std::array names{
     std::pair{Outcome::approved, std::string_view("approved")},
     std::pair{Outcome::waiting, std::string_view("waiting")},
     std::pair{Outcome::unvouched, std::string_view("unvouched")},
     std::pair{Outcome::held, std::string_view("held")},
+    std::pair{Outcome::on_probation, std::string_view("on_probation")},
     std::pair{Outcome::unknown_parameter, std::string_view("unknown_parameter")},
     std::pair{Outcome::telemetry_damaged, std::string_view("telemetry_damaged")},
     std::pair{Outcome::low_coverage, std::string_view("low_coverage")},
@@ -36,6 +37,7 @@ constexpr std::array names{
     std::pair{Outcome::validation_says_nothing, std::string_view("validation_says_nothing")},
     std::pair{Outcome::not_finite, std::string_view("not_finite")},
     std::pair{Outcome::unstable, std::string_view("unstable")},
+    std::pair{Outcome::slower_than_window, std::string_view("slower_than_window")},
     std::pair{Outcome::error_above_limit, std::string_view("error_above_limit")},
     std::pair{Outcome::fit_below_limit, std::string_view("fit_below_limit")},
     std::pair{Outcome::residual_out_of_range, std::string_view("residual_out_of_range")},
@@ -45,7 +47,6 @@ constexpr std::array names{
     std::pair{Outcome::comparison_says_nothing, std::string_view("comparison_says_nothing")},
     std::pair{Outcome::not_better_than_champion, std::string_view("not_better_than_champion")},
     std::pair{Outcome::disagrees_with_champion, std::string_view("disagrees_with_champion")},
-    std::pair{Outcome::astray_in_the_past, std::string_view("astray_in_the_past")},
     std::pair{Outcome::too_soon, std::string_view("too_soon")},
 };
 
@@ -63,6 +64,12 @@ Refusal against_model(const Evidence& e) {
     return GateDecision{
         Outcome::unstable,
         fmt::format("The model is unstable: its spectral radius is {:.6f}.", e.spectral_radius)};
+  if (e.slowest_over_window > slowest_limit)
+    return GateDecision{
+        Outcome::slower_than_window,
+        fmt::format("Its slowest time constant is {:.3g} times the window's length, which cannot "
+                    "tell it: a long run would drift away.",
+                    e.slowest_over_window)};
   return std::nullopt;
 }
 
@@ -136,11 +143,17 @@ Refusal against_comparison(const Evidence::Champion& champion, const EquipmentCo
   return std::nullopt;
 }
 
+/// Where the equipment has changed from one model to another, the new one errs on the past about as
+/// much as the old one errs now.
+bool explains(const Evidence::Champion& champion, const Evidence::Champion::Elsewhere& elsewhere) {
+  return has_run(champion) && elsewhere.mrse_percent <= champion.comparison->rival_mrse_percent;
+}
+
 Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentConfig& limits) {
   if (!champion.elsewhere) return std::nullopt;
   const Evidence::Champion::Elsewhere& elsewhere = *champion.elsewhere;
   if (elsewhere.disagreement_percent <= limits.max_disagreement_percent ||
-      elsewhere.mrse_percent < elsewhere.champion_mrse_percent)
+      elsewhere.mrse_percent < elsewhere.champion_mrse_percent || explains(champion, elsewhere))
     return std::nullopt;
   return GateDecision{
       Outcome::disagrees_with_champion,
@@ -151,35 +164,15 @@ Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentCon
                   limits.max_disagreement_percent)};
 }
 
-/// Where the equipment has changed from one model to another, the new one errs on the past about as
-/// much as the old one errs now. One that errs much more there runs away by itself: over so long a
-/// run its slow poles show, which no validation part is long enough for.
-Refusal against_past(const Evidence::Champion& champion) {
-  if (!champion.past) return std::nullopt;
-  const Evidence::Champion::Past& past = *champion.past;
-  const double now = champion.comparison->rival_mrse_percent;
-  if (past.error_percent <= past_limit * std::max(now, past.champion_error_percent))
-    return std::nullopt;
+Refusal against_older(const Evidence& e) {
+  if (e.window_end >= e.champion->window_end) return std::nullopt;
   return GateDecision{
-      Outcome::astray_in_the_past,
-      fmt::format("On the {} samples before the window that were looked at, the candidate errs by "
-                  "{:.3f} % and champion {} by {:.3f} %. The champion's error now, {:.3f} %, does "
-                  "not explain that: the candidate goes astray in a long run.",
-                  past.rows, past.error_percent, champion.version, past.champion_error_percent,
-                  now)};
+      Outcome::older_than_champion,
+      fmt::format("Champion {} was identified from newer telemetry.", e.champion->version)};
 }
 
-Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
+Refusal against_succession(const Evidence& e, const EquipmentConfig& limits) {
   const Evidence::Champion& champion = *e.champion;
-  if (e.window_end < champion.window_end)
-    return GateDecision{
-        Outcome::older_than_champion,
-        fmt::format("Champion {} was identified from newer telemetry.", champion.version)};
-  // One that cannot run here, or runs astray, loses to any candidate that holds the rest.
-  if (has_run(champion)) {
-    if (auto refusal = against_comparison(champion, limits)) return refusal;
-    if (auto refusal = against_past(champion)) return refusal;
-  }
   if (auto refusal = against_elsewhere(champion, limits)) return refusal;
   const Duration since = e.window_end - champion.window_end;
   if (since < limits.min_interval)
@@ -192,13 +185,43 @@ Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
 }
 
 /// A sensor that went off by a constant and an equipment that did are the same telemetry, unless
-/// another sensor vouches for the first.
+/// another sensor vouches for the first: then the candidate has to be better without that.
+bool needs_vouching(const Evidence::Champion& champion, const EquipmentConfig& limits) {
+  return limits.unvouched == UnvouchedPolicy::wait && !champion.unbound.empty() &&
+         champion.without_offset;
+}
+
 bool is_unvouched(const Evidence& e, const EquipmentConfig& limits) {
-  if (limits.unvouched == UnvouchedPolicy::approve || !has_run(e.champion)) return false;
-  const Evidence::Champion& champion = *e.champion;
-  if (champion.unbound.empty() || !champion.without_offset) return false;
-  const auto& sure = champion.without_offset->sure_percent;
+  if (!has_run(e.champion) || !needs_vouching(*e.champion, limits)) return false;
+  const auto& sure = e.champion->without_offset->sure_percent;
   return !sure || !(*sure > limits.margin_percent);
+}
+
+/// Better by the margin, and not surely: telemetry after the window may tell.
+bool may_become_sure(const Evidence& e, const EquipmentConfig& limits) {
+  const Evidence::Champion& champion = *e.champion;
+  if (limits.confirmation == 0 || limits.approval == ApprovalPolicy::by_hand || e.hold ||
+      !champion.comparison->sure_percent)
+    return false;
+  double reduction = champion.comparison->reduction_percent;
+  if (needs_vouching(champion, limits))
+    reduction = std::min(reduction, champion.without_offset->reduction_percent);
+  return reduction > limits.margin_percent;
+}
+
+Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
+  if (auto refusal = against_older(e)) return refusal;
+  auto refusal = against_succession(e, limits);
+  // A champion that cannot run here, or runs astray, loses to any candidate that holds the rest.
+  if (!has_run(e.champion)) return refusal;
+  auto not_better = against_comparison(*e.champion, limits);
+  if (!not_better) return refusal;
+  if (!refusal && may_become_sure(e, limits)) {
+    not_better->outcome = Outcome::on_probation;
+    not_better->reason += fmt::format(" Waits for up to {} of telemetry after its window.",
+                                      duration_text(limits.confirmation));
+  }
+  return not_better;
 }
 
 std::string praise(const Evidence& e) {

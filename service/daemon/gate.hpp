@@ -21,6 +21,7 @@ enum class Outcome {
   waiting,            // good enough; the policy leaves the decision to an operator
   unvouched,          // better by a constant offset, which may be a sensor's; waits for an operator
   held,               // good enough; an operator holds the equipment's version
+  on_probation,       // better, and not surely; telemetry after the window decides
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   telemetry_damaged,  // samples that the attempt needs cannot be decoded any more
   low_coverage,
@@ -28,6 +29,7 @@ enum class Outcome {
   validation_says_nothing,
   not_finite,
   unstable,
+  slower_than_window,  // a time constant that the window cannot tell
   error_above_limit,
   fit_below_limit,
   residual_out_of_range,
@@ -37,7 +39,6 @@ enum class Outcome {
   comparison_says_nothing,
   not_better_than_champion,
   disagrees_with_champion,
-  astray_in_the_past,
   too_soon,
 };
 std::string_view name(Outcome outcome);
@@ -46,7 +47,8 @@ std::string_view name(Outcome outcome);
 struct Evidence {
   bool well_formed = false;  // sizes agree, all numbers finite
   double spectral_radius = 0;
-  bool validation_moves = false;  // every output takes more than one value there
+  double slowest_over_window = 0;  // the longest time constant over the window's length
+  bool validation_moves = false;   // every output takes more than one value there
   double mrse_percent = 0;
   double fit_percent = 0;         // the worst output's
   double residual_over_span = 0;  // largest |error| of any output over its range in the window
@@ -79,14 +81,6 @@ struct Evidence {
       double champion_mrse_percent = 0;
     };
     std::optional<Elsewhere> elsewhere;  // absent: there is no such place
-    /// Long before the window. Errors are in percent of the outputs' size on the validation part,
-    /// as those of the comparison are.
-    struct Past {
-      std::int64_t rows = 0;
-      double error_percent = 0;  // the candidate's there
-      double champion_error_percent = 0;
-    };
-    std::optional<Past> past{};  // absent: too little telemetry of then
     /// The comparison with the champion's mean error on these samples taken from it.
     std::optional<Comparison> without_offset{};
     /// Parameters whose sensors could show that mean error, and which no relation binds.

@@ -1,12 +1,14 @@
 #include "service/daemon/refresh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "service/daemon/provenance.hpp"
 #include "service/daemon/rivals.hpp"
+#include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 
 namespace reident {
@@ -36,6 +38,15 @@ double outside_share(const Matrix& u, const std::vector<Signal>& inputs) {
   return static_cast<double>(outside.size()) / static_cast<double>(u.rows());
 }
 
+/// The longest time constant, of the pole of largest magnitude, over the window's length.
+double slowest_over_window(const identification::StateSpaceModel& model,
+                           storage::TimeRange window) {
+  const double radius = spectral_radius(model);
+  if (radius <= 0) return 0;
+  const double time_constant_s = -model.period_s / std::log(radius);
+  return time_constant_s * 1e9 / static_cast<double>(window.end - window.begin);
+}
+
 Evidence evidence_of(const storage::Archive& archive, const storage::Registry& registry,
                      const RefreshRequest& request, const PreparedWindow& prepared) {
   const Candidate& candidate = *prepared.candidate;
@@ -49,6 +60,7 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
   Evidence evidence;
   evidence.well_formed = is_well_formed(model.dynamics);
   evidence.spectral_radius = spectral_radius(model.dynamics);
+  evidence.slowest_over_window = slowest_over_window(model.dynamics, request.window);
   evidence.validation_moves = every_column_moves(validation(record.y));
   evidence.mrse_percent = model.validation.mrse();
   evidence.fit_percent = model.validation.fit();
@@ -64,16 +76,6 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
   return evidence;
 }
 
-ordered_json to_json(const Evidence::Comparison& comparison) {
-  ordered_json json = {{"rows", comparison.rows},
-                       {"mrse_percent", comparison.mrse_percent},
-                       {"rival_mrse_percent", comparison.rival_mrse_percent},
-                       {"reduction_percent", comparison.reduction_percent}};
-  json["sure_reduction_percent"] =
-      comparison.sure_percent ? ordered_json(*comparison.sure_percent) : ordered_json(nullptr);
-  return json;
-}
-
 ordered_json to_json(const Evidence::Champion& champion) {
   ordered_json json = {{"version", champion.version}};
   if (champion.comparison) {
@@ -87,10 +89,6 @@ ordered_json to_json(const Evidence::Champion& champion) {
                          {"disagreement_percent", elsewhere->disagreement_percent},
                          {"mrse_percent", elsewhere->mrse_percent},
                          {"champion_mrse_percent", elsewhere->champion_mrse_percent}};
-  if (const auto& past = champion.past)
-    json["past"] = {{"rows", past->rows},
-                    {"error_percent", past->error_percent},
-                    {"champion_error_percent", past->champion_error_percent}};
   return json;
 }
 
@@ -101,11 +99,13 @@ ordered_json limits_json(const EquipmentConfig& limits) {
           {"confidence_percent", limits.confidence_percent},
           {"max_disagreement_percent", limits.max_disagreement_percent},
           {"min_interval_ns", limits.min_interval},
+          {"confirmation_ns", limits.confirmation},
           {"unvouched", limits.unvouched == UnvouchedPolicy::wait ? "wait" : "approve"},
           {"approval", limits.approval == ApprovalPolicy::by_hand ? "by_hand" : "automatic"}};
 }
 
 void describe(const Evidence& evidence, ordered_json& json) {
+  json["slowest_over_window"] = evidence.slowest_over_window;
   json["residual_over_span"] = evidence.residual_over_span;
   json["outside_share"] = evidence.outside_share;
   json["mean"] = to_json(evidence.mean);
@@ -117,7 +117,8 @@ void describe(const Evidence& evidence, ordered_json& json) {
 
 storage::DecisionKind kind_of(Outcome outcome) {
   if (outcome == Outcome::approved) return storage::DecisionKind::approve;
-  if (outcome == Outcome::waiting || outcome == Outcome::held || outcome == Outcome::unvouched)
+  if (outcome == Outcome::waiting || outcome == Outcome::held || outcome == Outcome::unvouched ||
+      outcome == Outcome::on_probation)
     return storage::DecisionKind::wait;
   return storage::DecisionKind::reject;
 }
@@ -137,13 +138,7 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
     }
   }
   if (prepared.candidate) {
-    GateDecision decision = decide(result.evidence, request.equipment);
-    if (kind_of(decision.outcome) != storage::DecisionKind::reject && result.evidence.champion &&
-        result.evidence.champion->comparison) {
-      // Long to read, and only those that may run have to hold there too.
-      result.evidence.champion->past = in_the_past(archive, registry, prepared);
-      decision = decide(result.evidence, request.equipment);
-    }
+    const GateDecision decision = decide(result.evidence, request.equipment);
     describe(result.evidence, prepared.evidence);
     prepared.evidence["limits"] = limits_json(request.equipment);
     if (!result.evidence.baseline && request.equipment.baseline_mrse_percent)

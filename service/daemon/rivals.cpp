@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "identification/comparison.hpp"
 #include "identification/correction.hpp"
+#include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 
 namespace reident {
@@ -23,70 +23,21 @@ constexpr double range_slack = 0.05;
 /// A rival that has no output on more than half of the samples is not one.
 constexpr double least_common_share = 0.5;
 
-/// Rows of two records at the same ticks.
-struct CommonRows {
-  std::vector<Index> one, other;
-  std::vector<RowRange> stretches;  // of the common rows, without a gap in each
-};
-
-CommonRows common_rows(const Record& one, RowRange rows, const Record& other) {
-  CommonRows common;
-  for (const Segment& a : segments_within(one, rows))
-    for (const Segment& b : other.segments) {
-      const std::int64_t begin = std::max(a.first_tick, b.first_tick);
-      const std::int64_t end = std::min(a.first_tick + a.size(), b.first_tick + b.size());
-      if (begin >= end) continue;
-      const auto first = static_cast<Index>(common.one.size());
-      common.stretches.push_back({first, first + static_cast<Index>(end - begin)});
-      for (std::int64_t tick = begin; tick < end; ++tick) {
-        common.one.push_back(a.begin + (tick - a.first_tick));
-        common.other.push_back(b.begin + (tick - b.first_tick));
-      }
-    }
-  return common;
-}
-
-std::vector<RowRange> stretches_of(const Record& record, RowRange rows) {
-  std::vector<RowRange> stretches;
-  for (const Segment& segment : segments_from(record, rows))
-    stretches.push_back({segment.begin, segment.end});
-  return stretches;
-}
-
-Evidence::Comparison comparison_of(const Matrix& y, const Matrix& rival, const Matrix& candidate,
-                                   const std::vector<RowRange>& stretches,
-                                   double confidence_percent) {
-  Evidence::Comparison result;
-  result.rows = y.rows();
-  result.mrse_percent = identification::score(y, candidate).mrse();
-  result.rival_mrse_percent = identification::score(y, rival).mrse();
-  result.reduction_percent = 100 * (1 - result.mrse_percent / result.rival_mrse_percent);
-  if (std::isfinite(result.mrse_percent) && std::isfinite(result.rival_mrse_percent))
-    if (const auto paired =
-            identification::compare_runs(y, rival, candidate, stretches, confidence_percent / 100))
-      result.sure_percent = 100 * paired->low;
-  return result;
-}
-
-/// The candidate against outputs of another run over `record`, where both have rows. `offset`,
-/// where it is given, is the other run's mean error, which is taken from it.
-std::optional<Evidence::Comparison> against_run(const PreparedWindow& prepared,
-                                                const Record& record, const Matrix& outputs,
+/// The candidate against another run, where both have rows. `offset`, where it is given, is the
+/// other run's mean error, which is taken from it.
+std::optional<Evidence::Comparison> against_run(const PreparedWindow& prepared, const Run& rival,
                                                 double confidence_percent,
                                                 identification::Vector* offset = nullptr) {
   const Candidate& candidate = *prepared.candidate;
   const RowRange validate = candidate.parts.validate;
-  const CommonRows common = common_rows(prepared.data.record, validate, record);
+  PairedRuns runs = paired(prepared.data.record, validate, candidate.y_hat, rival);
   const double needed = least_common_share * static_cast<double>(validate.size());
-  if (static_cast<double>(common.one.size()) < needed) return std::nullopt;
-  const Matrix y = prepared.data.record.y(common.one, Eigen::all);
-  Matrix rival = outputs(common.other, Eigen::all);
+  if (static_cast<double>(runs.rows.size()) < needed) return std::nullopt;
   if (offset != nullptr) {
-    *offset = (y - rival).colwise().mean().transpose();
-    rival.rowwise() += offset->transpose();
+    *offset = (runs.y - runs.rival).colwise().mean().transpose();
+    runs.rival.rowwise() += offset->transpose();
   }
-  return comparison_of(y, rival, candidate.y_hat(common.one, Eigen::all), common.stretches,
-                       confidence_percent);
+  return compare(runs, confidence_percent);
 }
 
 bool is_outside(const Signal& signal, double value) {
@@ -102,29 +53,6 @@ bool reaches_beyond(const std::vector<Signal>& champion, const std::vector<Signa
                      });
 }
 
-/// Free runs of the candidate and the champion, each on its own inputs, where both have rows.
-struct BothRuns {
-  Record record;               // with the candidate's inputs
-  std::vector<Index> rows;     // of the record
-  Matrix candidate, champion;  // of these rows
-};
-
-std::optional<BothRuns> run_both(const storage::Archive& archive, const EquipmentModel& champion,
-                                 const PreparedWindow& prepared, storage::TimeRange range) {
-  auto seen = KeptWindow(prepared.loaded, 1, prepared.checks).load(archive, range);
-  const auto championed = load_window(archive, request_of(champion), range);
-  if (!std::holds_alternative<WindowData>(seen) || !std::holds_alternative<WindowData>(championed))
-    return std::nullopt;
-  BothRuns both{std::move(std::get<WindowData>(seen).record), {}, {}, {}};
-  const Record& own = std::get<WindowData>(championed).record;
-  CommonRows common = common_rows(both.record, both.record.all(), own);
-  both.candidate = free_run(prepared.candidate->model.dynamics, both.record, both.record.all())(
-      common.one, Eigen::all);
-  both.champion = free_run(champion.dynamics, own, own.all())(common.other, Eigen::all);
-  both.rows = std::move(common.one);
-  return both;
-}
-
 /// The two runs where the champion was validated with inputs that the candidate's window does not
 /// hold. Absent where there are too few such samples to tell, or no telemetry of then.
 std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
@@ -133,19 +61,19 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
   constexpr std::size_t least_rows = 30;
   const EquipmentModel& candidate = prepared.candidate->model;
   if (!reaches_beyond(champion.inputs, candidate.inputs)) return std::nullopt;
-  const auto both = run_both(archive, champion, prepared, champion.validated_on);
-  if (!both) return std::nullopt;
-  const std::vector<Index> outside = rows_outside(both->record.u, candidate.inputs);
-  std::vector<Index> rows, places;
-  for (std::size_t i = 0; i < both->rows.size(); ++i)
-    if (std::binary_search(outside.begin(), outside.end(), both->rows[i])) {
-      rows.push_back(both->rows[i]);
+  const auto own = run_on_believed(archive, candidate, prepared.checks, champion.validated_on);
+  const auto theirs = run_on_all(archive, champion, champion.validated_on);
+  if (!own || !theirs) return std::nullopt;
+  const PairedRuns both = paired(own->record, own->record.all(), own->outputs, *theirs);
+  const std::vector<Index> outside = rows_outside(own->record.u, candidate.inputs);
+  std::vector<Index> places;
+  for (std::size_t i = 0; i < both.rows.size(); ++i)
+    if (std::binary_search(outside.begin(), outside.end(), both.rows[i]))
       places.push_back(static_cast<Index>(i));
-    }
-  if (rows.size() < least_rows) return std::nullopt;
-  const Matrix& all_y = both->record.y;
-  const Matrix y = all_y(rows, Eigen::all), one = both->candidate(places, Eigen::all),
-               other = both->champion(places, Eigen::all);
+  if (places.size() < least_rows) return std::nullopt;
+  const Matrix& all_y = own->record.y;
+  const Matrix y = both.y(places, Eigen::all), one = both.candidate(places, Eigen::all),
+               other = both.rival(places, Eigen::all);
   Evidence::Champion::Elsewhere result;
   result.rows = y.rows();
   result.mrse_percent = identification::score(y, one).mrse();
@@ -185,6 +113,15 @@ std::vector<std::string> unbound_of(const EquipmentModel& champion, const Plausi
   return suspects;
 }
 
+/// Through the window, on what the candidate saw of it where both look at the same parameters.
+std::optional<Run> champion_run(const storage::Archive& archive, const EquipmentModel& champion,
+                                const PreparedWindow& prepared) {
+  if (request_of(champion) != prepared.loaded)
+    return run_on_all(archive, champion, prepared.attempt.window);
+  const identification::Record& record = prepared.data.record;
+  return Run{record, free_run(champion.dynamics, record, record.all())};
+}
+
 bool same_outputs(const EquipmentModel& one, const EquipmentModel& other) {
   return std::equal(one.outputs.begin(), one.outputs.end(), other.outputs.begin(),
                     other.outputs.end(),
@@ -207,22 +144,23 @@ std::vector<Index> rows_outside(const Matrix& u, const std::vector<Signal>& inpu
 Evidence::Comparison against_mean(const PreparedWindow& prepared, double confidence_percent) {
   const Candidate& candidate = *prepared.candidate;
   const RowRange rows = candidate.parts.validate;
-  const Matrix y = prepared.data.record.y.middleRows(rows.begin, rows.size());
-  const Matrix mean = y.colwise().mean().replicate(y.rows(), 1);
-  return comparison_of(y, mean, candidate.y_hat.middleRows(rows.begin, rows.size()),
-                       stretches_of(prepared.data.record, rows), confidence_percent);
+  const identification::Record& record = prepared.data.record;
+  PairedRuns runs;
+  runs.y = record.y.middleRows(rows.begin, rows.size());
+  runs.candidate = candidate.y_hat.middleRows(rows.begin, rows.size());
+  runs.rival = runs.y.colwise().mean().replicate(runs.y.rows(), 1);
+  for (const Segment& segment : segments_from(record, rows))
+    runs.stretches.push_back({segment.begin, segment.end});
+  return compare(runs, confidence_percent);
 }
 
 std::optional<Evidence::Comparison> against_simulator(const storage::Archive& archive,
                                                       const PreparedWindow& prepared,
                                                       double confidence_percent) {
-  WindowRequest request = prepared.loaded;
-  request.inputs.clear();
-  request.origin = storage::Origin::simulated;
-  const auto loaded = load_window(archive, request, prepared.candidate->model.validated_on);
-  const auto* simulated = std::get_if<WindowData>(&loaded);
+  const auto simulated =
+      simulator_run(archive, prepared.loaded, prepared.candidate->model.validated_on);
   if (!simulated) return std::nullopt;
-  return against_run(prepared, simulated->record, simulated->record.y, confidence_percent);
+  return against_run(prepared, *simulated, confidence_percent);
 }
 
 std::optional<Evidence::Champion> against_champion(const storage::Archive& archive,
@@ -243,50 +181,15 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
     return evidence;
   }
   if (!same_outputs(champion, candidate)) return std::nullopt;
-  const auto compare_over = [&](const Record& record) {
-    const Matrix run = free_run(champion.dynamics, record, record.all());
-    evidence.comparison = against_run(prepared, record, run, confidence_percent);
+  if (const auto run = champion_run(archive, champion, prepared)) {
+    evidence.comparison = against_run(prepared, *run, confidence_percent);
     identification::Vector offset;
-    evidence.without_offset = against_run(prepared, record, run, confidence_percent, &offset);
+    evidence.without_offset = against_run(prepared, *run, confidence_percent, &offset);
     if (evidence.without_offset)
       evidence.unbound = unbound_of(champion, prepared.data.plausibility, offset);
-  };
-  const WindowRequest request = request_of(champion);
-  if (request == prepared.loaded)
-    compare_over(prepared.data.record);
-  else if (const auto loaded = load_window(archive, request, prepared.attempt.window);
-           std::holds_alternative<WindowData>(loaded))
-    compare_over(std::get<WindowData>(loaded).record);
+  }
   evidence.elsewhere = elsewhere(archive, champion, prepared);
   return evidence;
-}
-
-std::optional<Evidence::Champion::Past> in_the_past(const storage::Archive& archive,
-                                                    const storage::Registry& registry,
-                                                    const PreparedWindow& prepared) {
-  constexpr int windows = 4;
-  const storage::TimeRange window = prepared.attempt.window;
-  const EquipmentModel& candidate = prepared.candidate->model;
-  const auto version = registry.champion(candidate.spacecraft, candidate.equipment);
-  if (!version) return std::nullopt;
-  std::optional<BothRuns> both;
-  try {
-    both = run_both(archive, equipment_model_from_json(version->model_json), prepared,
-                    {window.begin - windows * (window.end - window.begin), window.begin});
-  } catch (const storage::Error& error) {
-    if (error.kind() != storage::Error::Kind::corrupt) throw;
-    return std::nullopt;  // damage long before the window does not hold it up
-  }
-  const RowRange rows = prepared.candidate->parts.validate;
-  if (!both || static_cast<Index>(both->rows.size()) < rows.size()) return std::nullopt;
-  const auto rms = [](const Matrix& values) -> Eigen::ArrayXd {
-    return (values.colwise().squaredNorm() / double(values.rows())).cwiseSqrt().transpose().array();
-  };
-  const Eigen::ArrayXd size = rms(prepared.data.record.y.middleRows(rows.begin, rows.size()));
-  const Matrix y = both->record.y(both->rows, Eigen::all);
-  const auto error = [&](const Matrix& run) { return 100 * (rms(y - run) / size).mean(); };
-  return Evidence::Champion::Past{static_cast<std::int64_t>(y.rows()), error(both->candidate),
-                                  error(both->champion)};
 }
 
 }  // namespace reident

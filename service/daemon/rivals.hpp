@@ -32,10 +32,4 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
                                                    const PreparedWindow& prepared,
                                                    double confidence_percent);
 
-/// Both runs over the four windows' lengths of telemetry before the window. Absent where there is
-/// no champion that runs on such telemetry, or less of that than the validation part has rows.
-std::optional<Evidence::Champion::Past> in_the_past(const storage::Archive& archive,
-                                                    const storage::Registry& registry,
-                                                    const PreparedWindow& prepared);
-
 }  // namespace reident

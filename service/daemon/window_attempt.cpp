@@ -21,6 +21,20 @@ std::optional<std::int64_t> record(const storage::Standing& standing, RefreshRes
   return number;
 }
 
+bool record(const storage::Standing& standing, const ProbationDecision& found,
+            const AttemptContext& context) {
+  bool recorded = false;
+  context.write([&](storage::Registry& registry, auto&) {
+    const storage::Version& version = found.version;
+    recorded = registry
+                   .decide_if(standing, version.spacecraft, version.equipment, version.number,
+                              found.decision, context.clock())
+                   .has_value();
+  });
+  if (recorded && context.decided) context.decided(found);
+  return recorded;
+}
+
 }  // namespace
 
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
@@ -31,6 +45,10 @@ std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
   const storage::TimeRange window = job.window.window;
   // From here on the archive marks what still falls into the window.
   context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, window.end); });
+  look_at_probation(archive, registry, *job.spacecraft, *job.equipment, window.end,
+                    [&context](const storage::Standing& standing, const ProbationDecision& found) {
+                      return record(standing, found, context);
+                    });
   const RefreshRequest request{*job.spacecraft, *job.equipment, window, job.window.cause,
                                context.configuration_digest};
   // Read before the refresh looks at the champion and the hold.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "service/daemon/probation.hpp"
 #include "service/daemon/refresh.hpp"
 #include "service/daemon/window_feed.hpp"
 
@@ -20,6 +21,8 @@ struct AttemptContext {
   Clock clock;
   identification::ForEach for_each;  // the search runs on it; absent: on the calling thread
   std::function<bool()> stop;
+  /// Told of each version on probation that was decided; may be empty.
+  std::function<void(const ProbationDecision&)> decided{};
 };
 
 struct RecordedAttempt {
@@ -27,10 +30,11 @@ struct RecordedAttempt {
   std::int64_t version = 0;  // 0 where the window gave no model
 };
 
-/// Seals the window, tries it and commits what came out; nothing is published. Absent, and nothing
-/// recorded, where the equipment's standing is not the one that the attempt saw any more. `archive`
-/// and `registry` are of the calling thread; `kept` is of the job's equipment. Throws Stopped where
-/// `stop` answered true.
+/// Seals the window, looks at the equipment's versions on probation with the telemetry up to its
+/// end, tries it and commits what came out; nothing is published. Absent, and nothing recorded of
+/// the window, where the equipment's standing is not the one that the attempt saw any more.
+/// `archive` and `registry` are of the calling thread; `kept` is of the job's equipment. Throws
+/// Stopped where `stop` answered true.
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
                                               const storage::Archive& archive,
                                               const storage::Registry& registry, KeptWindow& kept,

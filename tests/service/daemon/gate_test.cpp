@@ -100,6 +100,9 @@ const Case of_the_candidate[] = {
     {"RadiusOfOne", [](auto& e, auto&) { e.spectral_radius = 1; }, Outcome::unstable},
     {"RadiusNotANumber", [](auto& e, auto&) { e.spectral_radius = nan; }, Outcome::unstable},
     {"RadiusJustBelowOne", [](auto& e, auto&) { e.spectral_radius = 0.999999; }, Outcome::approved},
+    {"SlowerThanTheWindow", [](auto& e, auto&) { e.slowest_over_window = 1.01; },
+     Outcome::slower_than_window},
+    {"AsSlowAsTheWindow", [](auto& e, auto&) { e.slowest_over_window = 1; }, Outcome::approved},
     {"ErrorAboveLimit", [](auto& e, auto&) { e.mrse_percent = 10.01; }, Outcome::error_above_limit},
     {"ErrorAtLimit", [](auto& e, auto&) { e.mrse_percent = 10; }, Outcome::approved},
     {"FitBelowLimit", [](auto& e, auto&) { e.fit_percent = 39.9; }, Outcome::fit_below_limit},
@@ -134,6 +137,49 @@ const Case beside_its_rivals[] = {
      Outcome::not_better_than_champion},
     {"SurelyBetterByMoreThanTheMargin",
      [](auto& e, auto&) { e.champion->comparison->sure_percent = 5.01; }, Outcome::approved},
+    {"BetterAndNotSurelyWhereMoreTelemetryMayTell",
+     [](auto& e, auto& c) {
+       e.champion->comparison->sure_percent = 5;
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"NotBetterByTheMarginWhateverMoreTelemetryTells",
+     [](auto& e, auto& c) {
+       e.champion->comparison->sure_percent = 0;
+       e.champion->comparison->reduction_percent = 5;
+       c.confirmation = 100;
+     },
+     Outcome::not_better_than_champion},
+    {"NotSurelyBetterAndOtherwiseWrong",
+     [](auto& e, auto& c) {
+       e.champion->comparison->sure_percent = 5;
+       e.champion->elsewhere = {100, 10.1, 9, 5};
+       c.confirmation = 100;
+     },
+     Outcome::not_better_than_champion},
+    {"NotSurelyBetterButForAnOffsetThatNobodyVouchesFor",
+     [](auto& e, auto& c) {
+       e.champion->comparison->sure_percent = 5;
+       e.champion->without_offset = e.champion->comparison;
+       e.champion->without_offset->reduction_percent = 4;
+       e.champion->unbound = {"y"};
+       c.confirmation = 100;
+     },
+     Outcome::not_better_than_champion},
+    {"NotSurelyBetterAndHeld",
+     [](auto& e, auto& c) {
+       e.champion->comparison->sure_percent = 5;
+       e.hold = {"ana", "eclipse season"};
+       c.confirmation = 100;
+     },
+     Outcome::not_better_than_champion},
+    {"NotSurelyBetterAndByHand",
+     [](auto& e, auto& c) {
+       e.champion->comparison->sure_percent = 5;
+       c.approval = ApprovalPolicy::by_hand;
+       c.confirmation = 100;
+     },
+     Outcome::not_better_than_champion},
     {"TooFewSamplesToCompare", [](auto& e, auto&) { e.champion->comparison->sure_percent.reset(); },
      Outcome::comparison_says_nothing},
     {"ChampionWentAstray",
@@ -146,27 +192,17 @@ const Case beside_its_rivals[] = {
      Outcome::approved},
     {"DisagreesElsewhere",
      [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 10.1, 6, 5};
+       e.champion->elsewhere = {100, 10.1, 8.1, 5};
      },
      Outcome::disagrees_with_champion},
+    {"DisagreesElsewhereAsAChangeExplains",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 10.1, 8, 5};  // the champion's error now
+     },
+     Outcome::approved},
     {"AgreesElsewhere",
      [](auto& e, auto&) {
        e.champion->elsewhere = {100, 10, 6, 5};
-     },
-     Outcome::approved},
-    {"RunsAwayInTheLongPast",
-     [](auto& e, auto&) {
-       e.champion->past = {100, 2.1 * e.champion->comparison->rival_mrse_percent, 1};
-     },
-     Outcome::astray_in_the_past},
-    {"ErrsInThePastAsTheChampionNow",
-     [](auto& e, auto&) {
-       e.champion->past = {100, 1.9 * e.champion->comparison->rival_mrse_percent, 1};
-     },
-     Outcome::approved},
-    {"ErrsInThePastAsTheChampionThere",
-     [](auto& e, auto&) {
-       e.champion->past = {100, 190, 100};
      },
      Outcome::approved},
     {"DisagreesElsewhereAndIsRight",

@@ -107,16 +107,13 @@ TEST_F(Refresh, ReplacesAChampionThatThePlantHasLeftBehind) {
   EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
   EXPECT_GT(result.evidence.champion->comparison->rival_mrse_percent,
             3 * result.evidence.mrse_percent);
-  // What the change of the plant makes of the old model now, it makes of the new one before.
-  ASSERT_TRUE(result.evidence.champion->past);
-  EXPECT_NEAR(result.evidence.champion->past->error_percent,
-              result.evidence.champion->comparison->rival_mrse_percent, 10);
 }
 
 TEST_F(Refresh, ScoresAChampionOfOtherInputsOnItsOwnInputs) {
   archive.append(telemetry(day, 1201));
   EquipmentConfig narrower = plant();
   narrower.inputs = {"u"};
+  narrower.max_order = 1;  // more would be an oscillator in the place of v
   record(run(day + 10 * minute, narrower));
   const RefreshResult result = run(day + 15 * minute);
   ASSERT_TRUE(result.evidence.champion);

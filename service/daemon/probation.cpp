@@ -1,0 +1,159 @@
+#include "service/daemon/probation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/daemon/run_comparison.hpp"
+#include "service/model/model_json.hpp"
+#include "service/support/floor_divide.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident {
+namespace {
+
+using identification::RowRange;
+using storage::DecisionKind;
+using storage::NewDecision;
+
+NewDecision rejection(std::string reason) {
+  return {DecisionKind::reject, "gate", "Not confirmed: " + std::move(reason), {}};
+}
+
+NewDecision decision(DecisionKind kind, const LongerLook& look, const std::string& reason) {
+  nlohmann::ordered_json evidence = {{"until_ns", look.until},
+                                     {"champion", look.champion},
+                                     {"comparison", to_json(look.comparison)}};
+  if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
+  const Evidence::Comparison& comparison = look.comparison;
+  return {kind, "gate",
+          fmt::format("MRSE {:.3f} % on {} samples of the validation part and after it, until {}; "
+                      "champion {} has {:.3f} % there. {}",
+                      comparison.mrse_percent, comparison.rows, time_text(look.until),
+                      look.champion, comparison.rival_mrse_percent, reason),
+          evidence.dump()};
+}
+
+double sure_percent(const LongerLook& look) {
+  double sure = look.comparison.sure_percent.value_or(-INFINITY);
+  if (look.without_offset)
+    sure = std::min(sure, look.without_offset->sure_percent.value_or(-INFINITY));
+  return sure;
+}
+
+/// Whether a sensor that no relation binds could show the champion's mean error, as the attempt
+/// found.
+bool needs_vouching(const storage::Registry& registry, const storage::Version& version,
+                    const EquipmentConfig& limits) {
+  if (limits.unvouched == UnvouchedPolicy::approve) return false;
+  const auto attempt = registry.attempt(version.attempt);
+  const auto evidence = nlohmann::json::parse(attempt->evidence_json, nullptr, false);
+  return evidence.is_object() &&
+         evidence.value("/champion/unbound"_json_pointer, nlohmann::json::array()).size() > 0;
+}
+
+/// Absent where there is too little to compare on.
+std::optional<LongerLook> longer_look(const storage::Archive& archive,
+                                      const storage::Version& version,
+                                      const storage::Version& champion,
+                                      const EquipmentConfig& equipment, bool needs_vouching,
+                                      storage::Time reached) {
+  LongerLook look;
+  look.is_last = reached >= version.window.end + equipment.confirmation;
+  look.until = std::min(reached, version.window.end + equipment.confirmation);
+  look.champion = champion.number;
+  const EquipmentModel model = equipment_model_from_json(version.model_json);
+  const storage::TimeRange range{version.window.begin, look.until};
+  const auto own = run_on_believed(archive, model, checks_of(equipment), range);
+  const auto theirs = run_on_all(archive, equipment_model_from_json(champion.model_json), range);
+  if (!own || !theirs) return std::nullopt;
+  const std::int64_t first_tick = -floor_divide(-model.validated_on.begin, equipment.sample_period);
+  PairedRuns runs = paired(own->record, {first_row_at(own->record, first_tick), own->record.rows()},
+                           own->outputs, *theirs);
+  if (runs.rows.empty()) return std::nullopt;
+  look.comparison = compare(runs, equipment.confidence_percent);
+  if (needs_vouching) {
+    runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
+    look.without_offset = compare(runs, equipment.confidence_percent);
+  }
+  return look;
+}
+
+/// What speaks against the version whatever came after its window.
+std::optional<NewDecision> against_window(const storage::Version& version,
+                                          const std::optional<storage::Version>& champion,
+                                          const EquipmentConfig& equipment) {
+  if (!champion)
+    return rejection(
+        "the champion that it was to replace was withdrawn; windows that end from now "
+        "on are judged without one.");
+  const Duration newer = version.window.end - champion->window.end;
+  if (newer < 0)
+    return rejection(
+        fmt::format("champion {} was identified from newer telemetry.", champion->number));
+  if (newer < equipment.min_interval)
+    return rejection(
+        fmt::format("the window ends {} after that of champion {}; versions are at "
+                    "least {} apart.",
+                    duration_text(newer), champion->number, duration_text(equipment.min_interval)));
+  return std::nullopt;
+}
+
+std::optional<NewDecision> look_at(const storage::Archive& archive,
+                                   const storage::Registry& registry,
+                                   const EquipmentConfig& equipment,
+                                   const storage::Version& version, storage::Time reached) {
+  const auto champion = registry.champion(version.spacecraft, version.equipment);
+  if (auto refusal = against_window(version, champion, equipment)) return refusal;
+  if (reached <= version.window.end) return std::nullopt;
+  try {
+    const bool vouching = needs_vouching(registry, version, equipment);
+    const auto look = longer_look(archive, version, *champion, equipment, vouching, reached);
+    return look ? judge_probation(*look, equipment) : std::nullopt;
+  } catch (const std::invalid_argument&) {
+    return rejection("its model or the champion's is damaged in the registry.");
+  } catch (const storage::Error& error) {
+    if (error.kind() != storage::Error::Kind::corrupt) throw;
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::optional<NewDecision> judge_probation(const LongerLook& look, const EquipmentConfig& limits) {
+  const double sure = sure_percent(look);
+  if (sure > limits.margin_percent && look.comparison.mrse_percent <= limits.max_mrse_percent)
+    return decision(DecisionKind::approve, look,
+                    fmt::format("Confirmed: with a confidence of {:g} % the reduction is at least "
+                                "{:.2f} %.",
+                                limits.confidence_percent, sure));
+  if (!look.is_last) return std::nullopt;
+  return decision(
+      DecisionKind::reject, look,
+      fmt::format("Not confirmed: that is not surely {:g} % less.", limits.margin_percent));
+}
+
+void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
+                       const std::string& spacecraft, const EquipmentConfig& equipment,
+                       storage::Time reached, const RecordProbation& record) {
+  const std::vector<std::int64_t> numbers =
+      registry.undecided(spacecraft, equipment.name, std::string(name(Outcome::on_probation)));
+  if (numbers.empty() || registry.hold(spacecraft, equipment.name)) return;
+  std::vector<storage::Version> versions;
+  for (const std::int64_t number : numbers)
+    versions.push_back(*registry.version(spacecraft, equipment.name, number));
+  std::stable_sort(versions.begin(), versions.end(),
+                   [](const auto& a, const auto& b) { return a.window.end > b.window.end; });
+  for (storage::Version& version : versions) {
+    const storage::Standing standing = registry.standing(spacecraft, equipment.name);
+    auto found = look_at(archive, registry, equipment, version, reached);
+    if (found) record(standing, {std::move(version), std::move(*found)});
+  }
+}
+
+}  // namespace reident

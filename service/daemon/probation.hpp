@@ -1,0 +1,51 @@
+// Versions on probation: better than the champion by the margin, but not surely on their windows'
+// validation part alone. Telemetry that comes after their windows decides.
+//
+// The free runs of the version and of the champion, begun with the window, go on over that
+// telemetry, and are compared over the validation part and it together. A change of the equipment
+// that is too new to fill the validation part is so followed sooner than by the next window.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "service/daemon/config.hpp"
+#include "service/daemon/gate.hpp"
+#include "storage/archive.hpp"
+#include "storage/registry.hpp"
+
+namespace reident {
+
+/// What the validation part and telemetry after it show of a version.
+struct LongerLook {
+  bool is_last = false;     // no more telemetry is waited for
+  storage::Time until = 0;  // end of the telemetry
+  std::int64_t champion = 0;
+  Evidence::Comparison comparison;  // with the champion
+  /// The same with the champion's mean error taken from it, where a sensor that no relation binds
+  /// could show that error.
+  std::optional<Evidence::Comparison> without_offset;
+};
+
+/// Approval or rejection; absent where more telemetry has to tell.
+std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
+                                                    const EquipmentConfig& limits);
+
+struct ProbationDecision {
+  storage::Version version;
+  storage::NewDecision decision;
+};
+
+/// Records a decision unless the standing is not the given one any more. Whether it was recorded.
+using RecordProbation = std::function<bool(const storage::Standing&, const ProbationDecision&)>;
+
+/// Looks at the equipment's versions on probation with telemetry until `reached`, that of the
+/// newest window first. A version whose window is older than the champion's, or less than
+/// `min_interval` newer, is rejected. Nothing is decided while an operator holds the equipment, nor
+/// from telemetry that is damaged.
+void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
+                       const std::string& spacecraft, const EquipmentConfig& equipment,
+                       storage::Time reached, const RecordProbation& record);
+
+}  // namespace reident

@@ -1,0 +1,104 @@
+#include "service/daemon/run_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include <nlohmann/json.hpp>
+
+#include "identification/comparison.hpp"
+#include "identification/simulate.hpp"
+#include "service/daemon/kept_window.hpp"
+#include "service/daemon/window_data.hpp"
+
+namespace reident {
+
+using identification::Index;
+using identification::Matrix;
+using identification::Record;
+using identification::RowRange;
+using identification::Segment;
+
+namespace {
+
+Run free_run_of(const EquipmentModel& model, Record&& record) {
+  Matrix outputs = free_run(model.dynamics, record, record.all());
+  return {std::move(record), std::move(outputs)};
+}
+
+}  // namespace
+
+std::optional<Run> run_on_believed(const storage::Archive& archive, const EquipmentModel& model,
+                                   const Checks& checks, storage::TimeRange range) {
+  auto loaded = KeptWindow(request_of(model), 1, checks).load(archive, range);
+  auto* data = std::get_if<WindowData>(&loaded);
+  if (!data) return std::nullopt;
+  return free_run_of(model, std::move(data->record));
+}
+
+std::optional<Run> run_on_all(const storage::Archive& archive, const EquipmentModel& model,
+                              storage::TimeRange range) {
+  auto loaded = load_window(archive, request_of(model), range);
+  auto* data = std::get_if<WindowData>(&loaded);
+  if (!data) return std::nullopt;
+  return free_run_of(model, std::move(data->record));
+}
+
+std::optional<Run> simulator_run(const storage::Archive& archive, WindowRequest request,
+                                 storage::TimeRange range) {
+  request.inputs.clear();
+  request.origin = storage::Origin::simulated;
+  auto loaded = load_window(archive, request, range);
+  auto* data = std::get_if<WindowData>(&loaded);
+  if (!data) return std::nullopt;
+  Matrix outputs = data->record.y;
+  return Run{std::move(data->record), std::move(outputs)};
+}
+
+PairedRuns paired(const Record& record, RowRange rows, const Matrix& candidate, const Run& rival) {
+  PairedRuns runs;
+  std::vector<Index> of_rival;
+  for (const Segment& a : segments_within(record, rows))
+    for (const Segment& b : rival.record.segments) {
+      const std::int64_t begin = std::max(a.first_tick, b.first_tick);
+      const std::int64_t end = std::min(a.first_tick + a.size(), b.first_tick + b.size());
+      if (begin >= end) continue;
+      const auto first = static_cast<Index>(runs.rows.size());
+      runs.stretches.push_back({first, first + static_cast<Index>(end - begin)});
+      for (std::int64_t tick = begin; tick < end; ++tick) {
+        runs.rows.push_back(a.begin + (tick - a.first_tick));
+        of_rival.push_back(b.begin + (tick - b.first_tick));
+      }
+    }
+  runs.y = record.y(runs.rows, Eigen::all);
+  runs.candidate = candidate(runs.rows, Eigen::all);
+  runs.rival = rival.outputs(of_rival, Eigen::all);
+  return runs;
+}
+
+Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent) {
+  Evidence::Comparison result;
+  result.rows = runs.y.rows();
+  result.mrse_percent = identification::score(runs.y, runs.candidate).mrse();
+  result.rival_mrse_percent = identification::score(runs.y, runs.rival).mrse();
+  result.reduction_percent = 100 * (1 - result.mrse_percent / result.rival_mrse_percent);
+  if (std::isfinite(result.mrse_percent) && std::isfinite(result.rival_mrse_percent))
+    if (const auto sure = identification::compare_runs(runs.y, runs.rival, runs.candidate,
+                                                       runs.stretches, confidence_percent / 100))
+      result.sure_percent = 100 * sure->low;
+  return result;
+}
+
+nlohmann::ordered_json to_json(const Evidence::Comparison& comparison) {
+  nlohmann::ordered_json json = {{"rows", comparison.rows},
+                                 {"mrse_percent", comparison.mrse_percent},
+                                 {"rival_mrse_percent", comparison.rival_mrse_percent},
+                                 {"reduction_percent", comparison.reduction_percent}};
+  json["sure_reduction_percent"] = comparison.sure_percent
+                                       ? nlohmann::ordered_json(*comparison.sure_percent)
+                                       : nlohmann::ordered_json(nullptr);
+  return json;
+}
+
+}  // namespace reident

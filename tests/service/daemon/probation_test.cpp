@@ -1,0 +1,176 @@
+#include "service/daemon/probation.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "service/daemon/refresh.hpp"
+#include "tests/service/daemon/daemon_fixture.hpp"
+
+namespace reident::test {
+namespace {
+
+using storage::DecisionKind;
+using testing::AllOf;
+using testing::HasSubstr;
+
+LongerLook sure_of(double percent) {
+  LongerLook look;
+  look.champion = 3;
+  look.comparison = {.rows = 500,
+                     .mrse_percent = 5,
+                     .rival_mrse_percent = 8,
+                     .reduction_percent = 37.5,
+                     .sure_percent = percent};
+  return look;
+}
+
+TEST(JudgeProbation, ApprovesOnceTheReductionIsSure) {
+  const auto found = judge_probation(sure_of(15.1), {});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, DecisionKind::approve);
+  EXPECT_EQ(found->actor, "gate");
+  EXPECT_THAT(found->reason, AllOf(HasSubstr("champion 3 has 8.000 %"), HasSubstr("15.10 %")));
+  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["comparison"]["rows"], 500);
+}
+
+TEST(JudgeProbation, WaitsForMoreAndRejectsAtTheLastLook) {
+  LongerLook look = sure_of(15);
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.is_last = true;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+}
+
+TEST(JudgeProbation, AsksForMoreThanAnOffsetWhereNoSensorVouchesForIt) {
+  LongerLook look = sure_of(40);
+  look.without_offset = sure_of(14).comparison;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.without_offset = sure_of(16).comparison;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.without_offset->sure_percent.reset();
+  EXPECT_FALSE(judge_probation(look, {}));
+}
+
+TEST(JudgeProbation, ApprovesNothingAboveTheLimitOfTheError) {
+  LongerLook look = sure_of(40);
+  look.comparison.mrse_percent = 20.1;
+  EXPECT_FALSE(judge_probation(look, {}));
+}
+
+/// Champion 1 is of a plant of gain 1; version 2 is on probation.
+class Probation : public DaemonTest {
+ protected:
+  static constexpr storage::Time window_end = day + 20 * minute;
+
+  Probation() {
+    archive.describe(descriptors());
+    archive.append(telemetry(day, 600));
+    make_version(day + 10 * minute, "approved", DecisionKind::approve);
+  }
+  /// From here on the plant has another gain; the version's window ends after ten minutes of it.
+  void change_plant(double gain) {
+    archive.append(telemetry(day + 10 * minute, 901, gain));
+    make_version(window_end, "on_probation", DecisionKind::wait);
+  }
+  void make_version(storage::Time end, const std::string& outcome, DecisionKind kind) {
+    KeptWindow nothing = kept_window_of("SAT", equipment);
+    RefreshResult result =
+        refresh(archive, registry, {"SAT", equipment, {end - equipment.window, end}, "slide", "d"},
+                nothing, {}, [] { return false; });
+    ASSERT_TRUE(result.candidate) << result.attempt.reason;
+    result.attempt.outcome = outcome;
+    registry.record(result.attempt, result.version, {kind, "gate", "for the test"});
+  }
+  /// What was recorded.
+  std::vector<ProbationDecision> look(storage::Time reached) {
+    std::vector<ProbationDecision> found;
+    look_at_probation(archive, registry, "SAT", equipment, reached,
+                      [&](const storage::Standing& standing, const ProbationDecision& decided) {
+                        found.push_back(decided);
+                        return registry
+                            .decide_if(standing, "SAT", "PLANT", decided.version.number,
+                                       decided.decision, reached)
+                            .has_value();
+                      });
+    return found;
+  }
+  std::string status(std::int64_t version) const {
+    return registry.version("SAT", "PLANT", version)->status;
+  }
+
+  static EquipmentConfig with_confirmation() {
+    EquipmentConfig config = plant();
+    config.confirmation = 5 * minute;
+    return config;
+  }
+
+  const EquipmentConfig equipment = with_confirmation();
+  storage::Database database = open();
+  storage::Archive archive{database};
+  storage::Registry registry{database};
+};
+
+TEST_F(Probation, EndsWithAnApprovalOnceMoreTelemetryBearsTheVersionOut) {
+  change_plant(2);
+  EXPECT_TRUE(look(window_end).empty());
+  EXPECT_EQ(status(2), "waiting");
+  const auto found = look(window_end + 2 * minute);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(status(2), "approved");
+  EXPECT_EQ(registry.version("SAT", "PLANT", 2)->parent, 1);
+  const auto evidence = nlohmann::json::parse(found[0].decision.evidence_json);
+  EXPECT_EQ(evidence["until_ns"], window_end + 2 * minute);
+  EXPECT_EQ(evidence["comparison"]["rows"], 180 + 120) << "the validation part and what came after";
+  EXPECT_TRUE(look(window_end + 3 * minute).empty());
+}
+
+TEST_F(Probation, EndsWithARejectionWhereTheChampionIsAsGood) {
+  change_plant(1);
+  EXPECT_TRUE(look(window_end + 4 * minute).empty());
+  ASSERT_EQ(look(window_end + 5 * minute).size(), 1U);
+  EXPECT_EQ(status(2), "rejected");
+}
+
+TEST_F(Probation, LooksNoFurtherThanTheConfirmation) {
+  change_plant(2);
+  const auto found = look(window_end + 60 * minute);
+  EXPECT_EQ(nlohmann::json::parse(found.at(0).decision.evidence_json)["until_ns"],
+            window_end + 5 * minute);
+}
+
+TEST_F(Probation, OfANewerWindowEndsThatOfTheOlder) {
+  change_plant(2);
+  make_version(window_end + minute, "on_probation", DecisionKind::wait);
+  make_version(window_end + 3 * minute, "on_probation", DecisionKind::wait);
+  EXPECT_EQ(look(window_end + 5 * minute).size(), 3U);
+  EXPECT_EQ(status(4), "approved");
+  EXPECT_EQ(status(3), "rejected");
+  EXPECT_EQ(status(2), "rejected");
+  EXPECT_THAT(registry.decisions("SAT", "PLANT", 3).back().reason,
+              HasSubstr("champion 4 was identified from newer telemetry"));
+}
+
+TEST_F(Probation, RestsWhileAnOperatorHoldsTheEquipment) {
+  change_plant(2);
+  registry.put_on_hold("SAT", "PLANT", {"ana", "rehearsal", 1});
+  EXPECT_TRUE(look(window_end + 5 * minute).empty());
+  registry.release("SAT", "PLANT", {"ana", "over", 2});
+  EXPECT_EQ(look(window_end + 5 * minute).size(), 1U);
+}
+
+TEST_F(Probation, IsOverWhereTheChampionWasWithdrawn) {
+  change_plant(2);
+  registry.decide("SAT", "PLANT", 1, {DecisionKind::withdraw, "ana", "bad"}, 1);
+  EXPECT_THAT(look(window_end + minute).at(0).decision.reason, HasSubstr("was withdrawn"));
+  EXPECT_EQ(status(2), "rejected");
+}
+
+TEST_F(Probation, GoesOnWhereItsTelemetryIsDamaged) {
+  change_plant(2);
+  archive.compact();
+  damage_chunks(2);
+  EXPECT_TRUE(look(window_end + 5 * minute).empty());
+  EXPECT_EQ(status(2), "waiting");
+}
+
+}  // namespace
+}  // namespace reident::test
