@@ -1,5 +1,6 @@
 // Lies as text, and what is wrong with one.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ namespace {
 using Subject = LieFacts::Subject;
 using storage::ParameterDescriptor;
 
-constexpr std::string_view form = "KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE]";
+constexpr std::string_view form = "KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE][#SEED]";
 
 std::string unknown_parameter(std::string_view name,
                               std::span<const ParameterDescriptor> parameters) {
@@ -83,7 +84,8 @@ std::string wrong_magnitude(const Lie& lie) {
 
 }  // namespace
 
-std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start) {
+std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start,
+                                      std::uint64_t seed) {
   const auto wrong = [text](const std::string& what) {
     return LieError{fmt::format("'{}': {}", text, what)};
   };
@@ -97,8 +99,15 @@ std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start
     return wrong(fmt::format("there is no lie '{}'; the lies are: {}", text.substr(0, at),
                              lie_kind_names()));
   lie.kind = kind->kind;
+  lie.seed = seed;
 
   std::string_view to = text.substr(slash + 1);
+  if (const auto digits = cut_after_last(to, '#')) {
+    const auto [end, error] =
+        std::from_chars(digits->data(), digits->data() + digits->size(), lie.seed);
+    if (error != std::errc{} || end != digits->data() + digits->size())
+      return wrong(fmt::format("'{}' is not a seed, a whole number from 0", *digits));
+  }
   if (const auto magnitude = cut_after_last(to, '*')) {
     lie.magnitude = csv::to_number(*magnitude);
     if (!lie.magnitude) return wrong(fmt::format("'{}' is not a number", *magnitude));

@@ -78,9 +78,10 @@ struct LieError {
   std::string message;  // what is wrong and what would mend it
 };
 
-/// "KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE]". FROM and TO are times or, with a plus sign,
-/// durations after `start`.
-std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start);
+/// "KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE][#SEED]". FROM and TO are times or, with a plus
+/// sign, durations after `start`; `seed` is that of a text without one.
+std::variant<Lie, LieError> parse_lie(std::string_view text, storage::Time start,
+                                      std::uint64_t seed = 0);
 
 /// What keeps `lie` from being told about these parameters; nothing where it can be.
 std::optional<LieError> obstacle(const Lie& lie,

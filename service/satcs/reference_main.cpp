@@ -76,12 +76,11 @@ std::unique_ptr<FrameSource> with_lies(std::unique_ptr<FrameSource> truth,
   const auto parameters = truth->parameters();
   std::vector<Lie> lies;
   for (const std::string& text : texts) {
-    auto parsed = parse_lie(text, options.start);
+    auto parsed = parse_lie(text, options.start, mix(options.seed + lies.size()));
     if (const auto* error = std::get_if<LieError>(&parsed)) {
       throw BadRequest("--lie: " + error->message);
     }
     auto& lie = std::get<Lie>(parsed);
-    lie.seed = mix(options.seed + lies.size());
     if (const auto error = obstacle(lie, parameters)) throw BadRequest("--lie: " + error->message);
     lies.push_back(std::move(lie));
   }
@@ -117,7 +116,7 @@ int main(int argc, char** argv) {
                  "What befalls the telemetry between two times, or two durations after the start;\n"
                  "may be given again. Kinds: " +
                      lie_kind_names())
-      ->type_name("KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE]")
+      ->type_name("KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE][#SEED]")
       ->allow_extra_args(false);
   add_publisher_options(app, sender, publisher, json);
   return run_program(app, argc, argv, [&]() -> int {

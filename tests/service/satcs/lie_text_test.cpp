@@ -23,6 +23,11 @@ TEST(LieText, SaysAllOfALie) {
   EXPECT_EQ(jump.when, (storage::TimeRange{start + 600 * second, start + 1230 * second}));
   EXPECT_EQ(jump.parameter, "");
   EXPECT_EQ(jump.magnitude, -1.5);
+  const auto seed_of = [](std::string_view text) {
+    return std::get<Lie>(parse_lie(text, start, 7)).seed;
+  };
+  EXPECT_EQ(seed_of("spikes@+1h/+2h:A*0.5#18446744073709551615"), UINT64_MAX);
+  EXPECT_EQ(seed_of("spikes@+1h/+2h:A*0.5"), 7U);
   for (std::size_t k = 0; k < lie_kinds; ++k) {
     const auto kind = static_cast<LieKind>(k);
     EXPECT_EQ(lie_of(std::string(name(kind)) + "@+1s/+2s").kind, kind);
@@ -35,12 +40,13 @@ TEST(LieText, RefusesWhatCannotBeTold) {
     std::string complaint;
   };
   for (const auto& [text, complaint] : {
-           Case{"", "is not KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE]"},
+           Case{"", "is not KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE][#SEED]"},
            Case{"stuck@+1h:A", "is not KIND@FROM/TO"},
            Case{"stuk@+1h/+2h:A", "there is no lie 'stuk'; the lies are: stuck, bias_step,"},
            Case{"stuck@noon/+2h:A", "'noon' is neither a time such as"},
            Case{"stuck@+1h/-2h:A", "'-2h' is neither a time such as"},
            Case{"stuck@+1h/+2h:A*much", "'much' is not a number"},
+           Case{"stuck@+1h/+2h:A#-1", "'-1' is not a seed, a whole number from 0"},
            Case{"stuck@+2h/+2h:A",
                 "the lie stuck ends at 2017-07-01T02:00:00Z, which is not after"},
            Case{"stuck@+1h/+2h", "the lie stuck needs a parameter, such as :V_BUS"},
