@@ -39,4 +39,11 @@ struct ScenarioOutcome {
 std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& config,
                                        const std::filesystem::path& folder);
 
+/// The same of what reidentd made of the scenarios: `folder` has the database of each, <number>.db.
+/// Its clock was not the spacecraft's, so that a version counts from where the telemetry ended that
+/// its approval rests on, and every window that was tried because of drift as a request. Throws
+/// storage::Error where a database cannot be read.
+std::vector<ScenarioOutcome> score_databases(const LifeGroup& group, const Config& config,
+                                             const std::filesystem::path& folder);
+
 }  // namespace reident::trust

@@ -12,12 +12,11 @@ import argparse
 import collections
 import json
 import os
-import random
-import signal
-import subprocess
 import tempfile
 import time
 from pathlib import Path
+
+from real_service import RealService
 
 TICKS_A_SECOND = os.sysconf("SC_CLK_TCK")
 
@@ -38,38 +37,18 @@ def processor_seconds_of_threads(process):
 
 
 def measure(programs, configuration, folder, days, speed):
-    domain = random.SystemRandom().randint(1, 200)
-    endpoint = ["--domain", str(domain), "--partition", "month"]
-    environment = {k: v for k, v in os.environ.items() if k != "CYCLONEDDS_URI"}
-    (folder / "month.toml").write_text(
-        f'[dds]\ndomain = {domain}\npartition = "month"\n\n{configuration.read_text()}')
-
-    def run(program, *arguments):
-        done = subprocess.run([programs / program, *arguments], check=True, env=environment,
-                              stdout=subprocess.PIPE, text=True)
-        return json.loads(done.stdout)
-
-    with open(folder / "reidentd.log", "w") as log:
-        service = subprocess.Popen(
-            [programs / "daemon/reidentd", "--config", folder / "month.toml"], stdout=log,
-            stderr=log, env=environment)
-    try:
+    with RealService(programs, folder, configuration.read_text()) as service:
         began = time.monotonic()
         before = os.times()
-        sent = run("satcs/satcs-reference", "--duration", f"{days}d", "--speed", speed,
-                   "--wait-readers", "1", "--json", *endpoint)
+        sent = service.receive("--duration", f"{days}d", speed=speed)
         after = os.times()
         ingested = time.monotonic() - began
-        status = run("cli/reident", "status", "--wait", "idle", "--timeout", "3600", "--json",
-                     *endpoint)
+        status = service.wait_idle()
         seconds = time.monotonic() - began
-        threads = processor_seconds_of_threads(service)
-        total = processor_seconds(Path(f"/proc/{service.pid}/stat").read_text())
-    finally:
-        service.send_signal(signal.SIGTERM)
-        service.wait()
-    attempts = run("cli/reident", "history", "--database", folder / "reference.db",
-                   "--json")["attempts"]
+        threads = processor_seconds_of_threads(service.process)
+        total = processor_seconds(Path(f"/proc/{service.process.pid}/stat").read_text())
+    attempts = service.run("cli/reident", "history", "--database", folder / "reference.db")[
+        "attempts"]
     outcomes = collections.Counter(
         (attempt["equipment"], attempt["trigger"], attempt["outcome"]) for attempt in attempts)
     phases = collections.Counter()

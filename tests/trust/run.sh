@@ -2,11 +2,14 @@
 # The trust suite: did any simulator get a worse model, and how soon did it get a better one?
 # Builds the release preset first. The last line is one JSON object.
 #   tests/trust/run.sh              a few minutes: two scenarios of every sixth life, of the tuned half
-#   tests/trust/run.sh --all        first the month, then all scenarios, both halves; more than an hour
-#                                   on two cores. Writes build/release/trust/report.md with pictures
-#                                   of the worst cases
+#   tests/trust/run.sh --all        first the month, then the handful over DDS, then all scenarios,
+#                                   both halves; more than an hour on two cores. Writes
+#                                   build/release/trust/report.md with pictures of the worst cases
 #   tests/trust/run.sh --month      a month of the whole subsystem through the real processes: how
 #                                   long it takes, and where processor time goes
+#   tests/trust/run.sh --dds [--scenario N...]
+#                                   scenarios through the real processes: by default a handful, every
+#                                   71st of both halves
 #   tests/trust/run.sh OPTION...    any options of reident_trust, such as --scenario 2 --plot 2.svg
 #                                   (--help lists them)
 set -euo pipefail
@@ -23,6 +26,9 @@ program=build/release/tests/trust/reident_trust
 month() {  # its database is on the disk of the build
   python3 tests/trust/month.py build/release/service deploy/reference.toml
 }
+over_dds() {
+  python3 tests/trust/over_dds.py build/release "$@"
+}
 case ${1:-} in
   "")
     exec "$program" --quick
@@ -31,10 +37,16 @@ case ${1:-} in
     shift
     mkdir -p build/release/trust
     month >build/release/trust/month.json
-    exec "$program" --report build/release/trust --month build/release/trust/month.json "$@"
+    over_dds | tail -n 1 >build/release/trust/dds.json
+    exec "$program" --report build/release/trust --month build/release/trust/month.json \
+      --dds build/release/trust/dds.json "$@"
     ;;
   --month)
     month
+    ;;
+  --dds)
+    shift
+    over_dds "$@"
     ;;
   *)
     exec "$program" "$@"

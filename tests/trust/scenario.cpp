@@ -16,6 +16,7 @@ using satcs::LieKind;
 using satcs::reference::LifeEvent;
 using satcs::reference::LifeKind;
 
+constexpr storage::Time first_start = 1'498'867'200'000'000'000;  // 2017-07-01T00:00:00Z
 constexpr Duration hour = 3'600'000'000'000;
 constexpr Duration day = 24 * hour;
 constexpr Duration telemetry_days = 31;
@@ -214,7 +215,6 @@ const EquipmentConfig& named(const SpacecraftConfig& spacecraft, const std::stri
 }  // namespace
 
 std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft) {
-  constexpr storage::Time first_start = 1'498'867'200'000'000'000;  // 2017-07-01T00:00:00Z
   const std::vector<LifePlan> lives = life_plans();
   const std::vector<LiePlan> lies = lie_plans();
   std::vector<LifeGroup> groups;
@@ -248,6 +248,30 @@ std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft) {
     }
   }
   return groups;
+}
+
+bool is_of_the_handful(const Scenario& scenario) {
+  return scenario.number % 71 == 36;
+}
+
+LifeGroup short_group() {
+  LifeGroup group;
+  group.seed = 1000;
+  group.life = "failed_cell";
+  group.equipment = {"BAT1"};
+  group.start = first_start;
+  group.duration = 5 * day;
+  const storage::Time change = after(group.start, 2.2);
+  group.events = {{LifeKind::failed_cell, change, change, 2, 1}};
+  group.scenarios = {{0,
+                      "bias_step",
+                      {{LieKind::bias_step,
+                        {group.start + 24 * hour, group.start + 30 * hour},
+                        "V_BAT1",
+                        {},
+                        1.0,
+                        1}}}};
+  return group;
 }
 
 }  // namespace reident::trust

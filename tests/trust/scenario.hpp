@@ -34,7 +34,19 @@ struct LifeGroup {
   Half half() const { return seed % 2 == 1 ? Half::held_out : Half::tuned; }
 };
 
+/// The hand-written simulator is compared with for so long after the start; its telemetry costs as
+/// much as the spacecraft's.
+inline constexpr Duration simulator_sends = 12 * 86'400'000'000'000;
+
 /// All of the suite, for the equipment of its configuration.
 std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft);
+
+/// Those that go over real DDS too: every 71st, so that lives and lies are different ones and two
+/// are tuned and three held out.
+bool is_of_the_handful(const Scenario& scenario);
+
+/// Number 0, for tests, and no part of the suite: five days in which a sensor lies and, later, a
+/// battery's cells fail.
+LifeGroup short_group();
 
 }  // namespace reident::trust

@@ -1,6 +1,9 @@
 // The configuration of the service under test.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "service/daemon/config.hpp"
 
 namespace reident::trust {
@@ -8,13 +11,18 @@ namespace reident::trust {
 /// Telemetry comes, and is put on the grid, each so often: months at 1 Hz are not affordable.
 inline constexpr Duration suite_period = 8'000'000'000;
 
-/// deploy/reference.toml with, for each equipment, the keys
+/// The text of deploy/reference.toml with, for each equipment, the keys
 ///
 ///   sample_period = "8s", window = "48000s" (eight orbits), slide = "18000s" (three),
 ///   validation_share = 0.4, order = [1, 6]
 ///
-/// and so few recent samples that months of them are in chunks, as at 1 Hz.
-/// Throws std::runtime_error with the first mistake in the file.
+/// and of the equipment that alone which is named here; all of it where none is. Throws
+/// std::runtime_error where the file cannot be read.
+std::string suite_toml(const std::vector<std::string>& equipment = {});
+
+/// What reidentd would make of that text, but with a database that is thrown away, and so few
+/// recent samples that months of them are in chunks, as at 1 Hz. Throws std::runtime_error with the
+/// first mistake.
 Config suite_config();
 
 }  // namespace reident::trust

@@ -16,6 +16,7 @@
 #include "service/support/log.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/trust/picture.hpp"
+#include "tests/trust/recipe.hpp"
 #include "tests/trust/report.hpp"
 #include "tests/trust/suite_config.hpp"
 
@@ -25,13 +26,15 @@ using namespace reident;
 using namespace reident::trust;
 
 struct Options {
-  bool list = false, quick = false;
+  bool list = false, quick = false, handful = false, recipe = false;
   std::vector<int> scenarios;
   std::string half;
   std::string life, lie;
-  std::string plot;    // a file, of one scenario
-  std::string report;  // a folder
-  std::string month;   // a file
+  std::string plot;       // a file, of one scenario
+  std::string report;     // a folder
+  std::string month;      // a file
+  std::string dds;        // a file
+  std::string databases;  // a folder
   unsigned jobs = 2;
 };
 
@@ -40,6 +43,7 @@ bool is_wanted(const LifeGroup& group, int first_number, const Scenario& scenari
   if (!options.scenarios.empty())
     return std::find(options.scenarios.begin(), options.scenarios.end(), scenario.number) !=
            options.scenarios.end();
+  if (options.handful && !is_of_the_handful(scenario)) return false;
   constexpr std::uint64_t quick_step = 12;  // every sixth life: seeds of a half go by two
   if (options.quick && (group.seed % quick_step != 2 || scenario.number > first_number + 1))
     return false;
@@ -51,6 +55,9 @@ bool is_wanted(const LifeGroup& group, int first_number, const Scenario& scenari
 
 std::vector<LifeGroup> wanted_groups(const Config& config, const Options& options) {
   std::vector<LifeGroup> groups = all_groups(config.spacecraft.front());
+  const auto& numbers = options.scenarios;
+  if (std::find(numbers.begin(), numbers.end(), 0) != numbers.end())
+    groups.insert(groups.begin(), short_group());
   for (LifeGroup& group : groups) {
     const std::vector<Scenario> all = std::exchange(group.scenarios, {});
     for (const Scenario& scenario : all)
@@ -68,6 +75,19 @@ void list(const std::vector<LifeGroup>& groups) {
                  group.half() == Half::tuned ? "tuned   " : "held out", group.life, scenario.lie);
 }
 
+/// A line of JSON each: what runs the scenario with the real processes.
+void print_recipes(const std::vector<LifeGroup>& groups) {
+  for (const LifeGroup& group : groups)
+    for (const Scenario& scenario : group.scenarios) {
+      const Recipe recipe = recipe_of(group, scenario);
+      const nlohmann::ordered_json json{{"scenario", scenario.number},
+                                        {"configuration", suite_toml(group.equipment)},
+                                        {"simulator", recipe.simulator},
+                                        {"spacecraft", recipe.spacecraft}};
+      fmt::print("{}\n", json.dump());
+    }
+}
+
 /// Groups side by side on `jobs` threads; the outcomes in the order of the scenarios' numbers.
 std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Config& config,
                                  const Options& options) {
@@ -79,7 +99,9 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
   const auto work = [&] {
     try {
       for (std::size_t i = next++; i < groups.size(); i = next++) {
-        outcomes[i] = run_group(groups[i], config, folder.path());
+        outcomes[i] = options.databases.empty()
+                          ? run_group(groups[i], config, folder.path())
+                          : score_databases(groups[i], config, options.databases);
         const std::lock_guard lock(mutex);
         for (const ScenarioOutcome& outcome : outcomes[i]) {
           if (outcome.half == Half::tuned || !options.scenarios.empty())
@@ -111,7 +133,10 @@ int main(int argc, char** argv) {
   Options options;
   app.add_flag("--list", options.list, "list the scenarios that are chosen, and run none");
   app.add_flag("--quick", options.quick, "run two scenarios of every sixth life of the tuned half");
-  app.add_option("--scenario", options.scenarios, "run these scenarios alone, by number");
+  app.add_flag("--handful", options.handful, "run every 71st scenario alone");
+  app.add_option(
+      "--scenario", options.scenarios,
+      "run these scenarios alone, by number; 0 is a short one that is no part of the suite");
   app.add_option("--half", options.half, "run the tuned or the held-out half alone")
       ->check(CLI::IsMember({"tuned", "held-out"}));
   app.add_option("--life", options.life, "run the scenarios of this life alone");
@@ -122,6 +147,16 @@ int main(int argc, char** argv) {
   app.add_option("--month", options.month,
                  "what tests/trust/month.py printed: its month_seconds goes into the last line")
       ->check(CLI::ExistingFile);
+  app.add_option("--dds", options.dds,
+                 "what tests/trust/over_dds.py printed: its figures go into the last line")
+      ->check(CLI::ExistingFile);
+  app.add_flag("--recipe", options.recipe,
+               "run none; print, as one JSON object each, the configuration of reidentd and the "
+               "arguments of satcs-reference (the simulator, then the spacecraft) that make the "
+               "scenarios that are chosen");
+  app.add_option("--databases", options.databases,
+                 "run none; score what reidentd made of them, NUMBER.db of each in this folder")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
   try {
@@ -130,6 +165,10 @@ int main(int argc, char** argv) {
     const std::vector<LifeGroup> groups = wanted_groups(config, options);
     if (options.list) {
       list(groups);
+      return 0;
+    }
+    if (options.recipe) {
+      print_recipes(groups);
       return 0;
     }
     const std::vector<ScenarioOutcome> outcomes = run(groups, config, options);
@@ -144,6 +183,10 @@ int main(int argc, char** argv) {
     if (!options.month.empty()) {
       std::ifstream file(options.month);
       figures["month_seconds"] = nlohmann::json::parse(file).at("month_seconds");
+    }
+    if (!options.dds.empty()) {
+      std::ifstream file(options.dds);
+      figures["over_dds"] = nlohmann::json::parse(file);
     }
     fmt::print("{}{}\n", tables(outcomes), figures.dump());
     return 0;

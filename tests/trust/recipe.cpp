@@ -1,0 +1,50 @@
+#include "tests/trust/recipe.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "service/support/time_text.hpp"
+
+namespace reident::trust {
+namespace {
+
+std::string text_of(const satcs::reference::LifeEvent& event) {
+  return fmt::format("{}@{}/{}*{}#{}", name(event.kind), time_text(event.begin),
+                     time_text(event.end), event.magnitude, event.unit);
+}
+
+std::string text_of(const satcs::Lie& lie) {
+  std::string text =
+      fmt::format("{}@{}/{}", name(lie.kind), time_text(lie.when.begin), time_text(lie.when.end));
+  if (!lie.parameter.empty()) text += ':' + lie.parameter;
+  if (!lie.other.empty()) text += ',' + lie.other;
+  if (lie.magnitude) text += fmt::format("*{}", *lie.magnitude);
+  return text + fmt::format("#{}", lie.seed);
+}
+
+std::vector<std::string> arguments_of(const LifeGroup& group, Duration duration) {
+  std::vector<std::string> arguments{"--start",    time_text(group.start),
+                                     "--duration", duration_text(duration),
+                                     "--seed",     fmt::to_string(group.seed)};
+  for (const auto& event : group.events) {
+    arguments.emplace_back("--life");
+    arguments.push_back(text_of(event));
+  }
+  return arguments;
+}
+
+}  // namespace
+
+Recipe recipe_of(const LifeGroup& group, const Scenario& scenario) {
+  Recipe recipe{arguments_of(group, std::min(group.duration, simulator_sends)),
+                arguments_of(group, group.duration)};
+  recipe.simulator.emplace_back("--simulated");
+  for (const satcs::Lie& lie : scenario.lies) {
+    recipe.spacecraft.emplace_back("--lie");
+    recipe.spacecraft.push_back(text_of(lie));
+  }
+  return recipe;
+}
+
+}  // namespace reident::trust

@@ -1,0 +1,88 @@
+#include "tests/trust/recipe.hpp"
+
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "service/satcs/life_text.hpp"
+#include "service/support/time_text.hpp"
+#include "tests/trust/suite_config.hpp"
+
+namespace reident::trust {
+namespace {
+
+using satcs::Lie;
+using satcs::reference::LifeEvent;
+
+bool same(const LifeEvent& a, const LifeEvent& b) {
+  return a.kind == b.kind && a.begin == b.begin && a.end == b.end && a.magnitude == b.magnitude &&
+         a.unit == b.unit;
+}
+
+bool same(const Lie& a, const Lie& b) {
+  return a.kind == b.kind && a.when == b.when && a.parameter == b.parameter && a.other == b.other &&
+         a.magnitude == b.magnitude && a.seed == b.seed;
+}
+
+std::vector<std::string> values_of(const std::string& option,
+                                   const std::vector<std::string>& arguments) {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i + 1 < arguments.size(); ++i)
+    if (arguments[i] == option) values.push_back(arguments[i + 1]);
+  return values;
+}
+
+TEST(Recipe, GivesEveryScenarioBackToTheLastBit) {
+  std::vector<LifeGroup> groups = all_groups(suite_config().spacecraft.front());
+  groups.push_back(short_group());
+  for (const LifeGroup& group : groups)
+    for (const Scenario& scenario : group.scenarios) {
+      const Recipe recipe = recipe_of(group, scenario);
+      for (const auto& arguments : {recipe.simulator, recipe.spacecraft}) {
+        EXPECT_EQ(parse_time(values_of("--start", arguments).at(0)), group.start);
+        EXPECT_EQ(values_of("--seed", arguments).at(0), std::to_string(group.seed));
+        const auto life = values_of("--life", arguments);
+        ASSERT_EQ(life.size(), group.events.size());
+        for (std::size_t i = 0; i < life.size(); ++i)
+          EXPECT_TRUE(
+              same(std::get<LifeEvent>(satcs::parse_life_event(life[i], 0)), group.events[i]))
+              << life[i];
+      }
+      EXPECT_EQ(parse_duration(values_of("--duration", recipe.spacecraft).at(0)), group.duration);
+      EXPECT_TRUE(values_of("--lie", recipe.simulator).empty());
+      const auto lies = values_of("--lie", recipe.spacecraft);
+      ASSERT_EQ(lies.size(), scenario.lies.size());
+      for (std::size_t i = 0; i < lies.size(); ++i)
+        EXPECT_TRUE(same(std::get<Lie>(satcs::parse_lie(lies[i], 0)), scenario.lies[i])) << lies[i];
+    }
+}
+
+TEST(Recipe, HasAConfigurationOfTheGroupsEquipmentAlone) {
+  const auto parsed = parse_config(suite_toml({"CHC1"}), {});
+  const SpacecraftConfig& spacecraft = std::get<Config>(parsed).spacecraft.front();
+  const Config whole = suite_config();
+  ASSERT_EQ(spacecraft.equipment.size(), 1U);
+  EXPECT_EQ(spacecraft.equipment[0].name, "CHC1");
+  EXPECT_EQ(spacecraft.equipment[0].sample_period, suite_period);
+  EXPECT_EQ(spacecraft.equipment[0].max_order, 6);
+  EXPECT_EQ(spacecraft.relations, whole.spacecraft.front().relations);
+}
+
+TEST(Handful, IsOfBothHalvesAndOfDifferentLivesAndLies) {
+  std::set<std::string> lives, lies;
+  std::multiset<Half> halves;
+  for (const LifeGroup& group : all_groups(suite_config().spacecraft.front()))
+    for (const Scenario& scenario : group.scenarios) {
+      if (!is_of_the_handful(scenario)) continue;
+      lives.insert(group.life);
+      lies.insert(scenario.lie);
+      halves.insert(group.half());
+    }
+  EXPECT_EQ(halves.count(Half::tuned), 2U);
+  EXPECT_EQ(halves.count(Half::held_out), 3U);
+  EXPECT_EQ(lives.size(), halves.size());
+  EXPECT_GE(lies.size(), 4U);
+}
+
+}  // namespace
+}  // namespace reident::trust
