@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -55,6 +56,27 @@ std::string signals_text(const EquipmentConfig& equipment) {
   return text;
 }
 
+/// Names of the equipment that a relation is a check of.
+std::vector<std::string> checked_by(const Relation& relation, const SpacecraftConfig& spacecraft) {
+  std::vector<std::string> names;
+  for (const EquipmentConfig& equipment : spacecraft.equipment)
+    if (std::find(equipment.relations.begin(), equipment.relations.end(), relation) !=
+        equipment.relations.end())
+      names.push_back(equipment.name);
+  return names;
+}
+
+void print_relations(const Config& config) {
+  Table table({{"relation"}, {"tolerance", Table::Align::right}, {"checks"}, {"is about 0"}});
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const Relation& relation : spacecraft.relations) {
+      const auto names = checked_by(relation, spacecraft);
+      table.add({spacecraft.name + "/" + relation.name, fmt::format("{:g}", relation.tolerance),
+                 names.empty() ? "no equipment" : joined(names), relation.expression});
+    }
+  if (!table.empty()) fmt::print("\n{}", table.text(terminal_width()));
+}
+
 void print_summary(const Config& config) {
   fmt::print("service {} on domain {}, partition {}; database {}\n", config.service_name,
              config.domain, config.partition, config.database.string());
@@ -68,12 +90,25 @@ void print_summary(const Config& config) {
                  equipment.approval == ApprovalPolicy::automatic ? "automatic" : "by hand",
                  signals_text(equipment)});
   fmt::print("{}", table.text(terminal_width()));
+  print_relations(config);
 }
 
 ordered_json derived_json(const std::vector<DerivedInput>& inputs) {
   ordered_json list = ordered_json::array();
   for (const DerivedInput& input : inputs)
     list.push_back({{"name", input.name}, {"expression", input.expression}, {"unit", input.unit}});
+  return list;
+}
+
+ordered_json relations_json(const Config& config) {
+  ordered_json list = ordered_json::array();
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const Relation& relation : spacecraft.relations)
+      list.push_back({{"spacecraft", spacecraft.name},
+                      {"relation", relation.name},
+                      {"expression", relation.expression},
+                      {"tolerance", relation.tolerance},
+                      {"equipment", checked_by(relation, spacecraft)}});
   return list;
 }
 
@@ -96,7 +131,8 @@ void print_summary_json(const Config& config) {
               {"partition", config.partition},
               {"database", config.database.string()},
               {"digest", config.digest},
-              {"equipment", list}});
+              {"equipment", list},
+              {"relations", relations_json(config)}});
 }
 
 int run(const Arguments& arguments) {

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "service/cli/model_text.hpp"
 #include "service/cli/source_choice.hpp"
@@ -51,6 +53,36 @@ void window_sentences(const Story& story, const ordered_json& evidence, Sentence
   sentences.push_back(fmt::format("It is of order {} ({}); its poles are {}.",
                                   story.model.dynamics.order(), story.model.method,
                                   poles_text(story.model.dynamics)));
+}
+
+/// One of the stretches that was left out (service/daemon/plausibility.hpp).
+std::string implausible_text(const ordered_json& stretch) {
+  const auto parameters = stretch.value("parameters", std::vector<std::string>());
+  const std::string when = fmt::format("from {} to {}", time_text(stretch.value("begin_ns", 0LL)),
+                                       time_text(stretch.value("end_ns", 0LL)));
+  const ordered_json* relation = member(stretch, "relation");
+  if (!relation)
+    return fmt::format("{} ({}) {}", fmt::join(parameters, ", "), stretch.value("check", ""), when);
+  return fmt::format("{} {}, where relation {} is {} with a tolerance of {}",
+                     fmt::join(parameters, ", "), when, relation->get<std::string>(),
+                     figure(stretch, "residual"), figure(stretch, "tolerance"));
+}
+
+void implausible_sentences(const ordered_json& evidence, Sentences& sentences) {
+  constexpr std::size_t most_told = 3;
+  const ordered_json* implausible = member(evidence, "implausible");
+  if (!implausible) return;
+  if (const ordered_json* longest = member(*implausible, "longest"))
+    for (std::size_t i = 0; i < std::min(most_told, longest->size()); ++i)
+      sentences.push_back(
+          fmt::format("Not believed, and left out: {}.", implausible_text((*longest)[i])));
+  if (const auto stretches = implausible->value("stretches", std::size_t{0}); stretches > most_told)
+    sentences.push_back(
+        fmt::format("Shorter stretches that were left out too: {}.", stretches - most_told));
+  if (const ordered_json* not_applied = member(*implausible, "not_applied"))
+    for (const ordered_json& relation : *not_applied)
+      sentences.push_back(
+          fmt::format("A relation was not applied: {}.", relation.get<std::string>()));
 }
 
 void score_sentences(const Story& story, const ordered_json& evidence, Sentences& sentences) {
@@ -126,6 +158,7 @@ Sentences sentences_of(const Story& story) {
   const ordered_json evidence = evidence_of(story.attempt);
   Sentences sentences;
   window_sentences(story, evidence, sentences);
+  implausible_sentences(evidence, sentences);
   score_sentences(story, evidence, sentences);
   rival_sentences(evidence, sentences);
   hold_and_warning_sentences(evidence, sentences);

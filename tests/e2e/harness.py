@@ -106,8 +106,9 @@ class EndToEnd(unittest.TestCase):
     def database(self):
         return self.folder / "reident.db"
 
-    def configure(self, equipment, spacecraft="SAT", **limits):
-        """Writes the configuration; `equipment` are tables of [[spacecraft.equipment]]."""
+    def configure(self, equipment, spacecraft="SAT", relations=(), **limits):
+        """Writes the configuration; `equipment` are tables of [[spacecraft.equipment]], `relations`
+        of [[spacecraft.relation]]."""
 
         def toml(value):
             if isinstance(value, list):
@@ -121,9 +122,10 @@ class EndToEnd(unittest.TestCase):
                  "[limits]", 'settle = "300ms"',
                  *(f"{key} = {toml(value)}" for key, value in limits.items()),
                  "[[spacecraft]]", f"name = {toml(spacecraft)}"]
-        for table in equipment:
-            lines += ["[[spacecraft.equipment]]",
-                      *(f"{key} = {toml(value)}" for key, value in table.items())]
+        for kind, tables in ("equipment", equipment), ("relation", relations):
+            for table in tables:
+                lines += [f"[[spacecraft.{kind}]]",
+                          *(f"{key} = {toml(value)}" for key, value in table.items())]
         path = self.folder / "reident.toml"
         path.write_text("\n".join(lines) + "\n")
         return path

@@ -57,6 +57,52 @@ class Judgement(EndToEnd):
         self.assertLess(end_s, plant.START_S + 4900 + 900)
         self.assertNotEqual(end_s % 1200, 0, "it does not wait for the slide")
 
+    def replay_two_sensors(self, name, bias=0.0, **keywords):
+        """The plant with a second sensor of its output; the first one lies by `bias`."""
+        lines = [",".join([*plant.HEADER, "out_b_v"])]
+        lines += [f"{at},{drive},{load},{out + bias:.6f},{out:.6f}"
+                  for at, drive, load, out in plant.rows(**keywords)]
+        path = self.folder / f"{name}.csv"
+        path.write_text("\n".join(lines) + "\n")
+        self.replay_all(path)
+        self.wait_idle()
+
+    def test_a_sensor_that_lies_is_found_by_its_relation_until_it_is_honest_again(self):
+        pair = {"name": "two sensors", "expression": "out - out_b", "tolerance": 0.2}
+        misspelt = {"name": "misspelt", "expression": "out - out_c", "tolerance": 0.2}
+        self.configure([plant.equipment()], relations=[pair, misspelt])
+        self.start_daemon()
+        self.replay_two_sensors("honest", count=1600)
+        self.replay_two_sensors("lying", count=1200, first=1600, bias=1.0)
+        self.replay_two_sensors("again", count=1400, first=2800)
+        tried = {end // 10**9 - plant.START_S: (outcome, json.loads(evidence))
+                 for _, _, outcome, end, evidence in self.attempts()}
+
+        outcome, evidence = tried[2400]  # of the lie alone
+        self.assertEqual(outcome, "implausible")
+        longest = evidence["implausible"]["longest"][0]
+        self.assertEqual((longest["relation"], longest["parameters"]),
+                         ("two sensors", ["out", "out_b"]))
+        self.assertAlmostEqual(longest["residual"], 1.0, places=3)
+        for end in 1500, 3600, 3900:  # of honest telemetry alone
+            outcome, evidence = tried[end]
+            self.assertIn("order", evidence, outcome)
+            self.assertEqual(evidence["implausible"], {
+                "stretches": 0, "ticks": 0,
+                "not_applied": ["misspelt: telemetry has not described out_c"]})
+
+        status, text = self.reident("history", "--database", self.database)
+        self.assertEqual(status, 0, text)
+        self.assertIn("relation two sensors (out - out_b) does not hold from", text)
+        # The lie begins in the last third of this window, which is identified without it.
+        version, = self.query("SELECT version FROM model_version WHERE window_end = ?",
+                              (plant.START_S + 1800) * 10**9)[0]
+        status, text = self.reident("why", f"SAT/PLANT@{version}", "--database", self.database)
+        self.assertEqual(status, 0, text)
+        self.assertRegex(" ".join(text.split()),
+                         "left out: out, out_b from 2020-09-13T1[0-9:]+Z to 2020-09-13T1[0-9:]+Z, "
+                         "where relation two sensors is 1 with a tolerance of 0.2")
+
     def test_the_past_is_tried_without_a_service_and_comes_out_the_same_to_the_last_bit(self):
         self.configure([plant.equipment()])
         daemon = self.start_daemon()

@@ -10,6 +10,7 @@ namespace reident::cli {
 namespace {
 
 using nlohmann::json;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::MatchesRegex;
@@ -78,6 +79,23 @@ TEST_F(CheckConfig, SumsUpAGoodFile) {
   EXPECT_EQ(printed["valid"], true);
   EXPECT_THAT(printed["mistakes"], IsEmpty());
   EXPECT_EQ(printed["equipment"][0]["window"], "1h");
+}
+
+TEST_F(CheckConfig, SaysWhichEquipmentARelationChecksAndWhereItIsNone) {
+  const std::string relation = "[[spacecraft.relation]]\ntolerance = 0.5\n";
+  write("good.toml",
+        "[[spacecraft]]\nname = \"A\"\n[[spacecraft.equipment]]\nname = \"X\"\n"
+        "inputs = [\"u\"]\noutputs = [\"y\"]\nsample_period = \"1s\"\nwindow = \"1h\"\n" +
+            relation + "name = \"two\"\nexpression = \"y - y_b\"\n" + relation +
+            "name = \"misspelt\"\nexpression = \"yy - y_b\"\n");
+  const testing::Ran ran = reident({"check-config", "good.toml"});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_THAT(ran.out, ContainsRegex("A/two +0.5 +X +y - y_b"));
+  EXPECT_THAT(ran.out, ContainsRegex("A/misspelt +0.5 +no equipment +yy - y_b"));
+  const json printed = json_of({"check-config", "good.toml"});
+  EXPECT_EQ(printed["relations"][0]["equipment"], json({"X"}));
+  EXPECT_EQ(printed["relations"][1]["equipment"], json::array());
+  EXPECT_EQ(printed["relations"][1]["tolerance"], 0.5);
 }
 
 TEST_F(CheckConfig, RefusesAFileThatIsNotThere) {

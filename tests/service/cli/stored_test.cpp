@@ -231,6 +231,26 @@ TEST_F(Stored, WhyTellsTheBaselineOfTheConfigurationAndTheChampionOfOlderProgram
               HasSubstr("Champion 1 errs by 3.75 % on the same rows."));
 }
 
+TEST_F(Stored, WhyTellsWhichTelemetryWasNotBelieved) {
+  const EquipmentModel model = model_of("BDR");
+  const storage::NewVersion version{to_json(model).dump(), model_digest(model)};
+  registry_.record(attempt_of("BDR", 0, "approved", R"({"implausible": {"stretches": 4, "longest": [
+    {"check": "relation", "parameters": ["A", "B"], "begin_ns": 0, "end_ns": 60000000000,
+     "relation": "node", "residual": 0.75, "tolerance": 0.5},
+    {"check": "stuck", "parameters": ["C"], "begin_ns": 0, "end_ns": 50000000000},
+    {"check": "spike", "parameters": ["C"], "begin_ns": 70000000000, "end_ns": 71000000000}],
+    "not_applied": ["pair: telemetry has not described D"]}})"),
+                   version, {DecisionKind::approve, "gate", "Good."});
+  EXPECT_THAT(
+      reident(command({"why", "BDR@1"})).out,
+      AllOf(HasSubstr("Not believed, and left out: A, B from 1970-01-01T00:00:00Z to "
+                      "1970-01-01T00:01:00Z, where relation node is 0.75 with a tolerance of 0.5."),
+            HasSubstr("C (stuck) from 1970-01-01T00:00:00Z to 1970-01-01T00:00:50Z."),
+            HasSubstr("C (spike) from 1970-01-01T00:01:10Z to 1970-01-01T00:01:11Z."),
+            HasSubstr("Shorter stretches that were left out too: 1."),
+            HasSubstr("A relation was not applied: pair: telemetry has not described D.")));
+}
+
 TEST_F(Stored, AVersionFromBeforeProvenanceCannotBeReproduced) {
   fill();
   EXPECT_THAT(refusal_of(command({"reproduce", "BDR@1"})),
