@@ -168,6 +168,65 @@ TEST_F(Feed, FollowsNoClockThatRanAwayNowOrAfterARestart) {
   EXPECT_EQ(try_all(*feed), (std::vector{day + 5 * minute}));
 }
 
+TEST_F(Feed, GivesWithoutWaitingWhatIsDueByTheClockAndNothingElse) {
+  auto feed = make_feed();
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  EXPECT_FALSE(feed->next_due()) << "no telemetry has come";
+  store(*feed, telemetry(day, 601));
+  now += config_.settle - 1;
+  EXPECT_FALSE(feed->next_due()) << "stragglers are waited for";
+  now += 1;
+  const auto first = feed->next_due();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->window.window.end, day + 5 * minute);
+  EXPECT_FALSE(feed->next_due()) << "one window of an equipment at a time";
+  EXPECT_EQ(feed->pending(), 2U);
+  feed->finished(*first, true);
+  const auto second_one = feed->next_due();
+  ASSERT_TRUE(second_one);
+  EXPECT_EQ(second_one->window.window.end, day + 10 * minute);
+  feed->finished(*second_one, false);
+  EXPECT_FALSE(feed->next_due()) << "it settles anew";
+  now += config_.settle;
+  const auto again = feed->next_due();
+  ASSERT_TRUE(again) << "what was not completed is tried once more";
+  EXPECT_EQ(again->window, second_one->window);
+  feed->finished(*again, true);
+  EXPECT_FALSE(feed->next_due());
+  EXPECT_EQ(feed->pending(), 0U);
+}
+
+TEST_F(Feed, SaysOnceWhereTelemetryOfAWindowHasChanged) {
+  auto feed = make_feed();
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  auto frames = telemetry(day, 601);
+  const std::vector<storage::TelemetryFrame> late(frames.begin() + 400, frames.begin() + 410);
+  frames.erase(frames.begin() + 400, frames.begin() + 410);
+  store(*feed, frames);
+  now += config_.settle;
+  const auto first = feed->next_due();
+  ASSERT_TRUE(first);
+  ASSERT_EQ(first->changed.size(), 1U);
+  EXPECT_LE(first->changed[0].begin, day);
+  EXPECT_GE(first->changed[0].end, day + 10 * minute);
+  feed->finished(*first, true);
+  const auto next = feed->next_due();
+  ASSERT_TRUE(next);
+  EXPECT_TRUE(next->changed.empty());
+  feed->finished(*next, true);
+
+  store(*feed, late);
+  now += config_.settle;
+  const auto again = feed->next_due();
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->window.cause, "late telemetry");
+  ASSERT_EQ(again->changed.size(), 1U);
+  EXPECT_EQ(again->changed[0].begin, late.front().generation_time);
+  EXPECT_GT(again->changed[0].end, late.back().generation_time);
+}
+
 TEST_F(Feed, EndsTheWaitWhenItIsStopped) {
   auto feed = make_feed();
   feed->stop();
