@@ -27,6 +27,7 @@ struct Tally {
   std::int64_t left_out = 0;
   double milliseconds = 0;
   std::map<std::string, int> by_kind, by_channel;
+  std::map<std::string, std::int64_t> rows_by_kind;
 };
 
 void screen(const Record& window, const std::vector<std::string>& names, Tally& tally) {
@@ -39,6 +40,7 @@ void screen(const Record& window, const std::vector<std::string>& names, Tally& 
     ranges.push_back(fault.ticks);
     const std::string kind(name(fault.kind));
     ++tally.by_kind[kind];
+    tally.rows_by_kind[kind] += size({fault.ticks});
     ++tally.by_channel[names[static_cast<std::size_t>(fault.channel)] + " " + kind];
   }
   tally.rows += window.rows();
@@ -68,6 +70,7 @@ int run(const reident::cli::DataRequest& request, int window_rows) {
       {"windows_with_faults", tally.windows_with_faults},
       {"rows_left_out_percent", 100.0 * double(tally.left_out) / double(tally.rows)},
       {"stretches", tally.by_kind},
+      {"rows", tally.rows_by_kind},
       {"by_channel", tally.by_channel},
       {"milliseconds_a_window", tally.milliseconds / double(tally.windows)}};
   fmt::print("{}\n", result.dump());
