@@ -119,7 +119,7 @@ Made made_elsewhere(const storage::Registry& registry) {
   for (storage::Attempt& attempt : registry.attempts()) {
     const std::int64_t version = attempt.version.value_or(0);
     const storage::Time time = attempt.window.end;
-    if (attempt.trigger == "drift") made.drifts.push_back({attempt.equipment, version, time});
+    if (attempt.trigger == "drift") made.drifts.push_back({attempt.equipment, time});
     made.attempts.push_back({std::move(attempt.equipment), attempt.window, time,
                              std::move(attempt.trigger), std::move(attempt.outcome),
                              std::move(attempt.reason), version});

@@ -50,7 +50,7 @@ void SimulatedService::commit() {
   batch_.clear();
   for (const ChampionWatch::Drift& drift :
        watch_.look(archive_, registry_, feed_, [] { return false; }))
-    drifts_.push_back({drift.equipment->name, drift.found.version, now_});
+    drifts_.push_back({drift.equipment->name, now_});
   try_due_windows();
 }
 

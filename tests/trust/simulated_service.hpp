@@ -22,7 +22,6 @@ namespace reident::trust {
 /// The monitor asked for a window because a champion's errors had grown.
 struct DriftRequest {
   std::string equipment;
-  std::int64_t version = 0;
   storage::Time time = 0;
 };
 
