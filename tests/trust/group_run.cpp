@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "service/model/model_json.hpp"
 #include "tests/trust/flight.hpp"
 
@@ -111,11 +113,15 @@ Made made_by(const SimulatedService& service) {
           [](const storage::Decision& decision, const auto&) { return decision.time; }};
 }
 
+/// Where the telemetry ends that an approval rests on: the version's window, or what came after it.
+storage::Time rests_until(const storage::Decision& decision, const storage::Version& version) {
+  const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
+  return evidence.is_object() ? evidence.value("until_ns", version.window.end) : version.window.end;
+}
+
 /// By a service whose clock was not the spacecraft's.
 Made made_elsewhere(const storage::Registry& registry) {
-  Made made{registry, {}, {}, [](const auto&, const storage::Version& version) {
-              return version.window.end;
-            }};
+  Made made{registry, {}, {}, rests_until};
   for (storage::Attempt& attempt : registry.attempts()) {
     const std::int64_t version = attempt.version.value_or(0);
     const storage::Time time = attempt.window.end;
