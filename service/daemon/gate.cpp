@@ -24,6 +24,10 @@ constexpr double outside_limit = 0.5;
 /// little drives it adds up.
 constexpr double slowest_limit = 1.0;
 
+/// Where faults are as many, those that are too small to be found are enough to spoil a comparison.
+/// Honest telemetry has at most 1 find in 1000 ticks (tests/trust).
+constexpr double fault_limit = 1.0 / 400;
+
 constexpr std::array names{
     std::pair{Outcome::approved, std::string_view("approved")},
     std::pair{Outcome::waiting, std::string_view("waiting")},
@@ -44,6 +48,7 @@ constexpr std::array names{
     std::pair{Outcome::inputs_out_of_range, std::string_view("inputs_out_of_range")},
     std::pair{Outcome::not_better_than_baseline, std::string_view("not_better_than_baseline")},
     std::pair{Outcome::older_than_champion, std::string_view("older_than_champion")},
+    std::pair{Outcome::telemetry_in_doubt, std::string_view("telemetry_in_doubt")},
     std::pair{Outcome::comparison_says_nothing, std::string_view("comparison_says_nothing")},
     std::pair{Outcome::not_better_than_champion, std::string_view("not_better_than_champion")},
     std::pair{Outcome::disagrees_with_champion, std::string_view("disagrees_with_champion")},
@@ -122,6 +127,15 @@ Refusal against_baseline(const Evidence& e, const EquipmentConfig& limits) {
 bool has_run(const std::optional<Evidence::Champion>& champion) {
   return champion && champion->comparison &&
          std::isfinite(champion->comparison->rival_mrse_percent);
+}
+
+Refusal against_faults(const Evidence& e) {
+  if (!(e.fault_share > fault_limit)) return std::nullopt;
+  return GateDecision{
+      Outcome::telemetry_in_doubt,
+      fmt::format("{:.2f} faults of sensors were found in 100 samples: others that go unnoticed "
+                  "make any comparison doubtful, and champion {} stays.",
+                  100 * e.fault_share, e.champion->version)};
 }
 
 Refusal against_comparison(const Evidence::Champion& champion, const EquipmentConfig& limits) {
@@ -214,6 +228,7 @@ Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
   auto refusal = against_succession(e, limits);
   // A champion that cannot run here, or runs astray, loses to any candidate that holds the rest.
   if (!has_run(e.champion)) return refusal;
+  if (auto doubt = against_faults(e)) return doubt;
   auto not_better = against_comparison(*e.champion, limits);
   if (!not_better) return refusal;
   if (!refusal && may_become_sure(e, limits)) {

@@ -36,6 +36,7 @@ enum class Outcome {
   inputs_out_of_range,
   not_better_than_baseline,
   older_than_champion,
+  telemetry_in_doubt,  // so many sensor faults that more go unnoticed; the champion stays
   comparison_says_nothing,
   not_better_than_champion,
   disagrees_with_champion,
@@ -53,6 +54,7 @@ struct Evidence {
   double fit_percent = 0;         // the worst output's
   double residual_over_span = 0;  // largest |error| of any output over its range in the window
   double outside_share = 0;       // of the validation rows: an input is outside what identified
+  double fault_share = 0;         // sensor faults found in the window, each once, over its ticks
   storage::Time window_end = 0;
 
   /// The candidate against another run, on the rows at which both have an output.

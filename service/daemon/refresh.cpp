@@ -67,6 +67,9 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
   evidence.residual_over_span =
       residual_over_span(validation(record.y), validation(candidate.y_hat), record.y);
   evidence.outside_share = outside_share(validation(record.u), model.inputs);
+  const auto ticks = static_cast<double>((request.window.end - request.window.begin) /
+                                         request.equipment.sample_period);
+  evidence.fault_share = static_cast<double>(prepared.data.plausibility.holes.size()) / ticks;
   evidence.window_end = request.window.end;
   evidence.mean = against_mean(prepared, confidence);
   evidence.champion = against_champion(archive, registry, prepared, confidence);
@@ -108,6 +111,7 @@ void describe(const Evidence& evidence, ordered_json& json) {
   json["slowest_over_window"] = evidence.slowest_over_window;
   json["residual_over_span"] = evidence.residual_over_span;
   json["outside_share"] = evidence.outside_share;
+  json["fault_share"] = evidence.fault_share;
   json["mean"] = to_json(evidence.mean);
   if (evidence.baseline) json["baseline"] = to_json(*evidence.baseline);
   if (evidence.champion) json["champion"] = to_json(*evidence.champion);

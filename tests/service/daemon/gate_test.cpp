@@ -131,12 +131,8 @@ const Case of_the_candidate[] = {
     {"HalfOutsideTheRange", [](auto& e, auto&) { e.outside_share = 0.5; }, Outcome::approved},
 };
 
-const Case beside_its_rivals[] = {
-    {"BetterByTheMarginAndNotSurely",
-     [](auto& e, auto&) { e.champion->comparison->sure_percent = 5; },
-     Outcome::not_better_than_champion},
-    {"SurelyBetterByMoreThanTheMargin",
-     [](auto& e, auto&) { e.champion->comparison->sure_percent = 5.01; }, Outcome::approved},
+// Better by the margin, not surely, and telemetry after the window may be waited for.
+const Case not_surely_better[] = {
     {"BetterAndNotSurelyWhereMoreTelemetryMayTell",
      [](auto& e, auto& c) {
        e.champion->comparison->sure_percent = 5;
@@ -180,6 +176,23 @@ const Case beside_its_rivals[] = {
        c.confirmation = 100;
      },
      Outcome::not_better_than_champion},
+};
+
+const Case beside_its_rivals[] = {
+    {"BetterByTheMarginAndNotSurely",
+     [](auto& e, auto&) { e.champion->comparison->sure_percent = 5; },
+     Outcome::not_better_than_champion},
+    {"SurelyBetterByMoreThanTheMargin",
+     [](auto& e, auto&) { e.champion->comparison->sure_percent = 5.01; }, Outcome::approved},
+    {"FaultsOfSensorsAllOver", [](auto& e, auto&) { e.fault_share = 0.0026; },
+     Outcome::telemetry_in_doubt},
+    {"AFewFaultsOfSensors", [](auto& e, auto&) { e.fault_share = 0.0025; }, Outcome::approved},
+    {"FirstAmongFaultsOfSensors",
+     [](auto& e, auto&) {
+       e.champion.reset();
+       e.fault_share = 0.1;
+     },
+     Outcome::approved},
     {"TooFewSamplesToCompare", [](auto& e, auto&) { e.champion->comparison->sure_percent.reset(); },
      Outcome::comparison_says_nothing},
     {"ChampionWentAstray",
@@ -264,6 +277,7 @@ const Case beside_its_rivals[] = {
 
 const auto name_of = [](const auto& one) { return one.param.name; };
 INSTANTIATE_TEST_SUITE_P(OfTheCandidate, Gate, testing::ValuesIn(of_the_candidate), name_of);
+INSTANTIATE_TEST_SUITE_P(NotSurelyBetter, Gate, testing::ValuesIn(not_surely_better), name_of);
 INSTANTIATE_TEST_SUITE_P(BesideItsRivals, Gate, testing::ValuesIn(beside_its_rivals), name_of);
 
 TEST(GateReason, NamesTheFiguresThatDecided) {
