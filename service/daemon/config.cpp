@@ -396,11 +396,10 @@ void check_keep(const toml::table& archive, ConfigDocument& document, const Conf
   if (!config.keep) return;
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      if (const Duration needed = equipment.window + equipment.slide + equipment.confirmation;
-          *config.keep < needed)
+      if (const Duration needed = equipment.window + equipment.slide; *config.keep < needed)
         return TableReader(archive, "[archive]", document)
-            .mistake("keep", fmt::format("keep {} is shorter than window, slide and confirmation "
-                                         "of {}/{}; make it at least {}",
+            .mistake("keep", fmt::format("keep {} is shorter than window and slide of {}/{}; make "
+                                         "it at least {}",
                                          duration_text(*config.keep), spacecraft.name,
                                          equipment.name, duration_text(needed)));
 }

@@ -280,8 +280,8 @@ const Mistake values[] = {
     {"keep_without_unit", "[archive]\nkeep = \"400\"\n" + minimal,
      "2: [archive] keep must be a duration in quotes with its unit"},
     {"keep_shorter_than_a_window", "[archive]\nkeep = \"2h\"\n" + minimal,
-     "2: [archive] keep 2h is shorter than window, slide and confirmation of CBERS-4/BDR; make it "
-     "at least 160min"},
+     "2: [archive] keep 2h is shorter than window and slide of CBERS-4/BDR; make it at least "
+     "130min"},
     {"max_size_without_unit", "[archive]\nmax_size = 200\n" + minimal,
      "2: [archive] max_size must be a size in quotes with its unit"},
     {"max_size_too_small", "[archive]\nmax_size = \"1 kB\"\n" + minimal,
