@@ -161,8 +161,10 @@ class EndToEnd(unittest.TestCase):
 
     # -- the plant's telemetry, and what simulators make of it
 
-    def replay_rows(self, name, **keywords):
-        self.replay_all(plant.write(self.folder / f"{name}.csv", plant.rows(**keywords)))
+    def replay_rows(self, name, readers=1, **keywords):
+        """`readers`: the service, and simulators that may not miss a row."""
+        csv = plant.write(self.folder / f"{name}.csv", plant.rows(**keywords))
+        self.replay_all(csv, "--wait-readers", readers)
         return self.wait_idle()
 
     def start_simulator(self, name, *options, cache=None):

@@ -86,7 +86,7 @@ class Loop(EndToEnd):
 
         simulator = self.start_simulator("derived")
         wait_until(lambda: self.runs(simulator) == [champion], "the simulator runs the champion")
-        self.replay_rows("second", count=1900, first=1900)
+        self.replay_rows("second", readers=2, count=1900, first=1900)
         self.assertEqual(simulator.terminate()[0], 0, simulator.text())
         events = [json.loads(line) for line in simulator.out.read_text().splitlines() if line]
         last = [event for event in events if event.get("event") == "finished"][-1]
