@@ -247,9 +247,6 @@ std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<b
     channel.runs = runs_of(values, record.segments);
     channel.least_jump = least_jump(channel);
   }
-  std::vector<std::vector<Run>> spikes;
-  for (const Channel& channel : channels)
-    spikes.push_back(channel.is_analog ? spikes_of(channel) : std::vector<Run>{});
   const std::vector<Block> blocks = blocks_of(record);
   const auto ratios = rough_ratios(channels, blocks);
 
@@ -260,10 +257,9 @@ std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<b
     };
     for (const Run& run : stuck_runs(channels, c))
       add(SensorFaultKind::stuck, ticks_of(record, run.segment, run.begin, run.end));
-    for (const Run& spike : spikes[c]) {
+    for (const Run& spike : spikes_of(channels[c]))
       if (!another_jumps(channels, c, spike))
         add(SensorFaultKind::spike, ticks_of(record, spike.segment, spike.begin, spike.end));
-    }
     if (ratios[c].empty()) continue;
     for (const RowRange& rows : noisy_stretches(ratios, c, blocks)) {
       const auto segment = std::partition_point(

@@ -10,8 +10,9 @@
 //          greatest of the rows (an array in eclipse, a switched-off load), are no fault.
 //   spike  a value that stands at least 20 times the usual step (its median), and a twentieth of
 //          the channel's range, above or below both neighbours, which agree with each other to 0.3
-//          of that; while no other channel changes as much from one sample to the next (a load that
-//          is on for a moment, a bus that gives way as the array comes or goes). Hampel's rule for
+//          of that; while no other analog channel jumps by 20 times its own step and a twentieth of
+//          its range, and no digital one changes (a load that is on for a moment, a bus that
+//          gives way as the array comes or goes). Hampel's rule for
 //          a window of three (F. R. Hampel, "The influence curve and its role in robust
 //          estimation", Journal of the American Statistical Association 69, 1974). More than 2 % of
 //          a channel's samples are its nature.

@@ -76,8 +76,9 @@ void warn_of_states(const IdentifyData& data, RowRange rows, bool from_x0,
         identification::state_rows));
   if (stretches > 1)
     warnings.push_back(fmt::format(
-        "gaps split the simulated rows into {} stretches: the state at the start of each after the "
-        "first is the least-squares estimate from its first {} rows",
+        "gaps split the simulated rows into {} stretches: the state goes through short gaps with "
+        "interpolated inputs, and behind long ones it is the least-squares estimate from the first "
+        "{} rows",
         stretches, identification::state_rows));
 }
 

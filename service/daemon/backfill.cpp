@@ -139,11 +139,9 @@ class Backfill {
   }
 
   bool record(const storage::Standing& standing, const ProbationDecision& found) {
-    const storage::Version& version = found.version;
-    const auto decision = registry_.decide_if(standing, version.spacecraft, version.equipment,
-                                              version.number, found.decision, clock_());
-    if (decision && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
-    return decision.has_value();
+    const bool recorded = reident::record(registry_, standing, found, clock_());
+    if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
+    return recorded;
   }
 
   const Config& config_;

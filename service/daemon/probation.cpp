@@ -138,6 +138,15 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
       fmt::format("Not confirmed: that is not surely {:g} % less.", limits.margin_percent));
 }
 
+bool record(storage::Registry& registry, const storage::Standing& standing,
+            const ProbationDecision& found, storage::Time time) {
+  const storage::Version& version = found.version;
+  return registry
+      .decide_if(standing, version.spacecraft, version.equipment, version.number, found.decision,
+                 time)
+      .has_value();
+}
+
 void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
                        const std::string& spacecraft, const EquipmentConfig& equipment,
                        storage::Time reached, const RecordProbation& record) {

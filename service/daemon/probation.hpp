@@ -37,7 +37,10 @@ struct ProbationDecision {
   storage::NewDecision decision;
 };
 
-/// Records a decision unless the standing is not the given one any more. Whether it was recorded.
+/// Records the decision unless the standing is not the given one any more. Whether it was recorded.
+bool record(storage::Registry& registry, const storage::Standing& standing,
+            const ProbationDecision& found, storage::Time time);
+
 using RecordProbation = std::function<bool(const storage::Standing&, const ProbationDecision&)>;
 
 /// Looks at the equipment's versions on probation with telemetry until `reached`, that of the

@@ -113,6 +113,18 @@ std::vector<std::string> unbound_of(const EquipmentModel& champion, const Plausi
   return suspects;
 }
 
+/// What the simulator's own telemetry says of the outputs.
+std::optional<Run> simulator_run(const storage::Archive& archive, WindowRequest request,
+                                 storage::TimeRange range) {
+  request.inputs.clear();
+  request.origin = storage::Origin::simulated;
+  auto loaded = load_window(archive, request, range);
+  auto* data = std::get_if<WindowData>(&loaded);
+  if (!data) return std::nullopt;
+  Matrix outputs = data->record.y;
+  return Run{std::move(data->record), std::move(outputs)};
+}
+
 /// Through the window, on what the candidate saw of it where both look at the same parameters.
 std::optional<Run> champion_run(const storage::Archive& archive, const EquipmentModel& champion,
                                 const PreparedWindow& prepared) {

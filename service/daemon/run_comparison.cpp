@@ -45,17 +45,6 @@ std::optional<Run> run_on_all(const storage::Archive& archive, const EquipmentMo
   return free_run_of(model, std::move(data->record));
 }
 
-std::optional<Run> simulator_run(const storage::Archive& archive, WindowRequest request,
-                                 storage::TimeRange range) {
-  request.inputs.clear();
-  request.origin = storage::Origin::simulated;
-  auto loaded = load_window(archive, request, range);
-  auto* data = std::get_if<WindowData>(&loaded);
-  if (!data) return std::nullopt;
-  Matrix outputs = data->record.y;
-  return Run{std::move(data->record), std::move(outputs)};
-}
-
 PairedRuns paired(const Record& record, RowRange rows, const Matrix& candidate, const Run& rival) {
   PairedRuns runs;
   std::vector<Index> of_rival;

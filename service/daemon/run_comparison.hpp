@@ -14,7 +14,7 @@
 
 namespace reident {
 
-/// Outputs of a model or a simulator at the rows of a record.
+/// Outputs of a model or of the simulator at the rows of a record.
 struct Run {
   identification::Record record;
   identification::Matrix outputs;  // one row for each of the record
@@ -28,10 +28,6 @@ std::optional<Run> run_on_believed(const storage::Archive& archive, const Equipm
 /// The model's free run through all telemetry in `range`. Absent as above.
 std::optional<Run> run_on_all(const storage::Archive& archive, const EquipmentModel& model,
                               storage::TimeRange range);
-
-/// What the simulator's own telemetry says of these outputs. Absent as above.
-std::optional<Run> simulator_run(const storage::Archive& archive, WindowRequest request,
-                                 storage::TimeRange range);
 
 /// Two runs at the ticks at which both have a row.
 struct PairedRuns {

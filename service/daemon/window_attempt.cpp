@@ -25,11 +25,7 @@ bool record(const storage::Standing& standing, const ProbationDecision& found,
             const AttemptContext& context) {
   bool recorded = false;
   context.write([&](storage::Registry& registry, auto&) {
-    const storage::Version& version = found.version;
-    recorded = registry
-                   .decide_if(standing, version.spacecraft, version.equipment, version.number,
-                              found.decision, context.clock())
-                   .has_value();
+    recorded = reident::record(registry, standing, found, context.clock());
   });
   if (recorded && context.decided) context.decided(found);
   return recorded;

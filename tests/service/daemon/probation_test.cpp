@@ -86,10 +86,7 @@ class Probation : public DaemonTest {
     look_at_probation(archive, registry, "SAT", equipment, reached,
                       [&](const storage::Standing& standing, const ProbationDecision& decided) {
                         found.push_back(decided);
-                        return registry
-                            .decide_if(standing, "SAT", "PLANT", decided.version.number,
-                                       decided.decision, reached)
-                            .has_value();
+                        return record(registry, standing, decided, reached);
                       });
     return found;
   }
