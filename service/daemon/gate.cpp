@@ -24,7 +24,6 @@ constexpr double outside_limit = 0.5;
 /// little drives it adds up.
 constexpr double slowest_limit = 1.0;
 
-/// Where faults are as many, those that are too small to be found are enough to spoil a comparison.
 /// Honest telemetry has at most 1 find in 1000 ticks (tests/trust).
 constexpr double fault_limit = 1.0 / 400;
 
@@ -130,7 +129,7 @@ bool has_run(const std::optional<Evidence::Champion>& champion) {
 }
 
 Refusal against_faults(const Evidence& e) {
-  if (!(e.fault_share > fault_limit)) return std::nullopt;
+  if (!is_in_doubt(e.fault_share)) return std::nullopt;
   return GateDecision{
       Outcome::telemetry_in_doubt,
       fmt::format("{:.2f} faults of sensors were found in 100 samples: others that go unnoticed "
@@ -255,6 +254,10 @@ std::string praise(const Evidence& e) {
 
 std::string_view name(Outcome outcome) {
   return names[static_cast<std::size_t>(outcome)].second;
+}
+
+bool is_in_doubt(double fault_share) {
+  return fault_share > fault_limit;
 }
 
 GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {

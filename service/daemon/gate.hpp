@@ -102,6 +102,10 @@ struct GateDecision {
   std::string reason;  // one sentence with the figures that decided
 };
 
+/// Whether so many faults of sensors were found, each once, over the ticks looked at, that those
+/// which are too small to be found are enough to spoil a comparison with the champion.
+bool is_in_doubt(double fault_share);
+
 GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits);
 
 }  // namespace reident

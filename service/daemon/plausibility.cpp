@@ -129,6 +129,10 @@ ordered_json to_json(const Plausibility& plausibility, Duration period) {
   return json;
 }
 
+double fault_share(const Plausibility& plausibility, std::int64_t ticks) {
+  return static_cast<double>(plausibility.holes.size()) / static_cast<double>(ticks);
+}
+
 std::string worst_of(const Plausibility& plausibility, Duration period) {
   assert(!plausibility.found.empty());
   const Implausible& worst = *std::max_element(

@@ -53,6 +53,9 @@ class PlausibilityChecks {
   std::vector<BoundRelation> relations_;
 };
 
+/// Faults that were found, each once, over the ticks that were looked at.
+double fault_share(const Plausibility& plausibility, std::int64_t ticks);
+
 /// For an attempt's evidence. Of more than 20 stretches the longest are told.
 nlohmann::ordered_json to_json(const Plausibility& plausibility, Duration period);
 

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "identification/simulate.hpp"
+#include "service/daemon/kept_window.hpp"
 #include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/floor_divide.hpp"
@@ -28,6 +30,7 @@ NewDecision rejection(std::string reason) {
 NewDecision decision(DecisionKind kind, const LongerLook& look, const std::string& reason) {
   nlohmann::ordered_json evidence = {{"until_ns", look.until},
                                      {"champion", look.champion},
+                                     {"fault_share", look.fault_share},
                                      {"comparison", to_json(look.comparison)}};
   if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
   const Evidence::Comparison& comparison = look.comparison;
@@ -69,12 +72,18 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive,
   look.champion = champion.number;
   const EquipmentModel model = equipment_model_from_json(version.model_json);
   const storage::TimeRange range{version.window.begin, look.until};
-  const auto own = run_on_believed(archive, model, checks_of(equipment), range);
-  const auto theirs = run_on_all(archive, equipment_model_from_json(champion.model_json), range);
-  if (!own || !theirs) return std::nullopt;
-  const std::int64_t first_tick = -floor_divide(-model.validated_on.begin, equipment.sample_period);
-  PairedRuns runs = paired(own->record, {first_row_at(own->record, first_tick), own->record.rows()},
-                           own->outputs, *theirs);
+  const WindowRequest request = request_of(model);
+  const auto loaded = KeptWindow(request, 1, checks_of(equipment)).load(archive, range);
+  const auto* data = std::get_if<WindowData>(&loaded);
+  if (!data) return std::nullopt;
+  look.fault_share = fault_share(data->plausibility, (range.end - range.begin) / request.period);
+  const identification::Record& record = data->record;
+  const auto theirs =
+      run_beside(archive, equipment_model_from_json(champion.model_json), request, record, range);
+  if (!theirs) return std::nullopt;
+  const std::int64_t first_tick = -floor_divide(-model.validated_on.begin, request.period);
+  PairedRuns runs = paired(record, {first_row_at(record, first_tick), record.rows()},
+                           free_run(model.dynamics, record, record.all()), *theirs);
   if (runs.rows.empty()) return std::nullopt;
   look.comparison = compare(runs, equipment.confidence_percent);
   if (needs_vouching) {
@@ -127,7 +136,9 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
 
 std::optional<NewDecision> judge_probation(const LongerLook& look, const EquipmentConfig& limits) {
   const double sure = sure_percent(look);
-  if (sure > limits.margin_percent && look.comparison.mrse_percent <= limits.max_mrse_percent)
+  const bool in_doubt = is_in_doubt(look.fault_share);
+  if (sure > limits.margin_percent && look.comparison.mrse_percent <= limits.max_mrse_percent &&
+      !in_doubt)
     return decision(DecisionKind::approve, look,
                     fmt::format("Confirmed: with a confidence of {:g} % the reduction is at least "
                                 "{:.2f} %.",
@@ -135,7 +146,11 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
   if (!look.is_last) return std::nullopt;
   return decision(
       DecisionKind::reject, look,
-      fmt::format("Not confirmed: that is not surely {:g} % less.", limits.margin_percent));
+      in_doubt
+          ? fmt::format("Not confirmed: with {:.2f} faults of sensors found in 100 samples any "
+                        "comparison is doubtful.",
+                        100 * look.fault_share)
+          : fmt::format("Not confirmed: that is not surely {:g} % less.", limits.margin_percent));
 }
 
 bool record(storage::Registry& registry, const storage::Standing& standing,

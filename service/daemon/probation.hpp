@@ -21,6 +21,7 @@ namespace reident {
 struct LongerLook {
   bool is_last = false;     // no more telemetry is waited for
   storage::Time until = 0;  // end of the telemetry
+  double fault_share = 0;   // of the window and what came after it (plausibility.hpp)
   std::int64_t champion = 0;
   Evidence::Comparison comparison;  // with the champion
   /// The same with the champion's mean error taken from it, where a sensor that no relation binds

@@ -67,9 +67,9 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
   evidence.residual_over_span =
       residual_over_span(validation(record.y), validation(candidate.y_hat), record.y);
   evidence.outside_share = outside_share(validation(record.u), model.inputs);
-  const auto ticks = static_cast<double>((request.window.end - request.window.begin) /
-                                         request.equipment.sample_period);
-  evidence.fault_share = static_cast<double>(prepared.data.plausibility.holes.size()) / ticks;
+  evidence.fault_share =
+      fault_share(prepared.data.plausibility,
+                  (request.window.end - request.window.begin) / request.equipment.sample_period);
   evidence.window_end = request.window.end;
   evidence.mean = against_mean(prepared, confidence);
   evidence.champion = against_champion(archive, registry, prepared, confidence);

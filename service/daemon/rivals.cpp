@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "identification/correction.hpp"
+#include "identification/simulate.hpp"
+#include "service/daemon/kept_window.hpp"
 #include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 
@@ -61,17 +63,21 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
   constexpr std::size_t least_rows = 30;
   const EquipmentModel& candidate = prepared.candidate->model;
   if (!reaches_beyond(champion.inputs, candidate.inputs)) return std::nullopt;
-  const auto own = run_on_believed(archive, candidate, prepared.checks, champion.validated_on);
-  const auto theirs = run_on_all(archive, champion, champion.validated_on);
-  if (!own || !theirs) return std::nullopt;
-  const PairedRuns both = paired(own->record, own->record.all(), own->outputs, *theirs);
-  const std::vector<Index> outside = rows_outside(own->record.u, candidate.inputs);
+  const storage::TimeRange validated = champion.validated_on;
+  const auto loaded = KeptWindow(prepared.loaded, 1, prepared.checks).load(archive, validated);
+  const auto* data = std::get_if<WindowData>(&loaded);
+  if (!data) return std::nullopt;
+  const identification::Record& record = data->record;
+  const auto theirs = run_beside(archive, champion, prepared.loaded, record, validated);
+  if (!theirs) return std::nullopt;
+  const PairedRuns both =
+      paired(record, record.all(), free_run(candidate.dynamics, record, record.all()), *theirs);
+  const std::vector<Index> outside = rows_outside(record.u, candidate.inputs);
   std::vector<Index> places;
   for (std::size_t i = 0; i < both.rows.size(); ++i)
     if (std::binary_search(outside.begin(), outside.end(), both.rows[i]))
       places.push_back(static_cast<Index>(i));
   if (places.size() < least_rows) return std::nullopt;
-  const Matrix& all_y = own->record.y;
   const Matrix y = both.y(places, Eigen::all), one = both.candidate(places, Eigen::all),
                other = both.rival(places, Eigen::all);
   Evidence::Champion::Elsewhere result;
@@ -79,7 +85,7 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
   result.mrse_percent = identification::score(y, one).mrse();
   result.champion_mrse_percent = identification::score(y, other).mrse();
   for (Index q = 0; q < y.cols(); ++q) {
-    const double range = all_y.col(q).maxCoeff() - all_y.col(q).minCoeff();
+    const double range = record.y.col(q).maxCoeff() - record.y.col(q).minCoeff();
     const double rms = std::sqrt((one.col(q) - other.col(q)).squaredNorm() / double(y.rows()));
     const double share = rms == 0 ? 0 : 100 * rms / range;
     result.disagreement_percent = std::max(result.disagreement_percent, share);
@@ -123,15 +129,6 @@ std::optional<Run> simulator_run(const storage::Archive& archive, WindowRequest 
   if (!data) return std::nullopt;
   Matrix outputs = data->record.y;
   return Run{std::move(data->record), std::move(outputs)};
-}
-
-/// Through the window, on what the candidate saw of it where both look at the same parameters.
-std::optional<Run> champion_run(const storage::Archive& archive, const EquipmentModel& champion,
-                                const PreparedWindow& prepared) {
-  if (request_of(champion) != prepared.loaded)
-    return run_on_all(archive, champion, prepared.attempt.window);
-  const identification::Record& record = prepared.data.record;
-  return Run{record, free_run(champion.dynamics, record, record.all())};
 }
 
 bool same_outputs(const EquipmentModel& one, const EquipmentModel& other) {
@@ -193,7 +190,8 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
     return evidence;
   }
   if (!same_outputs(champion, candidate)) return std::nullopt;
-  if (const auto run = champion_run(archive, champion, prepared)) {
+  if (const auto run = run_beside(archive, champion, prepared.loaded, prepared.data.record,
+                                  prepared.attempt.window)) {
     evidence.comparison = against_run(prepared, *run, confidence_percent);
     identification::Vector offset;
     evidence.without_offset = against_run(prepared, *run, confidence_percent, &offset);

@@ -9,7 +9,6 @@
 
 #include "identification/comparison.hpp"
 #include "identification/simulate.hpp"
-#include "service/daemon/kept_window.hpp"
 #include "service/daemon/window_data.hpp"
 
 namespace reident {
@@ -20,29 +19,16 @@ using identification::Record;
 using identification::RowRange;
 using identification::Segment;
 
-namespace {
-
-Run free_run_of(const EquipmentModel& model, Record&& record) {
-  Matrix outputs = free_run(model.dynamics, record, record.all());
-  return {std::move(record), std::move(outputs)};
-}
-
-}  // namespace
-
-std::optional<Run> run_on_believed(const storage::Archive& archive, const EquipmentModel& model,
-                                   const Checks& checks, storage::TimeRange range) {
-  auto loaded = KeptWindow(request_of(model), 1, checks).load(archive, range);
-  auto* data = std::get_if<WindowData>(&loaded);
-  if (!data) return std::nullopt;
-  return free_run_of(model, std::move(data->record));
-}
-
-std::optional<Run> run_on_all(const storage::Archive& archive, const EquipmentModel& model,
+std::optional<Run> run_beside(const storage::Archive& archive, const EquipmentModel& model,
+                              const WindowRequest& request, const Record& record,
                               storage::TimeRange range) {
-  auto loaded = load_window(archive, request_of(model), range);
+  const WindowRequest own = request_of(model);
+  if (own == request) return Run{record, free_run(model.dynamics, record, record.all())};
+  auto loaded = load_window(archive, own, range);
   auto* data = std::get_if<WindowData>(&loaded);
   if (!data) return std::nullopt;
-  return free_run_of(model, std::move(data->record));
+  Matrix outputs = free_run(model.dynamics, data->record, data->record.all());
+  return Run{std::move(data->record), std::move(outputs)};
 }
 
 PairedRuns paired(const Record& record, RowRange rows, const Matrix& candidate, const Run& rival) {

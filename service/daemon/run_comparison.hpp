@@ -8,7 +8,7 @@
 
 #include "identification/record.hpp"
 #include "service/daemon/gate.hpp"
-#include "service/daemon/plausibility.hpp"
+#include "service/daemon/window_data.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/archive.hpp"
 
@@ -20,13 +20,11 @@ struct Run {
   identification::Matrix outputs;  // one row for each of the record
 };
 
-/// The model's free run through what is believed of the telemetry in `range`. Absent where a
-/// parameter of it is not described.
-std::optional<Run> run_on_believed(const storage::Archive& archive, const EquipmentModel& model,
-                                   const Checks& checks, storage::TimeRange range);
-
-/// The model's free run through all telemetry in `range`. Absent as above.
-std::optional<Run> run_on_all(const storage::Archive& archive, const EquipmentModel& model,
+/// The free run of a model beside that of another one: through `record`, what is believed of the
+/// telemetry in `range` that `request` asks for, where it looks at the same parameters, or else
+/// through all telemetry there. Absent where a parameter of it is not described.
+std::optional<Run> run_beside(const storage::Archive& archive, const EquipmentModel& model,
+                              const WindowRequest& request, const identification::Record& record,
                               storage::TimeRange range);
 
 /// Two runs at the ticks at which both have a row.

@@ -56,6 +56,18 @@ TEST(JudgeProbation, ApprovesNothingAboveTheLimitOfTheError) {
   EXPECT_FALSE(judge_probation(look, {}));
 }
 
+TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
+  LongerLook look = sure_of(40);
+  look.fault_share = 0.0025;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.fault_share = 0.0026;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.is_last = true;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("0.26 faults of sensors found in 100 samples"));
+}
+
 /// Champion 1 is of a plant of gain 1; version 2 is on probation.
 class Probation : public DaemonTest {
  protected:
@@ -123,6 +135,15 @@ TEST_F(Probation, EndsWithAnApprovalOnceMoreTelemetryBearsTheVersionOut) {
 TEST_F(Probation, EndsWithARejectionWhereTheChampionIsAsGood) {
   change_plant(1);
   EXPECT_TRUE(look(window_end + 4 * minute).empty());
+  ASSERT_EQ(look(window_end + 5 * minute).size(), 1U);
+  EXPECT_EQ(status(2), "rejected");
+}
+
+TEST_F(Probation, GivesTheChampionNoTelemetryThatItDoesNotBelieve) {
+  std::vector<storage::TelemetryFrame> frames = telemetry(day + 10 * minute, 901);
+  frames[700].samples[1].value = 500;
+  archive.append(frames);
+  make_version(window_end, "on_probation", DecisionKind::wait);
   ASSERT_EQ(look(window_end + 5 * minute).size(), 1U);
   EXPECT_EQ(status(2), "rejected");
 }
