@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "identification/kernels.hpp"
 
@@ -44,15 +46,19 @@ struct UncertainState {
   Matrix L;
 };
 
-/// The state behind the hole by inputs that are interpolated over it; they may be off by about as
-/// much as inputs change over a quarter of the hole.
+/// In a hole of so many ticks an input makes no step that does not show at the ends.
+constexpr double short_hole = 4;
+
+/// The state behind the hole by inputs that are interpolated over it; simulate.hpp says by how much
+/// they may be off.
 UncertainState through_hole(const StateSpaceModel& model, const Record& record,
                             const Segment& before, const Segment& after, const Vector& x,
-                            const Vector& square_changes) {
+                            const SquareChanges& changes) {
   const std::int64_t hole = after.first_tick - (before.first_tick + before.size());
   const Vector from = record.u.row(before.end - 1).transpose() - model.u0;
   const Vector to = record.u.row(after.begin).transpose() - model.u0;
-  const Vector variance = square_changes * (1 + double(hole) / 4);
+  const Vector variance = (to - from).cwiseAbs2() / 4 + changes.usual * (1 + double(hole) / 4) +
+                          changes.mean * (std::max(0.0, double(hole) - short_hole) / 4);
   UncertainState result{x, Matrix::Zero(x.size(), x.size())};
   Matrix P = Matrix::Zero(x.size(), x.size());
   for (std::int64_t k = 1; k <= hole; ++k) {
@@ -94,20 +100,26 @@ Vector remainder_of(const StateSpaceModel& model, const Record& record, const Se
 
 }  // namespace
 
-Vector square_changes(const Record& record) {
-  Vector sum = Vector::Zero(record.u.cols());
-  Index count = 0;
-  for (const Segment& segment : record.segments) {
-    const Index changes = segment.size() - 1;
-    sum += (record.u.middleRows(segment.begin + 1, changes) -
-            record.u.middleRows(segment.begin, changes))
-               .cwiseAbs2()
-               .colwise()
-               .sum()
-               .transpose();
-    count += changes;
+SquareChanges square_changes(const Record& record) {
+  constexpr double median_of_a_normal = 0.4549;  // of chi-squared with one degree of freedom
+  const Index m = record.u.cols();
+  SquareChanges result{Vector::Zero(m), Vector::Zero(m)};
+  std::vector<double> squares;
+  for (Index j = 0; j < m; ++j) {
+    squares.clear();
+    for (const Segment& segment : record.segments)
+      for (Index k = segment.begin + 1; k < segment.end; ++k) {
+        const double change = record.u(k, j) - record.u(k - 1, j);
+        squares.push_back(change * change);
+      }
+    if (squares.empty()) continue;
+    result.mean(j) =
+        std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size());
+    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+    std::nth_element(squares.begin(), middle, squares.end());
+    result.usual(j) = *middle / median_of_a_normal;
   }
-  return sum / double(std::max<Index>(1, count));
+  return result;
 }
 
 std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Record& record,
@@ -116,8 +128,7 @@ std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Recor
   constexpr double least_error = 1e-10;  // of the output's size: smaller ones are rounding
   const std::int64_t hole = after.first_tick - (before.first_tick + before.size());
   if (hole > most_bridged_ticks(record)) return std::nullopt;
-  const UncertainState prior =
-      through_hole(model, record, before, after, x, noise.square_input_changes);
+  const UncertainState prior = through_hole(model, record, before, after, x, noise.input_changes);
   const Index n = model.order(), count = std::min(state_rows, after.size());
   if (n == 0 || count == 0 || !prior.x.allFinite()) return prior.x;
   const Vector size = record.y.middleRows(after.begin, count).cwiseAbs().colwise().maxCoeff();
@@ -157,7 +168,7 @@ Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange row
   Vector x;
   Vector square_errors = Vector::Zero(model.outputs());
   const std::vector<Segment> segments = segments_within(record, rows);
-  const Vector changes = segments.size() > 1 ? square_changes(record) : Vector();
+  const SquareChanges changes = segments.size() > 1 ? square_changes(record) : SquareChanges{};
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = segments[i];
     const auto given = i == 0 ? x0

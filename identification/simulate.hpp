@@ -21,23 +21,28 @@ constexpr Index state_rows = 500;
 Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange rows,
                 const std::optional<Vector>& x0 = std::nullopt);
 
-/// Mean squares (m) of the inputs' changes from one tick to the next.
-Vector square_changes(const Record& record);
+/// Squares (m) of the inputs' changes from one tick to the next.
+struct SquareChanges {
+  Vector mean;
+  Vector usual;  // the median, over that of the square of a unit normal: without rare steps
+};
+SquareChanges square_changes(const Record& record);
 
 /// How uncertain a run is.
 struct RunNoise {
-  Vector square_input_changes;  // m, as above
-  Vector square_errors;         // p, means over the run so far
+  SquareChanges input_changes;
+  Vector square_errors;  // p, means over the run so far
 };
 
 /// State (n) at the first row of the segment `after` of a run that has come to the state `x` at the
 /// tick behind the segment `before`. The run goes through the hole between them with interpolated
-/// inputs, which are off by about as much as inputs change from tick to tick; what that makes
-/// uncertain of the state is estimated from the first `state_rows` outputs behind the hole: least
-/// squares with the one as the prior and the run's errors as the noise (a step of a Kalman
+/// inputs, which are off by about as much as inputs usually change from tick to tick, by half of
+/// what they differ at its ends, and in longer holes by steps that do not show there; what that
+/// makes uncertain of the state is estimated from the first `state_rows` outputs behind the hole:
+/// least squares with the one as the prior and the run's errors as the noise (a step of a Kalman
 /// smoother). Slow states so come from the run, and fast ones from the outputs. A run that began
-/// anew behind each hole would never show that it drifts. Absent where the hole is longer than 60
-/// ticks and than a hundredth of the record's rows.
+/// anew behind each hole, or took much from the outputs there, would never show that it drifts.
+/// Absent where the hole is longer than 60 ticks and than a hundredth of the record's rows.
 std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Record& record,
                                        const Segment& before, const Segment& after, const Vector& x,
                                        const RunNoise& noise);

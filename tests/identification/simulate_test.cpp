@@ -77,6 +77,36 @@ TEST(FreeRun, CarriesSlowStatesThroughAHoleAndTakesFastOnesFromTheOutputsBehindI
   EXPECT_NEAR(run(run.rows() - 1, 0), holed.y(599, 0), 0.1);
 }
 
+/// Every seventh row is missing, as where frames get lost: the run of a model that errs must show
+/// its error all the same.
+TEST(FreeRun, ShowsThroughManyShortHolesWhatItShowsWithoutThem) {
+  testing::Noise noise(11);
+  StateSpaceModel truth{Matrix::Constant(1, 1, 0.99),
+                        Matrix::Constant(1, 1, 0.01),
+                        Matrix::Ones(1, 1),
+                        Matrix::Zero(1, 1),
+                        {},
+                        Vector::Zero(1),
+                        Vector::Zero(1),
+                        1};
+  constexpr Index rows = 4200;
+  Matrix u(rows, 1);
+  for (Index k = 0; k < rows; ++k) u(k, 0) = k / 300 % 2 + 0.01 * std::sin(double(k));
+  const Record whole = contiguous_record(
+      1, u, testing::simulated(truth, u, Vector::Zero(1)) + 0.01 * noise.normal(rows, 1));
+  StateSpaceModel wrong = truth;
+  wrong.B *= 1.1;
+  const double error = (free_run(wrong, whole, whole.all()) - whole.y).norm() / std::sqrt(rows);
+  Record holed{1, Matrix(rows / 7 * 6, 1), Matrix(rows / 7 * 6, 1), {}};
+  for (Index tick = 0, row = 0; tick < rows; tick += 7, row += 6) {
+    holed.u.middleRows(row, 6) = whole.u.middleRows(tick, 6);
+    holed.y.middleRows(row, 6) = whole.y.middleRows(tick, 6);
+    holed.segments.push_back({row, row + 6, tick});
+  }
+  const Matrix run = free_run(wrong, holed, holed.all());
+  EXPECT_NEAR((run - holed.y).norm() / std::sqrt(double(holed.rows())), error, 0.05 * error);
+}
+
 TEST(FreeRun, OfAnUnstableModelMayOverflowButEnds) {
   StateSpaceModel model{Matrix::Constant(1, 1, 1e10),
                         Matrix::Ones(1, 1),
