@@ -210,12 +210,20 @@ bool is_unvouched(const Evidence& e, const EquipmentConfig& limits) {
   return !sure || !(*sure > limits.margin_percent);
 }
 
-/// Better by the margin, and not surely: telemetry after the window may tell.
+/// Whether telemetry after the window may decide.
+bool may_wait(const Evidence& e, const EquipmentConfig& limits) {
+  return limits.confirmation > 0 && limits.approval == ApprovalPolicy::automatic && !e.hold;
+}
+
+std::string wait_of(const EquipmentConfig& limits) {
+  return fmt::format(" Waits for up to {} of telemetry after its window.",
+                     duration_text(limits.confirmation));
+}
+
+/// Better by the margin, and not surely.
 bool may_become_sure(const Evidence& e, const EquipmentConfig& limits) {
   const Evidence::Champion& champion = *e.champion;
-  if (limits.confirmation == 0 || limits.approval == ApprovalPolicy::by_hand || e.hold ||
-      !champion.comparison->sure_percent)
-    return false;
+  if (!may_wait(e, limits) || !champion.comparison->sure_percent) return false;
   double reduction = champion.comparison->reduction_percent;
   if (needs_vouching(champion, limits))
     reduction = std::min(reduction, champion.without_offset->reduction_percent);
@@ -232,8 +240,7 @@ Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
   if (!not_better) return refusal;
   if (!refusal && may_become_sure(e, limits)) {
     not_better->outcome = Outcome::on_probation;
-    not_better->reason += fmt::format(" Waits for up to {} of telemetry after its window.",
-                                      duration_text(limits.confirmation));
+    not_better->reason += wait_of(limits);
   }
   return not_better;
 }
@@ -248,6 +255,21 @@ std::string praise(const Evidence& e) {
   return fmt::format("MRSE {:.3f} % on unseen data; champion {} has {:.3f} % on the same samples.",
                      e.champion->comparison->mrse_percent, e.champion->version,
                      e.champion->comparison->rival_mrse_percent);
+}
+
+/// A stretch in which the champion is off by a constant may be one of an unusual operation.
+Refusal against_offset(const Evidence& e, const EquipmentConfig& limits) {
+  if (!has_run(e.champion) || !e.champion->without_offset || !may_wait(e, limits))
+    return std::nullopt;
+  const Evidence::Comparison& without = *e.champion->without_offset;
+  if (without.sure_percent > sure_elsewhere * limits.margin_percent) return std::nullopt;
+  return GateDecision{
+      Outcome::on_probation,
+      praise(e) +
+          fmt::format(" But for a constant offset the champion has {:.3f} %, which is not "
+                      "surely worse.",
+                      without.rival_mrse_percent) +
+          wait_of(limits)};
 }
 
 }  // namespace
@@ -278,6 +300,7 @@ GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {
                             "sensor of {} would show the same; no relation binds it. Waits for an "
                             "operator's approval.",
                             fmt::join(evidence.champion->unbound, ", "))};
+  if (auto offset = against_offset(evidence, limits)) return *offset;
   if (limits.approval == ApprovalPolicy::by_hand)
     return {Outcome::waiting, praise(evidence) + " Waits for an operator's approval."};
   return {Outcome::approved, praise(evidence)};

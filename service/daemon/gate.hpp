@@ -102,6 +102,11 @@ struct GateDecision {
   std::string reason;  // one sentence with the figures that decided
 };
 
+/// What is sure of a reduction above the margin, as a share of the margin, where that is to hold
+/// for something else than the stretch that the candidate was validated on: after it, or without
+/// the champion's mean error.
+constexpr double sure_elsewhere = 1.0 / 3;
+
 /// Whether so many faults of sensors were found, each once, over the ticks looked at, that those
 /// which are too small to be found are enough to spoil a comparison with the champion.
 bool is_in_doubt(double fault_share);

@@ -42,11 +42,20 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
           evidence.dump()};
 }
 
-double sure_percent(const LongerLook& look) {
-  double sure = look.comparison.sure_percent.value_or(-INFINITY);
-  if (look.without_offset)
-    sure = std::min(sure, look.without_offset->sure_percent.value_or(-INFINITY));
-  return sure;
+struct Reduction {
+  double percent = 0;
+  double sure_percent = 0;
+};
+
+/// The smaller one, where the champion is looked at without its mean error too.
+Reduction reduction_of(const LongerLook& look) {
+  const auto of = [](const Evidence::Comparison& comparison) -> Reduction {
+    return {comparison.reduction_percent, comparison.sure_percent.value_or(-INFINITY)};
+  };
+  Reduction all = of(look.comparison);
+  if (!look.without_offset) return all;
+  const Reduction without = of(*look.without_offset);
+  return {std::min(all.percent, without.percent), std::min(all.sure_percent, without.sure_percent)};
 }
 
 /// Whether a sensor that no relation binds could show the champion's mean error, as the attempt
@@ -135,14 +144,16 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
 }  // namespace
 
 std::optional<NewDecision> judge_probation(const LongerLook& look, const EquipmentConfig& limits) {
-  const double sure = sure_percent(look);
+  const Reduction reduction = reduction_of(look);
+  const double needed = sure_elsewhere * limits.margin_percent;
   const bool in_doubt = is_in_doubt(look.fault_share);
-  if (sure > limits.margin_percent && look.comparison.mrse_percent <= limits.max_mrse_percent &&
-      !in_doubt)
-    return decision(DecisionKind::approve, look,
-                    fmt::format("Confirmed: with a confidence of {:g} % the reduction is at least "
-                                "{:.2f} %.",
-                                limits.confidence_percent, sure));
+  if (reduction.percent > limits.margin_percent && reduction.sure_percent > needed &&
+      look.comparison.mrse_percent <= limits.max_mrse_percent && !in_doubt)
+    return decision(
+        DecisionKind::approve, look,
+        fmt::format("Confirmed: the reduction is {:.2f} %, and with a confidence of {:g} % at "
+                    "least {:.2f} %.",
+                    reduction.percent, limits.confidence_percent, reduction.sure_percent));
   if (!look.is_last) return std::nullopt;
   return decision(
       DecisionKind::reject, look,
@@ -150,7 +161,8 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           ? fmt::format("Not confirmed: with {:.2f} faults of sensors found in 100 samples any "
                         "comparison is doubtful.",
                         100 * look.fault_share)
-          : fmt::format("Not confirmed: that is not surely {:g} % less.", limits.margin_percent));
+          : fmt::format("Not confirmed: that is not {:g} % less, and surely {:g} %.",
+                        limits.margin_percent, needed));
 }
 
 bool record(storage::Registry& registry, const storage::Standing& standing,

@@ -178,6 +178,50 @@ const Case not_surely_better[] = {
      Outcome::not_better_than_champion},
 };
 
+void is_off_by_a_constant(Evidence& e, double sure_percent) {
+  e.champion->without_offset = e.champion->comparison;
+  e.champion->without_offset->sure_percent = sure_percent;
+}
+
+// Better by the margin, surely; of the champion without its mean error that is less sure.
+const Case of_an_offset[] = {
+    {"ConstantOffsetThatMoreTelemetryMayBearOut",
+     [](auto& e, auto& c) {
+       is_off_by_a_constant(e, 1.66);
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"ConstantOffsetOnTooFewSamples",
+     [](auto& e, auto& c) {
+       is_off_by_a_constant(e, 0);
+       e.champion->without_offset->sure_percent.reset();
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"ConstantOffsetAndSurelyMore",
+     [](auto& e, auto& c) {
+       is_off_by_a_constant(e, 1.67);
+       c.confirmation = 100;
+     },
+     Outcome::approved},
+    {"ConstantOffsetWithoutProbation", [](auto& e, auto&) { is_off_by_a_constant(e, -10); },
+     Outcome::approved},
+    {"ConstantOffsetAndByHand",
+     [](auto& e, auto& c) {
+       is_off_by_a_constant(e, -10);
+       c.approval = ApprovalPolicy::by_hand;
+       c.confirmation = 100;
+     },
+     Outcome::waiting},
+    {"ConstantOffsetThatNobodyVouchesForIsNotWaitedFor",
+     [](auto& e, auto& c) {
+       is_off_by_a_constant(e, -10);
+       e.champion->unbound = {"y"};
+       c.confirmation = 100;
+     },
+     Outcome::unvouched},
+};
+
 const Case beside_its_rivals[] = {
     {"BetterByTheMarginAndNotSurely",
      [](auto& e, auto&) { e.champion->comparison->sure_percent = 5; },
@@ -278,6 +322,7 @@ const Case beside_its_rivals[] = {
 const auto name_of = [](const auto& one) { return one.param.name; };
 INSTANTIATE_TEST_SUITE_P(OfTheCandidate, Gate, testing::ValuesIn(of_the_candidate), name_of);
 INSTANTIATE_TEST_SUITE_P(NotSurelyBetter, Gate, testing::ValuesIn(not_surely_better), name_of);
+INSTANTIATE_TEST_SUITE_P(OfAnOffset, Gate, testing::ValuesIn(of_an_offset), name_of);
 INSTANTIATE_TEST_SUITE_P(BesideItsRivals, Gate, testing::ValuesIn(beside_its_rivals), name_of);
 
 TEST(GateReason, NamesTheFiguresThatDecided) {

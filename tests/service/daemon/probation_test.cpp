@@ -24,27 +24,34 @@ LongerLook sure_of(double percent) {
   return look;
 }
 
-TEST(JudgeProbation, ApprovesOnceTheReductionIsSure) {
-  const auto found = judge_probation(sure_of(15.1), {});
+TEST(JudgeProbation, ApprovesOnceTheReductionIsSurelyAThirdOfTheMargin) {
+  const auto found = judge_probation(sure_of(5.1), {});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->kind, DecisionKind::approve);
   EXPECT_EQ(found->actor, "gate");
-  EXPECT_THAT(found->reason, AllOf(HasSubstr("champion 3 has 8.000 %"), HasSubstr("15.10 %")));
+  EXPECT_THAT(found->reason, AllOf(HasSubstr("champion 3 has 8.000 %"), HasSubstr("5.10 %")));
   EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["comparison"]["rows"], 500);
 }
 
 TEST(JudgeProbation, WaitsForMoreAndRejectsAtTheLastLook) {
-  LongerLook look = sure_of(15);
+  LongerLook look = sure_of(5);
   EXPECT_FALSE(judge_probation(look, {}));
+  look.is_last = true;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+}
+
+TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
+  LongerLook look = sure_of(10);
+  look.comparison.reduction_percent = 15;
   look.is_last = true;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
 }
 
 TEST(JudgeProbation, AsksForMoreThanAnOffsetWhereNoSensorVouchesForIt) {
   LongerLook look = sure_of(40);
-  look.without_offset = sure_of(14).comparison;
+  look.without_offset = sure_of(4).comparison;
   EXPECT_FALSE(judge_probation(look, {}));
-  look.without_offset = sure_of(16).comparison;
+  look.without_offset = sure_of(6).comparison;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
   look.without_offset->sure_percent.reset();
   EXPECT_FALSE(judge_probation(look, {}));
