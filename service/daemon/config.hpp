@@ -46,17 +46,17 @@ struct EquipmentConfig {
   double min_coverage = 0.5;      // least share of the window's ticks with every channel valid
   int min_order = 1;
   int max_order = 10;
-  std::optional<int> horizon;    // absent: chosen
-  double max_mrse_percent = 20;  // limit of the gate
-  double min_fit_percent = 0;    // limit of the gate, at least 0
-  double margin_percent =
-      15;  // relative reduction of the champion's error that a swap surely brings
-  double confidence_percent = 99;        // how sure: of the lower bound of the reduction
+  std::optional<int> horizon;      // absent: chosen
+  double max_mrse_percent = 20;    // limit of the gate
+  double min_fit_percent = 0;      // limit of the gate, at least 0
+  double margin_percent = 15;      // relative reduction of the champion's error that a swap brings:
+                                   // surely, or after probation surely a third of it
+  double confidence_percent = 99;  // how sure: of the lower bound of the reduction
   double max_disagreement_percent = 10;  // from the champion where the window was not, of the
                                          // output's range
   Duration min_interval = 0;             // between the windows of two versions; a quarter of slide
   Duration confirmation = 0;  // telemetry after its window that may yet confirm a candidate which
-                              // is better and not surely; default slide, 0: none
+                              // is better, not surely or by a constant; default slide, 0: none
   std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where its
                                                 // telemetry does not tell it
   ApprovalPolicy approval = ApprovalPolicy::automatic;

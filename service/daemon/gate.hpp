@@ -21,7 +21,7 @@ enum class Outcome {
   waiting,            // good enough; the policy leaves the decision to an operator
   unvouched,          // better by a constant offset, which may be a sensor's; waits for an operator
   held,               // good enough; an operator holds the equipment's version
-  on_probation,       // better, and not surely; telemetry after the window decides
+  on_probation,       // better, not surely or by a constant; telemetry after the window decides
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   telemetry_damaged,  // samples that the attempt needs cannot be decoded any more
   low_coverage,
@@ -102,9 +102,8 @@ struct GateDecision {
   std::string reason;  // one sentence with the figures that decided
 };
 
-/// What is sure of a reduction above the margin, as a share of the margin, where that is to hold
-/// for something else than the stretch that the candidate was validated on: after it, or without
-/// the champion's mean error.
+/// Share of the margin that the reduction surely has to be with the champion's mean error taken
+/// from it, and, of a version on probation, over the validation part and what came after it.
 constexpr double sure_elsewhere = 1.0 / 3;
 
 /// Whether so many faults of sensors were found, each once, over the ticks looked at, that those

@@ -1,9 +1,10 @@
-// Versions on probation: better than the champion by the margin, but not surely on their windows'
-// validation part alone. Telemetry that comes after their windows decides.
+// Versions on probation: better than the champion by the margin, but on their windows' validation
+// part alone not surely, or mostly by a constant. Telemetry that comes after their windows decides.
 //
 // The free runs of the version and of the champion, begun with the window, go on over that
 // telemetry, and are compared over the validation part and it together. A change of the equipment
-// that is too new to fill the validation part is so followed sooner than by the next window.
+// that is too new to fill the validation part is so followed sooner than by the next window, and a
+// stretch of unusual operation is told from one.
 #pragma once
 
 #include <functional>
