@@ -91,7 +91,8 @@ TEST(FreeRun, ShowsThroughManyShortHolesWhatItShowsWithoutThem) {
                         1};
   constexpr Index rows = 12600;
   Matrix u(rows, 2);
-  for (Index k = 0; k < rows; ++k) u.row(k) << 10 * (k / 2000 % 2), std::sin(double(k) * 0.001);
+  for (Index k = 0; k < rows; ++k)
+    u.row(k) << 10.0 * double(k / 2000 % 2), std::sin(double(k) * 0.001);
   const Record whole = contiguous_record(
       1, u, testing::simulated(truth, u, Vector::Zero(1)) + 0.01 * noise.normal(rows, 1));
   StateSpaceModel wrong = truth;
