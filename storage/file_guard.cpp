@@ -48,8 +48,8 @@ Error cut_short(const fs::path& database, const std::string& found) {
                                     "'sqlite3 FILE .recover'"};
 }
 
-/// A checkpoint that was broken off may have written the first page and not yet the last ones;
-/// these are in the log then.
+/// A checkpoint that was broken off, or that a reader keeps from its end, may have written the
+/// first page and not the last ones; these are in the log then.
 bool log_has_the_rest(const LogContents& log, std::uint64_t pages_there) {
   for (std::uint64_t page = pages_there + 1; page <= log.pages; ++page)
     if (!log.held.contains(static_cast<std::uint32_t>(page))) return false;
@@ -126,7 +126,12 @@ void FileGuard::check(sqlite::Connection& connection) const {
   }
   const std::optional<Extent> extent = extent_of(connection);
   const std::int64_t size = connection.raw_size();
-  if (extent && static_cast<std::uint64_t>(size) >= extent->pages * extent->page_size) return;
+  if (extent) {
+    const std::uint64_t pages_there = static_cast<std::uint64_t>(size) / extent->page_size;
+    if (pages_there >= extent->pages) return;
+    const LogContents log = read_log(files_[1].path);
+    if (log.pages > 0 && log_has_the_rest(log, pages_there)) return;
+  }
   connection.keep_log();
   throw cut_short(files_[0].path, extent ? in_words(size, *extent) + " while it is in use"
                                          : "it has lost its first page while it is in use");
