@@ -86,6 +86,27 @@ TEST(FilesInUse, ALogThatWasTakenAwayIsMissedAndWhatItHeldIsSavedAtTheEnd) {
   }
 }
 
+TEST(FilesInUse, ACheckpointThatAReaderKeepsFromItsEndIsNoCut) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.db";
+  Database database(path, Mode::read_write);
+  ASSERT_EQ(appending(database, 1), "no error");
+  sqlite3 *writer = nullptr, *reader = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &writer), SQLITE_OK);
+  ASSERT_EQ(sqlite3_open(path.c_str(), &reader), SQLITE_OK);
+  const auto run = [](sqlite3* connection, const char* sql) {
+    EXPECT_EQ(sqlite3_exec(connection, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sql;
+  };
+  run(writer, "CREATE TABLE filler (x); INSERT INTO filler VALUES (zeroblob(40000))");
+  run(reader, "BEGIN; SELECT count(*) FROM filler");
+  const std::uintmax_t before = fs::file_size(path);
+  run(writer, "UPDATE filler SET x = randomblob(40000); PRAGMA wal_checkpoint(PASSIVE)");
+  ASSERT_LT(fs::file_size(path), before + 40'000) << "the last pages stay in the log";
+  EXPECT_EQ(appending(database, 2), "no error");
+  sqlite3_close(reader);
+  sqlite3_close(writer);
+}
+
 TEST(FilesInUse, AFileThatIsCutIsNotWrittenAndItsLogIsKept) {
   for (const std::uintmax_t length :
        {std::uintmax_t{0}, std::uintmax_t{20}, std::uintmax_t{4096}, std::uintmax_t{30'000}}) {
