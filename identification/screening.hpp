@@ -11,11 +11,10 @@
 //   spike  a value that stands at least 20 times the usual step (its median), and a twentieth of
 //          the channel's range, above or below both neighbours, which agree with each other to 0.3
 //          of that; while no other analog channel jumps by 20 times its own step and a twentieth of
-//          its range, and no digital one changes (a load that is on for a moment, a bus that
-//          gives way as the array comes or goes). Hampel's rule for
-//          a window of three (F. R. Hampel, "The influence curve and its role in robust
-//          estimation", Journal of the American Statistical Association 69, 1974). More than 2 % of
-//          a channel's samples are its nature.
+//          its range, and no digital one changes (a load that is on for a moment, a bus that gives
+//          way as the array comes or goes). Hampel's rule for a window of three (F. R. Hampel, "The
+//          influence curve and its role in robust estimation", Journal of the American Statistical
+//          Association 69, 1974). More than 2 % of a channel's samples are its nature.
 //   noise  over at least three blocks of 60 rows the trimmed mean of |x[t] - (x[t-1] + x[t+1]) / 2|
 //          is 4 times its third quartile over all blocks, and a fiftieth of the channel's standard
 //          deviation; while that of no other channel has doubled.
