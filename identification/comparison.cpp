@@ -59,14 +59,33 @@ Index block_rows_for(const Matrix& incumbent, const Matrix& candidate, const Sum
                     rows / least_blocks);
 }
 
-/// By how much the variance of a mean grows where neighbours are alike.
+/// By how much the variance of a mean grows where neighbours are alike; of values without mean.
 double neighbour_factor(const Array& values) {
-  const Array centred = values - values.mean();
-  const double energy = centred.square().sum();
+  const double energy = values.square().sum();
   if (!(energy > 0)) return 1;
   const Index n = values.size();
-  const double r = (centred.head(n - 1) * centred.tail(n - 1)).sum() / energy;
+  const double r = (values.head(n - 1) * values.tail(n - 1)).sum() / energy;
   return r > 0 ? (1 + r) / (1 - std::min(r, 0.9)) : 1;
+}
+
+struct Deviation {
+  double of_mean = 0;
+  double degrees_of_freedom = 0;
+};
+
+/// Of values in the order of time, about their mean or, where it rises, about their line.
+Deviation deviation(const Array& values) {
+  const auto n = double(values.size());
+  Array left = values - values.mean();
+  double degrees_of_freedom = n - 1;
+  const Array times = Array::LinSpaced(values.size(), -(n - 1) / 2, (n - 1) / 2);
+  const double slope = (times * left).sum() / times.square().sum();
+  if (slope > 0) {
+    left -= slope * times;
+    --degrees_of_freedom;
+  }
+  const double variance = left.square().sum() / degrees_of_freedom / n;
+  return {std::sqrt(variance * neighbour_factor(left)), degrees_of_freedom};
 }
 
 /// The least logarithm that remains without one stretch of rows.
@@ -119,11 +138,11 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
     pseudo(b) = blocks * phi - (blocks - 1) * log_ratio(all - over(begin, count));
   }
   if (!pseudo.allFinite()) return std::nullopt;
-  const double variance = (pseudo - pseudo.mean()).square().sum() / (blocks - 1) / blocks;
-  const double deviation = std::sqrt(variance * neighbour_factor(pseudo));
+  const Deviation chance = deviation(pseudo);
+  const double quantile = student_quantile(confidence, chance.degrees_of_freedom);
   result.reduction = 1 - std::exp(-phi);
-  const double low = std::min(phi - student_quantile(confidence, blocks - 1) * deviation,
-                              least_without_a_stretch(all, rows, over));
+  const double low =
+      std::min(phi - quantile * chance.of_mean, least_without_a_stretch(all, rows, over));
   result.low = 1 - std::exp(-low);
   return result;
 }

@@ -7,8 +7,10 @@
 // variance is that of the delete-one jackknife over blocks of consecutive rows (H. R. Kuensch,
 // Annals of Statistics 17(3), 1989), blocks as long as error_confidence.hpp takes them for the
 // correlation of what each row adds to phi. Blocks that are alike beside each other say less than
-// their number: with a correlation r > 0 of neighbours the variance grows by (1 + r) / (1 - r). The
-// lower bound is phi - t s, t Student's quantile of as many degrees as blocks less one.
+// their number: with a correlation r > 0 of neighbours the variance grows by (1 + r) / (1 - r).
+// Where what blocks add rises with time, as it does while the equipment goes on changing, both are
+// taken about the line through it: what will be is more than the mean then, not less sure. The
+// lower bound is phi - t s, t Student's quantile of as many degrees as blocks less one, or two.
 //
 // A sensor that is stuck for a while can make any model look better than another. The reduction
 // must therefore hold without any single stretch of a twentieth of the rows: where it is smaller

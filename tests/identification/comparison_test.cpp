@@ -95,6 +95,34 @@ TEST(PairedComparison, OfModelsThatErrByDifferentThingsFindsAnErrorSmallerByATen
   EXPECT_EQ(wrong, 0);
 }
 
+TEST(PairedComparison, OfAnEquipmentThatChangesAllTheTimeFindsTheRunThatFollows) {
+  // The incumbent's gain is off by more and more; each run has an error of its own.
+  testing::Noise noise(47);
+  const Vector growing = Vector::LinSpaced(rows, 0, 0.4);
+  int found = 0, wrong = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Trial t = trial(noise, 0.8);
+    const Matrix follows = t.run + 0.3 * first_order(noise, rows, 0.98);
+    const Matrix stays = t.run - growing.cwiseProduct(t.run) + 0.3 * first_order(noise, rows, 0.98);
+    found += compare_runs(t.y, stays, follows, {{0, rows}}, confidence)->low > 0.15;
+    wrong += compare_runs(t.y, follows, stays, {{0, rows}}, confidence)->low > 0;
+  }
+  EXPECT_GT(found, 900);
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(PairedComparison, OfRunsThatErrAlikeAndSlowlySeldomFindsOneBetter) {
+  testing::Noise noise(48);
+  int found = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Trial t = trial(noise, 0.5);
+    const Matrix one = t.run + first_order(noise, rows, 0.98);
+    const Matrix other = t.run + first_order(noise, rows, 0.98);
+    found += compare_runs(t.y, one, other, {{0, rows}}, confidence)->low > 0;
+  }
+  EXPECT_LT(found, 20);
+}
+
 TEST(PairedComparison, AStuckSensorDoesNotPromoteWhoeverAgreesWithIt) {
   testing::Noise noise(44);
   int count = 0;
