@@ -42,17 +42,23 @@ std::string in_words(std::int64_t size, const Extent& extent) {
          std::to_string(extent.pages * extent.page_size) + " bytes";
 }
 
-Error cut_short(const fs::path& database, const std::string& found) {
-  return {Error::Kind::corrupt, "database " + database.string() + " was cut short: " + found +
-                                    "; restore a backup, or save what can be read with "
-                                    "'sqlite3 FILE .recover'"};
+Error cut_short(const fs::path& database, const std::string& found,
+                const std::string& remedy =
+                    "restore a backup, or save what can be read with "
+                    "'sqlite3 FILE .recover'") {
+  return {Error::Kind::corrupt,
+          "database " + database.string() + " was cut short: " + found + "; " + remedy};
 }
 
 /// A checkpoint that was broken off, or that a reader keeps from its end, may have written the
-/// first page and not the last ones; these are in the log then.
-bool log_has_the_rest(const LogContents& log, std::uint64_t pages_there) {
-  for (std::uint64_t page = pages_there + 1; page <= log.pages; ++page)
-    if (!log.held.contains(static_cast<std::uint32_t>(page))) return false;
+/// first page and not the last ones; these are in frames of the log behind the `copied` first ones
+/// then.
+bool log_has_the_rest(const LogContents& log, std::uint64_t pages_there, std::uint32_t copied) {
+  if (log.pages == 0) return false;
+  for (std::uint64_t page = pages_there + 1; page <= log.pages; ++page) {
+    const auto held = log.held.find(static_cast<std::uint32_t>(page));
+    if (held == log.held.end() || held->second <= copied) return false;
+  }
   return true;
 }
 
@@ -94,8 +100,8 @@ void refuse_damaged_files(const sqlite::Connection& connection, const fs::path& 
                                           log.string() + ": " + *contents.damage +
                                           "; restore a backup, or give these commits up with "
                                           "'sqlite3 FILE \"PRAGMA wal_checkpoint(TRUNCATE)\"'");
-  const bool is_whole =
-      contents.pages > 0 ? log_has_the_rest(contents, pages_there) : pages_there >= extent->pages;
+  const bool is_whole = contents.pages > 0 ? log_has_the_rest(contents, pages_there, 0)
+                                           : pages_there >= extent->pages;
   if (!is_whole)
     throw cut_short(database,
                     in_words(size, {extent->page_size,
@@ -116,7 +122,7 @@ FileGuard::FileGuard(const fs::path& database) {
   }
 }
 
-void FileGuard::check(sqlite::Connection& connection) const {
+void FileGuard::check(sqlite::Connection& connection) {
   for (const File& file : files_) {
     struct stat found {};
     if (::stat(file.path.c_str(), &found) != 0)
@@ -125,16 +131,31 @@ void FileGuard::check(sqlite::Connection& connection) const {
       displaced(files_[0].path, file.path, "replaced by another file");
   }
   const std::optional<Extent> extent = extent_of(connection);
-  const std::int64_t size = connection.raw_size();
-  if (extent) {
-    const std::uint64_t pages_there = static_cast<std::uint64_t>(size) / extent->page_size;
-    if (pages_there >= extent->pages) return;
-    const LogContents log = read_log(files_[1].path);
-    if (log.pages > 0 && log_has_the_rest(log, pages_there)) return;
+  if (!extent) {
+    connection.keep_log();
+    throw cut_short(files_[0].path, "it has lost its first page while it is in use");
+  }
+  const auto pages_there = [&] {
+    return static_cast<std::uint64_t>(connection.raw_size()) / extent->page_size;
+  };
+  const std::uint64_t before = pages_there();
+  if (before >= extent->pages || before == held_behind_) return;
+  const LogContents log = read_log(files_[1].path);
+  const bool can_be_read = log_has_the_rest(log, before, 0);
+  if (can_be_read) {
+    const std::uint32_t copied = connection.checkpoint();
+    const std::uint64_t now = pages_there();
+    if (now >= extent->pages || log_has_the_rest(log, now, copied)) {
+      held_behind_ = now;
+      return;
+    }
   }
   connection.keep_log();
-  throw cut_short(files_[0].path, extent ? in_words(size, *extent) + " while it is in use"
-                                         : "it has lost its first page while it is in use");
+  const std::string found = in_words(connection.raw_size(), *extent) + " while it is in use";
+  throw can_be_read ? cut_short(files_[0].path, found,
+                                "its log has the rest: stop process " + std::to_string(::getpid()) +
+                                    " and start it again")
+                    : cut_short(files_[0].path, found);
 }
 
 }  // namespace reident::storage

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <sys/types.h>
@@ -33,7 +35,7 @@ class FileGuard {
 
   /// Throws Error displaced where one of the files is not the one that was opened, and corrupt
   /// where the file has lost its end. Its log is then kept when the connection closes.
-  void check(sqlite::Connection& connection) const;
+  void check(sqlite::Connection& connection);
 
  private:
   struct File {
@@ -42,6 +44,8 @@ class FileGuard {
     ino_t inode = 0;
   };
   std::array<File, 3> files_;
+  /// Pages of a file that is shorter than it says while the log has the rest.
+  std::optional<std::uint64_t> held_behind_;
 };
 
 }  // namespace reident::storage

@@ -128,18 +128,18 @@ LogContents read_log(const std::filesystem::path& log) {
     return contents;
   }
   contents.page_size = frames.page_size();
-  std::vector<std::uint32_t> pending;
-  std::uint64_t at = 0;
+  std::map<std::uint32_t, std::uint32_t> pending;
+  std::uint32_t at = 0;
   while (const auto frame = frames.next()) {
     ++at;
     if (!frame->fits) {
       contents.damage = damage_behind(frames, *frame, at);
       break;
     }
-    pending.push_back(frame->page);
+    pending[frame->page] = at;
     if (frame->pages == 0) continue;
     contents.pages = frame->pages;
-    contents.held.insert(pending.begin(), pending.end());
+    for (const auto& [page, last] : pending) contents.held[page] = last;
     pending.clear();
   }
   return contents;

@@ -8,16 +8,17 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 
 namespace reident::storage {
 
 struct LogContents {
-  std::uint32_t page_size = 0;   // 0 where there is no log
-  std::uint32_t pages = 0;       // of the database after the last whole commit; 0 without one
-  std::set<std::uint32_t> held;  // numbers of the pages in whole commits
+  std::uint32_t page_size = 0;  // 0 where there is no log
+  std::uint32_t pages = 0;      // of the database after the last whole commit; 0 without one
+  /// By the number of a page, the last frame that has it in a whole commit; the first frame is 1.
+  std::map<std::uint32_t, std::uint32_t> held;
   /// What was on the disk once and is damaged now, in words; absent where the log ends as a log
   /// that was cut off by a crash may end. A commit's frames are flushed before those of the next
   /// are written (Durability::power_cut), so whatever has a later commit behind it was whole.

@@ -207,6 +207,13 @@ std::size_t Connection::read_raw(std::span<unsigned char> bytes) const {
   return count;
 }
 
+std::uint32_t Connection::checkpoint() {
+  int copied = 0;
+  const int code =
+      sqlite3_wal_checkpoint_v2(handle_.get(), "main", SQLITE_CHECKPOINT_PASSIVE, nullptr, &copied);
+  return code == SQLITE_OK ? static_cast<std::uint32_t>(std::max(copied, 0)) : 0;
+}
+
 void Connection::keep_log() {
   sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
 }

@@ -120,6 +120,9 @@ class Connection {
   void check_files() {
     if (guard_) guard_->check(*this);
   }
+  /// Copies what no reader needs from the log into the file. How many frames of the log are copied
+  /// now, which SQLite never copies again; 0 where another connection is at it.
+  std::uint32_t checkpoint();
   /// The log is left beside the file when the connection closes.
   void keep_log();
 

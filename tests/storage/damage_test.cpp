@@ -107,6 +107,35 @@ TEST(FilesInUse, ACheckpointThatAReaderKeepsFromItsEndIsNoCut) {
   sqlite3_close(writer);
 }
 
+TEST(FilesInUse, AFileThatIsCutBehindItsCheckpointIsMendedFromItsLogByTheNextStart) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.db";
+  {
+    Database database(path, Mode::read_write);
+    ASSERT_EQ(appending(database, 1), "no error");
+    sqlite3* writer = nullptr;
+    ASSERT_EQ(sqlite3_open(path.c_str(), &writer), SQLITE_OK);
+    for (const char* sql : {"PRAGMA wal_checkpoint(PASSIVE)",
+                            "CREATE TABLE filler (x); INSERT INTO filler VALUES (zeroblob(40000))"})
+      ASSERT_EQ(sqlite3_exec(writer, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sql;
+    const std::uintmax_t before = fs::file_size(path);
+    ASSERT_EQ(sqlite3_exec(writer, "PRAGMA wal_checkpoint(PASSIVE)", nullptr, nullptr, nullptr),
+              SQLITE_OK);
+    ASSERT_GT(fs::file_size(path), before) << "the log is copied";
+    sqlite3_close(writer);
+    cut_to(path, before);
+    EXPECT_THAT(appending(database, 2),
+                AllOf(StartsWith("corrupt: database " + path.string() + " was cut short"),
+                      HasSubstr("its log has the rest"),
+                      HasSubstr("stop process " + std::to_string(::getpid()))));
+  }
+  Database again(path, Mode::read_write);
+  EXPECT_EQ(appending(again, 2), "no error");
+  EXPECT_EQ(Archive(again).sample_count(), 2U);
+  EXPECT_THAT(rows(path, "SELECT length(x) FROM filler"), ::testing::ElementsAre("40000"));
+  EXPECT_THAT(rows(path, "PRAGMA integrity_check"), ::testing::ElementsAre("ok"));
+}
+
 TEST(FilesInUse, AFileThatIsCutIsNotWrittenAndItsLogIsKept) {
   for (const std::uintmax_t length :
        {std::uintmax_t{0}, std::uintmax_t{20}, std::uintmax_t{4096}, std::uintmax_t{30'000}}) {
