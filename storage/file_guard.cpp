@@ -55,7 +55,9 @@ Error cut_short(const fs::path& database, const std::string& found,
 /// then.
 bool log_has_the_rest(const LogContents& log, std::uint64_t pages_there, std::uint32_t copied) {
   if (log.pages == 0) return false;
+  const std::uint64_t of_locks = 0x4000'0000 / log.page_size + 1;  // is never written
   for (std::uint64_t page = pages_there + 1; page <= log.pages; ++page) {
+    if (page == of_locks) continue;
     const auto held = log.held.find(static_cast<std::uint32_t>(page));
     if (held == log.held.end() || held->second <= copied) return false;
   }
@@ -135,27 +137,27 @@ void FileGuard::check(sqlite::Connection& connection) {
     connection.keep_log();
     throw cut_short(files_[0].path, "it has lost its first page while it is in use");
   }
-  const auto pages_there = [&] {
-    return static_cast<std::uint64_t>(connection.raw_size()) / extent->page_size;
-  };
-  const std::uint64_t before = pages_there();
-  if (before >= extent->pages || before == held_behind_) return;
+  // Before the size: SQLite counts frames once they are in the file.
+  const std::uint32_t copied = connection.copied_frames();
+  const std::int64_t size = connection.raw_size();
+  const Short found{static_cast<std::uint64_t>(size) / extent->page_size, copied};
+  if (found.pages >= extent->pages) {
+    held_.reset();
+    return;
+  }
+  if (found == held_) return;
   const LogContents log = read_log(files_[1].path);
-  const bool can_be_read = log_has_the_rest(log, before, 0);
-  if (can_be_read) {
-    const std::uint32_t copied = connection.checkpoint();
-    const std::uint64_t now = pages_there();
-    if (now >= extent->pages || log_has_the_rest(log, now, copied)) {
-      held_behind_ = now;
-      return;
-    }
+  if (log_has_the_rest(log, found.pages, copied)) {
+    held_ = found;
+    return;
   }
   connection.keep_log();
-  const std::string found = in_words(connection.raw_size(), *extent) + " while it is in use";
-  throw can_be_read ? cut_short(files_[0].path, found,
-                                "its log has the rest: stop process " + std::to_string(::getpid()) +
-                                    " and start it again")
-                    : cut_short(files_[0].path, found);
+  const std::string lengths = in_words(size, *extent) + " while it is in use";
+  throw log_has_the_rest(log, found.pages, 0)
+      ? cut_short(files_[0].path, lengths,
+                  "its log has the rest: stop process " + std::to_string(::getpid()) +
+                      " and whatever else has the database open, and start it again")
+      : cut_short(files_[0].path, lengths);
 }
 
 }  // namespace reident::storage

@@ -34,7 +34,8 @@ class FileGuard {
   explicit FileGuard(const std::filesystem::path& database);
 
   /// Throws Error displaced where one of the files is not the one that was opened, and corrupt
-  /// where the file has lost its end. Its log is then kept when the connection closes.
+  /// where the file has lost an end that SQLite will not copy from the log any more. The log is
+  /// then kept when the connection closes.
   void check(sqlite::Connection& connection);
 
  private:
@@ -44,8 +45,13 @@ class FileGuard {
     ino_t inode = 0;
   };
   std::array<File, 3> files_;
-  /// Pages of a file that is shorter than it says while the log has the rest.
-  std::optional<std::uint64_t> held_behind_;
+  /// A file that is shorter than it says while the log has the rest.
+  struct Short {
+    std::uint64_t pages = 0;
+    std::uint32_t copied = 0;  // frames of the log
+    bool operator==(const Short&) const = default;
+  };
+  std::optional<Short> held_;
 };
 
 }  // namespace reident::storage

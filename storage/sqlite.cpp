@@ -207,11 +207,16 @@ std::size_t Connection::read_raw(std::span<unsigned char> bytes) const {
   return count;
 }
 
-std::uint32_t Connection::checkpoint() {
-  int copied = 0;
-  const int code =
-      sqlite3_wal_checkpoint_v2(handle_.get(), "main", SQLITE_CHECKPOINT_PASSIVE, nullptr, &copied);
-  return code == SQLITE_OK ? static_cast<std::uint32_t>(std::max(copied, 0)) : 0;
+std::uint32_t Connection::copied_frames() const {
+  constexpr int region_bytes = 32'768;
+  constexpr std::size_t place = 96;
+  sqlite3_file* const database = file();
+  volatile void* index = nullptr;
+  const int code = database->pMethods->xShmMap(database, 0, region_bytes, 0, &index);
+  if (code != SQLITE_OK) fail(handle_.get(), code);
+  if (!index) return 0;
+  return *reinterpret_cast<const volatile std::uint32_t*>(
+      static_cast<const volatile unsigned char*>(index) + place);
 }
 
 void Connection::keep_log() {

@@ -114,15 +114,15 @@ class Connection {
   /// away the locks that this process's connections hold on it.
   std::size_t read_raw(std::span<unsigned char> bytes) const;
   std::int64_t raw_size() const;
+  /// How many frames of the log SQLite takes for copied into the file and never copies again:
+  /// nBackfill in the index of the log (https://www.sqlite.org/walformat.html, 2.1.2). In WAL mode.
+  std::uint32_t copied_frames() const;
 
   /// From now on Transaction checks the files before it begins.
   void guard_files(const std::filesystem::path& database) { guard_.emplace(database); }
   void check_files() {
     if (guard_) guard_->check(*this);
   }
-  /// Copies what no reader needs from the log into the file. How many frames of the log are copied
-  /// now, which SQLite never copies again; 0 where another connection is at it.
-  std::uint32_t checkpoint();
   /// The log is left beside the file when the connection closes.
   void keep_log();
 

@@ -128,7 +128,7 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
                                    const storage::Version& version, storage::Time reached) {
   const auto champion = registry.champion(version.spacecraft, version.equipment);
   if (auto refusal = against_window(version, champion, equipment)) return refusal;
-  if (reached <= version.window.end) return std::nullopt;
+  if (reached < version.window.end + equipment.confirmation / 2) return std::nullopt;
   try {
     const bool vouching = needs_vouching(registry, version, equipment);
     const auto look = longer_look(archive, version, *champion, equipment, vouching, reached);

@@ -108,32 +108,42 @@ TEST(FilesInUse, ACheckpointThatAReaderKeepsFromItsEndIsNoCut) {
 }
 
 TEST(FilesInUse, AFileThatIsCutBehindItsCheckpointIsMendedFromItsLogByTheNextStart) {
-  const TemporaryFolder folder;
-  const fs::path path = folder / "a.db";
-  {
-    Database database(path, Mode::read_write);
-    ASSERT_EQ(appending(database, 1), "no error");
-    sqlite3* writer = nullptr;
-    ASSERT_EQ(sqlite3_open(path.c_str(), &writer), SQLITE_OK);
-    for (const char* sql : {"PRAGMA wal_checkpoint(PASSIVE)",
-                            "CREATE TABLE filler (x); INSERT INTO filler VALUES (zeroblob(40000))"})
-      ASSERT_EQ(sqlite3_exec(writer, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sql;
-    const std::uintmax_t before = fs::file_size(path);
-    ASSERT_EQ(sqlite3_exec(writer, "PRAGMA wal_checkpoint(PASSIVE)", nullptr, nullptr, nullptr),
-              SQLITE_OK);
-    ASSERT_GT(fs::file_size(path), before) << "the log is copied";
-    sqlite3_close(writer);
-    cut_to(path, before);
-    EXPECT_THAT(appending(database, 2),
-                AllOf(StartsWith("corrupt: database " + path.string() + " was cut short"),
-                      HasSubstr("its log has the rest"),
-                      HasSubstr("stop process " + std::to_string(::getpid()))));
+  for (const bool more_to_copy : {false, true}) {
+    SCOPED_TRACE(more_to_copy);
+    const TemporaryFolder folder;
+    const fs::path path = folder / "a.db";
+    {
+      Database database(path, Mode::read_write);
+      ASSERT_EQ(appending(database, 1), "no error");
+      sqlite3 *writer = nullptr, *reader = nullptr;
+      ASSERT_EQ(sqlite3_open(path.c_str(), &writer), SQLITE_OK);
+      ASSERT_EQ(sqlite3_open(path.c_str(), &reader), SQLITE_OK);
+      const auto run = [](sqlite3* connection, const char* sql) {
+        EXPECT_EQ(sqlite3_exec(connection, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sql;
+      };
+      run(writer,
+          "PRAGMA wal_checkpoint(PASSIVE); CREATE TABLE small (x); CREATE TABLE filler (x)");
+      run(writer, "INSERT INTO filler VALUES (zeroblob(40000))");
+      const std::uintmax_t before = fs::file_size(path);
+      run(reader, "BEGIN; SELECT count(*) FROM filler");  // keeps the log from its start
+      run(writer, "PRAGMA wal_checkpoint(PASSIVE)");
+      ASSERT_GT(fs::file_size(path), before) << "the log is copied";
+      if (more_to_copy) run(writer, "INSERT INTO small VALUES (1)");
+      sqlite3_close(reader);
+      sqlite3_close(writer);
+      cut_to(path, before);
+      EXPECT_THAT(appending(database, 2),
+                  AllOf(StartsWith("corrupt: database " + path.string() + " was cut short"),
+                        HasSubstr("its log has the rest"),
+                        HasSubstr("stop process " + std::to_string(::getpid()))));
+      EXPECT_EQ(fs::file_size(path), before) << "left as it was found";
+    }
+    Database again(path, Mode::read_write);
+    EXPECT_EQ(appending(again, 2), "no error");
+    EXPECT_EQ(Archive(again).sample_count(), 2U);
+    EXPECT_THAT(rows(path, "SELECT length(x) FROM filler"), ::testing::ElementsAre("40000"));
+    EXPECT_THAT(rows(path, "PRAGMA integrity_check"), ::testing::ElementsAre("ok"));
   }
-  Database again(path, Mode::read_write);
-  EXPECT_EQ(appending(again, 2), "no error");
-  EXPECT_EQ(Archive(again).sample_count(), 2U);
-  EXPECT_THAT(rows(path, "SELECT length(x) FROM filler"), ::testing::ElementsAre("40000"));
-  EXPECT_THAT(rows(path, "PRAGMA integrity_check"), ::testing::ElementsAre("ok"));
 }
 
 TEST(FilesInUse, AFileThatIsCutIsNotWrittenAndItsLogIsKept) {
