@@ -73,14 +73,14 @@ struct Deviation {
   double degrees_of_freedom = 0;
 };
 
-/// Of values in the order of time, about their mean or, where it rises, about their line.
-Deviation deviation(const Array& values) {
+/// Of values in the order of time.
+Deviation deviation(const Array& values, Course course) {
   const auto n = double(values.size());
   Array left = values - values.mean();
   double degrees_of_freedom = n - 1;
   const Array times = Array::LinSpaced(values.size(), -(n - 1) / 2, (n - 1) / 2);
   const double slope = (times * left).sum() / times.square().sum();
-  if (slope > 0) {
+  if (course == Course::changing && slope > 0) {
     left -= slope * times;
     --degrees_of_freedom;
   }
@@ -107,7 +107,7 @@ double least_without_a_stretch(const Sums& all, Index rows, const Over& over) {
 std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incumbent,
                                              const Matrix& candidate,
                                              const std::vector<RowRange>& stretches,
-                                             double confidence) {
+                                             double confidence, Course course) {
   eigen_assert(y.rows() == incumbent.rows() && y.cols() == incumbent.cols());
   eigen_assert(y.rows() == candidate.rows() && y.cols() == candidate.cols());
   const Index rows = y.rows();
@@ -138,7 +138,7 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
     pseudo(b) = blocks * phi - (blocks - 1) * log_ratio(all - over(begin, count));
   }
   if (!pseudo.allFinite()) return std::nullopt;
-  const Deviation chance = deviation(pseudo);
+  const Deviation chance = deviation(pseudo, course);
   const double quantile = student_quantile(confidence, chance.degrees_of_freedom);
   result.reduction = 1 - std::exp(-phi);
   const double low =

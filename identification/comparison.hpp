@@ -7,10 +7,8 @@
 // variance is that of the delete-one jackknife over blocks of consecutive rows (H. R. Kuensch,
 // Annals of Statistics 17(3), 1989), blocks as long as error_confidence.hpp takes them for the
 // correlation of what each row adds to phi. Blocks that are alike beside each other say less than
-// their number: with a correlation r > 0 of neighbours the variance grows by (1 + r) / (1 - r).
-// Where what blocks add rises with time, as it does while the equipment goes on changing, both are
-// taken about the line through it: what will be is more than the mean then, not less sure. The
-// lower bound is phi - t s, t Student's quantile of as many degrees as blocks less one, or two.
+// their number: with a correlation r > 0 of neighbours the variance grows by (1 + r) / (1 - r). The
+// lower bound is phi - t s, t Student's quantile of as many degrees as blocks less one.
 //
 // A sensor that is stuck for a while can make any model look better than another. The reduction
 // must therefore hold without any single stretch of a twentieth of the rows: where it is smaller
@@ -23,6 +21,12 @@
 #include "identification/record.hpp"
 
 namespace reident::identification {
+
+/// What is supposed of the equipment while the rows were taken. Where it goes on changing, what the
+/// blocks add to phi may rise with time: variance and correlation are then those about the line
+/// through it, with a degree less, so that the rise is neither. Any advantage that comes late in
+/// the rows profits from that, an unusual operation's too.
+enum class Course { steady, changing };
 
 struct PairedComparison {
   double reduction = 0;  // of the MRSE; 0.1 where it falls by a tenth
@@ -37,6 +41,6 @@ struct PairedComparison {
 std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incumbent,
                                              const Matrix& candidate,
                                              const std::vector<RowRange>& stretches,
-                                             double confidence);
+                                             double confidence, Course course);
 
 }  // namespace reident::identification

@@ -64,15 +64,17 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
 }
 
 identification::Matrix ChampionMonitor::run(const identification::Record& record,
-                                            const identification::Segment& segment) {
+                                            const identification::Segment& segment,
+                                            std::optional<identification::SquareChanges>& changes) {
   const identification::StateSpaceModel& model = model_.dynamics;
   if (state_tick_ != segment.first_tick) {
     const auto before = segments_within(record, {0, segment.begin});
     std::optional<identification::Vector> bridged;
-    if (!before.empty() && state_tick_ == before.back().first_tick + before.back().size())
-      bridged = state_after_hole(
-          model, record, before.back(), segment, state_,
-          {square_changes(record), square_errors_ / static_cast<double>(run_rows_)});
+    if (!before.empty() && state_tick_ == before.back().first_tick + before.back().size()) {
+      if (!changes) changes = square_changes(record);
+      bridged = state_after_hole(model, record, before.back(), segment, state_,
+                                 {*changes, square_errors_ / static_cast<double>(run_rows_)});
+    }
     state_ = bridged ? std::move(*bridged)
                      : estimate_initial_state(model, record, segment, identification::state_rows);
   }
@@ -109,9 +111,10 @@ std::optional<double> ChampionMonitor::log_error(const identification::Record& r
   const identification::RowRange rows{first_row_at(record, tick_at(block.begin, period)),
                                       first_row_at(record, tick_at(block.end, period))};
   double squares = 0;
+  std::optional<identification::SquareChanges> changes;
   for (const identification::Segment& segment : segments_within(record, rows)) {
     const identification::Matrix errors =
-        record.y.middleRows(segment.begin, segment.size()) - run(record, segment);
+        record.y.middleRows(segment.begin, segment.size()) - run(record, segment, changes);
     for (Index q = 0; q < errors.cols(); ++q) {
       const Signal& output = model_.outputs[static_cast<std::size_t>(q)];
       const double range = std::max(output.high - output.low, least_error);

@@ -45,9 +45,11 @@ class ChampionMonitor {
   /// Runs the champion over a block of a record. Logarithm of its error there; absent where rows
   /// cover less than half of it.
   std::optional<double> log_error(const identification::Record& record, storage::TimeRange block);
-  /// Outputs over a segment, from where the run is or, after a gap, anew.
+  /// Outputs over a segment, from where the run is or, after a gap, anew. `changes` is the
+  /// record's, taken at the first gap.
   identification::Matrix run(const identification::Record& record,
-                             const identification::Segment& segment);
+                             const identification::Segment& segment,
+                             std::optional<identification::SquareChanges>& changes);
 
   const std::string spacecraft_;
   const std::string equipment_;

@@ -132,7 +132,7 @@ Refusal against_faults(const Evidence& e) {
   if (!is_in_doubt(e.fault_share)) return std::nullopt;
   return GateDecision{
       Outcome::telemetry_in_doubt,
-      fmt::format("{:.2f} faults of sensors were found in 100 samples: others that go unnoticed "
+      fmt::format("{:.2f} faults of sensors were found in 100 ticks: others that go unnoticed "
                   "make any comparison doubtful, and champion {} stays.",
                   100 * e.fault_share, e.champion->version)};
 }
@@ -267,8 +267,8 @@ Refusal against_offset(const Evidence& e, const EquipmentConfig& limits) {
       Outcome::on_probation,
       praise(e) +
           fmt::format(" But for a constant offset the champion has {:.3f} %, which is not "
-                      "surely worse.",
-                      without.rival_mrse_percent) +
+                      "surely worse by {:g} %.",
+                      without.rival_mrse_percent, sure_elsewhere * limits.margin_percent) +
           wait_of(limits)};
 }
 

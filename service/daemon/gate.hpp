@@ -21,7 +21,7 @@ enum class Outcome {
   waiting,            // good enough; the policy leaves the decision to an operator
   unvouched,          // better by a constant offset, which may be a sensor's; waits for an operator
   held,               // good enough; an operator holds the equipment's version
-  on_probation,       // better, not surely or by a constant; telemetry after the window decides
+  on_probation,       // better, not surely, or by a constant; telemetry after the window decides
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   telemetry_damaged,  // samples that the attempt needs cannot be decoded any more
   low_coverage,

@@ -53,7 +53,8 @@ class PlausibilityChecks {
   std::vector<BoundRelation> relations_;
 };
 
-/// Faults that were found, each once, over the ticks that were looked at.
+/// Faults that were found, each once, over the ticks of the stretch, whether they have telemetry or
+/// not.
 double fault_share(const Plausibility& plausibility, std::int64_t ticks);
 
 /// For an attempt's evidence. Of more than 20 stretches the longest are told.

@@ -19,6 +19,7 @@
 namespace reident {
 namespace {
 
+using identification::Course;
 using identification::RowRange;
 using storage::DecisionKind;
 using storage::NewDecision;
@@ -31,7 +32,8 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
   nlohmann::ordered_json evidence = {{"until_ns", look.until},
                                      {"champion", look.champion},
                                      {"fault_share", look.fault_share},
-                                     {"comparison", to_json(look.comparison)}};
+                                     {"comparison", to_json(look.comparison)},
+                                     {"after_window", to_json(look.after)}};
   if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
   const Evidence::Comparison& comparison = look.comparison;
   return {kind, "gate",
@@ -90,14 +92,20 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive,
   const auto theirs =
       run_beside(archive, equipment_model_from_json(champion.model_json), request, record, range);
   if (!theirs) return std::nullopt;
-  const std::int64_t first_tick = -floor_divide(-model.validated_on.begin, request.period);
-  PairedRuns runs = paired(record, {first_row_at(record, first_tick), record.rows()},
-                           free_run(model.dynamics, record, record.all()), *theirs);
+  const identification::Matrix outputs = free_run(model.dynamics, record, record.all());
+  const auto since = [&](storage::Time begin) {
+    const std::int64_t first_tick = -floor_divide(-begin, request.period);
+    return paired(record, {first_row_at(record, first_tick), record.rows()}, outputs, *theirs);
+  };
+  PairedRuns runs = since(model.validated_on.begin);
   if (runs.rows.empty()) return std::nullopt;
-  look.comparison = compare(runs, equipment.confidence_percent);
+  look.comparison = compare(runs, equipment.confidence_percent, Course::changing);
+  const PairedRuns after = since(version.window.end);
+  if (!after.rows.empty())
+    look.after = compare(after, equipment.confidence_percent, Course::changing);
   if (needs_vouching) {
     runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
-    look.without_offset = compare(runs, equipment.confidence_percent);
+    look.without_offset = compare(runs, equipment.confidence_percent, Course::changing);
   }
   return look;
 }
@@ -132,7 +140,9 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
   try {
     const bool vouching = needs_vouching(registry, version, equipment);
     const auto look = longer_look(archive, version, *champion, equipment, vouching, reached);
-    return look ? judge_probation(*look, equipment) : std::nullopt;
+    if (look) return judge_probation(*look, equipment);
+    if (reached < version.window.end + equipment.confirmation) return std::nullopt;
+    return rejection("no telemetry to judge it by is left.");
   } catch (const std::invalid_argument&) {
     return rejection("its model or the champion's is damaged in the registry.");
   } catch (const storage::Error& error) {
@@ -146,23 +156,32 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
 std::optional<NewDecision> judge_probation(const LongerLook& look, const EquipmentConfig& limits) {
   const Reduction reduction = reduction_of(look);
   const double needed = sure_elsewhere * limits.margin_percent;
-  const bool in_doubt = is_in_doubt(look.fault_share);
-  if (reduction.percent > limits.margin_percent && reduction.sure_percent > needed &&
-      look.comparison.mrse_percent <= limits.max_mrse_percent && !in_doubt)
+  const auto against = [&]() -> std::optional<std::string> {
+    if (is_in_doubt(look.fault_share))
+      return fmt::format(
+          "with {:.2f} faults of sensors found in 100 ticks any comparison is doubtful.",
+          100 * look.fault_share);
+    if (look.comparison.mrse_percent > limits.max_mrse_percent)
+      return fmt::format("that is above the limit of {:g} %.", limits.max_mrse_percent);
+    if (look.after.rows == 0) return "of the telemetry after its window nothing is left.";
+    if (!(look.after.reduction_percent > 0))
+      return fmt::format(
+          "on the {} samples after its window alone it has {:.3f} % and the champion "
+          "{:.3f} %.",
+          look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent);
+    if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
+      return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
+                         needed);
+    return std::nullopt;
+  }();
+  if (!against)
     return decision(
         DecisionKind::approve, look,
         fmt::format("Confirmed: the reduction is {:.2f} %, and with a confidence of {:g} % at "
                     "least {:.2f} %.",
                     reduction.percent, limits.confidence_percent, reduction.sure_percent));
   if (!look.is_last) return std::nullopt;
-  return decision(
-      DecisionKind::reject, look,
-      in_doubt
-          ? fmt::format("Not confirmed: with {:.2f} faults of sensors found in 100 samples any "
-                        "comparison is doubtful.",
-                        100 * look.fault_share)
-          : fmt::format("Not confirmed: that is not {:g} % less, and surely {:g} %.",
-                        limits.margin_percent, needed));
+  return decision(DecisionKind::reject, look, "Not confirmed: " + *against);
 }
 
 bool record(storage::Registry& registry, const storage::Standing& standing,

@@ -2,9 +2,9 @@
 // part alone not surely, or mostly by a constant. Telemetry that comes after their windows decides.
 //
 // The free runs of the version and of the champion, begun with the window, go on over that
-// telemetry, and are compared over the validation part and it together. A change of the equipment
-// that is too new to fill the validation part is so followed sooner than by the next window, and a
-// stretch of unusual operation is told from one.
+// telemetry, and are compared over the validation part and it together, and over it alone. A change
+// of the equipment that is too new to fill the validation part is so followed sooner than by the
+// next window, and a stretch of unusual operation is told from one.
 #pragma once
 
 #include <functional>
@@ -25,6 +25,9 @@ struct LongerLook {
   double fault_share = 0;   // of the window and what came after it (plausibility.hpp)
   std::int64_t champion = 0;
   Evidence::Comparison comparison;  // with the champion
+  /// The same on what came after the window alone, by which nothing was chosen; without rows where
+  /// nothing is left of it.
+  Evidence::Comparison after;
   /// The same with the champion's mean error taken from it, where a sensor that no relation binds
   /// could show that error.
   std::optional<Evidence::Comparison> without_offset;
@@ -46,9 +49,10 @@ bool record(storage::Registry& registry, const storage::Standing& standing,
 using RecordProbation = std::function<bool(const storage::Standing&, const ProbationDecision&)>;
 
 /// Looks at the equipment's versions on probation with telemetry until `reached`, that of the
-/// newest window first. A version whose window is older than the champion's, or less than
-/// `min_interval` newer, is rejected. Nothing is decided while an operator holds the equipment, nor
-/// from telemetry that is damaged.
+/// newest window first, once there is half of `confirmation` of it. A version whose window is older
+/// than the champion's, or less than `min_interval` newer, is rejected, and one of which no
+/// telemetry is left. Nothing is decided while an operator holds the equipment, nor from telemetry
+/// that is damaged.
 void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
                        const std::string& spacecraft, const EquipmentConfig& equipment,
                        storage::Time reached, const RecordProbation& record);

@@ -14,9 +14,9 @@
 namespace reident {
 namespace {
 
+using identification::Course;
 using identification::Index;
 using identification::Matrix;
-using identification::Record;
 using identification::RowRange;
 using identification::Segment;
 
@@ -39,7 +39,7 @@ std::optional<Evidence::Comparison> against_run(const PreparedWindow& prepared, 
     *offset = (runs.y - runs.rival).colwise().mean().transpose();
     runs.rival.rowwise() += offset->transpose();
   }
-  return compare(runs, confidence_percent);
+  return compare(runs, confidence_percent, Course::steady);
 }
 
 bool is_outside(const Signal& signal, double value) {
@@ -160,7 +160,7 @@ Evidence::Comparison against_mean(const PreparedWindow& prepared, double confide
   runs.rival = runs.y.colwise().mean().replicate(runs.y.rows(), 1);
   for (const Segment& segment : segments_from(record, rows))
     runs.stretches.push_back({segment.begin, segment.end});
-  return compare(runs, confidence_percent);
+  return compare(runs, confidence_percent, Course::steady);
 }
 
 std::optional<Evidence::Comparison> against_simulator(const storage::Archive& archive,

@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/comparison.hpp"
 #include "identification/simulate.hpp"
 #include "service/daemon/window_data.hpp"
 
@@ -52,15 +51,16 @@ PairedRuns paired(const Record& record, RowRange rows, const Matrix& candidate, 
   return runs;
 }
 
-Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent) {
+Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
+                             identification::Course course) {
   Evidence::Comparison result;
   result.rows = runs.y.rows();
   result.mrse_percent = identification::score(runs.y, runs.candidate).mrse();
   result.rival_mrse_percent = identification::score(runs.y, runs.rival).mrse();
   result.reduction_percent = 100 * (1 - result.mrse_percent / result.rival_mrse_percent);
   if (std::isfinite(result.mrse_percent) && std::isfinite(result.rival_mrse_percent))
-    if (const auto sure = identification::compare_runs(runs.y, runs.rival, runs.candidate,
-                                                       runs.stretches, confidence_percent / 100))
+    if (const auto sure = identification::compare_runs(
+            runs.y, runs.rival, runs.candidate, runs.stretches, confidence_percent / 100, course))
       result.sure_percent = 100 * sure->low;
   return result;
 }

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "identification/comparison.hpp"
 #include "identification/record.hpp"
 #include "service/daemon/gate.hpp"
 #include "service/daemon/window_data.hpp"
@@ -38,7 +39,8 @@ struct PairedRuns {
 PairedRuns paired(const identification::Record& record, identification::RowRange rows,
                   const identification::Matrix& candidate, const Run& rival);
 
-Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent);
+Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
+                             identification::Course course);
 
 nlohmann::ordered_json to_json(const Evidence::Comparison& comparison);
 

@@ -32,7 +32,11 @@ std::vector<identification::ChannelSamples> views(const std::vector<ReadChannel>
 }  // namespace
 
 WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
-  return {spacecraft,        equipment.inputs,        equipment.derived,
+  std::vector<DerivedInput> derived;  // in the order of the inputs, as a model has them
+  for (const std::string& input : equipment.inputs)
+    for (const DerivedInput& one : equipment.derived)
+      if (one.name == input) derived.push_back(one);
+  return {spacecraft,        equipment.inputs,        std::move(derived),
           equipment.outputs, equipment.sample_period, equipment.hold};
 }
 

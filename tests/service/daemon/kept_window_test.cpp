@@ -89,5 +89,14 @@ TEST_F(KeptWindows, NameAParameterOfAnExpressionThatNobodyDescribed) {
   EXPECT_EQ(std::get<UnknownParameter>(result).name, "w");
 }
 
+TEST_F(KeptWindows, AskForDerivedInputsInTheOrderOfTheInputs) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs = {"first", "second"};
+  equipment.derived = {{"second", "2 * u", "V"}, {"first", "u + 1", "V"}};
+  const WindowRequest request = request_of("SAT", equipment);
+  EXPECT_EQ(request.derived.at(0).name, "first") << "as models have them";
+  EXPECT_EQ(request.derived.at(1).name, "second");
+}
+
 }  // namespace
 }  // namespace reident::test

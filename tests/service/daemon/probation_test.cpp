@@ -21,6 +21,7 @@ LongerLook sure_of(double percent) {
                      .rival_mrse_percent = 8,
                      .reduction_percent = 37.5,
                      .sure_percent = percent};
+  look.after = look.comparison;
   return look;
 }
 
@@ -57,10 +58,27 @@ TEST(JudgeProbation, AsksForMoreThanAnOffsetWhereNoSensorVouchesForIt) {
   EXPECT_FALSE(judge_probation(look, {}));
 }
 
+TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
+  // An unusual stretch in the validation part still outweighs what came after it.
+  LongerLook look = sure_of(40);
+  look.after = {.rows = 100,
+                .mrse_percent = 6,
+                .rival_mrse_percent = 5,
+                .reduction_percent = -20,
+                .sure_percent = {}};
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.is_last = true;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("on the 100 samples after its window alone it has 6.000 %"));
+}
+
 TEST(JudgeProbation, ApprovesNothingAboveTheLimitOfTheError) {
   LongerLook look = sure_of(40);
   look.comparison.mrse_percent = 20.1;
   EXPECT_FALSE(judge_probation(look, {}));
+  look.is_last = true;
+  EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("above the limit of 20 %"));
 }
 
 TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
@@ -72,7 +90,7 @@ TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
   look.is_last = true;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("0.26 faults of sensors found in 100 samples"));
+  EXPECT_THAT(found->reason, HasSubstr("0.26 faults of sensors found in 100 ticks"));
 }
 
 /// Champion 1 is of a plant of gain 1; version 2 is on probation.
@@ -127,16 +145,17 @@ class Probation : public DaemonTest {
 
 TEST_F(Probation, EndsWithAnApprovalOnceMoreTelemetryBearsTheVersionOut) {
   change_plant(2);
-  EXPECT_TRUE(look(window_end).empty());
+  EXPECT_TRUE(look(window_end + 2 * minute).empty()) << "less than half of the confirmation";
   EXPECT_EQ(status(2), "waiting");
-  const auto found = look(window_end + 2 * minute);
+  const auto found = look(window_end + 3 * minute);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(status(2), "approved");
   EXPECT_EQ(registry.version("SAT", "PLANT", 2)->parent, 1);
   const auto evidence = nlohmann::json::parse(found[0].decision.evidence_json);
-  EXPECT_EQ(evidence["until_ns"], window_end + 2 * minute);
-  EXPECT_EQ(evidence["comparison"]["rows"], 180 + 120) << "the validation part and what came after";
-  EXPECT_TRUE(look(window_end + 3 * minute).empty());
+  EXPECT_EQ(evidence["until_ns"], window_end + 3 * minute);
+  EXPECT_EQ(evidence["comparison"]["rows"], 180 + 180) << "the validation part and what came after";
+  EXPECT_EQ(evidence["after_window"]["rows"], 180);
+  EXPECT_TRUE(look(window_end + 4 * minute).empty());
 }
 
 TEST_F(Probation, EndsWithARejectionWhereTheChampionIsAsGood) {
@@ -165,7 +184,7 @@ TEST_F(Probation, LooksNoFurtherThanTheConfirmation) {
 TEST_F(Probation, OfANewerWindowEndsThatOfTheOlder) {
   change_plant(2);
   make_version(window_end + minute, "on_probation", DecisionKind::wait);
-  make_version(window_end + 3 * minute, "on_probation", DecisionKind::wait);
+  make_version(window_end + 2 * minute, "on_probation", DecisionKind::wait);
   EXPECT_EQ(look(window_end + 5 * minute).size(), 3U);
   EXPECT_EQ(status(4), "approved");
   EXPECT_EQ(status(3), "rejected");
