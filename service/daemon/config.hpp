@@ -56,7 +56,7 @@ struct EquipmentConfig {
                                          // output's range
   Duration min_interval = 0;             // between the windows of two versions; a quarter of slide
   Duration confirmation = 0;  // telemetry after its window that may yet confirm a candidate which
-                              // is better, not surely, or by a constant; default slide, 0: none
+                              // is better while nothing hurries; default slide, 0: none
   std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where its
                                                 // telemetry does not tell it
   ApprovalPolicy approval = ApprovalPolicy::automatic;

@@ -54,6 +54,10 @@ constexpr std::array names{
     std::pair{Outcome::too_soon, std::string_view("too_soon")},
 };
 
+/// A champion that errs so many times what it did where it was validated has been left behind by a
+/// change of the equipment. What it errs from one stretch of operation to another differs by less.
+constexpr double changed_factor = 1.5;
+
 using Refusal = std::optional<GateDecision>;
 
 Refusal against_model(const Evidence& e) {
@@ -156,17 +160,27 @@ Refusal against_comparison(const Evidence::Champion& champion, const EquipmentCo
   return std::nullopt;
 }
 
+/// Whether all that the candidate surely gains is a constant. A stretch in which the champion is
+/// off by one may be one of an unusual operation.
+bool gains_a_constant(const Evidence::Champion& champion, const EquipmentConfig& limits) {
+  return champion.without_offset &&
+         !(champion.without_offset->sure_percent > sure_elsewhere * limits.margin_percent);
+}
+
 /// Where the equipment has changed from one model to another, the new one errs on the past about as
-/// much as the old one errs now.
-bool explains(const Evidence::Champion& champion, const Evidence::Champion::Elsewhere& elsewhere) {
-  return has_run(champion) && elsewhere.mrse_percent <= champion.comparison->rival_mrse_percent;
+/// much as the old one errs now. So it does where the operation has changed for a while.
+bool explains(const Evidence::Champion& champion, const Evidence::Champion::Elsewhere& elsewhere,
+              const EquipmentConfig& limits) {
+  return has_run(champion) && !gains_a_constant(champion, limits) &&
+         elsewhere.mrse_percent <= champion.comparison->rival_mrse_percent;
 }
 
 Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentConfig& limits) {
   if (!champion.elsewhere) return std::nullopt;
   const Evidence::Champion::Elsewhere& elsewhere = *champion.elsewhere;
   if (elsewhere.disagreement_percent <= limits.max_disagreement_percent ||
-      elsewhere.mrse_percent < elsewhere.champion_mrse_percent || explains(champion, elsewhere))
+      elsewhere.mrse_percent < elsewhere.champion_mrse_percent ||
+      explains(champion, elsewhere, limits))
     return std::nullopt;
   return GateDecision{
       Outcome::disagrees_with_champion,
@@ -257,19 +271,28 @@ std::string praise(const Evidence& e) {
                      e.champion->comparison->rival_mrse_percent);
 }
 
-/// A stretch in which the champion is off by a constant may be one of an unusual operation.
-Refusal against_offset(const Evidence& e, const EquipmentConfig& limits) {
-  if (!has_run(e.champion) || !e.champion->without_offset || !may_wait(e, limits))
-    return std::nullopt;
-  const Evidence::Comparison& without = *e.champion->without_offset;
-  if (without.sure_percent > sure_elsewhere * limits.margin_percent) return std::nullopt;
-  return GateDecision{
-      Outcome::on_probation,
-      praise(e) +
-          fmt::format(" But for a constant offset the champion has {:.3f} %, which is not "
-                      "surely worse by {:g} %.",
-                      without.rival_mrse_percent, sure_elsewhere * limits.margin_percent) +
-          wait_of(limits)};
+/// What telemetry after the window had better tell first.
+Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
+  if (!has_run(e.champion) || !may_wait(e, limits)) return std::nullopt;
+  const Evidence::Champion& champion = *e.champion;
+  if (gains_a_constant(champion, limits))
+    return GateDecision{
+        Outcome::on_probation,
+        praise(e) +
+            fmt::format(" But for a constant offset the champion has {:.3f} %, which is not "
+                        "surely worse by {:g} %.",
+                        champion.without_offset->rival_mrse_percent,
+                        sure_elsewhere * limits.margin_percent) +
+            wait_of(limits)};
+  if (champion.comparison->rival_mrse_percent < changed_factor * champion.validated_mrse_percent)
+    return GateDecision{
+        Outcome::on_probation,
+        praise(e) +
+            fmt::format(" It had {:.3f} % where it was validated, so that the equipment has hardly "
+                        "changed.",
+                        champion.validated_mrse_percent) +
+            wait_of(limits)};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -300,7 +323,7 @@ GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {
                             "sensor of {} would show the same; no relation binds it. Waits for an "
                             "operator's approval.",
                             fmt::join(evidence.champion->unbound, ", "))};
-  if (auto offset = against_offset(evidence, limits)) return *offset;
+  if (auto haste = against_haste(evidence, limits)) return *haste;
   if (limits.approval == ApprovalPolicy::by_hand)
     return {Outcome::waiting, praise(evidence) + " Waits for an operator's approval."};
   return {Outcome::approved, praise(evidence)};

@@ -21,7 +21,7 @@ enum class Outcome {
   waiting,            // good enough; the policy leaves the decision to an operator
   unvouched,          // better by a constant offset, which may be a sensor's; waits for an operator
   held,               // good enough; an operator holds the equipment's version
-  on_probation,       // better, not surely, or by a constant; telemetry after the window decides
+  on_probation,       // better, and nothing hurries; telemetry after the window decides
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   telemetry_damaged,  // samples that the attempt needs cannot be decoded any more
   low_coverage,
@@ -87,6 +87,7 @@ struct Evidence {
     std::optional<Comparison> without_offset{};
     /// Parameters whose sensors could show that mean error, and which no relation binds.
     std::vector<std::string> unbound{};
+    double validated_mrse_percent = 0;  // where it was validated; 0: not known
   };
   std::optional<Champion> champion;
 

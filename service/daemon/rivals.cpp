@@ -190,6 +190,7 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
     return evidence;
   }
   if (!same_outputs(champion, candidate)) return std::nullopt;
+  evidence.validated_mrse_percent = champion.validation.mrse();
   if (const auto run = run_beside(archive, champion, prepared.loaded, prepared.data.record,
                                   prepared.attempt.window)) {
     evidence.comparison = against_run(prepared, *run, confidence_percent);

@@ -222,6 +222,52 @@ const Case of_an_offset[] = {
      Outcome::unvouched},
 };
 
+const Case without_a_change[] = {
+    {"ChampionErrsAsWhereItWasValidated",
+     [](auto& e, auto& c) {
+       e.champion->validated_mrse_percent = 5.34;  // two thirds of its error now, and a little more
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"ChampionErrsHalfAsMuchAgain",
+     [](auto& e, auto& c) {
+       e.champion->validated_mrse_percent = 5.33;
+       c.confirmation = 100;
+     },
+     Outcome::approved},
+    {"ChampionErrsAsWhereItWasValidatedWithoutProbation",
+     [](auto& e, auto&) { e.champion->validated_mrse_percent = 8; }, Outcome::approved},
+};
+
+const Case where_the_champion_was_validated[] = {
+    {"DisagreesElsewhere",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 10.1, 8.1, 5};
+     },
+     Outcome::disagrees_with_champion},
+    {"DisagreesElsewhereAsAChangeExplains",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 10.1, 8, 5};  // the champion's error now
+     },
+     Outcome::approved},
+    {"DisagreesElsewhereAndGainsAConstantAlone",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 10.1, 8, 5};
+       e.champion->without_offset = Evidence::Comparison{500, 5, 5.2, 3.8, 1.66};
+     },
+     Outcome::disagrees_with_champion},
+    {"AgreesElsewhere",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 10, 6, 5};
+     },
+     Outcome::approved},
+    {"DisagreesElsewhereAndIsRight",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 50, 4.9, 5};
+     },
+     Outcome::approved},
+};
+
 const Case beside_its_rivals[] = {
     {"BetterByTheMarginAndNotSurely",
      [](auto& e, auto&) { e.champion->comparison->sure_percent = 5; },
@@ -246,26 +292,6 @@ const Case beside_its_rivals[] = {
      },
      Outcome::approved},
     {"ChampionCannotRun", [](auto& e, auto&) { e.champion->comparison.reset(); },
-     Outcome::approved},
-    {"DisagreesElsewhere",
-     [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 10.1, 8.1, 5};
-     },
-     Outcome::disagrees_with_champion},
-    {"DisagreesElsewhereAsAChangeExplains",
-     [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 10.1, 8, 5};  // the champion's error now
-     },
-     Outcome::approved},
-    {"AgreesElsewhere",
-     [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 10, 6, 5};
-     },
-     Outcome::approved},
-    {"DisagreesElsewhereAndIsRight",
-     [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 50, 4.9, 5};
-     },
      Outcome::approved},
     {"TooSoonAfterTheChampion", [](auto&, auto& c) { c.min_interval = 101; }, Outcome::too_soon},
     {"LateEnoughAfterTheChampion", [](auto&, auto& c) { c.min_interval = 100; }, Outcome::approved},
@@ -323,6 +349,9 @@ const auto name_of = [](const auto& one) { return one.param.name; };
 INSTANTIATE_TEST_SUITE_P(OfTheCandidate, Gate, testing::ValuesIn(of_the_candidate), name_of);
 INSTANTIATE_TEST_SUITE_P(NotSurelyBetter, Gate, testing::ValuesIn(not_surely_better), name_of);
 INSTANTIATE_TEST_SUITE_P(OfAnOffset, Gate, testing::ValuesIn(of_an_offset), name_of);
+INSTANTIATE_TEST_SUITE_P(WithoutAChange, Gate, testing::ValuesIn(without_a_change), name_of);
+INSTANTIATE_TEST_SUITE_P(WhereTheChampionWasValidated, Gate,
+                         testing::ValuesIn(where_the_champion_was_validated), name_of);
 INSTANTIATE_TEST_SUITE_P(BesideItsRivals, Gate, testing::ValuesIn(beside_its_rivals), name_of);
 
 TEST(GateReason, NamesTheFiguresThatDecided) {
