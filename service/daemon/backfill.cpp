@@ -120,7 +120,7 @@ class Backfill {
   }
 
   bool record(const RefreshRequest& request, PreparedWindow&& prepared) {
-    look_at_probation(archive_, registry_, request.spacecraft, request.equipment,
+    look_at_probation(archive_, registry_, request.spacecraft, request.equipment, INT64_MIN,
                       request.window.end,
                       [this](const storage::Standing& standing, const ProbationDecision& found) {
                         return record(standing, found);

@@ -146,17 +146,20 @@ void Daemon::identify_windows() {
   }
 }
 
+AttemptContext Daemon::attempt_context(const storage::Registry& registry) {
+  return {config_.digest,
+          [this](const AttemptContext::Task& task) { writer_.post(task).get(); },
+          clock_,
+          [this](std::size_t count, const std::function<void(std::size_t)>& task) {
+            search_.for_each(count, task);
+          },
+          [this] { return stopping_.load(); },
+          [this, &registry](const ProbationDecision& decided) { publish(decided, registry); }};
+}
+
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
                       const storage::Registry& registry) {
-  const AttemptContext context{
-      config_.digest,
-      [this](const AttemptContext::Task& task) { writer_.post(task).get(); },
-      clock_,
-      [this](std::size_t count, const std::function<void(std::size_t)>& task) {
-        search_.for_each(count, task);
-      },
-      [this] { return stopping_.load(); },
-      [this, &registry](const ProbationDecision& decided) { publish(decided, registry); }};
+  const AttemptContext context = attempt_context(registry);
   try {
     const auto attempt =
         attempt_window(job, archive, registry, kept_[job.window.equipment], context);
@@ -232,10 +235,17 @@ void Daemon::watch_champions() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Archive archive(database);
   const storage::Registry registry(database);
-  ChampionWatch watch(config_);
+  ChampionWatch champions(config_);
+  ProbationWatch probations(config_);
+  const AttemptContext context = attempt_context(registry);
   std::uint64_t seen = 0;
-  while (feed_.wait_for_telemetry(seen))
-    watch.look(archive, registry, feed_, [this] { return stopping_.load(); });
+  try {
+    while (feed_.wait_for_telemetry(seen)) {
+      champions.look(archive, registry, feed_, context.stop);
+      probations.look(archive, registry, feed_, context);
+    }
+  } catch (const std::future_error&) {  // the writer has ended
+  }
 }
 
 void Daemon::heartbeat() {

@@ -7,7 +7,8 @@
 //                                        '- writer <-----' then publisher
 //   command desk thread -> writer thread, then publisher, then the reply
 //   history desk thread (a read-only database) -> pages of rows to whoever asks
-//   monitor thread (a read-only database) -> window feed, when a champion drifts
+//   monitor thread (a read-only database) -> window feed, when a champion drifts; writer thread and
+//                                            publisher, when a version's probation ends
 #pragma once
 
 #include <atomic>
@@ -23,6 +24,7 @@
 #include "service/daemon/config.hpp"
 #include "service/daemon/history_desk.hpp"
 #include "service/daemon/ingest.hpp"
+#include "service/daemon/probation_watch.hpp"
 #include "service/daemon/publisher.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"
@@ -53,6 +55,8 @@ class Daemon {
  private:
   std::thread spawn(const char* name, std::function<void()> body);
   void identify_windows();
+  /// For the thread whose database `registry` reads.
+  AttemptContext attempt_context(const storage::Registry& registry);
   /// False when the service stops before the window is decided.
   bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
                 const storage::Registry& registry);

@@ -54,9 +54,7 @@ constexpr std::array names{
     std::pair{Outcome::too_soon, std::string_view("too_soon")},
 };
 
-/// A champion that errs so many times what it did where it was validated has been left behind by a
-/// change of the equipment. What it errs from one stretch of operation to another differs by less.
-constexpr double changed_factor = 1.5;
+constexpr double left_behind_factor = 1.5;
 
 using Refusal = std::optional<GateDecision>;
 
@@ -284,7 +282,7 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
                         champion.without_offset->rival_mrse_percent,
                         sure_elsewhere * limits.margin_percent) +
             wait_of(limits)};
-  if (champion.comparison->rival_mrse_percent < changed_factor * champion.validated_mrse_percent)
+  if (!is_left_behind(champion.comparison->rival_mrse_percent, champion.validated_mrse_percent))
     return GateDecision{
         Outcome::on_probation,
         praise(e) +
@@ -303,6 +301,10 @@ std::string_view name(Outcome outcome) {
 
 bool is_in_doubt(double fault_share) {
   return fault_share > fault_limit;
+}
+
+bool is_left_behind(double mrse_percent, double validated_mrse_percent) {
+  return !(mrse_percent < left_behind_factor * validated_mrse_percent);
 }
 
 GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {

@@ -111,6 +111,11 @@ constexpr double sure_elsewhere = 1.0 / 3;
 /// which are too small to be found are enough to spoil a comparison with the champion.
 bool is_in_doubt(double fault_share);
 
+/// Whether the champion errs so much more than where it was validated that a change of the
+/// equipment has left it behind: from one stretch of operation to another the error differs by
+/// less. Also where the latter, as 0, is not known.
+bool is_left_behind(double mrse_percent, double validated_mrse_percent);
+
 GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits);
 
 }  // namespace reident

@@ -1,6 +1,7 @@
 #include "service/daemon/probation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -24,16 +25,41 @@ using identification::RowRange;
 using storage::DecisionKind;
 using storage::NewDecision;
 
+/// Looks come when so many quarters of `confirmation` have passed since the window's end, the
+/// newest one first. None rests on less than a half, and at the last one no telemetry is waited
+/// for.
+constexpr std::array look_quarters = {8, 4, 3, 2};
+
+struct LookTime {
+  storage::Time until = 0;  // how far the telemetry is looked at
+  bool is_overdue = false;
+};
+
+/// The newest look that telemetry until `reached` allows, where none until `since` did.
+std::optional<LookTime> look_time(const storage::Version& version, const EquipmentConfig& equipment,
+                                  storage::Time since, storage::Time reached) {
+  const storage::Time confirmed = version.window.end + equipment.confirmation;
+  for (const int quarters : look_quarters) {
+    const storage::Time time = version.window.end + equipment.confirmation * quarters / 4;
+    if (time <= since) return std::nullopt;
+    if (time <= reached)
+      return LookTime{std::min(time, confirmed), quarters == look_quarters.front()};
+  }
+  return std::nullopt;
+}
+
 NewDecision rejection(std::string reason) {
   return {DecisionKind::reject, "gate", "Not confirmed: " + std::move(reason), {}};
 }
 
 NewDecision decision(DecisionKind kind, const LongerLook& look, const std::string& reason) {
-  nlohmann::ordered_json evidence = {{"until_ns", look.until},
-                                     {"champion", look.champion},
-                                     {"fault_share", look.fault_share},
-                                     {"comparison", to_json(look.comparison)},
-                                     {"after_window", to_json(look.after)}};
+  nlohmann::ordered_json evidence = {
+      {"until_ns", look.until},
+      {"champion", look.champion},
+      {"champion_validated_mrse_percent", look.champion_validated_mrse_percent},
+      {"fault_share", look.fault_share},
+      {"comparison", to_json(look.comparison)},
+      {"after_window", to_json(look.after)}};
   if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
   const Evidence::Comparison& comparison = look.comparison;
   return {kind, "gate",
@@ -76,10 +102,9 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive,
                                       const storage::Version& version,
                                       const storage::Version& champion,
                                       const EquipmentConfig& equipment, bool needs_vouching,
-                                      storage::Time reached) {
+                                      const LookTime& time) {
   LongerLook look;
-  look.is_last = reached >= version.window.end + equipment.confirmation;
-  look.until = std::min(reached, version.window.end + equipment.confirmation);
+  look.until = time.until;
   look.champion = champion.number;
   const EquipmentModel model = equipment_model_from_json(version.model_json);
   const storage::TimeRange range{version.window.begin, look.until};
@@ -89,8 +114,9 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive,
   if (!data) return std::nullopt;
   look.fault_share = fault_share(data->plausibility, (range.end - range.begin) / request.period);
   const identification::Record& record = data->record;
-  const auto theirs =
-      run_beside(archive, equipment_model_from_json(champion.model_json), request, record, range);
+  const EquipmentModel incumbent = equipment_model_from_json(champion.model_json);
+  look.champion_validated_mrse_percent = incumbent.validation.mrse();
+  const auto theirs = run_beside(archive, incumbent, request, record, range);
   if (!theirs) return std::nullopt;
   const identification::Matrix outputs = free_run(model.dynamics, record, record.all());
   const auto since = [&](storage::Time begin) {
@@ -103,6 +129,10 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive,
   const PairedRuns after = since(version.window.end);
   if (!after.rows.empty())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
+  const auto ticks = static_cast<double>(equipment.confirmation / request.period);
+  look.is_last =
+      time.is_overdue || (look.until == version.window.end + equipment.confirmation &&
+                          static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks);
   if (needs_vouching) {
     runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
     look.without_offset = compare(runs, equipment.confidence_percent, Course::changing);
@@ -133,15 +163,17 @@ std::optional<NewDecision> against_window(const storage::Version& version,
 std::optional<NewDecision> look_at(const storage::Archive& archive,
                                    const storage::Registry& registry,
                                    const EquipmentConfig& equipment,
-                                   const storage::Version& version, storage::Time reached) {
+                                   const storage::Version& version, storage::Time since,
+                                   storage::Time reached) {
   const auto champion = registry.champion(version.spacecraft, version.equipment);
   if (auto refusal = against_window(version, champion, equipment)) return refusal;
-  if (reached < version.window.end + equipment.confirmation / 2) return std::nullopt;
+  const auto time = look_time(version, equipment, since, reached);
+  if (!time) return std::nullopt;
   try {
     const bool vouching = needs_vouching(registry, version, equipment);
-    const auto look = longer_look(archive, version, *champion, equipment, vouching, reached);
+    const auto look = longer_look(archive, version, *champion, equipment, vouching, *time);
     if (look) return judge_probation(*look, equipment);
-    if (reached < version.window.end + equipment.confirmation) return std::nullopt;
+    if (!time->is_overdue) return std::nullopt;
     return rejection("no telemetry to judge it by is left.");
   } catch (const std::invalid_argument&) {
     return rejection("its model or the champion's is damaged in the registry.");
@@ -174,7 +206,9 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
                          needed);
     return std::nullopt;
   }();
-  if (!against)
+  const bool may_decide = look.is_last || is_left_behind(look.comparison.rival_mrse_percent,
+                                                         look.champion_validated_mrse_percent);
+  if (!against && may_decide)
     return decision(
         DecisionKind::approve, look,
         fmt::format("Confirmed: the reduction is {:.2f} %, and with a confidence of {:g} % at "
@@ -195,18 +229,20 @@ bool record(storage::Registry& registry, const storage::Standing& standing,
 
 void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
                        const std::string& spacecraft, const EquipmentConfig& equipment,
-                       storage::Time reached, const RecordProbation& record) {
-  const std::vector<std::int64_t> numbers =
-      registry.undecided(spacecraft, equipment.name, std::string(name(Outcome::on_probation)));
-  if (numbers.empty() || registry.hold(spacecraft, equipment.name)) return;
+                       storage::Time since, storage::Time reached, const RecordProbation& record) {
+  if (equipment.approval != ApprovalPolicy::automatic) return;
   std::vector<storage::Version> versions;
-  for (const std::int64_t number : numbers)
+  for (const std::int64_t number :
+       registry.undecided(spacecraft, equipment.name, std::string(name(Outcome::on_probation))))
     versions.push_back(*registry.version(spacecraft, equipment.name, number));
   std::stable_sort(versions.begin(), versions.end(),
                    [](const auto& a, const auto& b) { return a.window.end > b.window.end; });
-  for (storage::Version& version : versions) {
+  for (const storage::Version& listed : versions) {
     const storage::Standing standing = registry.standing(spacecraft, equipment.name);
-    auto found = look_at(archive, registry, equipment, version, reached);
+    if (registry.hold(spacecraft, equipment.name)) return;
+    storage::Version version = *registry.version(spacecraft, equipment.name, listed.number);
+    if (version.status != "waiting") continue;  // another thread has decided meanwhile
+    auto found = look_at(archive, registry, equipment, version, since, reached);
     if (found) record(standing, {std::move(version), std::move(*found)});
   }
 }

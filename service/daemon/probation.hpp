@@ -24,7 +24,8 @@ struct LongerLook {
   storage::Time until = 0;  // end of the telemetry
   double fault_share = 0;   // of the window and what came after it (plausibility.hpp)
   std::int64_t champion = 0;
-  Evidence::Comparison comparison;  // with the champion
+  double champion_validated_mrse_percent = 0;  // where it was validated
+  Evidence::Comparison comparison;             // with the champion
   /// The same on what came after the window alone, by which nothing was chosen; without rows where
   /// nothing is left of it.
   Evidence::Comparison after;
@@ -33,7 +34,8 @@ struct LongerLook {
   std::optional<Evidence::Comparison> without_offset;
 };
 
-/// Approval or rejection; absent where more telemetry has to tell.
+/// Approval or rejection; absent where more telemetry has to tell. Before the last look only a
+/// champion that was left behind is replaced: otherwise nothing hurries.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 
@@ -49,12 +51,14 @@ bool record(storage::Registry& registry, const storage::Standing& standing,
 using RecordProbation = std::function<bool(const storage::Standing&, const ProbationDecision&)>;
 
 /// Looks at the equipment's versions on probation with telemetry until `reached`, that of the
-/// newest window first, once there is half of `confirmation` of it. A version whose window is older
-/// than the champion's, or less than `min_interval` newer, is rejected, and one of which no
-/// telemetry is left. Nothing is decided while an operator holds the equipment, nor from telemetry
-/// that is damaged.
+/// newest window first: when it has gone on for a half, three quarters and all of `confirmation`
+/// behind the version's window. Where less than `min_coverage` of it has come by then, the last
+/// look waits as long again. Looks that telemetry until `since` allowed are not repeated. A version
+/// whose window is older than the champion's, or less than `min_interval` newer, is rejected, and
+/// one of which no telemetry is left. Nothing is decided while an operator holds the equipment or
+/// decides on his own, nor from telemetry that is damaged.
 void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
                        const std::string& spacecraft, const EquipmentConfig& equipment,
-                       storage::Time reached, const RecordProbation& record);
+                       storage::Time since, storage::Time reached, const RecordProbation& record);
 
 }  // namespace reident

@@ -33,6 +33,15 @@ bool record(const storage::Standing& standing, const ProbationDecision& found,
 
 }  // namespace
 
+void decide_probation(const storage::Archive& archive, const storage::Registry& registry,
+                      const std::string& spacecraft, const EquipmentConfig& equipment,
+                      storage::Time since, storage::Time reached, const AttemptContext& context) {
+  look_at_probation(archive, registry, spacecraft, equipment, since, reached,
+                    [&context](const storage::Standing& standing, const ProbationDecision& found) {
+                      return record(standing, found, context);
+                    });
+}
+
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
                                               const storage::Archive& archive,
                                               const storage::Registry& registry, KeptWindow& kept,
@@ -41,10 +50,8 @@ std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
   const storage::TimeRange window = job.window.window;
   // From here on the archive marks what still falls into the window.
   context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, window.end); });
-  look_at_probation(archive, registry, *job.spacecraft, *job.equipment, window.end,
-                    [&context](const storage::Standing& standing, const ProbationDecision& found) {
-                      return record(standing, found, context);
-                    });
+  decide_probation(archive, registry, *job.spacecraft, *job.equipment, INT64_MIN, window.end,
+                   context);
   const RefreshRequest request{*job.spacecraft, *job.equipment, window, job.window.cause,
                                context.configuration_digest};
   // Read before the refresh looks at the champion and the hold.

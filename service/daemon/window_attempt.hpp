@@ -1,4 +1,5 @@
-// One window from its seal to its record, wherever the database's writer is.
+// One window from its seal to its record, and what becomes of versions on probation, wherever the
+// database's writer is.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +30,11 @@ struct RecordedAttempt {
   RefreshResult result;
   std::int64_t version = 0;  // 0 where the window gave no model
 };
+
+/// Looks at the equipment's versions on probation (probation.hpp) and commits what was decided.
+void decide_probation(const storage::Archive& archive, const storage::Registry& registry,
+                      const std::string& spacecraft, const EquipmentConfig& equipment,
+                      storage::Time since, storage::Time reached, const AttemptContext& context);
 
 /// Seals the window, looks at the equipment's versions on probation with the telemetry up to its
 /// end, tries it and commits what came out; nothing is published. Absent, and nothing recorded of

@@ -57,6 +57,22 @@ class Judgement(EndToEnd):
         self.assertLess(end_s, plant.START_S + 4900 + 900)
         self.assertNotEqual(end_s % 1200, 0, "it does not wait for the slide")
 
+    def test_a_version_on_probation_waits_for_telemetry_and_for_no_other_window(self):
+        self.configure([plant.equipment(slide="10min", confirmation="4min", order=4,
+                                        unvouched="approve")])
+        daemon = self.start_daemon()
+        self.replay_rows("before", count=601, noise=0.3)
+        self.assertEqual(self.champion(), 1, self.attempts())
+        changed = {"gain": 1.2, "noise": 0.3}
+        self.replay_rows("after", first=601, count=640, **changed)
+        tried = [row[2] for row in self.attempts()]
+        self.assertEqual(tried, ["approved", "on_probation"])
+        self.assertEqual(self.champion(), 1)
+        self.replay_rows("later", first=1241, count=210, **changed)
+        wait_until(lambda: self.champion() == 2, "what came after the window approves the version")
+        self.assertEqual([row[2] for row in self.attempts()], tried)
+        wait_until(lambda: "version confirmed" in daemon.text(), "the log says so")
+
     def replay_two_sensors(self, name, bias=0.0, **keywords):
         """The plant with a second sensor of its output; the first one lies by `bias`."""
         lines = [",".join([*plant.HEADER, "out_b_v"])]

@@ -17,6 +17,7 @@ SimulatedService::SimulatedService(const Config& config)
       registry_(database_),
       feed_(config, [this] { return now_; }),
       watch_(config),
+      probation_watch_(config),
       context_{config.digest,
                [this](const AttemptContext::Task& task) { task(registry_, archive_); },
                [this] { return now_; },
@@ -51,6 +52,7 @@ void SimulatedService::commit() {
   for (const ChampionWatch::Drift& drift :
        watch_.look(archive_, registry_, feed_, [] { return false; }))
     drifts_.push_back({drift.equipment->name, now_});
+  probation_watch_.look(archive_, registry_, feed_, context_);
   try_due_windows();
 }
 

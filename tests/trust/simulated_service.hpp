@@ -1,5 +1,6 @@
 // The service without middleware and threads: frames in, in the order of their reception, and the
-// real archive, windows, identification, gate, registry and champion monitors behind them.
+// real archive, windows, identification, gate, registry, champion monitors and probation behind
+// them.
 //
 // Everything happens on the calling thread. The clock is the reception time of the frame at hand,
 // and never goes back; identification takes no time. Frames are committed in batches of ten minutes
@@ -12,6 +13,7 @@
 
 #include "service/daemon/champion_watch.hpp"
 #include "service/daemon/config.hpp"
+#include "service/daemon/probation_watch.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"
 #include "storage/archive.hpp"
@@ -61,6 +63,7 @@ class SimulatedService {
   storage::Registry registry_;
   WindowFeed feed_;
   ChampionWatch watch_;
+  ProbationWatch probation_watch_;
   std::vector<KeptWindow> kept_;  // by equipment
   AttemptContext context_;
   std::vector<storage::TelemetryFrame> batch_;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "service/daemon/probation_watch.hpp"
 #include "service/daemon/refresh.hpp"
 #include "tests/service/daemon/daemon_fixture.hpp"
 
@@ -39,6 +40,17 @@ TEST(JudgeProbation, WaitsForMoreAndRejectsAtTheLastLook) {
   EXPECT_FALSE(judge_probation(look, {}));
   look.is_last = true;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+}
+
+TEST(JudgeProbation, LeavesAChampionThatErrsAsEverUntilTheLastLook) {
+  LongerLook look = sure_of(40);
+  look.champion_validated_mrse_percent = 5.4;  // it errs by 8 now
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.champion_validated_mrse_percent = 5.3;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.champion_validated_mrse_percent = 8;
+  look.is_last = true;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
 TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
@@ -118,9 +130,9 @@ class Probation : public DaemonTest {
     registry.record(result.attempt, result.version, {kind, "gate", "for the test"});
   }
   /// What was recorded.
-  std::vector<ProbationDecision> look(storage::Time reached) {
+  std::vector<ProbationDecision> look(storage::Time reached, storage::Time since = INT64_MIN) {
     std::vector<ProbationDecision> found;
-    look_at_probation(archive, registry, "SAT", equipment, reached,
+    look_at_probation(archive, registry, "SAT", equipment, since, reached,
                       [&](const storage::Standing& standing, const ProbationDecision& decided) {
                         found.push_back(decided);
                         return record(registry, standing, decided, reached);
@@ -152,10 +164,20 @@ TEST_F(Probation, EndsWithAnApprovalOnceMoreTelemetryBearsTheVersionOut) {
   EXPECT_EQ(status(2), "approved");
   EXPECT_EQ(registry.version("SAT", "PLANT", 2)->parent, 1);
   const auto evidence = nlohmann::json::parse(found[0].decision.evidence_json);
-  EXPECT_EQ(evidence["until_ns"], window_end + 3 * minute);
-  EXPECT_EQ(evidence["comparison"]["rows"], 180 + 180) << "the validation part and what came after";
-  EXPECT_EQ(evidence["after_window"]["rows"], 180);
+  EXPECT_EQ(evidence["until_ns"], window_end + 150 * second) << "half of the confirmation";
+  EXPECT_EQ(evidence["comparison"]["rows"], 180 + 150) << "the validation part and what came after";
+  EXPECT_EQ(evidence["after_window"]["rows"], 150);
   EXPECT_TRUE(look(window_end + 4 * minute).empty());
+}
+
+TEST_F(Probation, IsLookedAtAtAHalfThreeQuartersAndAllOfTheConfirmation) {
+  change_plant(2);
+  const storage::Time half = window_end + 150 * second, three_quarters = window_end + 225 * second;
+  EXPECT_TRUE(look(half - 1).empty());
+  EXPECT_TRUE(look(three_quarters - 1, half).empty()) << "the look at the half was before";
+  const auto found = look(three_quarters, half);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(nlohmann::json::parse(found[0].decision.evidence_json)["until_ns"], three_quarters);
 }
 
 TEST_F(Probation, EndsWithARejectionWhereTheChampionIsAsGood) {
@@ -171,6 +193,16 @@ TEST_F(Probation, GivesTheChampionNoTelemetryThatItDoesNotBelieve) {
   archive.append(frames);
   make_version(window_end, "on_probation", DecisionKind::wait);
   ASSERT_EQ(look(window_end + 5 * minute).size(), 1U);
+  EXPECT_EQ(status(2), "rejected");
+}
+
+TEST_F(Probation, WaitsAsLongAgainForTelemetryThatDidNotCome) {
+  archive.append(telemetry(day + 10 * minute, 601));
+  make_version(window_end, "on_probation", DecisionKind::wait);
+  EXPECT_TRUE(look(window_end + 5 * minute).empty());
+  EXPECT_TRUE(look(window_end + 10 * minute - 1).empty());
+  EXPECT_THAT(look(window_end + 10 * minute).at(0).decision.reason,
+              HasSubstr("on the 3 samples after its window alone"));
   EXPECT_EQ(status(2), "rejected");
 }
 
@@ -201,6 +233,14 @@ TEST_F(Probation, RestsWhileAnOperatorHoldsTheEquipment) {
   EXPECT_EQ(look(window_end + 5 * minute).size(), 1U);
 }
 
+TEST_F(Probation, IsLeftToTheOperatorWhoDecides) {
+  change_plant(2);
+  EquipmentConfig by_hand = equipment;
+  by_hand.approval = ApprovalPolicy::by_hand;
+  look_at_probation(archive, registry, "SAT", by_hand, INT64_MIN, window_end + 5 * minute,
+                    [](const auto&, const auto&) { return ADD_FAILURE(), false; });
+}
+
 TEST_F(Probation, IsOverWhereTheChampionWasWithdrawn) {
   change_plant(2);
   registry.decide("SAT", "PLANT", 1, {DecisionKind::withdraw, "ana", "bad"}, 1);
@@ -214,6 +254,60 @@ TEST_F(Probation, GoesOnWhereItsTelemetryIsDamaged) {
   damage_chunks(2);
   EXPECT_TRUE(look(window_end + 5 * minute).empty());
   EXPECT_EQ(status(2), "waiting");
+}
+
+/// A service into which telemetry comes while no window is tried.
+class Watch : public Probation {
+ protected:
+  Watch() { feed.described(descriptors(), archive); }
+
+  Config watched_config() const {
+    Config config = DaemonTest::config();
+    config.spacecraft[0].equipment = {equipment};
+    return config;
+  }
+  /// The versions that are decided when telemetry has settled until `time`.
+  std::vector<std::int64_t> when_reached(storage::Time time) {
+    feed.stored(telemetry(time + config_.settle, 1), {});
+    decided.clear();
+    watch.look(archive, registry, feed, context);
+    return decided;
+  }
+
+  static constexpr storage::Time half = window_end + 150 * second;
+  static constexpr storage::Time all = window_end + 300 * second;
+  const Config config_ = watched_config();
+  WindowFeed feed{config_, [] { return day; }};
+  std::vector<std::int64_t> decided;
+  const AttemptContext context{
+      "digest",
+      [this](const AttemptContext::Task& task) { task(registry, archive); },
+      [] { return day; },
+      {},
+      [] { return false; },
+      [this](const ProbationDecision& one) { decided.push_back(one.version.number); }};
+  ProbationWatch watch{config_};
+};
+
+TEST_F(Watch, EndsAProbationAsTelemetryComes) {
+  change_plant(2);
+  EXPECT_TRUE(when_reached(half - 5 * second).empty());
+  EXPECT_EQ(when_reached(half), std::vector<std::int64_t>{2});
+  EXPECT_EQ(status(2), "approved");
+}
+
+TEST_F(Watch, LooksAtAVersionThatWasMadeAfterItsTelemetryCame) {
+  EXPECT_TRUE(when_reached(all).empty());
+  change_plant(2);
+  EXPECT_EQ(when_reached(all + 5 * second), std::vector<std::int64_t>{2});
+}
+
+TEST_F(Watch, LooksWhereAnOperatorHasReleasedTheEquipment) {
+  change_plant(2);
+  registry.put_on_hold("SAT", "PLANT", {"ana", "rehearsal", 1});
+  EXPECT_TRUE(when_reached(all).empty());
+  registry.release("SAT", "PLANT", {"ana", "over", 2});
+  EXPECT_EQ(when_reached(all + 5 * second), std::vector<std::int64_t>{2});
 }
 
 }  // namespace
