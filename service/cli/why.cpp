@@ -137,6 +137,9 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
                                     figure(*champion, "mrse_percent")));
   else
     sentences.push_back(fmt::format("Champion {} cannot run on these samples.", version));
+  if (const ordered_json* comparison = member(*champion, "where_validated"))
+    sentences.push_back(fmt::format("Where champion {} was validated, before this window: {}.",
+                                    version, comparison_text(*comparison)));
   if (const ordered_json* elsewhere = member(*champion, "elsewhere"))
     sentences.push_back(fmt::format(
         "On {} rows where champion {} was validated and this window was not, the two differ by "

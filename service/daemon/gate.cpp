@@ -282,7 +282,8 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
                         champion.without_offset->rival_mrse_percent,
                         sure_elsewhere * limits.margin_percent) +
             wait_of(limits)};
-  if (!is_left_behind(champion.comparison->rival_mrse_percent, champion.validated_mrse_percent))
+  if (!is_left_behind(champion.comparison->rival_mrse_percent, champion.validated_mrse_percent) &&
+      !(champion.where_validated && champion.where_validated->sure_percent > limits.margin_percent))
     return GateDecision{
         Outcome::on_probation,
         praise(e) +

@@ -88,6 +88,9 @@ struct Evidence {
     /// Parameters whose sensors could show that mean error, and which no relation binds.
     std::vector<std::string> unbound{};
     double validated_mrse_percent = 0;  // where it was validated; 0: not known
+    /// The comparison there, before the candidate's window. Looked at where the candidate is surely
+    /// better and the champion was not left behind; absent where less than half is left.
+    std::optional<Comparison> where_validated{};
   };
   std::optional<Champion> champion;
 

@@ -60,6 +60,7 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
       {"fault_share", look.fault_share},
       {"comparison", to_json(look.comparison)},
       {"after_window", to_json(look.after)}};
+  if (look.where_validated) evidence["where_validated"] = to_json(*look.where_validated);
   if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
   const Evidence::Comparison& comparison = look.comparison;
   return {kind, "gate",
@@ -133,6 +134,10 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive,
   look.is_last =
       time.is_overdue || (look.until == version.window.end + equipment.confirmation &&
                           static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks);
+  if (look.comparison.rival_mrse_percent < look.champion_validated_mrse_percent)
+    look.where_validated =
+        compare_where_validated(archive, incumbent, model, checks_of(equipment),
+                                version.window.begin, equipment.confidence_percent);
   if (needs_vouching) {
     runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
     look.without_offset = compare(runs, equipment.confidence_percent, Course::changing);
@@ -204,6 +209,12 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);
+    if (const auto& then = look.where_validated;
+        then && !(then->reduction_percent > limits.margin_percent))
+      return fmt::format(
+          "the champion erred more where it was validated, and there, on {} samples, the version "
+          "has {:.3f} % and the champion {:.3f} %: this operation shows too little.",
+          then->rows, then->mrse_percent, then->rival_mrse_percent);
     return std::nullopt;
   }();
   const bool may_decide = look.is_last || is_left_behind(look.comparison.rival_mrse_percent,

@@ -25,7 +25,10 @@ struct LongerLook {
   double fault_share = 0;   // of the window and what came after it (plausibility.hpp)
   std::int64_t champion = 0;
   double champion_validated_mrse_percent = 0;  // where it was validated
-  Evidence::Comparison comparison;             // with the champion
+  /// The comparison there, before the version's window. Looked at where the champion errs less now;
+  /// absent where less than half is left.
+  std::optional<Evidence::Comparison> where_validated{};
+  Evidence::Comparison comparison;  // with the champion
   /// The same on what came after the window alone, by which nothing was chosen; without rows where
   /// nothing is left of it.
   Evidence::Comparison after;

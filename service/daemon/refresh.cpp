@@ -85,6 +85,7 @@ ordered_json to_json(const Evidence::Champion& champion) {
     json["mrse_percent"] = champion.comparison->rival_mrse_percent;
     json["validated_mrse_percent"] = champion.validated_mrse_percent;
     json["comparison"] = to_json(*champion.comparison);
+    if (champion.where_validated) json["where_validated"] = to_json(*champion.where_validated);
     if (champion.without_offset) json["without_offset"] = to_json(*champion.without_offset);
     if (!champion.unbound.empty()) json["unbound"] = champion.unbound;
   }

@@ -199,6 +199,11 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
     if (evidence.without_offset)
       evidence.unbound = unbound_of(champion, prepared.data.plausibility, offset);
   }
+  if (evidence.comparison && evidence.comparison->sure_percent > 0.0 &&
+      !is_left_behind(evidence.comparison->rival_mrse_percent, evidence.validated_mrse_percent))
+    evidence.where_validated =
+        compare_where_validated(archive, champion, candidate, prepared.checks,
+                                prepared.attempt.window.begin, confidence_percent);
   evidence.elsewhere = elsewhere(archive, champion, prepared);
   return evidence;
 }

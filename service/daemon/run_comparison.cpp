@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/simulate.hpp"
+#include "service/daemon/kept_window.hpp"
 #include "service/daemon/window_data.hpp"
 
 namespace reident {
@@ -63,6 +64,29 @@ Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
             runs.y, runs.rival, runs.candidate, runs.stretches, confidence_percent / 100, course))
       result.sure_percent = 100 * sure->low;
   return result;
+}
+
+std::optional<Evidence::Comparison> compare_where_validated(const storage::Archive& archive,
+                                                            const EquipmentModel& champion,
+                                                            const EquipmentModel& model,
+                                                            const Checks& checks, storage::Time end,
+                                                            double confidence_percent) {
+  constexpr double least_share = 0.5;
+  const storage::TimeRange validated = champion.validated_on;
+  const storage::TimeRange range{validated.begin, std::min(validated.end, end)};
+  if (range.end <= range.begin) return std::nullopt;
+  const WindowRequest request = request_of(model);
+  const auto loaded = KeptWindow(request, 1, checks).load(archive, range);
+  const auto* data = std::get_if<WindowData>(&loaded);
+  if (!data) return std::nullopt;
+  const Record& record = data->record;
+  const auto theirs = run_beside(archive, champion, request, record, range);
+  if (!theirs) return std::nullopt;
+  const PairedRuns runs =
+      paired(record, record.all(), free_run(model.dynamics, record, record.all()), *theirs);
+  const auto ticks = static_cast<double>((validated.end - validated.begin) / request.period);
+  if (static_cast<double>(runs.rows.size()) < least_share * ticks) return std::nullopt;
+  return compare(runs, confidence_percent, identification::Course::steady);
 }
 
 nlohmann::ordered_json to_json(const Evidence::Comparison& comparison) {

@@ -9,6 +9,7 @@
 #include "identification/comparison.hpp"
 #include "identification/record.hpp"
 #include "service/daemon/gate.hpp"
+#include "service/daemon/plausibility.hpp"
 #include "service/daemon/window_data.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/archive.hpp"
@@ -41,6 +42,15 @@ PairedRuns paired(const identification::Record& record, identification::RowRange
 
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
                              identification::Course course);
+
+/// The free run of `model` beside the champion's on the part of what validated the champion that
+/// comes before `end`: where the model's window does not begin before that, telemetry which nothing
+/// of it was chosen by. Absent where less than half is left.
+std::optional<Evidence::Comparison> compare_where_validated(const storage::Archive& archive,
+                                                            const EquipmentModel& champion,
+                                                            const EquipmentModel& model,
+                                                            const Checks& checks, storage::Time end,
+                                                            double confidence_percent);
 
 nlohmann::ordered_json to_json(const Evidence::Comparison& comparison);
 

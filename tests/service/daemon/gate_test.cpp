@@ -229,6 +229,20 @@ const Case without_a_change[] = {
        c.confirmation = 100;
      },
      Outcome::on_probation},
+    {"ChampionErrsAsWhereItWasValidatedAndSurelyMoreThere",
+     [](auto& e, auto& c) {
+       e.champion->validated_mrse_percent = 8;
+       e.champion->where_validated = Evidence::Comparison{300, 5, 8, 37.5, 5.1};
+       c.confirmation = 100;
+     },
+     Outcome::approved},
+    {"ChampionErrsAsWhereItWasValidatedAndNotSurelyMoreThere",
+     [](auto& e, auto& c) {
+       e.champion->validated_mrse_percent = 8;
+       e.champion->where_validated = Evidence::Comparison{300, 5, 8, 37.5, 5};
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
     {"ChampionErrsHalfAsMuchAgain",
      [](auto& e, auto& c) {
        e.champion->validated_mrse_percent = 5.33;

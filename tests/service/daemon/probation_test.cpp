@@ -85,6 +85,23 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
   EXPECT_THAT(found->reason, HasSubstr("on the 100 samples after its window alone it has 6.000 %"));
 }
 
+TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginThereToo) {
+  LongerLook look = sure_of(40);
+  look.is_last = true;
+  look.champion_validated_mrse_percent = 20;
+  look.where_validated = {.rows = 100,
+                          .mrse_percent = 17,
+                          .rival_mrse_percent = 20,
+                          .reduction_percent = 15,
+                          .sure_percent = {}};
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("has 17.000 % and the champion 20.000 %"));
+  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["where_validated"]["rows"], 100);
+  look.where_validated->reduction_percent = 15.1;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
 TEST(JudgeProbation, ApprovesNothingAboveTheLimitOfTheError) {
   LongerLook look = sure_of(40);
   look.comparison.mrse_percent = 20.1;

@@ -95,6 +95,21 @@ TEST_F(Rivals, WhereTheWindowVisitedAllThatTheChampionDidThereIsNoElsewhere) {
   EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
 }
 
+TEST_F(Rivals, WhereTheChampionErrsAsEverTheCandidateIsLookedAtWhereThatWasValidated) {
+  archive.append(telemetry(day, 601, 1, 0.3));
+  record(run(day + 10 * minute));
+  archive.append(telemetry(day + 20 * minute, 601, 1, 0.01));
+  EquipmentConfig equipment = plant();
+  equipment.confirmation = 5 * minute;
+  const RefreshResult result = run(day + 30 * minute, equipment);
+  ASSERT_TRUE(result.evidence.champion && result.evidence.champion->where_validated)
+      << result.attempt.reason;
+  EXPECT_EQ(result.evidence.champion->where_validated->rows, 180);
+  EXPECT_GT(result.evidence.champion->comparison->sure_percent, 15);
+  EXPECT_LT(result.evidence.champion->where_validated->sure_percent, 15) << "all is noise there";
+  EXPECT_EQ(result.attempt.outcome, "on_probation") << result.attempt.reason;
+}
+
 TEST_F(Rivals, AHoldLetsNoVersionThrough) {
   archive.append(telemetry(day, 601));
   registry.put_on_hold("SAT", "PLANT", {"ana", "eclipse season", day});
