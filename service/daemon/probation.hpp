@@ -54,7 +54,7 @@ bool record(storage::Registry& registry, const storage::Standing& standing,
 using RecordProbation = std::function<bool(const storage::Standing&, const ProbationDecision&)>;
 
 /// Looks at the equipment's versions on probation with telemetry until `reached`, that of the
-/// newest window first: when it has gone on for a half, three quarters and all of `confirmation`
+/// newest window first: when it has gone on for three quarters and all of `confirmation`
 /// behind the version's window. Where less than `min_coverage` of it has come by then, the last
 /// look waits as long again. Looks that telemetry until `since` allowed are not repeated. A version
 /// whose window is older than the champion's, or less than `min_interval` newer, is rejected, and

@@ -85,20 +85,20 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
   EXPECT_THAT(found->reason, HasSubstr("on the 100 samples after its window alone it has 6.000 %"));
 }
 
-TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginThereToo) {
+TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginOverBoth) {
   LongerLook look = sure_of(40);
   look.is_last = true;
   look.champion_validated_mrse_percent = 20;
   look.where_validated = {.rows = 100,
-                          .mrse_percent = 17,
+                          .mrse_percent = 20,
                           .rival_mrse_percent = 20,
-                          .reduction_percent = 15,
+                          .reduction_percent = 0,
                           .sure_percent = {}};
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("has 17.000 % and the champion 20.000 %"));
+  EXPECT_THAT(found->reason, HasSubstr("has 20.000 % and the champion 20.000 %"));
   EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["where_validated"]["rows"], 100);
-  look.where_validated->reduction_percent = 15.1;
+  look.where_validated->mrse_percent = 19;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
@@ -174,27 +174,27 @@ class Probation : public DaemonTest {
 
 TEST_F(Probation, EndsWithAnApprovalOnceMoreTelemetryBearsTheVersionOut) {
   change_plant(2);
-  EXPECT_TRUE(look(window_end + 2 * minute).empty()) << "less than half of the confirmation";
+  EXPECT_TRUE(look(window_end + 3 * minute).empty()) << "less than three quarters";
   EXPECT_EQ(status(2), "waiting");
-  const auto found = look(window_end + 3 * minute);
+  const auto found = look(window_end + 4 * minute);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(status(2), "approved");
   EXPECT_EQ(registry.version("SAT", "PLANT", 2)->parent, 1);
   const auto evidence = nlohmann::json::parse(found[0].decision.evidence_json);
-  EXPECT_EQ(evidence["until_ns"], window_end + 150 * second) << "half of the confirmation";
-  EXPECT_EQ(evidence["comparison"]["rows"], 180 + 150) << "the validation part and what came after";
-  EXPECT_EQ(evidence["after_window"]["rows"], 150);
-  EXPECT_TRUE(look(window_end + 4 * minute).empty());
+  EXPECT_EQ(evidence["until_ns"], window_end + 225 * second) << "three quarters";
+  EXPECT_EQ(evidence["comparison"]["rows"], 180 + 225) << "the validation part and what came after";
+  EXPECT_EQ(evidence["after_window"]["rows"], 225);
+  EXPECT_TRUE(look(window_end + 5 * minute).empty());
 }
 
-TEST_F(Probation, IsLookedAtAtAHalfThreeQuartersAndAllOfTheConfirmation) {
+TEST_F(Probation, IsLookedAtAtThreeQuartersAndAllOfTheConfirmation) {
   change_plant(2);
-  const storage::Time half = window_end + 150 * second, three_quarters = window_end + 225 * second;
-  EXPECT_TRUE(look(half - 1).empty());
-  EXPECT_TRUE(look(three_quarters - 1, half).empty()) << "the look at the half was before";
-  const auto found = look(three_quarters, half);
+  const storage::Time three_quarters = window_end + 225 * second, all = window_end + 300 * second;
+  EXPECT_TRUE(look(three_quarters - 1).empty());
+  EXPECT_TRUE(look(all - 1, three_quarters).empty()) << "the look at three quarters was before";
+  const auto found = look(all, three_quarters);
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(nlohmann::json::parse(found[0].decision.evidence_json)["until_ns"], three_quarters);
+  EXPECT_EQ(nlohmann::json::parse(found[0].decision.evidence_json)["until_ns"], all);
 }
 
 TEST_F(Probation, EndsWithARejectionWhereTheChampionIsAsGood) {
@@ -234,7 +234,7 @@ TEST_F(Probation, OfANewerWindowEndsThatOfTheOlder) {
   change_plant(2);
   make_version(window_end + minute, "on_probation", DecisionKind::wait);
   make_version(window_end + 2 * minute, "on_probation", DecisionKind::wait);
-  EXPECT_EQ(look(window_end + 5 * minute).size(), 3U);
+  EXPECT_EQ(look(window_end + 6 * minute).size(), 3U);
   EXPECT_EQ(status(4), "approved");
   EXPECT_EQ(status(3), "rejected");
   EXPECT_EQ(status(2), "rejected");
@@ -291,7 +291,7 @@ class Watch : public Probation {
     return decided;
   }
 
-  static constexpr storage::Time half = window_end + 150 * second;
+  static constexpr storage::Time three_quarters = window_end + 225 * second;
   static constexpr storage::Time all = window_end + 300 * second;
   const Config config_ = watched_config();
   WindowFeed feed{config_, [] { return day; }};
@@ -308,8 +308,8 @@ class Watch : public Probation {
 
 TEST_F(Watch, EndsAProbationAsTelemetryComes) {
   change_plant(2);
-  EXPECT_TRUE(when_reached(half - 5 * second).empty());
-  EXPECT_EQ(when_reached(half), std::vector<std::int64_t>{2});
+  EXPECT_TRUE(when_reached(three_quarters - 5 * second).empty());
+  EXPECT_EQ(when_reached(three_quarters), std::vector<std::int64_t>{2});
   EXPECT_EQ(status(2), "approved");
 }
 
