@@ -60,7 +60,7 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
       {"fault_share", look.fault_share},
       {"comparison", to_json(look.comparison)},
       {"after_window", to_json(look.after)}};
-  if (look.where_validated) evidence["where_validated"] = to_json(*look.where_validated);
+  if (look.with_past) evidence["with_past"] = to_json(*look.with_past);
   if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
   const Evidence::Comparison& comparison = look.comparison;
   return {kind, "gate",
@@ -135,9 +135,9 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive,
       time.is_overdue || (look.until == version.window.end + equipment.confirmation &&
                           static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks);
   if (look.comparison.rival_mrse_percent < look.champion_validated_mrse_percent)
-    look.where_validated =
-        compare_where_validated(archive, incumbent, model, checks_of(equipment),
-                                version.window.begin, equipment.confidence_percent);
+    if (const auto past = runs_where_validated(archive, incumbent, model, checks_of(equipment),
+                                               version.window.begin))
+      look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
   if (needs_vouching) {
     runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
     look.without_offset = compare(runs, equipment.confidence_percent, Course::changing);
@@ -175,6 +175,9 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
   const auto time = look_time(version, equipment, since, reached);
   if (!time) return std::nullopt;
   try {
+    if (!same_outputs(equipment_model_from_json(version.model_json),
+                      equipment_model_from_json(champion->model_json)))
+      return rejection(fmt::format("champion {} has other outputs.", champion->number));
     const bool vouching = needs_vouching(registry, version, equipment);
     const auto look = longer_look(archive, version, *champion, equipment, vouching, *time);
     if (look) return judge_probation(*look, equipment);
@@ -186,15 +189,6 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
     if (error.kind() != storage::Error::Kind::corrupt) throw;
     return std::nullopt;
   }
-}
-
-/// In percent, of the error over the rows of two comparisons together.
-double reduction_over_both(const Evidence::Comparison& a, const Evidence::Comparison& b) {
-  const auto squares = [&](double of_a, double of_b) {
-    return static_cast<double>(a.rows) * of_a * of_a + static_cast<double>(b.rows) * of_b * of_b;
-  };
-  return 100 * (1 - std::sqrt(squares(a.mrse_percent, b.mrse_percent) /
-                              squares(a.rival_mrse_percent, b.rival_mrse_percent)));
 }
 
 }  // namespace
@@ -218,17 +212,20 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);
-    if (const auto& then = look.where_validated;
-        then && !(reduction_over_both(*then, look.comparison) > limits.margin_percent))
+    if (const auto& both = look.with_past;
+        both && !(both->reduction_percent > limits.margin_percent))
       return fmt::format(
-          "the champion erred more where it was validated, and there, on {} samples, the version "
-          "has {:.3f} % and the champion {:.3f} %: this operation shows too little.",
-          then->rows, then->mrse_percent, then->rival_mrse_percent);
+          "the champion had {:.3f} % where it was validated, so that nothing tells of a change; "
+          "over "
+          "{} samples of then and now the version has {:.3f} % and the champion {:.3f} %.",
+          look.champion_validated_mrse_percent, both->rows, both->mrse_percent,
+          both->rival_mrse_percent);
     return std::nullopt;
   }();
-  const bool may_decide = look.is_last || is_left_behind(look.comparison.rival_mrse_percent,
-                                                         look.champion_validated_mrse_percent);
-  if (!against && may_decide)
+  const bool hurries =
+      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent) &&
+      look.after.sure_percent > 0.0;
+  if (!against && (look.is_last || hurries))
     return decision(
         DecisionKind::approve, look,
         fmt::format("Confirmed: the reduction is {:.2f} %, and with a confidence of {:g} % at "

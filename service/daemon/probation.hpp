@@ -25,9 +25,9 @@ struct LongerLook {
   double fault_share = 0;   // of the window and what came after it (plausibility.hpp)
   std::int64_t champion = 0;
   double champion_validated_mrse_percent = 0;  // where it was validated
-  /// The comparison there, before the version's window. Looked at where the champion errs less now;
-  /// absent where less than half is left.
-  std::optional<Evidence::Comparison> where_validated{};
+  /// The comparison there, before the version's window, and on this telemetry, together. Looked at
+  /// where the champion errs less now; absent where less than half of what validated it is left.
+  std::optional<Evidence::Comparison> with_past{};
   Evidence::Comparison comparison;  // with the champion
   /// The same on what came after the window alone, by which nothing was chosen; without rows where
   /// nothing is left of it.
@@ -38,7 +38,8 @@ struct LongerLook {
 };
 
 /// Approval or rejection; absent where more telemetry has to tell. Before the last look only a
-/// champion that was left behind is replaced: otherwise nothing hurries.
+/// champion that was left behind is replaced, otherwise nothing hurries, and only by a version that
+/// is surely better on what came after its window.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 

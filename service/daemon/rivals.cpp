@@ -131,12 +131,6 @@ std::optional<Run> simulator_run(const storage::Archive& archive, WindowRequest 
   return Run{std::move(data->record), std::move(outputs)};
 }
 
-bool same_outputs(const EquipmentModel& one, const EquipmentModel& other) {
-  return std::equal(one.outputs.begin(), one.outputs.end(), other.outputs.begin(),
-                    other.outputs.end(),
-                    [](const Signal& a, const Signal& b) { return a.name == b.name; });
-}
-
 }  // namespace
 
 std::vector<Index> rows_outside(const Matrix& u, const std::vector<Signal>& inputs) {
@@ -201,9 +195,9 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
   }
   if (evidence.comparison && evidence.comparison->sure_percent > 0.0 &&
       !is_left_behind(evidence.comparison->rival_mrse_percent, evidence.validated_mrse_percent))
-    evidence.where_validated =
-        compare_where_validated(archive, champion, candidate, prepared.checks,
-                                prepared.attempt.window.begin, confidence_percent);
+    if (const auto runs = runs_where_validated(archive, champion, candidate, prepared.checks,
+                                               prepared.attempt.window.begin))
+      evidence.where_validated = compare(*runs, confidence_percent, Course::steady);
   evidence.elsewhere = elsewhere(archive, champion, prepared);
   return evidence;
 }

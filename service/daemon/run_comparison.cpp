@@ -66,11 +66,10 @@ Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
   return result;
 }
 
-std::optional<Evidence::Comparison> compare_where_validated(const storage::Archive& archive,
-                                                            const EquipmentModel& champion,
-                                                            const EquipmentModel& model,
-                                                            const Checks& checks, storage::Time end,
-                                                            double confidence_percent) {
+std::optional<PairedRuns> runs_where_validated(const storage::Archive& archive,
+                                               const EquipmentModel& champion,
+                                               const EquipmentModel& model, const Checks& checks,
+                                               storage::Time end) {
   constexpr double least_share = 0.5;
   const storage::TimeRange validated = champion.validated_on;
   const storage::TimeRange range{validated.begin, std::min(validated.end, end)};
@@ -82,11 +81,32 @@ std::optional<Evidence::Comparison> compare_where_validated(const storage::Archi
   const Record& record = data->record;
   const auto theirs = run_beside(archive, champion, request, record, range);
   if (!theirs) return std::nullopt;
-  const PairedRuns runs =
+  PairedRuns runs =
       paired(record, record.all(), free_run(model.dynamics, record, record.all()), *theirs);
   const auto ticks = static_cast<double>((validated.end - validated.begin) / request.period);
   if (static_cast<double>(runs.rows.size()) < least_share * ticks) return std::nullopt;
-  return compare(runs, confidence_percent, identification::Course::steady);
+  return runs;
+}
+
+PairedRuns joined(const PairedRuns& first, const PairedRuns& second) {
+  const auto stacked = [](const Matrix& a, const Matrix& b) {
+    Matrix both(a.rows() + b.rows(), b.cols());
+    both << a, b;
+    return both;
+  };
+  PairedRuns both{first.rows, stacked(first.y, second.y),
+                  stacked(first.candidate, second.candidate), stacked(first.rival, second.rival),
+                  first.stretches};
+  both.rows.insert(both.rows.end(), second.rows.begin(), second.rows.end());
+  for (const RowRange& stretch : second.stretches)
+    both.stretches.push_back({stretch.begin + first.y.rows(), stretch.end + first.y.rows()});
+  return both;
+}
+
+bool same_outputs(const EquipmentModel& one, const EquipmentModel& other) {
+  return std::equal(one.outputs.begin(), one.outputs.end(), other.outputs.begin(),
+                    other.outputs.end(),
+                    [](const Signal& a, const Signal& b) { return a.name == b.name; });
 }
 
 nlohmann::ordered_json to_json(const Evidence::Comparison& comparison) {

@@ -46,11 +46,15 @@ Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
 /// The free run of `model` beside the champion's on the part of what validated the champion that
 /// comes before `end`: where the model's window does not begin before that, telemetry which nothing
 /// of it was chosen by. Absent where less than half is left.
-std::optional<Evidence::Comparison> compare_where_validated(const storage::Archive& archive,
-                                                            const EquipmentModel& champion,
-                                                            const EquipmentModel& model,
-                                                            const Checks& checks, storage::Time end,
-                                                            double confidence_percent);
+std::optional<PairedRuns> runs_where_validated(const storage::Archive& archive,
+                                               const EquipmentModel& champion,
+                                               const EquipmentModel& model, const Checks& checks,
+                                               storage::Time end);
+
+/// Both of them, one after the other.
+PairedRuns joined(const PairedRuns& first, const PairedRuns& second);
+
+bool same_outputs(const EquipmentModel& one, const EquipmentModel& other);
 
 nlohmann::ordered_json to_json(const Evidence::Comparison& comparison);
 

@@ -53,6 +53,14 @@ TEST(JudgeProbation, LeavesAChampionThatErrsAsEverUntilTheLastLook) {
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
+TEST(JudgeProbation, WaitsForTheLastLookWhereWhatCameAfterTheWindowIsNotSure) {
+  LongerLook look = sure_of(40);
+  look.after.sure_percent = -1;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.is_last = true;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
 TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
   LongerLook look = sure_of(10);
   look.comparison.reduction_percent = 15;
@@ -89,16 +97,16 @@ TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginOve
   LongerLook look = sure_of(40);
   look.is_last = true;
   look.champion_validated_mrse_percent = 20;
-  look.where_validated = {.rows = 100,
-                          .mrse_percent = 20,
-                          .rival_mrse_percent = 20,
-                          .reduction_percent = 0,
-                          .sure_percent = {}};
+  look.with_past = {.rows = 100,
+                    .mrse_percent = 20,
+                    .rival_mrse_percent = 20,
+                    .reduction_percent = 0,
+                    .sure_percent = {}};
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("has 20.000 % and the champion 20.000 %"));
-  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["where_validated"]["rows"], 100);
-  look.where_validated->mrse_percent = 19;
+  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["with_past"]["rows"], 100);
+  look.with_past->reduction_percent = 15.1;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
@@ -256,6 +264,23 @@ TEST_F(Probation, IsLeftToTheOperatorWhoDecides) {
   by_hand.approval = ApprovalPolicy::by_hand;
   look_at_probation(archive, registry, "SAT", by_hand, INT64_MIN, window_end + 5 * minute,
                     [](const auto&, const auto&) { return ADD_FAILURE(), false; });
+}
+
+TEST_F(Probation, IsOverWhereTheChampionHasOtherOutputs) {
+  change_plant(2);
+  EquipmentConfig other = equipment;
+  other.inputs = {"u"};
+  other.outputs = {"v", "y"};
+  const storage::Time end = window_end - 2 * minute;
+  KeptWindow nothing = kept_window_of("SAT", other);
+  RefreshResult result =
+      refresh(archive, registry, {"SAT", other, {end - other.window, end}, "slide", "d"}, nothing,
+              {}, [] { return false; });
+  ASSERT_TRUE(result.candidate) << result.attempt.reason;
+  result.attempt.outcome = "approved";
+  registry.record(result.attempt, result.version, {DecisionKind::approve, "ana", "for the test"});
+  EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
+              HasSubstr("champion 3 has other outputs"));
 }
 
 TEST_F(Probation, IsOverWhereTheChampionWasWithdrawn) {
