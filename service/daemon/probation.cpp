@@ -99,23 +99,19 @@ bool needs_vouching(const storage::Registry& registry, const storage::Version& v
 }
 
 /// Absent where there is too little to compare on.
-std::optional<LongerLook> longer_look(const storage::Archive& archive,
-                                      const storage::Version& version,
-                                      const storage::Version& champion,
+std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::TimeRange window,
+                                      const EquipmentModel& model, const EquipmentModel& incumbent,
                                       const EquipmentConfig& equipment, bool needs_vouching,
                                       const LookTime& time) {
   LongerLook look;
   look.until = time.until;
-  look.champion = champion.number;
-  const EquipmentModel model = equipment_model_from_json(version.model_json);
-  const storage::TimeRange range{version.window.begin, look.until};
+  const storage::TimeRange range{window.begin, look.until};
   const WindowRequest request = request_of(model);
   const auto loaded = KeptWindow(request, 1, checks_of(equipment)).load(archive, range);
   const auto* data = std::get_if<WindowData>(&loaded);
   if (!data) return std::nullopt;
   look.fault_share = fault_share(data->plausibility, (range.end - range.begin) / request.period);
   const identification::Record& record = data->record;
-  const EquipmentModel incumbent = equipment_model_from_json(champion.model_json);
   look.champion_validated_mrse_percent = incumbent.validation.mrse();
   const auto theirs = run_beside(archive, incumbent, request, record, range);
   if (!theirs) return std::nullopt;
@@ -127,16 +123,16 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive,
   PairedRuns runs = since(model.validated_on.begin);
   if (runs.rows.empty()) return std::nullopt;
   look.comparison = compare(runs, equipment.confidence_percent, Course::changing);
-  const PairedRuns after = since(version.window.end);
+  const PairedRuns after = since(window.end);
   if (!after.rows.empty())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
   look.is_last =
-      time.is_overdue || (look.until == version.window.end + equipment.confirmation &&
+      time.is_overdue || (look.until == window.end + equipment.confirmation &&
                           static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks);
   if (look.comparison.rival_mrse_percent < look.champion_validated_mrse_percent)
-    if (const auto past = runs_where_validated(archive, incumbent, model, checks_of(equipment),
-                                               version.window.begin))
+    if (const auto past =
+            runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
       look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
   if (needs_vouching) {
     runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
@@ -175,12 +171,16 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
   const auto time = look_time(version, equipment, since, reached);
   if (!time) return std::nullopt;
   try {
-    if (!same_outputs(equipment_model_from_json(version.model_json),
-                      equipment_model_from_json(champion->model_json)))
+    const EquipmentModel model = equipment_model_from_json(version.model_json);
+    const EquipmentModel incumbent = equipment_model_from_json(champion->model_json);
+    if (!same_outputs(model, incumbent))
       return rejection(fmt::format("champion {} has other outputs.", champion->number));
     const bool vouching = needs_vouching(registry, version, equipment);
-    const auto look = longer_look(archive, version, *champion, equipment, vouching, *time);
-    if (look) return judge_probation(*look, equipment);
+    auto look = longer_look(archive, version.window, model, incumbent, equipment, vouching, *time);
+    if (look) {
+      look->champion = champion->number;
+      return judge_probation(*look, equipment);
+    }
     if (!time->is_overdue) return std::nullopt;
     return rejection("no telemetry to judge it by is left.");
   } catch (const std::invalid_argument&) {
@@ -216,8 +216,7 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
         both && !(both->reduction_percent > limits.margin_percent))
       return fmt::format(
           "the champion had {:.3f} % where it was validated, so that nothing tells of a change; "
-          "over "
-          "{} samples of then and now the version has {:.3f} % and the champion {:.3f} %.",
+          "over {} samples of then and now the version has {:.3f} % and the champion {:.3f} %.",
           look.champion_validated_mrse_percent, both->rows, both->mrse_percent,
           both->rival_mrse_percent);
     return std::nullopt;

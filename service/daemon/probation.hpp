@@ -1,8 +1,10 @@
 // Versions on probation: better than the champion by the margin, but on their windows' validation
-// part alone not surely, or mostly by a constant. Telemetry that comes after their windows decides.
+// part alone not surely, or mostly by a constant, or while nothing tells of a change. Telemetry
+// that comes after their windows decides.
 //
 // The free runs of the version and of the champion, begun with the window, go on over that
-// telemetry, and are compared over the validation part and it together, and over it alone. A change
+// telemetry, and are compared over the validation part and it together, over it alone, and, where
+// the champion errs less than where it was validated, with what validated it too. A change
 // of the equipment that is too new to fill the validation part is so followed sooner than by the
 // next window, and a stretch of unusual operation is told from one.
 #pragma once
@@ -25,13 +27,14 @@ struct LongerLook {
   double fault_share = 0;   // of the window and what came after it (plausibility.hpp)
   std::int64_t champion = 0;
   double champion_validated_mrse_percent = 0;  // where it was validated
-  /// The comparison there, before the version's window, and on this telemetry, together. Looked at
-  /// where the champion errs less now; absent where less than half of what validated it is left.
-  std::optional<Evidence::Comparison> with_past{};
-  Evidence::Comparison comparison;  // with the champion
+  Evidence::Comparison comparison;             // with the champion
   /// The same on what came after the window alone, by which nothing was chosen; without rows where
   /// nothing is left of it.
   Evidence::Comparison after;
+  /// The same on what validated the champion, before the version's window, and on all of this
+  /// together. Looked at where the champion errs less now than there; absent where less than half
+  /// of that is left.
+  std::optional<Evidence::Comparison> with_past{};
   /// The same with the champion's mean error taken from it, where a sensor that no relation binds
   /// could show that error.
   std::optional<Evidence::Comparison> without_offset;

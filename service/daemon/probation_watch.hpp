@@ -1,7 +1,6 @@
 // Versions on probation are looked at as telemetry comes, not only when the next window is tried.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

@@ -7,7 +7,6 @@
 
 #include "identification/correction.hpp"
 #include "identification/simulate.hpp"
-#include "service/daemon/kept_window.hpp"
 #include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 
@@ -63,15 +62,10 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
   constexpr std::size_t least_rows = 30;
   const EquipmentModel& candidate = prepared.candidate->model;
   if (!reaches_beyond(champion.inputs, candidate.inputs)) return std::nullopt;
-  const storage::TimeRange validated = champion.validated_on;
-  const auto loaded = KeptWindow(prepared.loaded, 1, prepared.checks).load(archive, validated);
-  const auto* data = std::get_if<WindowData>(&loaded);
-  if (!data) return std::nullopt;
-  const identification::Record& record = data->record;
-  const auto theirs = run_beside(archive, champion, prepared.loaded, record, validated);
-  if (!theirs) return std::nullopt;
-  const PairedRuns both =
-      paired(record, record.all(), free_run(candidate.dynamics, record, record.all()), *theirs);
+  const auto there = run_both(archive, candidate, champion, prepared.loaded, prepared.checks,
+                              champion.validated_on);
+  if (!there) return std::nullopt;
+  const auto& [record, both] = *there;
   const std::vector<Index> outside = rows_outside(record.u, candidate.inputs);
   std::vector<Index> places;
   for (std::size_t i = 0; i < both.rows.size(); ++i)

@@ -52,6 +52,20 @@ PairedRuns paired(const Record& record, RowRange rows, const Matrix& candidate, 
   return runs;
 }
 
+std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const EquipmentModel& candidate,
+                                   const EquipmentModel& rival, const WindowRequest& request,
+                                   const Checks& checks, storage::TimeRange range) {
+  auto loaded = KeptWindow(request, 1, checks).load(archive, range);
+  auto* data = std::get_if<WindowData>(&loaded);
+  if (!data) return std::nullopt;
+  Record& record = data->record;
+  const auto theirs = run_beside(archive, rival, request, record, range);
+  if (!theirs) return std::nullopt;
+  PairedRuns runs =
+      paired(record, record.all(), free_run(candidate.dynamics, record, record.all()), *theirs);
+  return RunsOfBoth{std::move(record), std::move(runs)};
+}
+
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
                              identification::Course course) {
   Evidence::Comparison result;
@@ -75,17 +89,11 @@ std::optional<PairedRuns> runs_where_validated(const storage::Archive& archive,
   const storage::TimeRange range{validated.begin, std::min(validated.end, end)};
   if (range.end <= range.begin) return std::nullopt;
   const WindowRequest request = request_of(model);
-  const auto loaded = KeptWindow(request, 1, checks).load(archive, range);
-  const auto* data = std::get_if<WindowData>(&loaded);
-  if (!data) return std::nullopt;
-  const Record& record = data->record;
-  const auto theirs = run_beside(archive, champion, request, record, range);
-  if (!theirs) return std::nullopt;
-  PairedRuns runs =
-      paired(record, record.all(), free_run(model.dynamics, record, record.all()), *theirs);
+  auto both = run_both(archive, model, champion, request, checks, range);
   const auto ticks = static_cast<double>((validated.end - validated.begin) / request.period);
-  if (static_cast<double>(runs.rows.size()) < least_share * ticks) return std::nullopt;
-  return runs;
+  if (!both || static_cast<double>(both->runs.rows.size()) < least_share * ticks)
+    return std::nullopt;
+  return std::move(both->runs);
 }
 
 PairedRuns joined(const PairedRuns& first, const PairedRuns& second) {

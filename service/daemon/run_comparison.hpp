@@ -40,6 +40,16 @@ struct PairedRuns {
 PairedRuns paired(const identification::Record& record, identification::RowRange rows,
                   const identification::Matrix& candidate, const Run& rival);
 
+/// The free runs of both on what is believed of the telemetry in `range`, for which `request` asks
+/// as the candidate does. Absent where a parameter of either is not described.
+struct RunsOfBoth {
+  identification::Record record;  // the candidate's
+  PairedRuns runs;
+};
+std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const EquipmentModel& candidate,
+                                   const EquipmentModel& rival, const WindowRequest& request,
+                                   const Checks& checks, storage::TimeRange range);
+
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
                              identification::Course course);
 

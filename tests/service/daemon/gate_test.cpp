@@ -222,6 +222,11 @@ const Case of_an_offset[] = {
      Outcome::unvouched},
 };
 
+void errs_as_where_validated(Evidence& e, double sure_percent_there) {
+  e.champion->validated_mrse_percent = 8;
+  e.champion->where_validated = Evidence::Comparison{300, 5, 8, 37.5, sure_percent_there};
+}
+
 const Case without_a_change[] = {
     {"ChampionErrsAsWhereItWasValidated",
      [](auto& e, auto& c) {
@@ -231,15 +236,13 @@ const Case without_a_change[] = {
      Outcome::on_probation},
     {"ChampionErrsAsWhereItWasValidatedAndSurelyMoreThere",
      [](auto& e, auto& c) {
-       e.champion->validated_mrse_percent = 8;
-       e.champion->where_validated = Evidence::Comparison{300, 5, 8, 37.5, 5.1};
+       errs_as_where_validated(e, 5.1);
        c.confirmation = 100;
      },
      Outcome::approved},
     {"ChampionErrsAsWhereItWasValidatedAndNotSurelyMoreThere",
      [](auto& e, auto& c) {
-       e.champion->validated_mrse_percent = 8;
-       e.champion->where_validated = Evidence::Comparison{300, 5, 8, 37.5, 5};
+       errs_as_where_validated(e, 5);
        c.confirmation = 100;
      },
      Outcome::on_probation},

@@ -146,9 +146,13 @@ class Probation : public DaemonTest {
     make_version(window_end, "on_probation", DecisionKind::wait);
   }
   void make_version(storage::Time end, const std::string& outcome, DecisionKind kind) {
-    KeptWindow nothing = kept_window_of("SAT", equipment);
+    make_version_of(equipment, end, outcome, kind);
+  }
+  void make_version_of(const EquipmentConfig& config, storage::Time end, const std::string& outcome,
+                       DecisionKind kind) {
+    KeptWindow nothing = kept_window_of("SAT", config);
     RefreshResult result =
-        refresh(archive, registry, {"SAT", equipment, {end - equipment.window, end}, "slide", "d"},
+        refresh(archive, registry, {"SAT", config, {end - config.window, end}, "slide", "d"},
                 nothing, {}, [] { return false; });
     ASSERT_TRUE(result.candidate) << result.attempt.reason;
     result.attempt.outcome = outcome;
@@ -271,14 +275,7 @@ TEST_F(Probation, IsOverWhereTheChampionHasOtherOutputs) {
   EquipmentConfig other = equipment;
   other.inputs = {"u"};
   other.outputs = {"v", "y"};
-  const storage::Time end = window_end - 2 * minute;
-  KeptWindow nothing = kept_window_of("SAT", other);
-  RefreshResult result =
-      refresh(archive, registry, {"SAT", other, {end - other.window, end}, "slide", "d"}, nothing,
-              {}, [] { return false; });
-  ASSERT_TRUE(result.candidate) << result.attempt.reason;
-  result.attempt.outcome = "approved";
-  registry.record(result.attempt, result.version, {DecisionKind::approve, "ana", "for the test"});
+  make_version_of(other, window_end - 2 * minute, "approved", DecisionKind::approve);
   EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
               HasSubstr("champion 3 has other outputs"));
 }
