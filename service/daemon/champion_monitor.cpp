@@ -139,12 +139,16 @@ std::optional<ChampionMonitor::Drift> ChampionMonitor::look(const storage::Archi
   if (!detector_) return std::nullopt;
   if (next_ < reached - most_past) next_ += (reached - most_past - next_) / block_ * block_;
   std::optional<Drift> drift;
-  for (; next_ + block_ <= reached; next_ += block_) {
-    const storage::TimeRange block{next_, next_ + block_};
-    const auto record = believed(archive, {block.end - reference_blocks * block_, block.end});
-    const auto error = record ? log_error(*record, block) : std::nullopt;
-    if (error && detector_->add(*error))
-      drift = Drift{version_, block.end, std::exp(*error - detector_->mean())};
+  while (next_ + block_ <= reached) {
+    const Duration come = std::min<Duration>((reached - next_) / block_, reference_blocks);
+    const storage::Time end = next_ + come * block_;
+    const auto record = believed(archive, {next_ - (reference_blocks - 1) * block_, end});
+    for (; next_ < end; next_ += block_) {
+      const storage::TimeRange block{next_, next_ + block_};
+      const auto error = record ? log_error(*record, block) : std::nullopt;
+      if (error && detector_->add(*error))
+        drift = Drift{version_, block.end, std::exp(*error - detector_->mean())};
+    }
   }
   return drift;
 }

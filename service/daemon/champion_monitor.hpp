@@ -4,8 +4,8 @@
 // A block is a sixteenth of the stretch that the champion was validated on, whose blocks are the
 // reference (identification/change_detection.hpp). The free run goes on from block to block, as a
 // simulator's does; after a gap its state is the one that agrees with the first telemetry behind.
-// Telemetry that is not believed (plausibility.hpp), judged beside the blocks before, is a gap: a
-// sensor that lies is no drift of the champion.
+// Telemetry that is not believed (plausibility.hpp), judged beside the blocks before and those that
+// came with it, is a gap: a sensor that lies is no drift of the champion.
 #pragma once
 
 #include <cstdint>
