@@ -142,10 +142,12 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
                                     version, comparison_text(*comparison)));
   if (const ordered_json* elsewhere = member(*champion, "elsewhere"))
     sentences.push_back(fmt::format(
-        "On {} rows where champion {} was validated and this window was not, the two differ by "
-        "{} % of the output's range; there they err by {} % and the champion by {} %.",
+        "On {} rows where the window of champion {} was and this one was not, the two differ by "
+        "{} % of the output's range ({} % but for the champion's mean error here); there they err "
+        "by {} % and the champion by {} %.",
         figure(*elsewhere, "rows"), version, figure(*elsewhere, "disagreement_percent"),
-        figure(*elsewhere, "mrse_percent"), figure(*elsewhere, "champion_mrse_percent")));
+        figure(*elsewhere, "without_offset_percent"), figure(*elsewhere, "mrse_percent"),
+        figure(*elsewhere, "champion_mrse_percent")));
 }
 
 void hold_and_warning_sentences(const ordered_json& evidence, Sentences& sentences) {

@@ -166,11 +166,14 @@ bool gains_a_constant(const Evidence::Champion& champion, const EquipmentConfig&
 }
 
 /// Where the equipment has changed from one model to another, the new one errs on the past about as
-/// much as the old one errs now. So it does where the operation has changed for a while.
+/// much as the old one errs now, and where it has changed by a constant, by that constant. So it
+/// does where the operation has changed for a while, but then rarely by the opposite constant.
 bool explains(const Evidence::Champion& champion, const Evidence::Champion::Elsewhere& elsewhere,
               const EquipmentConfig& limits) {
-  return has_run(champion) && !gains_a_constant(champion, limits) &&
-         elsewhere.mrse_percent <= champion.comparison->rival_mrse_percent;
+  if (!has_run(champion)) return false;
+  return elsewhere.without_offset_percent <= limits.max_disagreement_percent ||
+         (!gains_a_constant(champion, limits) &&
+          elsewhere.mrse_percent <= champion.comparison->rival_mrse_percent);
 }
 
 Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentConfig& limits) {
@@ -182,7 +185,7 @@ Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentCon
     return std::nullopt;
   return GateDecision{
       Outcome::disagrees_with_champion,
-      fmt::format("Where champion {} was validated and this window was not ({} samples), the two "
+      fmt::format("Where the window of champion {} was and this one was not ({} samples), the two "
                   "differ by {:.1f} % of the output's range, above the limit of {:g} %, and the "
                   "champion is nearer to the telemetry of that time.",
                   champion.version, elsewhere.rows, elsewhere.disagreement_percent,

@@ -75,11 +75,14 @@ struct Evidence {
     std::int64_t version = 0;
     storage::Time window_end = 0;
     std::optional<Comparison> comparison;  // absent: it cannot run on these samples
-    /// Where the champion was validated and the candidate's window was not.
+    /// Where the champion was validated and the candidate's window was not; all over the champion's
+    /// window, where what the candidate gains may be a constant alone.
     struct Elsewhere {
       std::int64_t rows = 0;
       double disagreement_percent = 0;  // rms between the two, of the output's range
-      double mrse_percent = 0;          // the candidate's there
+      /// The same with the champion's mean error on the candidate's samples taken from it.
+      double without_offset_percent = 0;
+      double mrse_percent = 0;  // the candidate's there
       double champion_mrse_percent = 0;
     };
     std::optional<Elsewhere> elsewhere;  // absent: there is no such place

@@ -92,6 +92,7 @@ ordered_json to_json(const Evidence::Champion& champion) {
   if (const auto& elsewhere = champion.elsewhere)
     json["elsewhere"] = {{"rows", elsewhere->rows},
                          {"disagreement_percent", elsewhere->disagreement_percent},
+                         {"without_offset_percent", elsewhere->without_offset_percent},
                          {"mrse_percent", elsewhere->mrse_percent},
                          {"champion_mrse_percent", elsewhere->champion_mrse_percent}};
   return json;

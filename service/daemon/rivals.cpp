@@ -54,16 +54,28 @@ bool reaches_beyond(const std::vector<Signal>& champion, const std::vector<Signa
                      });
 }
 
-/// The two runs where the champion was validated with inputs that the candidate's window does not
-/// hold. Absent where there are too few such samples to tell, or no telemetry of then.
+/// Root mean square, of the range in percent.
+double rms_percent(const Matrix& differences, Index column, double range) {
+  const double rms = std::sqrt(differences.col(column).squaredNorm() / double(differences.rows()));
+  return rms == 0 ? 0 : 100 * rms / range;
+}
+
+/// The two runs where the champion was validated, or all over its window, with inputs that the
+/// candidate's does not hold. Absent where there are too few such samples to tell, or no telemetry
+/// of then. `offset` is the champion's mean error in the candidate's window.
 std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
                                                        const EquipmentModel& champion,
-                                                       const PreparedWindow& prepared) {
+                                                       const PreparedWindow& prepared,
+                                                       const identification::Vector& offset,
+                                                       bool all_over_its_window) {
   constexpr std::size_t least_rows = 30;
   const EquipmentModel& candidate = prepared.candidate->model;
   if (!reaches_beyond(champion.inputs, candidate.inputs)) return std::nullopt;
+  const storage::TimeRange& validated = champion.validated_on;
+  const storage::Time begin =
+      all_over_its_window ? champion.identified_from.begin : validated.begin;
   const auto there = run_both(archive, candidate, champion, prepared.loaded, prepared.checks,
-                              champion.validated_on);
+                              {begin, validated.end});
   if (!there) return std::nullopt;
   const auto& [record, both] = *there;
   const std::vector<Index> outside = rows_outside(record.u, candidate.inputs);
@@ -78,11 +90,14 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
   result.rows = y.rows();
   result.mrse_percent = identification::score(y, one).mrse();
   result.champion_mrse_percent = identification::score(y, other).mrse();
+  const Matrix apart = one - other;
+  const Matrix apart_but_for_offset = apart.rowwise() - offset.transpose();
   for (Index q = 0; q < y.cols(); ++q) {
     const double range = record.y.col(q).maxCoeff() - record.y.col(q).minCoeff();
-    const double rms = std::sqrt((one.col(q) - other.col(q)).squaredNorm() / double(y.rows()));
-    const double share = rms == 0 ? 0 : 100 * rms / range;
-    result.disagreement_percent = std::max(result.disagreement_percent, share);
+    result.disagreement_percent =
+        std::max(result.disagreement_percent, rms_percent(apart, q, range));
+    result.without_offset_percent =
+        std::max(result.without_offset_percent, rms_percent(apart_but_for_offset, q, range));
   }
   return result;
 }
@@ -179,10 +194,11 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
   }
   if (!same_outputs(champion, candidate)) return std::nullopt;
   evidence.validated_mrse_percent = champion.validation.mrse();
+  identification::Vector offset =
+      identification::Vector::Zero(static_cast<Index>(champion.outputs.size()));
   if (const auto run = run_beside(archive, champion, prepared.loaded, prepared.data.record,
                                   prepared.attempt.window)) {
     evidence.comparison = against_run(prepared, *run, confidence_percent);
-    identification::Vector offset;
     evidence.without_offset = against_run(prepared, *run, confidence_percent, &offset);
     if (evidence.without_offset)
       evidence.unbound = unbound_of(champion, prepared.data.plausibility, offset);
@@ -192,7 +208,10 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
     if (const auto runs = runs_where_validated(archive, champion, candidate, prepared.checks,
                                                prepared.attempt.window.begin))
       evidence.where_validated = compare(*runs, confidence_percent, Course::steady);
-  evidence.elsewhere = elsewhere(archive, champion, prepared);
+  const bool may_gain_a_constant_alone =
+      evidence.without_offset && !(evidence.without_offset->sure_percent > 0.0);
+  if (!evidence.comparison || evidence.comparison->reduction_percent > 0)
+    evidence.elsewhere = elsewhere(archive, champion, prepared, offset, may_gain_a_constant_alone);
   return evidence;
 }
 

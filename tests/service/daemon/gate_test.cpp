@@ -149,7 +149,7 @@ const Case not_surely_better[] = {
     {"NotSurelyBetterAndOtherwiseWrong",
      [](auto& e, auto& c) {
        e.champion->comparison->sure_percent = 5;
-       e.champion->elsewhere = {100, 10.1, 9, 5};
+       e.champion->elsewhere = {100, 10.1, 10.1, 9, 5};
        c.confirmation = 100;
      },
      Outcome::not_better_than_champion},
@@ -259,28 +259,34 @@ const Case without_a_change[] = {
 const Case where_the_champion_was_validated[] = {
     {"DisagreesElsewhere",
      [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 10.1, 8.1, 5};
+       e.champion->elsewhere = {100, 10.1, 10.1, 8.1, 5};
      },
      Outcome::disagrees_with_champion},
     {"DisagreesElsewhereAsAChangeExplains",
      [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 10.1, 8, 5};  // the champion's error now
+       e.champion->elsewhere = {100, 10.1, 10.1, 8, 5};  // the champion's error now
      },
      Outcome::approved},
     {"DisagreesElsewhereAndGainsAConstantAlone",
      [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 10.1, 8, 5};
+       e.champion->elsewhere = {100, 10.1, 10.1, 8, 5};
        e.champion->without_offset = Evidence::Comparison{500, 5, 5.2, 3.8, 1.66};
      },
      Outcome::disagrees_with_champion},
+    {"DisagreesElsewhereByTheConstantThatItGains",
+     [](auto& e, auto&) {
+       e.champion->elsewhere = {100, 50, 10, 8.1, 5};
+       e.champion->without_offset = Evidence::Comparison{500, 5, 5.2, 3.8, 1.66};
+     },
+     Outcome::approved},
     {"AgreesElsewhere",
      [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 10, 6, 5};
+       e.champion->elsewhere = {100, 10, 20, 6, 5};
      },
      Outcome::approved},
     {"DisagreesElsewhereAndIsRight",
      [](auto& e, auto&) {
-       e.champion->elsewhere = {100, 50, 4.9, 5};
+       e.champion->elsewhere = {100, 50, 50, 4.9, 5};
      },
      Outcome::approved},
 };

@@ -30,15 +30,21 @@ class Rivals : public DaemonTest {
     }
     archive.append(frames);
   }
-  /// Telemetry in which the inputs move by a fraction of what they do.
-  void quiet(storage::Time begin, int seconds, double share, double gain = 1) {
-    auto frames = telemetry(begin, seconds, 0, 0.001);
+
+  struct Operation {
+    double u = 1, v = 1;  // of how the inputs else move
+    double gain = 1;
+    double offset = 0;
+    double noise = 0.001;
+  };
+  void operate(storage::Time begin, int seconds, const Operation& now) {
+    auto frames = telemetry(begin, seconds, 0, now.noise);
     double state = 0;
     for (auto& frame : frames) {
-      frame.samples[0].value *= share;
-      frame.samples[1].value *= share;
-      frame.samples[2].value += state;
-      state = 0.9 * state + 0.1 * gain * (frame.samples[0].value + frame.samples[1].value / 2);
+      frame.samples[0].value *= now.u;
+      frame.samples[1].value *= now.v;
+      frame.samples[2].value += now.offset + state;
+      state = 0.9 * state + 0.1 * now.gain * (frame.samples[0].value + frame.samples[1].value / 2);
     }
     archive.append(frames);
   }
@@ -77,12 +83,38 @@ TEST_F(Rivals, ACandidateOfAQuietWindowHasToAgreeWithTheChampionWhereItWasNot) {
   archive.append(telemetry(day, 601));
   record(run(day + 10 * minute));
   // The output hardly follows the inputs for a while, as with loads switched off.
-  quiet(day + 20 * minute, 601, 0.2, 0.3);
+  operate(day + 20 * minute, 601, {.u = 0.2, .v = 0.2, .gain = 0.3});
   const RefreshResult result = run(day + 30 * minute);
   ASSERT_TRUE(result.evidence.champion && result.evidence.champion->elsewhere)
       << result.attempt.reason;
   EXPECT_GT(result.evidence.champion->elsewhere->disagreement_percent, 10);
   EXPECT_EQ(result.attempt.outcome, "disagrees_with_champion") << result.attempt.reason;
+}
+
+TEST_F(Rivals, WhatMayBeAConstantAloneHasToAgreeAllOverTheChampionsWindow) {
+  archive.append(telemetry(day, 361));
+  operate(day + 6 * minute + second, 240, {.v = 0.01});  // that validates the champion too
+  record(run(day + 10 * minute));
+  operate(day + 20 * minute, 601, {.v = 0.01, .offset = 1, .noise = 0.4});
+  const RefreshResult result = run(day + 30 * minute);
+  ASSERT_TRUE(result.evidence.champion) << result.attempt.reason;
+  const Evidence::Champion& champion = *result.evidence.champion;
+  ASSERT_TRUE(champion.without_offset && champion.elsewhere) << result.attempt.reason;
+  EXPECT_LE(champion.without_offset->sure_percent, 0);
+  EXPECT_GT(champion.elsewhere->without_offset_percent, 10);
+  EXPECT_EQ(result.attempt.outcome, "disagrees_with_champion") << result.attempt.reason;
+}
+
+TEST_F(Rivals, AChangeByAConstantMakesTheCandidateErrOnThePastByThatConstant) {
+  archive.append(telemetry(day, 601));
+  record(run(day + 10 * minute));
+  operate(day + 20 * minute, 601, {.u = 0.5, .v = 0.5, .offset = 1});
+  const RefreshResult result = run(day + 30 * minute);
+  ASSERT_TRUE(result.evidence.champion && result.evidence.champion->elsewhere)
+      << result.attempt.reason;
+  EXPECT_GT(result.evidence.champion->elsewhere->disagreement_percent, 30);
+  EXPECT_LT(result.evidence.champion->elsewhere->without_offset_percent, 10);
+  EXPECT_NE(result.attempt.outcome, "disagrees_with_champion") << result.attempt.reason;
 }
 
 TEST_F(Rivals, WhereTheWindowVisitedAllThatTheChampionDidThereIsNoElsewhere) {
