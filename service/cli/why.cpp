@@ -140,14 +140,17 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
   if (const ordered_json* comparison = member(*champion, "where_validated"))
     sentences.push_back(fmt::format("Where champion {} was validated, before this window: {}.",
                                     version, comparison_text(*comparison)));
-  if (const ordered_json* elsewhere = member(*champion, "elsewhere"))
+  if (const ordered_json* elsewhere = member(*champion, "elsewhere")) {
+    std::string apart = figure(*elsewhere, "disagreement_percent") + " % of the output's range";
+    if (member(*elsewhere, "without_offset_percent"))
+      apart += fmt::format(" ({} % but for the champion's mean error here)",
+                           figure(*elsewhere, "without_offset_percent"));
     sentences.push_back(fmt::format(
-        "On {} rows where the window of champion {} was and this one was not, the two differ by "
-        "{} % of the output's range ({} % but for the champion's mean error here); there they err "
-        "by {} % and the champion by {} %.",
-        figure(*elsewhere, "rows"), version, figure(*elsewhere, "disagreement_percent"),
-        figure(*elsewhere, "without_offset_percent"), figure(*elsewhere, "mrse_percent"),
+        "On {} rows of the window of champion {}, with inputs that this one was not identified "
+        "with, the two differ by {}; there they err by {} % and the champion by {} %.",
+        figure(*elsewhere, "rows"), version, apart, figure(*elsewhere, "mrse_percent"),
         figure(*elsewhere, "champion_mrse_percent")));
+  }
 }
 
 void hold_and_warning_sentences(const ordered_json& evidence, Sentences& sentences) {

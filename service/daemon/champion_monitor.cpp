@@ -16,6 +16,9 @@ namespace {
 using identification::Index;
 
 constexpr int reference_blocks = 16;
+/// That are judged together: half as many as before them, so that a fault in all of them still is
+/// the exception.
+constexpr int most_together = 8;
 constexpr double least_coverage = 0.5;
 /// Of an output's identified range: smaller errors are rounding.
 constexpr double least_error = 1e-9;
@@ -55,9 +58,11 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
   telemetry_.emplace(request_of(model_), 1, checks_);
   const auto record = believed(archive, validated);
   if (!record) return;
+  std::optional<identification::SquareChanges> changes;
   std::vector<double> errors;
   for (storage::Time begin = validated.begin; begin + block_ <= validated.end; begin += block_)
-    if (const auto error = log_error(*record, {begin, begin + block_})) errors.push_back(*error);
+    if (const auto error = log_error(*record, {begin, begin + block_}, changes))
+      errors.push_back(*error);
   if (errors.size() < std::size_t{identification::ChangeDetector::least_blocks}) return;
   detector_.emplace(
       Eigen::Map<const identification::Vector>(errors.data(), static_cast<Index>(errors.size())));
@@ -105,13 +110,13 @@ std::optional<identification::Record> ChampionMonitor::believed(const storage::A
   return std::nullopt;
 }
 
-std::optional<double> ChampionMonitor::log_error(const identification::Record& record,
-                                                 storage::TimeRange block) {
+std::optional<double> ChampionMonitor::log_error(
+    const identification::Record& record, storage::TimeRange block,
+    std::optional<identification::SquareChanges>& changes) {
   const Duration period = period_of(model_);
   const identification::RowRange rows{first_row_at(record, tick_at(block.begin, period)),
                                       first_row_at(record, tick_at(block.end, period))};
   double squares = 0;
-  std::optional<identification::SquareChanges> changes;
   for (const identification::Segment& segment : segments_within(record, rows)) {
     const identification::Matrix errors =
         record.y.middleRows(segment.begin, segment.size()) - run(record, segment, changes);
@@ -140,12 +145,13 @@ std::optional<ChampionMonitor::Drift> ChampionMonitor::look(const storage::Archi
   if (next_ < reached - most_past) next_ += (reached - most_past - next_) / block_ * block_;
   std::optional<Drift> drift;
   while (next_ + block_ <= reached) {
-    const Duration come = std::min<Duration>((reached - next_) / block_, reference_blocks);
+    const Duration come = std::min<Duration>((reached - next_) / block_, most_together);
     const storage::Time end = next_ + come * block_;
     const auto record = believed(archive, {next_ - (reference_blocks - 1) * block_, end});
+    std::optional<identification::SquareChanges> changes;
     for (; next_ < end; next_ += block_) {
       const storage::TimeRange block{next_, next_ + block_};
-      const auto error = record ? log_error(*record, block) : std::nullopt;
+      const auto error = record ? log_error(*record, block, changes) : std::nullopt;
       if (error && detector_->add(*error))
         drift = Drift{version_, block.end, std::exp(*error - detector_->mean())};
     }

@@ -43,10 +43,10 @@ class ChampionMonitor {
   std::optional<identification::Record> believed(const storage::Archive& archive,
                                                  storage::TimeRange range);
   /// Runs the champion over a block of a record. Logarithm of its error there; absent where rows
-  /// cover less than half of it.
-  std::optional<double> log_error(const identification::Record& record, storage::TimeRange block);
-  /// Outputs over a segment, from where the run is or, after a gap, anew. `changes` is the
-  /// record's, taken at the first gap.
+  /// cover less than half of it. `changes` is the record's, taken at the first gap.
+  std::optional<double> log_error(const identification::Record& record, storage::TimeRange block,
+                                  std::optional<identification::SquareChanges>& changes);
+  /// Outputs over a segment, from where the run is or, after a gap, anew.
   identification::Matrix run(const identification::Record& record,
                              const identification::Segment& segment,
                              std::optional<identification::SquareChanges>& changes);
@@ -56,7 +56,7 @@ class ChampionMonitor {
   const Checks checks_;
   std::int64_t version_ = 0;  // that is watched; 0 before the first
   EquipmentModel model_;
-  std::optional<KeptWindow> telemetry_;  // of as many blocks as the reference
+  std::optional<KeptWindow> telemetry_;  // of the newest blocks and of as many as the reference
   Duration block_ = 0;
   storage::Time next_ = 0;        // begin of the next block
   identification::Vector state_;  // of the run, at the tick state_tick_

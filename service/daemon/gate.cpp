@@ -166,12 +166,14 @@ bool gains_a_constant(const Evidence::Champion& champion, const EquipmentConfig&
 }
 
 /// Where the equipment has changed from one model to another, the new one errs on the past about as
-/// much as the old one errs now, and where it has changed by a constant, by that constant. So it
-/// does where the operation has changed for a while, but then rarely by the opposite constant.
+/// much as the old one errs now; where it has changed by a constant, the two differ on the past by
+/// the old one's mean error of now, and telemetry to come has to confirm it. Where the operation
+/// has changed for a while, the new one errs on the past by anything.
 bool explains(const Evidence::Champion& champion, const Evidence::Champion::Elsewhere& elsewhere,
               const EquipmentConfig& limits) {
   if (!has_run(champion)) return false;
-  return elsewhere.without_offset_percent <= limits.max_disagreement_percent ||
+  return (limits.confirmation > 0 &&
+          elsewhere.without_offset_percent <= limits.max_disagreement_percent) ||
          (!gains_a_constant(champion, limits) &&
           elsewhere.mrse_percent <= champion.comparison->rival_mrse_percent);
 }
@@ -185,10 +187,10 @@ Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentCon
     return std::nullopt;
   return GateDecision{
       Outcome::disagrees_with_champion,
-      fmt::format("Where the window of champion {} was and this one was not ({} samples), the two "
-                  "differ by {:.1f} % of the output's range, above the limit of {:g} %, and the "
-                  "champion is nearer to the telemetry of that time.",
-                  champion.version, elsewhere.rows, elsewhere.disagreement_percent,
+      fmt::format("On {} samples of the window of champion {}, with inputs that this one was not "
+                  "identified with, the two differ by {:.1f} % of the output's range, above the "
+                  "limit of {:g} %, and the champion is nearer to the telemetry of that time.",
+                  elsewhere.rows, champion.version, elsewhere.disagreement_percent,
                   limits.max_disagreement_percent)};
 }
 

@@ -75,17 +75,19 @@ struct Evidence {
     std::int64_t version = 0;
     storage::Time window_end = 0;
     std::optional<Comparison> comparison;  // absent: it cannot run on these samples
-    /// Where the champion was validated and the candidate's window was not; all over the champion's
-    /// window, where what the candidate gains may be a constant alone.
+    /// Samples of the champion's window with inputs that the candidate was not identified with: of
+    /// its validation part, or of all of it where what the candidate gains may be a constant alone.
     struct Elsewhere {
       std::int64_t rows = 0;
       double disagreement_percent = 0;  // rms between the two, of the output's range
-      /// The same with the champion's mean error on the candidate's samples taken from it.
+      /// The same with the champion's mean error on the candidate's validation part added to its
+      /// outputs, where that brings them nearer.
       double without_offset_percent = 0;
       double mrse_percent = 0;  // the candidate's there
       double champion_mrse_percent = 0;
     };
-    std::optional<Elsewhere> elsewhere;  // absent: there is no such place
+    /// Absent: there is no such place, or the candidate is not better by the margin.
+    std::optional<Elsewhere> elsewhere;
     /// The comparison with the champion's mean error on these samples taken from it.
     std::optional<Comparison> without_offset{};
     /// Parameters whose sensors could show that mean error, and which no relation binds.

@@ -72,7 +72,7 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
                   (request.window.end - request.window.begin) / request.equipment.sample_period);
   evidence.window_end = request.window.end;
   evidence.mean = against_mean(prepared, confidence);
-  evidence.champion = against_champion(archive, registry, prepared, confidence);
+  evidence.champion = against_champion(archive, registry, prepared, request.equipment);
   evidence.baseline = against_simulator(archive, prepared, confidence);
   if (const auto hold = registry.hold(request.spacecraft, request.equipment.name))
     evidence.hold = Evidence::Hold{hold->actor, hold->reason};

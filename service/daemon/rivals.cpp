@@ -60,22 +60,18 @@ double rms_percent(const Matrix& differences, Index column, double range) {
   return rms == 0 ? 0 : 100 * rms / range;
 }
 
-/// The two runs where the champion was validated, or all over its window, with inputs that the
-/// candidate's does not hold. Absent where there are too few such samples to tell, or no telemetry
-/// of then. `offset` is the champion's mean error in the candidate's window.
+/// The two runs on the samples in `stretch` with inputs that the candidate's window does not hold.
+/// Absent where there are too few such samples to tell, or no telemetry of then. `offset` is the
+/// champion's mean error where the candidate was validated.
 std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
                                                        const EquipmentModel& champion,
                                                        const PreparedWindow& prepared,
                                                        const identification::Vector& offset,
-                                                       bool all_over_its_window) {
+                                                       storage::TimeRange stretch) {
   constexpr std::size_t least_rows = 30;
   const EquipmentModel& candidate = prepared.candidate->model;
-  if (!reaches_beyond(champion.inputs, candidate.inputs)) return std::nullopt;
-  const storage::TimeRange& validated = champion.validated_on;
-  const storage::Time begin =
-      all_over_its_window ? champion.identified_from.begin : validated.begin;
-  const auto there = run_both(archive, candidate, champion, prepared.loaded, prepared.checks,
-                              {begin, validated.end});
+  const auto there =
+      run_both(archive, candidate, champion, prepared.loaded, prepared.checks, stretch);
   if (!there) return std::nullopt;
   const auto& [record, both] = *there;
   const std::vector<Index> outside = rows_outside(record.u, candidate.inputs);
@@ -94,12 +90,29 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
   const Matrix apart_but_for_offset = apart.rowwise() - offset.transpose();
   for (Index q = 0; q < y.cols(); ++q) {
     const double range = record.y.col(q).maxCoeff() - record.y.col(q).minCoeff();
-    result.disagreement_percent =
-        std::max(result.disagreement_percent, rms_percent(apart, q, range));
+    const double disagreement = rms_percent(apart, q, range);
+    result.disagreement_percent = std::max(result.disagreement_percent, disagreement);
     result.without_offset_percent =
-        std::max(result.without_offset_percent, rms_percent(apart_but_for_offset, q, range));
+        std::max(result.without_offset_percent,
+                 std::min(disagreement, rms_percent(apart_but_for_offset, q, range)));
   }
   return result;
+}
+
+/// Where the champion was validated, or all over its window, whichever they differ more in.
+std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
+                                                       const EquipmentModel& champion,
+                                                       const PreparedWindow& prepared,
+                                                       const identification::Vector& offset,
+                                                       bool all_over_its_window) {
+  if (!reaches_beyond(champion.inputs, prepared.candidate->model.inputs)) return std::nullopt;
+  const storage::TimeRange validated = champion.validated_on;
+  const auto there = elsewhere(archive, champion, prepared, offset, validated);
+  if (!all_over_its_window) return there;
+  const auto anywhere = elsewhere(archive, champion, prepared, offset,
+                                  {champion.identified_from.begin, validated.end});
+  if (!there || !anywhere) return there ? there : anywhere;
+  return anywhere->disagreement_percent > there->disagreement_percent ? anywhere : there;
 }
 
 /// Of an input's range: a bias of its sensor that no limit would show.
@@ -178,7 +191,7 @@ std::optional<Evidence::Comparison> against_simulator(const storage::Archive& ar
 std::optional<Evidence::Champion> against_champion(const storage::Archive& archive,
                                                    const storage::Registry& registry,
                                                    const PreparedWindow& prepared,
-                                                   double confidence_percent) {
+                                                   const EquipmentConfig& limits) {
   const EquipmentModel& candidate = prepared.candidate->model;
   const auto version = registry.champion(candidate.spacecraft, candidate.equipment);
   if (!version) return std::nullopt;
@@ -198,8 +211,8 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
       identification::Vector::Zero(static_cast<Index>(champion.outputs.size()));
   if (const auto run = run_beside(archive, champion, prepared.loaded, prepared.data.record,
                                   prepared.attempt.window)) {
-    evidence.comparison = against_run(prepared, *run, confidence_percent);
-    evidence.without_offset = against_run(prepared, *run, confidence_percent, &offset);
+    evidence.comparison = against_run(prepared, *run, limits.confidence_percent);
+    evidence.without_offset = against_run(prepared, *run, limits.confidence_percent, &offset);
     if (evidence.without_offset)
       evidence.unbound = unbound_of(champion, prepared.data.plausibility, offset);
   }
@@ -207,10 +220,10 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
       !is_left_behind(evidence.comparison->rival_mrse_percent, evidence.validated_mrse_percent))
     if (const auto runs = runs_where_validated(archive, champion, candidate, prepared.checks,
                                                prepared.attempt.window.begin))
-      evidence.where_validated = compare(*runs, confidence_percent, Course::steady);
+      evidence.where_validated = compare(*runs, limits.confidence_percent, Course::steady);
   const bool may_gain_a_constant_alone =
       evidence.without_offset && !(evidence.without_offset->sure_percent > 0.0);
-  if (!evidence.comparison || evidence.comparison->reduction_percent > 0)
+  if (!evidence.comparison || !(evidence.comparison->reduction_percent <= limits.margin_percent))
     evidence.elsewhere = elsewhere(archive, champion, prepared, offset, may_gain_a_constant_alone);
   return evidence;
 }

@@ -30,6 +30,6 @@ std::optional<Evidence::Comparison> against_simulator(const storage::Archive& ar
 std::optional<Evidence::Champion> against_champion(const storage::Archive& archive,
                                                    const storage::Registry& registry,
                                                    const PreparedWindow& prepared,
-                                                   double confidence_percent);
+                                                   const EquipmentConfig& limits);
 
 }  // namespace reident

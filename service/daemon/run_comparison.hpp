@@ -41,7 +41,8 @@ PairedRuns paired(const identification::Record& record, identification::RowRange
                   const identification::Matrix& candidate, const Run& rival);
 
 /// The free runs of both on what is believed of the telemetry in `range`, for which `request` asks
-/// as the candidate does. Absent where a parameter of either is not described.
+/// as the candidate does (the rival's on all of its own, where it asks otherwise). Absent where a
+/// parameter of either is not described.
 struct RunsOfBoth {
   identification::Record record;  // the candidate's
   PairedRuns runs;

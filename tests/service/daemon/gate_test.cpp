@@ -274,11 +274,18 @@ const Case where_the_champion_was_validated[] = {
      },
      Outcome::disagrees_with_champion},
     {"DisagreesElsewhereByTheConstantThatItGains",
+     [](auto& e, auto& c) {
+       e.champion->elsewhere = {100, 50, 10, 8.1, 5};
+       e.champion->without_offset = Evidence::Comparison{500, 5, 5.2, 3.8, 1.66};
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"DisagreesElsewhereByTheConstantThatItGainsWithoutProbation",
      [](auto& e, auto&) {
        e.champion->elsewhere = {100, 50, 10, 8.1, 5};
        e.champion->without_offset = Evidence::Comparison{500, 5, 5.2, 3.8, 1.66};
      },
-     Outcome::approved},
+     Outcome::disagrees_with_champion},
     {"AgreesElsewhere",
      [](auto& e, auto&) {
        e.champion->elsewhere = {100, 10, 20, 6, 5};

@@ -109,7 +109,9 @@ TEST_F(Rivals, AChangeByAConstantMakesTheCandidateErrOnThePastByThatConstant) {
   archive.append(telemetry(day, 601));
   record(run(day + 10 * minute));
   operate(day + 20 * minute, 601, {.u = 0.5, .v = 0.5, .offset = 1});
-  const RefreshResult result = run(day + 30 * minute);
+  EquipmentConfig equipment = plant();
+  equipment.confirmation = equipment.slide;
+  const RefreshResult result = run(day + 30 * minute, equipment);
   ASSERT_TRUE(result.evidence.champion && result.evidence.champion->elsewhere)
       << result.attempt.reason;
   EXPECT_GT(result.evidence.champion->elsewhere->disagreement_percent, 30);
