@@ -30,20 +30,14 @@ using storage::NewDecision;
 /// tests/trust were approved that erred more afterwards.)
 constexpr std::array look_quarters = {8, 4, 3};
 
-struct LookTime {
-  storage::Time until = 0;  // how far the telemetry is looked at
-  bool is_overdue = false;
-};
-
 /// The newest look that telemetry until `reached` allows, where none until `since` did.
-std::optional<LookTime> look_time(const storage::Version& version, const EquipmentConfig& equipment,
-                                  storage::Time since, storage::Time reached) {
-  const storage::Time confirmed = version.window.end + equipment.confirmation;
+std::optional<storage::Time> look_time(const storage::Version& version,
+                                       const EquipmentConfig& equipment, storage::Time since,
+                                       storage::Time reached) {
   for (const int quarters : look_quarters) {
     const storage::Time time = version.window.end + equipment.confirmation * quarters / 4;
     if (time <= since) return std::nullopt;
-    if (time <= reached)
-      return LookTime{std::min(time, confirmed), quarters == look_quarters.front()};
+    if (time <= reached) return time;
   }
   return std::nullopt;
 }
@@ -102,9 +96,9 @@ bool needs_vouching(const storage::Registry& registry, const storage::Version& v
 std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::TimeRange window,
                                       const EquipmentModel& model, const EquipmentModel& incumbent,
                                       const EquipmentConfig& equipment, bool needs_vouching,
-                                      const LookTime& time) {
+                                      storage::Time until) {
   LongerLook look;
-  look.until = time.until;
+  look.until = until;
   const storage::TimeRange range{window.begin, look.until};
   const WindowRequest request = request_of(model);
   const auto loaded = KeptWindow(request, 1, checks_of(equipment)).load(archive, range);
@@ -127,9 +121,8 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
   if (!after.rows.empty())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
-  look.is_last =
-      time.is_overdue || (look.until == window.end + equipment.confirmation &&
-                          static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks);
+  look.is_last = until >= window.end + equipment.confirmation &&
+                 static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks;
   if (look.comparison.rival_mrse_percent < look.champion_validated_mrse_percent)
     if (const auto past =
             runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
@@ -176,12 +169,21 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
     if (!same_outputs(model, incumbent))
       return rejection(fmt::format("champion {} has other outputs.", champion->number));
     const bool vouching = needs_vouching(registry, version, equipment);
-    auto look = longer_look(archive, version.window, model, incumbent, equipment, vouching, *time);
+    const auto until = [&](storage::Time end) {
+      return longer_look(archive, version.window, model, incumbent, equipment, vouching, end);
+    };
+    const storage::Time confirmed = version.window.end + equipment.confirmation;
+    const bool is_overdue = *time > confirmed;
+    auto look = until(std::min(*time, confirmed));
+    if (is_overdue && !(look && look->is_last)) {
+      look = until(*time);
+      if (look) look->is_last = true;
+    }
     if (look) {
       look->champion = champion->number;
       return judge_probation(*look, equipment);
     }
-    if (!time->is_overdue) return std::nullopt;
+    if (!is_overdue) return std::nullopt;
     return rejection("no telemetry to judge it by is left.");
   } catch (const std::invalid_argument&) {
     return rejection("its model or the champion's is damaged in the registry.");

@@ -59,11 +59,12 @@ using RecordProbation = std::function<bool(const storage::Standing&, const Proba
 
 /// Looks at the equipment's versions on probation with telemetry until `reached`, that of the
 /// newest window first: when it has gone on for three quarters and all of `confirmation`
-/// behind the version's window. Where less than `min_coverage` of it has come by then, the last
-/// look waits as long again. Looks that telemetry until `since` allowed are not repeated. A version
-/// whose window is older than the champion's, or less than `min_interval` newer, is rejected, and
-/// one of which no telemetry is left. Nothing is decided while an operator holds the equipment or
-/// decides on his own, nor from telemetry that is damaged.
+/// behind the version's window. Where less than `min_coverage` of it has come by then and is
+/// believed, the last look waits as long again and takes in what came meanwhile. Looks that
+/// telemetry until `since` allowed are not repeated. A version whose window is older than the
+/// champion's, or less than `min_interval` newer, is rejected, and one of which no telemetry is
+/// left. Nothing is decided while an operator holds the equipment or decides on his own, nor from
+/// telemetry that is damaged.
 void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
                        const std::string& spacecraft, const EquipmentConfig& equipment,
                        storage::Time since, storage::Time reached, const RecordProbation& record);

@@ -235,6 +235,20 @@ TEST_F(Probation, WaitsAsLongAgainForTelemetryThatDidNotCome) {
   EXPECT_EQ(status(2), "rejected");
 }
 
+TEST_F(Probation, IsDecidedByWhatComesLaterWhereTooLittleCame) {
+  const auto frames = telemetry(day + 10 * minute, 1201, 2);
+  archive.append({frames.begin(), frames.begin() + 602});
+  archive.append({frames.begin() + 840, frames.end()});  // four minutes are lost
+  EquipmentConfig brief = equipment;
+  brief.hold = second;  // nothing is held into the hole
+  make_version_of(brief, window_end, "on_probation", DecisionKind::wait);
+  const auto found = look(window_end + 10 * minute);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(status(2), "approved") << found[0].decision.reason;
+  EXPECT_EQ(nlohmann::json::parse(found[0].decision.evidence_json)["until_ns"],
+            window_end + 10 * minute);
+}
+
 TEST_F(Probation, LooksNoFurtherThanTheConfirmation) {
   change_plant(2);
   const auto found = look(window_end + 60 * minute);
