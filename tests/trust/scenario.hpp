@@ -38,8 +38,10 @@ struct LifeGroup {
 /// much as the spacecraft's.
 inline constexpr Duration simulator_sends = 12 * 86'400'000'000'000;
 
-/// All of the suite, for the equipment of its configuration.
-std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft);
+/// All of the suite, for the equipment of its configuration. With `draw` above 0 the plans of its
+/// tuned half, numbered as there, with other seeds, dates and times: rules that are made on few
+/// lives fit these, and others tell.
+std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw = 0);
 
 /// Those that go over real DDS too: every 71st, so that lives and lies are different ones and two
 /// are tuned and three held out.

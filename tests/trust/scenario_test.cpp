@@ -36,6 +36,23 @@ TEST(Scenarios, HaveEveryLifeAndEveryLieInBothHalves) {
   }
 }
 
+TEST(Scenarios, OfAnotherDrawAreThoseOfTheTunedHalfAtOtherTimes) {
+  const SpacecraftConfig spacecraft = suite_config().spacecraft.front();
+  const auto suite = all_groups(spacecraft), drawn = all_groups(spacecraft, 3);
+  std::set<std::uint64_t> seeds;
+  for (const LifeGroup& group : suite) seeds.insert(group.seed);
+  ASSERT_EQ(2 * drawn.size(), suite.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    EXPECT_EQ(drawn[i].half(), Half::tuned);
+    EXPECT_FALSE(seeds.contains(drawn[i].seed));
+    EXPECT_EQ(drawn[i].life, suite[i].life);
+    EXPECT_EQ(drawn[i].scenarios.front().number, suite[i].scenarios.front().number);
+    if (!drawn[i].events.empty()) {
+      EXPECT_NE(drawn[i].events.front().begin, suite[i].events.front().begin);
+    }
+  }
+}
+
 TEST(Scenarios, CanHappen) {
   const auto descriptors = satcs::reference::telemetry_descriptors("REFERENCE");
   for (const LifeGroup& group : all_groups(suite_config().spacecraft.front())) {

@@ -35,6 +35,7 @@ struct Options {
   std::string month;      // a file
   std::string dds;        // a file
   std::string databases;  // a folder
+  std::uint64_t draw = 0;
   unsigned jobs = 2;
 };
 
@@ -54,7 +55,7 @@ bool is_wanted(const LifeGroup& group, int first_number, const Scenario& scenari
 }
 
 std::vector<LifeGroup> wanted_groups(const Config& config, const Options& options) {
-  std::vector<LifeGroup> groups = all_groups(config.spacecraft.front());
+  std::vector<LifeGroup> groups = all_groups(config.spacecraft.front(), options.draw);
   const auto& numbers = options.scenarios;
   if (std::find(numbers.begin(), numbers.end(), 0) != numbers.end())
     groups.insert(groups.begin(), short_group());
@@ -137,6 +138,8 @@ int main(int argc, char** argv) {
   app.add_option(
       "--scenario", options.scenarios,
       "run these scenarios alone, by number; 0 is a short one that is no part of the suite");
+  app.add_option("--draw", options.draw,
+                 "run the tuned half's plans with other seeds, dates and times: none of the suite");
   app.add_option("--half", options.half, "run the tuned or the held-out half alone")
       ->check(CLI::IsMember({"tuned", "held-out"}));
   app.add_option("--life", options.life, "run the scenarios of this life alone");
