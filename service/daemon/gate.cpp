@@ -167,8 +167,8 @@ bool gains_a_constant(const Evidence::Champion& champion, const EquipmentConfig&
 
 /// Where the equipment has changed from one model to another, the new one errs on the past about as
 /// much as the old one errs now; where it has changed by a constant, the two differ on the past by
-/// the old one's mean error of now (by chance too: what gains that constant alone waits, below).
-/// Where the operation has changed for a while, the new one errs on the past by anything.
+/// the old one's mean error of now. Where the operation has changed for a while, the new one errs
+/// on the past by anything, so by that too: what gains a constant alone goes on probation.
 bool explains(const Evidence::Champion& champion, const Evidence::Champion::Elsewhere& elsewhere,
               const EquipmentConfig& limits) {
   if (!has_run(champion)) return false;

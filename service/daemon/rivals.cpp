@@ -60,7 +60,7 @@ double rms_percent(const Matrix& differences, Index column, double range) {
   return rms == 0 ? 0 : 100 * rms / range;
 }
 
-/// The two runs on the samples in `stretch` with inputs that the candidate's window does not hold.
+/// The two runs on the samples in `stretch` with inputs that the candidate was not identified with.
 /// Absent where there are too few such samples to tell, or no telemetry of then. `offset` is the
 /// champion's mean error where the candidate was validated.
 std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
