@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "identification/for_each.hpp"
 #include "identification/held_out.hpp"
 #include "identification/lag_sums.hpp"
 #include "identification/normalise.hpp"
@@ -49,11 +50,6 @@ struct SearchSpace {
   std::vector<ResponseFit> fits;  // either or both
   Stability stability = Stability::as_found;
 };
-
-/// Runs task(0), ..., task(count - 1) in any order, on as many threads as it likes, and returns
-/// when all are done.
-using ForEach =
-    std::function<void(std::size_t count, const std::function<void(std::size_t)>& task)>;
 
 /// What the search works on. `sums` are of the rows that each fold fits.
 struct SearchData {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 namespace reident::identification {
 namespace {
@@ -51,11 +52,17 @@ class Search {
     plain_ = score(y_hat);
   }
 
-  CorrectionSearch result() {
+  CorrectionSearch result(const ForEach& for_each) {
     CorrectionSearch search{plain_, {}};
     if (model_.order() == 0 || model_.inputs() == 0) return search;
-    for (int step = -scales_per_decade; step <= scales_per_decade; ++step)
-      try_scale(std::pow(10, double(step) / scales_per_decade), search.best);
+    std::vector<std::optional<Correction>> of_scales(2 * scales_per_decade + 1);
+    for_each(of_scales.size(), [&](std::size_t i) {
+      const int step = static_cast<int>(i) - scales_per_decade;
+      try_scale(std::pow(10, double(step) / scales_per_decade), of_scales[i]);
+    });
+    for (auto& found : of_scales)
+      if (found && (!search.best || found->error.mrse() < search.best->error.mrse()))
+        search.best = std::move(found);
     if (!search.best) return search;
     search.best->error = score(run(search.best->model));  // its initial state follows y0
     if (!(search.best->error.mrse() < worthwhile * plain_.mrse())) search.best.reset();
@@ -150,11 +157,11 @@ std::optional<Matrix> static_gain(const StateSpaceModel& model) {
 }
 
 CorrectionSearch search_correction(const StateSpaceModel& model, const Record& record,
-                                   RowRange identify, RowRange tune) {
+                                   RowRange identify, RowRange tune, const ForEach& for_each) {
   eigen_assert(is_well_formed(model) && is_stable(model.A));
   eigen_assert(0 <= identify.begin && identify.begin < identify.end);
   eigen_assert(identify.end <= tune.begin && tune.begin < tune.end && tune.end <= record.rows());
-  return Search(model, record, identify, tune).result();
+  return Search(model, record, identify, tune).result(for_each);
 }
 
 }  // namespace reident::identification

@@ -15,6 +15,7 @@
 #include <complex>
 #include <optional>
 
+#include "identification/for_each.hpp"
 #include "identification/pole_placement.hpp"
 #include "identification/record.hpp"
 #include "identification/simulate.hpp"
@@ -54,8 +55,10 @@ struct CorrectionSearch {
 /// rows looked at on: at most the last 20,000 of `identify` and the first 20,000 of `tune`, which
 /// follow `identify`. y0 moves by as much as the mean residual over the `identify` rows moved, so
 /// that the operating point found there stays.
+/// The result does not depend on `for_each`.
 /// Requires a stable, well-formed model, finite rows, and neither range empty.
 CorrectionSearch search_correction(const StateSpaceModel& model, const Record& record,
-                                   RowRange identify, RowRange tune);
+                                   RowRange identify, RowRange tune,
+                                   const ForEach& for_each = in_sequence);
 
 }  // namespace reident::identification

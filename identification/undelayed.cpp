@@ -17,10 +17,6 @@
 namespace reident::identification {
 namespace {
 
-void in_sequence(std::size_t count, const std::function<void(std::size_t)>& task) {
-  for (std::size_t i = 0; i < count; ++i) task(i);
-}
-
 /// One call of identify(): the steps in their order, each of which may end it with a verdict.
 class Identification {
  public:

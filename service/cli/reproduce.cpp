@@ -11,6 +11,7 @@
 #include "service/support/parallel.hpp"
 #include "service/support/version.hpp"
 #include "storage/archive.hpp"
+#include "storage/registry.hpp"
 
 namespace reident::cli {
 namespace {
@@ -85,7 +86,8 @@ int run(const Arguments& arguments) {
       workers.for_each(count, task);
     };
     try {
-      const Reproduction again = reproduce(storage::Archive(database), story.version, on_all_cores);
+      const Reproduction again = reproduce(storage::Archive(database), storage::Registry(database),
+                                           story.version, on_all_cores);
       print(story, again, arguments.json);
       return static_cast<int>(again.same_model ? exit_done : exit_no_model);
     } catch (const std::invalid_argument& error) {

@@ -46,10 +46,16 @@ void window_sentences(const Story& story, const ordered_json& evidence, Sentence
                                   duration_text(window.end - window.begin), story.attempt.trigger));
   if (member(evidence, "rows_tuned"))
     sentences.push_back(fmt::format(
-        "{} rows identified the model, the next {} chose its order and poles, and {} that neither "
+        "{} rows identified a model, the next {} chose its order and poles, and {} that neither "
         "had seen judged it.",
         figure(evidence, "rows_identified"), figure(evidence, "rows_tuned"),
         figure(evidence, "rows_validated")));
+  if (const ordered_json* adapted = member(evidence, "adapted"))
+    sentences.push_back(fmt::format(
+        "The model identified anew errs by {} % there, and version {} adapted to the window (A and "
+        "C stay) by {} %: the better one went to the gate, with a confidence for two.",
+        figure(*adapted, "identified_mrse_percent"), figure(*adapted, "version"),
+        figure(*adapted, "mrse_percent")));
   sentences.push_back(fmt::format("It is of order {} ({}); its poles are {}.",
                                   story.model.dynamics.order(), story.model.method,
                                   poles_text(story.model.dynamics)));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "identification/adaptation.hpp"
 #include "identification/correction.hpp"
 #include "identification/tracking_search.hpp"
 #include "service/daemon/gate.hpp"
@@ -18,15 +19,6 @@ using identification::Identified;
 using identification::Matrix;
 using identification::RowRange;
 using nlohmann::ordered_json;
-
-std::vector<Signal> with_ranges(std::vector<Signal> signals, const Matrix& samples) {
-  for (std::size_t i = 0; i < signals.size(); ++i) {
-    const auto column = samples.col(static_cast<Eigen::Index>(i));
-    signals[i].low = column.minCoeff();
-    signals[i].high = column.maxCoeff();
-  }
-  return signals;
-}
 
 storage::TimeRange time_range(const identification::Record& record, RowRange rows,
                               Duration period) {
@@ -44,45 +36,49 @@ std::string method_text(const identification::Recipe& recipe) {
   return text;
 }
 
-/// The identified model, or that with its poles moved where it errs less on the rows for choices.
 struct ChosenModel {
   identification::StateSpaceModel dynamics;
-  identification::Vector x0;
   std::string method;
-  ordered_json pole_placement;
 };
 
-void place(const identification::Correction& best, const identification::Record& record,
-           ChosenModel& chosen) {
-  chosen.dynamics = best.model;
-  chosen.x0 = estimate_initial_state(best.model, record, record.segments.front(),
-                                     identification::state_rows);
-  chosen.method += fmt::format(", poles placed at scale {:.3g}{}", best.scale,
-                               best.keeps_static_gain ? ", static gain kept" : "");
-  chosen.pole_placement["tune_mrse_percent"] = best.error.mrse();
-  chosen.pole_placement["scale"] = best.scale;
-  chosen.pole_placement["keeps_static_gain"] = best.keeps_static_gain;
-  chosen.pole_placement["uncontrollable_poles"] = best.uncontrollable.size();
-}
-
+/// The identified model, or that with its poles moved where it errs less on the rows for choices;
+/// then with B, D and y0 fitted to these rows too.
 ChosenModel corrected(const identification::Record& record, const Identified& identified,
-                      const WindowParts& parts) {
-  ChosenModel chosen{identified.model, identified.x0, method_text(identified.recipe), {}};
-  const auto search = search_correction(identified.model, record, parts.identify, parts.tune);
-  chosen.pole_placement = {{"plain_tune_mrse_percent", search.plain.mrse()}};
-  if (search.best) place(*search.best, record, chosen);
+                      const WindowParts& parts, const identification::ForEach& for_each,
+                      ordered_json& pole_placement) {
+  ChosenModel chosen{identified.model, method_text(identified.recipe)};
+  const auto search = search_correction(identified.model, record, parts.identify, parts.tune,
+                                        for_each ? for_each : identification::in_sequence);
+  pole_placement = {{"plain_tune_mrse_percent", search.plain.mrse()}};
+  if (const auto& best = search.best) {
+    chosen.dynamics = best->model;
+    chosen.method += fmt::format(", poles placed at scale {:.3g}{}", best->scale,
+                                 best->keeps_static_gain ? ", static gain kept" : "");
+    pole_placement["tune_mrse_percent"] = best->error.mrse();
+    pole_placement["scale"] = best->scale;
+    pole_placement["keeps_static_gain"] = best->keeps_static_gain;
+    pole_placement["uncontrollable_poles"] = best->uncontrollable.size();
+  }
+  chosen.dynamics = adapted(chosen.dynamics, record, parts.fitted());
   return chosen;
 }
 
 Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
                        const ChosenModel& chosen, const WindowParts& parts) {
   const Duration period = request.equipment.sample_period;
-  Candidate candidate{.model = {}, .parts = parts, .x0 = chosen.x0, .y_hat = {}, .tuned_on = {}};
+  Candidate candidate{
+      .model = {},
+      .parts = parts,
+      .x0 = estimate_initial_state(chosen.dynamics, data.record, data.record.segments.front(),
+                                   identification::state_rows),
+      .y_hat = {},
+      .tuned_on = {},
+      .adapted_from = {}};
   EquipmentModel& model = candidate.model;
   model.spacecraft = request.spacecraft;
   model.equipment = request.equipment.name;
   const auto fitted = [&](const Matrix& samples) {
-    return samples.middleRows(parts.identify.begin, parts.identify.size());
+    return samples.middleRows(parts.fitted().begin, parts.fitted().size());
   };
   model.inputs = with_ranges(data.inputs, fitted(data.record.u));
   model.outputs = with_ranges(data.outputs, fitted(data.record.y));
@@ -92,7 +88,7 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   model.validated_on = time_range(data.record, parts.validate, period);
   model.method = chosen.method;
   candidate.tuned_on = time_range(data.record, parts.tune, period);
-  candidate.y_hat = free_run(chosen.dynamics, data.record, data.record.all(), chosen.x0);
+  candidate.y_hat = free_run(chosen.dynamics, data.record, data.record.all(), candidate.x0);
   const auto validation = [&](const Matrix& samples) -> Matrix {
     return samples.middleRows(parts.validate.begin, parts.validate.size());
   };
@@ -100,27 +96,13 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   return candidate;
 }
 
-void describe(const Identified& identified, const ChosenModel& chosen, PreparedWindow& prepared) {
-  const Candidate& candidate = *prepared.candidate;
-  const EquipmentModel& model = candidate.model;
-  ordered_json& json = prepared.evidence;
-  json["order"] = model.dynamics.order();
+void describe_search(const Identified& identified, ordered_json& json) {
   json["horizon"] = identified.recipe.horizon;
   json["weighting"] = name(identified.recipe.weighting);
-  json["spectral_radius"] = spectral_radius(model.dynamics);
-  json["pole_placement"] = chosen.pole_placement;
-  json["mrse_percent"] = model.validation.mrse();
-  json["fit_percent"] = model.validation.fit();
-  json["per_output"] = {{"mrse_percent", to_json(model.validation.mrse_percent)},
-                        {"fit_percent", to_json(model.validation.fit_percent)}};
   json["tune_error"] = identified.held_out_error.value_or(0);
   json["hankel_condition"] = identified.hankel_condition;
   json["singular_values"] = to_json(identified.singular_values);
   json["search_work"] = identified.search_work;
-  json["diagnostics"] =
-      to_json(diagnose(model.dynamics, prepared.data.record, prepared.data.record.all(),
-                       candidate.parts.validate, chosen.x0),
-              signal_names(model.inputs), signal_names(model.outputs));
   json["warnings"] = identified.warnings;
 }
 
@@ -172,13 +154,43 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
     return refuse(prepared, name(verdict->code), verdict->reason);
   prepared.timer.begin("correct");
   const auto& identified = std::get<Identified>(result);
-  const ChosenModel chosen = corrected(data.record, identified, parts);
+  describe_search(identified, prepared.evidence);
+  const ChosenModel chosen =
+      corrected(data.record, identified, parts, for_each, prepared.evidence["pole_placement"]);
   prepared.timer.begin("score");
   prepared.candidate = candidate_of(request, data, chosen, parts);
-  describe(identified, chosen, prepared);
 }
 
 }  // namespace
+
+std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
+                                           const EquipmentModel& known, std::int64_t number,
+                                           const PreparedWindow& prepared) {
+  if (!prepared.candidate || !(request_of(known) == prepared.loaded)) return std::nullopt;
+  const WindowParts& parts = prepared.candidate->parts;
+  Candidate candidate = candidate_of(request, prepared.data,
+                                     {adapted(known.dynamics, prepared.data.record, parts.fitted()),
+                                      fmt::format("A and C of version {}", number)},
+                                     parts);
+  candidate.adapted_from = number;
+  return candidate;
+}
+
+void describe_candidate(PreparedWindow& prepared) {
+  const Candidate& candidate = *prepared.candidate;
+  const EquipmentModel& model = candidate.model;
+  ordered_json& json = prepared.evidence;
+  json["order"] = model.dynamics.order();
+  json["spectral_radius"] = spectral_radius(model.dynamics);
+  json["mrse_percent"] = model.validation.mrse();
+  json["fit_percent"] = model.validation.fit();
+  json["per_output"] = {{"mrse_percent", to_json(model.validation.mrse_percent)},
+                        {"fit_percent", to_json(model.validation.fit_percent)}};
+  json["diagnostics"] =
+      to_json(diagnose(model.dynamics, prepared.data.record, prepared.data.record.all(),
+                       candidate.parts.validate, candidate.x0),
+              signal_names(model.inputs), signal_names(model.outputs));
+}
 
 void let_follow(PreparedWindow& prepared) {
   const identification::Record& record = prepared.data.record;

@@ -1,5 +1,5 @@
-// From a window to a candidate: load, identify, correct, score. The registry is not looked at, so
-// that windows can be worked on in any order and side by side.
+// From a window to a candidate: load, identify, correct, fit, score. The registry is not looked at,
+// so that windows can be worked on in any order and side by side.
 //
 // The same archive, configuration and window give the same candidate to the last bit, timings
 // aside, whatever was kept of earlier windows.
@@ -30,9 +30,10 @@ struct RefreshRequest {
   std::string configuration_digest;
 };
 
-/// The rows of a window, in the order of time: fitted to, chosen by, judged by.
+/// The rows of a window, in the order of time: identified from, chosen by, judged by.
 struct WindowParts {
   identification::RowRange identify, tune, validate;
+  identification::RowRange fitted() const { return {identify.begin, tune.end}; }
 };
 
 WindowParts parts_of(identification::Index rows, const EquipmentConfig& equipment);
@@ -43,6 +44,7 @@ struct Candidate {
   identification::Vector x0;     // at the window's first row
   identification::Matrix y_hat;  // free run over all rows of the window
   storage::TimeRange tuned_on;
+  std::optional<std::int64_t> adapted_from;  // the version whose poles it has
 };
 
 struct PreparedWindow {
@@ -60,6 +62,15 @@ void refuse_damaged(PreparedWindow& prepared, const storage::Error& error);
 
 /// Thrown when `stop` answered true; nothing was decided.
 class Stopped : public std::exception {};
+
+/// `known` made to fit the window (identification/adaptation.hpp): version `number` of the
+/// equipment. Absent where the window gave no candidate, or `known` looks at other telemetry.
+std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
+                                           const EquipmentModel& known, std::int64_t number,
+                                           const PreparedWindow& prepared);
+
+/// Adds what is to be said of the window's candidate to its evidence.
+void describe_candidate(PreparedWindow& prepared);
 
 /// Searches the gain with which the candidate follows telemetry, by integral feedback, and scores
 /// it. Apart from prepare_window: most candidates are turned away, and this would take a quarter of

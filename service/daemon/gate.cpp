@@ -27,6 +27,10 @@ constexpr double slowest_limit = 1.0;
 /// Honest telemetry has at most 1 find in 1000 ticks (tests/trust).
 constexpr double fault_limit = 1.0 / 400;
 
+/// Without its payload a spacecraft moves the inputs of its equipment over three quarters of what
+/// it else does, in safe mode over six tenths (tests/trust).
+constexpr double least_movement = 2.0 / 3;
+
 constexpr std::array names{
     std::pair{Outcome::approved, std::string_view("approved")},
     std::pair{Outcome::waiting, std::string_view("waiting")},
@@ -188,7 +192,7 @@ Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentCon
   return GateDecision{
       Outcome::disagrees_with_champion,
       fmt::format("On {} samples of the window of champion {}, with inputs that this one was not "
-                  "identified with, the two differ by {:.1f} % of the output's range, above the "
+                  "validated with, the two differ by {:.1f} % of the output's range, above the "
                   "limit of {:g} %, and the champion is nearer to the telemetry of that time.",
                   elsewhere.rows, champion.version, elsewhere.disagreement_percent,
                   limits.max_disagreement_percent)};
@@ -287,6 +291,14 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
                         champion.without_offset->rival_mrse_percent,
                         sure_elsewhere * limits.margin_percent) +
             wait_of(limits)};
+  if (is_unusual(champion.movement))
+    return GateDecision{
+        Outcome::on_probation,
+        praise(e) +
+            fmt::format(" The inputs move over {:.0f} % of the ranges that the champion was "
+                        "identified in: the operation is not the usual one.",
+                        100 * champion.movement) +
+            wait_of(limits)};
   if (!is_left_behind(champion.comparison->rival_mrse_percent, champion.validated_mrse_percent) &&
       !(champion.where_validated && champion.where_validated->sure_percent > limits.margin_percent))
     return GateDecision{
@@ -307,6 +319,10 @@ std::string_view name(Outcome outcome) {
 
 bool is_in_doubt(double fault_share) {
   return fault_share > fault_limit;
+}
+
+bool is_unusual(double movement) {
+  return movement < least_movement;
 }
 
 bool is_left_behind(double mrse_percent, double validated_mrse_percent) {

@@ -44,7 +44,8 @@ enum class Outcome {
 };
 std::string_view name(Outcome outcome);
 
-/// Scores are free runs on the validation part, which nothing was chosen or fitted by.
+/// Scores are free runs on the validation part: nothing was fitted to it, and of two candidates at
+/// most one was chosen by it.
 struct Evidence {
   bool well_formed = false;  // sizes agree, all numbers finite
   double spectral_radius = 0;
@@ -75,7 +76,7 @@ struct Evidence {
     std::int64_t version = 0;
     storage::Time window_end = 0;
     std::optional<Comparison> comparison;  // absent: it cannot run on these samples
-    /// Samples of the champion's window with inputs that the candidate was not identified with: of
+    /// Samples of the champion's window with inputs that the candidate was not validated with: of
     /// its validation part, or of all of it where what the candidate gains may be a constant alone.
     struct Elsewhere {
       std::int64_t rows = 0;
@@ -93,6 +94,7 @@ struct Evidence {
     /// Parameters whose sensors could show that mean error, and which no relation binds.
     std::vector<std::string> unbound{};
     double validated_mrse_percent = 0;  // where it was validated; 0: not known
+    double movement = 1;                // of these samples (run_comparison.hpp)
     /// The comparison there, before the candidate's window. Looked at where the candidate is surely
     /// better and the champion was not left behind; absent where less than half is left.
     std::optional<Comparison> where_validated{};
@@ -118,6 +120,10 @@ constexpr double sure_elsewhere = 1.0 / 3;
 /// Whether so many faults of sensors were found, each once, over the ticks looked at, that those
 /// which are too small to be found are enough to spoil a comparison with the champion.
 bool is_in_doubt(double fault_share);
+
+/// Whether inputs that move over this share of the champion's ranges are those of an unusual
+/// operation, as a safe mode: what fits it may be far off in the usual one.
+bool is_unusual(double movement);
 
 /// Whether the champion errs so much more than where it was validated that a change of the
 /// equipment has left it behind: from one stretch of operation to another the error differs by

@@ -52,6 +52,7 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
       {"champion", look.champion},
       {"champion_validated_mrse_percent", look.champion_validated_mrse_percent},
       {"fault_share", look.fault_share},
+      {"movement", look.movement},
       {"comparison", to_json(look.comparison)},
       {"after_window", to_json(look.after)}};
   if (look.with_past) evidence["with_past"] = to_json(*look.with_past);
@@ -118,8 +119,11 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
   if (runs.rows.empty()) return std::nullopt;
   look.comparison = compare(runs, equipment.confidence_percent, Course::changing);
   const PairedRuns after = since(window.end);
-  if (!after.rows.empty())
+  if (!after.rows.empty()) {
+    if (request_of(incumbent) == request)
+      look.movement = movement(incumbent, record.u(after.rows, Eigen::all));
     look.after = compare(after, equipment.confidence_percent, Course::changing);
+  }
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
   look.is_last = until >= window.end + equipment.confirmation &&
                  static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks;
@@ -214,6 +218,11 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);
+    if (is_unusual(look.movement))
+      return fmt::format(
+          "after its window the inputs move over {:.0f} % of the ranges that the champion was "
+          "identified in: an unusual operation, which says little of the usual one.",
+          100 * look.movement);
     if (const auto& both = look.with_past;
         both && !(both->reduction_percent > limits.margin_percent))
       return fmt::format(

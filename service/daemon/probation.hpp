@@ -35,9 +35,10 @@ struct LongerLook {
   /// together. Looked at where the champion errs less now than there; absent where less than half
   /// of that is left.
   std::optional<Evidence::Comparison> with_past{};
-  /// The same with the champion's mean error taken from it, where a sensor that no relation binds
-  /// could show that error.
-  std::optional<Evidence::Comparison> without_offset;
+  /// `comparison` with the champion's mean error taken from it, where a sensor that no relation
+  /// binds could show that error.
+  std::optional<Evidence::Comparison> without_offset{};
+  double movement = 1;  // of what came after the window (run_comparison.hpp)
 };
 
 /// Approval or rejection; absent where more telemetry has to tell. Before the last look only a

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "service/model/model_json.hpp"
@@ -91,15 +92,18 @@ ordered_json to_json(RowRange rows, storage::TimeRange range) {
 
 ordered_json provenance_of(const RefreshRequest& request, const PreparedWindow& prepared) {
   const Candidate& candidate = *prepared.candidate;
-  return {{"spacecraft", request.spacecraft},
-          {"window", {{"begin_ns", request.window.begin}, {"end_ns", request.window.end}}},
-          {"parts",
-           {{"identify", to_json(candidate.parts.identify, candidate.model.identified_from)},
-            {"tune", to_json(candidate.parts.tune, candidate.tuned_on)},
-            {"validate", to_json(candidate.parts.validate, candidate.model.validated_on)}}},
-          {"equipment", to_json(request.equipment)},
-          {"configuration_digest", request.configuration_digest},
-          {"program_version", prepared.attempt.program_version}};
+  ordered_json json = {
+      {"spacecraft", request.spacecraft},
+      {"window", {{"begin_ns", request.window.begin}, {"end_ns", request.window.end}}},
+      {"parts",
+       {{"identify", to_json(candidate.parts.identify, candidate.model.identified_from)},
+        {"tune", to_json(candidate.parts.tune, candidate.tuned_on)},
+        {"validate", to_json(candidate.parts.validate, candidate.model.validated_on)}}},
+      {"equipment", to_json(request.equipment)},
+      {"configuration_digest", request.configuration_digest},
+      {"program_version", prepared.attempt.program_version}};
+  if (candidate.adapted_from) json["adapted_from"] = *candidate.adapted_from;
+  return json;
 }
 
 RefreshRequest request_from(const ordered_json& provenance) {
@@ -159,6 +163,24 @@ bool follows_telemetry(const storage::Version& version) {
   }
 }
 
+/// The candidate that version `number` of the equipment gives when it is adapted to the window.
+std::optional<Candidate> adapted_again(const storage::Registry& registry,
+                                       const RefreshRequest& request, std::int64_t number,
+                                       const PreparedWindow& prepared) {
+  const auto base = registry.version(request.spacecraft, request.equipment.name, number);
+  const auto with_reason = [number](const std::string& reason) {
+    return std::invalid_argument(
+        fmt::format("version {}, which it was adapted from, {}", number, reason));
+  };
+  if (!base) throw with_reason("is not in the registry");
+  try {
+    return adapted_candidate(request, equipment_model_from_json(base->model_json), number,
+                             prepared);
+  } catch (const std::invalid_argument& error) {
+    throw with_reason(std::string("cannot be read: ") + error.what());
+  }
+}
+
 }  // namespace
 
 std::string digest_of_samples(const identification::Record& record, const WindowRequest& request) {
@@ -214,15 +236,18 @@ std::optional<std::string> mistake_in(const storage::Version& version) {
   }
 }
 
-Reproduction reproduce(const storage::Archive& archive, const storage::Version& version,
-                       const identification::ForEach& for_each) {
+Reproduction reproduce(const storage::Archive& archive, const storage::Registry& registry,
+                       const storage::Version& version, const identification::ForEach& for_each) {
   if (version.provenance_json.empty())
     throw std::invalid_argument("it is from before schema 2 and does not say where it comes from");
   Reproduction result;
   RefreshRequest request;
+  std::optional<std::int64_t> adapted_from;
   try {
     const ordered_json provenance = ordered_json::parse(version.provenance_json);
     request = request_from(provenance);
+    if (const auto found = provenance.find("adapted_from"); found != provenance.end())
+      adapted_from = found->get<std::int64_t>();
     provenance.at("program_version").get_to(result.program_version);
   } catch (const nlohmann::json::exception& error) {
     throw std::invalid_argument(std::string("the version does not say where it comes from: ") +
@@ -234,6 +259,8 @@ Reproduction reproduce(const storage::Archive& archive, const storage::Version& 
   PreparedWindow prepared = prepare_window(then, request, kept, for_each, [] { return false; });
   result.samples_digest = digest_of_samples(prepared.data.record, prepared.loaded);
   result.same_samples = result.samples_digest == version.samples_digest;
+  if (prepared.candidate && adapted_from)
+    prepared.candidate = adapted_again(registry, request, *adapted_from, prepared);
   if (!prepared.candidate) {
     result.reason = prepared.attempt.reason;
     return result;

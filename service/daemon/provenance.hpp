@@ -37,9 +37,10 @@ struct Reproduction {
 std::optional<std::string> mistake_in(const storage::Version& version);
 
 /// Identifies a version again, from the telemetry as it was then: what came late since is taken
-/// back until the samples have the digest that the version names. Throws std::invalid_argument
-/// where its provenance cannot be read.
-Reproduction reproduce(const storage::Archive& archive, const storage::Version& version,
-                       const identification::ForEach& for_each);
+/// back until the samples have the digest that the version names. One that an earlier version was
+/// adapted to is adapted from that again. Throws std::invalid_argument where its provenance or that
+/// version cannot be read.
+Reproduction reproduce(const storage::Archive& archive, const storage::Registry& registry,
+                       const storage::Version& version, const identification::ForEach& for_each);
 
 }  // namespace reident

@@ -48,7 +48,8 @@ double slowest_over_window(const identification::StateSpaceModel& model,
 }
 
 Evidence evidence_of(const storage::Archive& archive, const storage::Registry& registry,
-                     const RefreshRequest& request, const PreparedWindow& prepared) {
+                     const RefreshRequest& request, const PreparedWindow& prepared,
+                     double confidence) {
   const Candidate& candidate = *prepared.candidate;
   const EquipmentModel& model = candidate.model;
   const RowRange rows = candidate.parts.validate;
@@ -56,7 +57,6 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
     return samples.middleRows(rows.begin, rows.size());
   };
   const identification::Record& record = prepared.data.record;
-  const double confidence = request.equipment.confidence_percent;
   Evidence evidence;
   evidence.well_formed = is_well_formed(model.dynamics);
   evidence.spectral_radius = spectral_radius(model.dynamics);
@@ -72,7 +72,8 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
                   (request.window.end - request.window.begin) / request.equipment.sample_period);
   evidence.window_end = request.window.end;
   evidence.mean = against_mean(prepared, confidence);
-  evidence.champion = against_champion(archive, registry, prepared, request.equipment);
+  evidence.champion =
+      against_champion(archive, registry, prepared, confidence, request.equipment.margin_percent);
   evidence.baseline = against_simulator(archive, prepared, confidence);
   if (const auto hold = registry.hold(request.spacecraft, request.equipment.name))
     evidence.hold = Evidence::Hold{hold->actor, hold->reason};
@@ -84,6 +85,7 @@ ordered_json to_json(const Evidence::Champion& champion) {
   if (champion.comparison) {
     json["mrse_percent"] = champion.comparison->rival_mrse_percent;
     json["validated_mrse_percent"] = champion.validated_mrse_percent;
+    json["movement"] = champion.movement;
     json["comparison"] = to_json(*champion.comparison);
     if (champion.where_validated) json["where_validated"] = to_json(*champion.where_validated);
     if (champion.without_offset) json["without_offset"] = to_json(*champion.without_offset);
@@ -122,6 +124,45 @@ void describe(const Evidence& evidence, ordered_json& json) {
     json["hold"] = {{"actor", evidence.hold->actor}, {"reason", evidence.hold->reason}};
 }
 
+/// The champion, where it can be read.
+std::optional<EquipmentModel> champion_of(const storage::Registry& registry,
+                                          const RefreshRequest& request, std::int64_t& number) {
+  const auto version = registry.champion(request.spacecraft, request.equipment.name);
+  if (!version) return std::nullopt;
+  number = version->number;
+  try {
+    return equipment_model_from_json(version->model_json);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+/// Puts the champion, adapted to the window, in the candidate's place where it errs less on the
+/// validation part. How many candidates were compared there.
+int choose_candidate(const storage::Registry& registry, const RefreshRequest& request,
+                     PreparedWindow& prepared) {
+  std::int64_t number = 0;
+  const auto champion = champion_of(registry, request, number);
+  if (!champion) return 1;
+  auto other = adapted_candidate(request, *champion, number, prepared);
+  if (!other) return 1;
+  const double identified = prepared.candidate->model.validation.mrse();
+  const double adapted = other->model.validation.mrse();
+  const bool is_better = !(identified <= adapted);
+  prepared.evidence["adapted"] = {{"version", number},
+                                  {"mrse_percent", adapted},
+                                  {"identified_mrse_percent", identified},
+                                  {"is_candidate", is_better}};
+  if (is_better) prepared.candidate = std::move(other);
+  return 2;
+}
+
+/// Of each comparison, in percent, so that the one which chose among `candidates` has `percent`
+/// (Bonferroni's inequality).
+double confidence_of_each(double percent, int candidates) {
+  return 100 - (100 - percent) / candidates;
+}
+
 storage::DecisionKind kind_of(Outcome outcome) {
   if (outcome == Outcome::approved) return storage::DecisionKind::approve;
   if (outcome == Outcome::waiting || outcome == Outcome::held || outcome == Outcome::unvouched ||
@@ -137,8 +178,12 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
   RefreshResult result;
   prepared.timer.begin("judge");
   if (prepared.candidate) {
+    const int candidates = choose_candidate(registry, request, prepared);
+    describe_candidate(prepared);
     try {
-      result.evidence = evidence_of(archive, registry, request, prepared);
+      result.evidence =
+          evidence_of(archive, registry, request, prepared,
+                      confidence_of_each(request.equipment.confidence_percent, candidates));
     } catch (const storage::Error& error) {  // the champion is run on telemetry of its own
       if (error.kind() != storage::Error::Kind::corrupt) throw;
       refuse_damaged(prepared, error);

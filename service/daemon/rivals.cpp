@@ -60,7 +60,18 @@ double rms_percent(const Matrix& differences, Index column, double range) {
   return rms == 0 ? 0 : 100 * rms / range;
 }
 
-/// The two runs on the samples in `stretch` with inputs that the candidate was not identified with.
+/// The inputs (N x m) of the candidate's validation part.
+Matrix validation_inputs(const PreparedWindow& prepared) {
+  const RowRange rows = prepared.candidate->parts.validate;
+  return prepared.data.record.u.middleRows(rows.begin, rows.size());
+}
+
+/// The candidate's inputs, in the ranges that its validation part visits.
+std::vector<Signal> visited(const PreparedWindow& prepared) {
+  return with_ranges(prepared.candidate->model.inputs, validation_inputs(prepared));
+}
+
+/// The two runs on the samples in `stretch` with inputs that the candidate was not validated with.
 /// Absent where there are too few such samples to tell, or no telemetry of then. `offset` is the
 /// champion's mean error where the candidate was validated.
 std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& archive,
@@ -74,7 +85,7 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
       run_both(archive, candidate, champion, prepared.loaded, prepared.checks, stretch);
   if (!there) return std::nullopt;
   const auto& [record, both] = *there;
-  const std::vector<Index> outside = rows_outside(record.u, candidate.inputs);
+  const std::vector<Index> outside = rows_outside(record.u, visited(prepared));
   std::vector<Index> places;
   for (std::size_t i = 0; i < both.rows.size(); ++i)
     if (std::binary_search(outside.begin(), outside.end(), both.rows[i]))
@@ -105,7 +116,7 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
                                                        const PreparedWindow& prepared,
                                                        const identification::Vector& offset,
                                                        bool all_over_its_window) {
-  if (!reaches_beyond(champion.inputs, prepared.candidate->model.inputs)) return std::nullopt;
+  if (!reaches_beyond(champion.inputs, visited(prepared))) return std::nullopt;
   const storage::TimeRange validated = champion.validated_on;
   const auto there = elsewhere(archive, champion, prepared, offset, validated);
   if (!all_over_its_window) return there;
@@ -191,7 +202,8 @@ std::optional<Evidence::Comparison> against_simulator(const storage::Archive& ar
 std::optional<Evidence::Champion> against_champion(const storage::Archive& archive,
                                                    const storage::Registry& registry,
                                                    const PreparedWindow& prepared,
-                                                   const EquipmentConfig& limits) {
+                                                   double confidence_percent,
+                                                   double margin_percent) {
   const EquipmentModel& candidate = prepared.candidate->model;
   const auto version = registry.champion(candidate.spacecraft, candidate.equipment);
   if (!version) return std::nullopt;
@@ -211,8 +223,10 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
       identification::Vector::Zero(static_cast<Index>(champion.outputs.size()));
   if (const auto run = run_beside(archive, champion, prepared.loaded, prepared.data.record,
                                   prepared.attempt.window)) {
-    evidence.comparison = against_run(prepared, *run, limits.confidence_percent);
-    evidence.without_offset = against_run(prepared, *run, limits.confidence_percent, &offset);
+    evidence.comparison = against_run(prepared, *run, confidence_percent);
+    evidence.without_offset = against_run(prepared, *run, confidence_percent, &offset);
+    if (request_of(champion) == prepared.loaded)
+      evidence.movement = movement(champion, validation_inputs(prepared));
     if (evidence.without_offset)
       evidence.unbound = unbound_of(champion, prepared.data.plausibility, offset);
   }
@@ -220,10 +234,10 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
       !is_left_behind(evidence.comparison->rival_mrse_percent, evidence.validated_mrse_percent))
     if (const auto runs = runs_where_validated(archive, champion, candidate, prepared.checks,
                                                prepared.attempt.window.begin))
-      evidence.where_validated = compare(*runs, limits.confidence_percent, Course::steady);
+      evidence.where_validated = compare(*runs, confidence_percent, Course::steady);
   const bool may_gain_a_constant_alone =
       evidence.without_offset && !(evidence.without_offset->sure_percent > 0.0);
-  if (!evidence.comparison || !(evidence.comparison->reduction_percent <= limits.margin_percent))
+  if (!evidence.comparison || !(evidence.comparison->reduction_percent <= margin_percent))
     evidence.elsewhere = elsewhere(archive, champion, prepared, offset, may_gain_a_constant_alone);
   return evidence;
 }

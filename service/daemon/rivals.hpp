@@ -30,6 +30,7 @@ std::optional<Evidence::Comparison> against_simulator(const storage::Archive& ar
 std::optional<Evidence::Champion> against_champion(const storage::Archive& archive,
                                                    const storage::Registry& registry,
                                                    const PreparedWindow& prepared,
-                                                   const EquipmentConfig& limits);
+                                                   double confidence_percent,
+                                                   double margin_percent);
 
 }  // namespace reident

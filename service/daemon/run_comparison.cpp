@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "identification/correction.hpp"
 #include "identification/simulate.hpp"
 #include "service/daemon/kept_window.hpp"
 #include "service/daemon/window_data.hpp"
@@ -64,6 +65,24 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
   PairedRuns runs =
       paired(record, record.all(), free_run(candidate.dynamics, record, record.all()), *theirs);
   return RunsOfBoth{std::move(record), std::move(runs)};
+}
+
+double movement(const EquipmentModel& model, const Matrix& u) {
+  const auto gain = static_gain(model.dynamics);
+  if (!gain || model.inputs.empty()) return 1;
+  const std::vector<Signal> visited = with_ranges(model.inputs, u);
+  double least = 1;
+  for (Index q = 0; q < gain->rows(); ++q) {
+    double moved = 0, all = 0;
+    for (std::size_t j = 0; j < model.inputs.size(); ++j) {
+      const double effect = std::abs((*gain)(q, static_cast<Index>(j)));
+      const double range = model.inputs[j].high - model.inputs[j].low;
+      moved += effect * std::min(range, visited[j].high - visited[j].low);
+      all += effect * range;
+    }
+    if (all > 0) least = std::min(least, moved / all);
+  }
+  return least;
 }
 
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,

@@ -33,6 +33,17 @@ inline std::vector<std::string> signal_names(const std::vector<Signal>& signals)
   return names;
 }
 
+/// The signals with the ranges of their samples (N x signals, N at least 1).
+inline std::vector<Signal> with_ranges(std::vector<Signal> signals,
+                                       const identification::Matrix& samples) {
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const auto column = samples.col(static_cast<identification::Index>(i));
+    signals[i].low = column.minCoeff();
+    signals[i].high = column.maxCoeff();
+  }
+  return signals;
+}
+
 /// Whether any of them follows from parameters by an expression.
 inline bool has_expressions(const std::vector<Signal>& signals) {
   return std::any_of(signals.begin(), signals.end(),

@@ -204,6 +204,20 @@ const Case of_an_offset[] = {
        c.confirmation = 100;
      },
      Outcome::approved},
+    {"UnusualOperationThatMoreTelemetryMayEnd",
+     [](auto& e, auto& c) {
+       e.champion->movement = 0.66;
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"OperationThatIsUsual",
+     [](auto& e, auto& c) {
+       e.champion->movement = 0.67;
+       c.confirmation = 100;
+     },
+     Outcome::approved},
+    {"UnusualOperationWithoutProbation", [](auto& e, auto&) { e.champion->movement = 0; },
+     Outcome::approved},
     {"ConstantOffsetWithoutProbation", [](auto& e, auto&) { is_off_by_a_constant(e, -10); },
      Outcome::approved},
     {"ConstantOffsetAndByHand",

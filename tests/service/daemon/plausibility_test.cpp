@@ -125,7 +125,7 @@ TEST_F(LyingSensors, LeaveAVersionThatCanBeReproduced) {
   const RefreshResult result = run(day + 20 * minute);
   ASSERT_TRUE(result.candidate) << result.attempt.reason;
   registry.record(result.attempt, result.version, *result.decision);
-  const Reproduction again = reproduce(archive, *registry.version("SAT", "PLANT", 1), {});
+  const Reproduction again = reproduce(archive, registry, *registry.version("SAT", "PLANT", 1), {});
   EXPECT_TRUE(again.same_samples);
   EXPECT_TRUE(again.same_model);
 }

@@ -109,9 +109,9 @@ TEST_F(ProtectedTelemetry, LeavesAVersionReproducibleToTheLastBit) {
   const std::uint64_t before = archive.sample_count();
   remove_all_but(stretches());
   EXPECT_LT(archive.sample_count(), before);
-  EXPECT_TRUE(reproduce(archive, *registry.version("SAT", "PLANT", 1), {}).same_model);
+  EXPECT_TRUE(reproduce(archive, registry, *registry.version("SAT", "PLANT", 1), {}).same_model);
   remove_all_but({});
-  EXPECT_FALSE(reproduce(archive, *registry.version("SAT", "PLANT", 1), {}).same_samples);
+  EXPECT_FALSE(reproduce(archive, registry, *registry.version("SAT", "PLANT", 1), {}).same_samples);
 }
 
 TEST_F(ProtectedTelemetry, OfTheNextWindowsReachesBackFromWhereTelemetryOrTheClockEnds) {

@@ -47,7 +47,7 @@ TEST_F(Provenance, NamesThreePartsThatNeverMix) {
 TEST_F(Provenance, IsEnoughToIdentifyTheVersionAgainToTheLastBit) {
   KeptWindow kept = kept_window_of("SAT", plant());
   record(day + 10 * minute, kept);
-  const Reproduction again = reproduce(archive, *registry.version("SAT", "PLANT", 1), {});
+  const Reproduction again = reproduce(archive, registry, *registry.version("SAT", "PLANT", 1), {});
   EXPECT_TRUE(again.same_samples);
   EXPECT_TRUE(again.same_model);
 }
@@ -57,9 +57,25 @@ TEST_F(Provenance, IsEnoughForAVersionThatTheGateTurnedAway) {
   record(day + 10 * minute, kept);
   const storage::Version turned_away = record(day + 15 * minute, kept);
   ASSERT_EQ(registry.champion("SAT", "PLANT")->number, 1);
-  const Reproduction again = reproduce(archive, turned_away, {});
+  const Reproduction again = reproduce(archive, registry, turned_away, {});
   EXPECT_TRUE(again.same_samples);
   EXPECT_TRUE(again.same_model);
+}
+
+TEST_F(Provenance, IsEnoughForAVersionThatTheChampionWasAdaptedTo) {
+  KeptWindow kept = kept_window_of("SAT", plant());
+  record(day + 10 * minute, kept);
+  archive.append(telemetry(day + 901 * second, 600, 1.5));
+  const storage::Version version = record(day + 25 * minute, kept);
+  ASSERT_EQ(nlohmann::json::parse(version.provenance_json).value("adapted_from", 0), 1)
+      << registry.attempt(version.attempt)->evidence_json;
+  const Reproduction again = reproduce(archive, registry, version, {});
+  EXPECT_TRUE(again.same_samples);
+  EXPECT_TRUE(again.same_model);
+  storage::Version lost = version;
+  lost.equipment = "ANOTHER";
+  lost.provenance_json.replace(lost.provenance_json.find("\"PLANT\""), 7, "\"OTHER\"");
+  EXPECT_THROW(reproduce(archive, registry, lost, {}), std::invalid_argument);
 }
 
 TEST_F(Provenance, ReadsTheWindowAsItWasWhenTelemetryCameLate) {
@@ -74,7 +90,7 @@ TEST_F(Provenance, ReadsTheWindowAsItWasWhenTelemetryCameLate) {
   archive.append(std::span(worse).subspan(10));
   archive.append(frames.subspan(10));  // better ones in their place
   archive.compact();
-  const Reproduction again = reproduce(archive, version, {});
+  const Reproduction again = reproduce(archive, registry, version, {});
   EXPECT_EQ(again.revisions, 3U);
   EXPECT_TRUE(again.same_samples);
   EXPECT_TRUE(again.same_model);
@@ -84,7 +100,7 @@ TEST_F(Provenance, TellsThatTheTelemetryOfTheWindowHasChangedSince) {
   KeptWindow kept = kept_window_of("SAT", plant());
   const storage::Version version = record(day + 10 * minute, kept);
   archive.append(late);
-  const Reproduction again = reproduce(archive, version, {});
+  const Reproduction again = reproduce(archive, registry, version, {});
   EXPECT_FALSE(again.same_samples);
   EXPECT_FALSE(again.same_model);
   EXPECT_NE(again.model_digest, version.digest);
@@ -94,7 +110,7 @@ TEST_F(Provenance, OfAVersionWithoutOneIsRefused) {
   KeptWindow kept = kept_window_of("SAT", plant());
   storage::Version version = record(day + 10 * minute, kept);
   version.provenance_json.clear();
-  EXPECT_THROW(reproduce(archive, version, {}), std::invalid_argument);
+  EXPECT_THROW(reproduce(archive, registry, version, {}), std::invalid_argument);
 }
 
 }  // namespace

@@ -109,6 +109,24 @@ TEST_F(Refresh, ReplacesAChampionThatThePlantHasLeftBehind) {
             3 * result.evidence.mrse_percent);
 }
 
+TEST_F(Refresh, AdaptsTheChampionTooAndTakesTheBetterOfTwo) {
+  archive.append(telemetry(day, 1201, 1, 0.3));
+  const RefreshResult first = run(day + 10 * minute);
+  EXPECT_FALSE(nlohmann::json::parse(first.attempt.evidence_json).contains("adapted"));
+  record(first);
+  for (const storage::Time end : {day + 15 * minute, day + 20 * minute}) {
+    const RefreshResult result = run(end);
+    const auto adapted = nlohmann::json::parse(result.attempt.evidence_json).at("adapted");
+    const double of_champion = adapted.at("mrse_percent"),
+                 of_search = adapted.at("identified_mrse_percent");
+    EXPECT_EQ(adapted.at("version"), 1);
+    EXPECT_EQ(adapted.at("is_candidate"), of_champion < of_search);
+    EXPECT_EQ(result.evidence.mrse_percent, std::min(of_champion, of_search));
+    EXPECT_EQ(result.candidate->method.starts_with("A and C of version 1"),
+              of_champion < of_search);
+  }
+}
+
 TEST_F(Refresh, ScoresAChampionOfOtherInputsOnItsOwnInputs) {
   archive.append(telemetry(day, 1201));
   EquipmentConfig narrower = plant();

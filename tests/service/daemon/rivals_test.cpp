@@ -91,11 +91,23 @@ TEST_F(Rivals, ACandidateOfAQuietWindowHasToAgreeWithTheChampionWhereItWasNot) {
   EXPECT_EQ(result.attempt.outcome, "disagrees_with_champion") << result.attempt.reason;
 }
 
+TEST_F(Rivals, AnOperationThatMovesTheInputsLessIsUnusual) {
+  archive.append(telemetry(day, 601));
+  record(run(day + 10 * minute));
+  archive.append(telemetry(day + 20 * minute, 601, 2.0));
+  EXPECT_NEAR(run(day + 30 * minute).evidence.champion->movement, 1, 0.01);
+  operate(day + 40 * minute, 601, {.u = 0.5, .v = 0.5, .gain = 2});
+  EXPECT_NEAR(run(day + 50 * minute).evidence.champion->movement, 0.5, 0.01);
+  // The input v moves the output half as much as u does, so that it counts as a third.
+  operate(day + 60 * minute, 601, {.v = 0, .gain = 2});
+  EXPECT_NEAR(run(day + 70 * minute).evidence.champion->movement, 0.67, 0.02);
+}
+
 TEST_F(Rivals, WhatMayBeAConstantAloneHasToAgreeAllOverTheChampionsWindow) {
   archive.append(telemetry(day, 361));
   operate(day + 6 * minute + second, 240, {.v = 0.01});  // that validates the champion too
   record(run(day + 10 * minute));
-  operate(day + 20 * minute, 601, {.v = 0.01, .offset = 1, .noise = 0.4});
+  operate(day + 20 * minute, 601, {.v = 0.005, .offset = 1, .noise = 0.4});
   const RefreshResult result = run(day + 30 * minute);
   ASSERT_TRUE(result.evidence.champion) << result.attempt.reason;
   const Evidence::Champion& champion = *result.evidence.champion;
@@ -135,6 +147,7 @@ TEST_F(Rivals, WhereTheChampionErrsAsEverTheCandidateIsLookedAtWhereThatWasValid
   archive.append(telemetry(day + 20 * minute, 601, 1, 0.01));
   EquipmentConfig equipment = plant();
   equipment.confirmation = 5 * minute;
+  equipment.unvouched = UnvouchedPolicy::approve;
   const RefreshResult result = run(day + 30 * minute, equipment);
   ASSERT_TRUE(result.evidence.champion && result.evidence.champion->where_validated)
       << result.attempt.reason;
