@@ -166,7 +166,9 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
 std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
                                            const EquipmentModel& known, std::int64_t number,
                                            const PreparedWindow& prepared) {
-  if (!prepared.candidate || !(request_of(known) == prepared.loaded)) return std::nullopt;
+  if (!prepared.candidate || !(request_of(known) == prepared.loaded) ||
+      !is_well_formed(known.dynamics) || !(spectral_radius(known.dynamics) < 1))
+    return std::nullopt;
   const WindowParts& parts = prepared.candidate->parts;
   Candidate candidate = candidate_of(request, prepared.data,
                                      {adapted(known.dynamics, prepared.data.record, parts.fitted()),

@@ -63,8 +63,9 @@ void refuse_damaged(PreparedWindow& prepared, const storage::Error& error);
 /// Thrown when `stop` answered true; nothing was decided.
 class Stopped : public std::exception {};
 
-/// `known` made to fit the window (identification/adaptation.hpp): version `number` of the
-/// equipment. Absent where the window gave no candidate, or `known` looks at other telemetry.
+/// `known`, version `number` of the equipment, made to fit the window
+/// (identification/adaptation.hpp). Absent where the window gave no candidate, and where `known`
+/// looks at other telemetry or is not stable.
 std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
                                            const EquipmentModel& known, std::int64_t number,
                                            const PreparedWindow& prepared);

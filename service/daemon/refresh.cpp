@@ -148,7 +148,7 @@ int choose_candidate(const storage::Registry& registry, const RefreshRequest& re
   if (!other) return 1;
   const double identified = prepared.candidate->model.validation.mrse();
   const double adapted = other->model.validation.mrse();
-  const bool is_better = !(identified <= adapted);
+  const bool is_better = adapted < identified || !std::isfinite(identified);
   prepared.evidence["adapted"] = {{"version", number},
                                   {"mrse_percent", adapted},
                                   {"identified_mrse_percent", identified},
