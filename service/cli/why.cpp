@@ -46,8 +46,8 @@ void window_sentences(const Story& story, const ordered_json& evidence, Sentence
                                   duration_text(window.end - window.begin), story.attempt.trigger));
   if (member(evidence, "rows_tuned"))
     sentences.push_back(fmt::format(
-        "{} rows identified a model, the next {} chose its order and poles, and {} that neither "
-        "had seen judged it.",
+        "{} rows identified a model, the next {} chose its order and poles, both fitted its B, D "
+        "and offset, and {} that neither had seen judged it.",
         figure(evidence, "rows_identified"), figure(evidence, "rows_tuned"),
         figure(evidence, "rows_validated")));
   if (const ordered_json* adapted = member(evidence, "adapted"))

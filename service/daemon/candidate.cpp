@@ -154,9 +154,9 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
     return refuse(prepared, name(verdict->code), verdict->reason);
   prepared.timer.begin("correct");
   const auto& identified = std::get<Identified>(result);
-  describe_search(identified, prepared.evidence);
+  describe_search(identified, prepared.search);
   const ChosenModel chosen =
-      corrected(data.record, identified, parts, for_each, prepared.evidence["pole_placement"]);
+      corrected(data.record, identified, parts, for_each, prepared.search["pole_placement"]);
   prepared.timer.begin("score");
   prepared.candidate = candidate_of(request, data, chosen, parts);
 }
@@ -168,6 +168,11 @@ std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
                                            const PreparedWindow& prepared) {
   if (!prepared.candidate || !(request_of(known) == prepared.loaded) ||
       !is_well_formed(known.dynamics) || !(spectral_radius(known.dynamics) < 1))
+    return std::nullopt;
+  const Eigen::Index order = known.dynamics.order();
+  if (order < request.equipment.min_order ||
+      order > std::max<Eigen::Index>(request.equipment.max_order,
+                                     prepared.candidate->model.dynamics.order()))
     return std::nullopt;
   const WindowParts& parts = prepared.candidate->parts;
   Candidate candidate = candidate_of(request, prepared.data,
@@ -182,6 +187,10 @@ void describe_candidate(PreparedWindow& prepared) {
   const Candidate& candidate = *prepared.candidate;
   const EquipmentModel& model = candidate.model;
   ordered_json& json = prepared.evidence;
+  if (candidate.adapted_from)
+    json["identified"] = prepared.search;
+  else
+    json.update(prepared.search);
   json["order"] = model.dynamics.order();
   json["spectral_radius"] = spectral_radius(model.dynamics);
   json["mrse_percent"] = model.validation.mrse();

@@ -2,7 +2,8 @@
 // so that windows can be worked on in any order and side by side.
 //
 // The same archive, configuration and window give the same candidate to the last bit, timings
-// aside, whatever was kept of earlier windows.
+// aside, whatever was kept of earlier windows. A known model that is adapted to the window gives
+// another one, the same of the same model.
 #pragma once
 
 #include <exception>
@@ -54,6 +55,7 @@ struct PreparedWindow {
   WindowData data;
   std::optional<Candidate> candidate;
   nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
+  nlohmann::ordered_json search;  // how the model that was identified was found
   PhaseTimer timer;
 };
 
@@ -65,7 +67,7 @@ class Stopped : public std::exception {};
 
 /// `known`, version `number` of the equipment, made to fit the window
 /// (identification/adaptation.hpp). Absent where the window gave no candidate, and where `known`
-/// looks at other telemetry or is not stable.
+/// looks at other telemetry, is not stable, or has an order that the configuration does not allow.
 std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
                                            const EquipmentModel& known, std::int64_t number,
                                            const PreparedWindow& prepared);

@@ -119,11 +119,10 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
   if (runs.rows.empty()) return std::nullopt;
   look.comparison = compare(runs, equipment.confidence_percent, Course::changing);
   const PairedRuns after = since(window.end);
-  if (!after.rows.empty()) {
-    if (request_of(incumbent) == request)
-      look.movement = movement(incumbent, record.u(after.rows, Eigen::all));
+  if (!after.rows.empty())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
-  }
+  if (request_of(incumbent) == request)
+    look.movement = movement(incumbent, record.u(runs.rows, Eigen::all));
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
   look.is_last = until >= window.end + equipment.confirmation &&
                  static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks;
@@ -220,7 +219,7 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
                          needed);
     if (is_unusual(look.movement))
       return fmt::format(
-          "after its window the inputs move over {:.0f} % of the ranges that the champion was "
+          "there the inputs move over {:.0f} % of the ranges that the champion was "
           "identified in: an unusual operation, which says little of the usual one.",
           100 * look.movement);
     if (const auto& both = look.with_past;

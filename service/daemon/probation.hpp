@@ -1,6 +1,6 @@
 // Versions on probation: better than the champion by the margin, but on their windows' validation
-// part alone not surely, or mostly by a constant, or while nothing tells of a change. Telemetry
-// that comes after their windows decides.
+// part alone not surely, or mostly by a constant, or in an unusual operation, or while nothing
+// tells of a change. Telemetry that comes after their windows decides.
 //
 // The free runs of the version and of the champion, begun with the window, go on over that
 // telemetry, and are compared over the validation part and it together, over it alone, and, where
@@ -38,7 +38,7 @@ struct LongerLook {
   /// `comparison` with the champion's mean error taken from it, where a sensor that no relation
   /// binds could show that error.
   std::optional<Evidence::Comparison> without_offset{};
-  double movement = 1;  // of what came after the window (run_comparison.hpp)
+  double movement = 1;  // of the validation part and what came after it (run_comparison.hpp)
 };
 
 /// Approval or rejection; absent where more telemetry has to tell. Before the last look only a

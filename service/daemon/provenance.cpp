@@ -173,12 +173,11 @@ std::optional<Candidate> adapted_again(const storage::Registry& registry,
         fmt::format("version {}, which it was adapted from, {}", number, reason));
   };
   if (!base) throw with_reason("is not in the registry");
-  try {
-    return adapted_candidate(request, equipment_model_from_json(base->model_json), number,
-                             prepared);
-  } catch (const std::invalid_argument& error) {
-    throw with_reason(std::string("cannot be read: ") + error.what());
-  }
+  if (const auto mistake = mistake_in(*base)) throw with_reason("is damaged: " + *mistake);
+  auto candidate =
+      adapted_candidate(request, equipment_model_from_json(base->model_json), number, prepared);
+  if (!candidate) throw with_reason("looks at other telemetry");
+  return candidate;
 }
 
 }  // namespace

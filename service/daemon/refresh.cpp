@@ -124,14 +124,18 @@ void describe(const Evidence& evidence, ordered_json& json) {
     json["hold"] = {{"actor", evidence.hold->actor}, {"reason", evidence.hold->reason}};
 }
 
-/// The champion, where it can be read.
-std::optional<EquipmentModel> champion_of(const storage::Registry& registry,
-                                          const RefreshRequest& request, std::int64_t& number) {
-  const auto version = registry.champion(request.spacecraft, request.equipment.name);
+/// The champion, where it can be read and is older than the window: one that was fitted to what is
+/// to judge it gives no candidate.
+std::optional<EquipmentModel> older_champion(const storage::Registry& registry,
+                                             const PreparedWindow& prepared, std::int64_t& number) {
+  const EquipmentModel& identified = prepared.candidate->model;
+  const auto version = registry.champion(identified.spacecraft, identified.equipment);
   if (!version) return std::nullopt;
   number = version->number;
   try {
-    return equipment_model_from_json(version->model_json);
+    EquipmentModel champion = equipment_model_from_json(version->model_json);
+    if (champion.validated_on.begin > identified.validated_on.begin) return std::nullopt;
+    return champion;
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
@@ -142,13 +146,14 @@ std::optional<EquipmentModel> champion_of(const storage::Registry& registry,
 int choose_candidate(const storage::Registry& registry, const RefreshRequest& request,
                      PreparedWindow& prepared) {
   std::int64_t number = 0;
-  const auto champion = champion_of(registry, request, number);
+  const auto champion = older_champion(registry, prepared, number);
   if (!champion) return 1;
   auto other = adapted_candidate(request, *champion, number, prepared);
   if (!other) return 1;
   const double identified = prepared.candidate->model.validation.mrse();
   const double adapted = other->model.validation.mrse();
-  const bool is_better = adapted < identified || !std::isfinite(identified);
+  if (!std::isfinite(adapted)) return 1;
+  const bool is_better = adapted < identified;
   prepared.evidence["adapted"] = {{"version", number},
                                   {"mrse_percent", adapted},
                                   {"identified_mrse_percent", identified},
@@ -176,10 +181,12 @@ storage::DecisionKind kind_of(Outcome outcome) {
 RefreshResult judge(const storage::Archive& archive, const storage::Registry& registry,
                     const RefreshRequest& request, PreparedWindow&& prepared) {
   RefreshResult result;
-  prepared.timer.begin("judge");
   if (prepared.candidate) {
+    prepared.timer.begin("adapt");
     const int candidates = choose_candidate(registry, request, prepared);
+    prepared.timer.begin("diagnose");
     describe_candidate(prepared);
+    prepared.timer.begin("judge");
     try {
       result.evidence =
           evidence_of(archive, registry, request, prepared,

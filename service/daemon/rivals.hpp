@@ -12,7 +12,7 @@
 
 namespace reident {
 
-/// Rows of `u` (N x m) at which an input is outside the range that it was identified in, by more
+/// Rows of `u` (N x m) at which an input is outside its range in `inputs`, by more
 /// than noise: a twentieth of its width.
 std::vector<identification::Index> rows_outside(const identification::Matrix& u,
                                                 const std::vector<Signal>& inputs);

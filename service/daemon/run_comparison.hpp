@@ -60,7 +60,8 @@ Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
 
 /// The free run of `model` beside the champion's on the part of what validated the champion that
 /// comes before `end`: where the model's window does not begin before that, telemetry which nothing
-/// of it was chosen by. Absent where less than half is left.
+/// of it was fitted to or chosen by, but for the champion's A and C where it has these. Absent
+/// where less than half is left.
 std::optional<PairedRuns> runs_where_validated(const storage::Archive& archive,
                                                const EquipmentModel& champion,
                                                const EquipmentModel& model, const Checks& checks,
