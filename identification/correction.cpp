@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@ constexpr double worthwhile = 0.99;
 constexpr double well_conditioned = 1e-10;
 constexpr Index most_rows = 20000;  // of either part
 constexpr int scales_per_decade = 20;
+constexpr int coarse_step = 4;  // of scales
 
 StateSpaceModel with_feedback(const StateSpaceModel& model, const Matrix& F) {
   StateSpaceModel result = model;
@@ -55,21 +57,37 @@ class Search {
   CorrectionSearch result(const ForEach& for_each) {
     CorrectionSearch search{plain_, {}};
     if (model_.order() == 0 || model_.inputs() == 0) return search;
-    std::vector<std::optional<Correction>> of_scales(2 * scales_per_decade + 1);
-    for_each(of_scales.size(), [&](std::size_t i) {
-      const int step = static_cast<int>(i) - scales_per_decade;
-      try_scale(std::pow(10, double(step) / scales_per_decade), of_scales[i]);
-    });
-    for (auto& found : of_scales)
-      if (found && (!search.best || found->error.mrse() < search.best->error.mrse()))
-        search.best = std::move(found);
+    std::vector<int> coarse, fine;
+    for (int step = -scales_per_decade; step <= scales_per_decade; step += coarse_step)
+      coarse.push_back(step);
+    const int best = try_scales(coarse, for_each, search.best);
     if (!search.best) return search;
+    for (int step = best - coarse_step + 1; step < best + coarse_step; ++step)
+      if (step != best && std::abs(step) <= scales_per_decade) fine.push_back(step);
+    try_scales(fine, for_each, search.best);
     search.best->error = score(run(search.best->model));  // its initial state follows y0
     if (!(search.best->error.mrse() < worthwhile * plain_.mrse())) search.best.reset();
     return search;
   }
 
  private:
+  /// Takes the best of the scales 10^(step / scales_per_decade) where it is better than `best`. Its
+  /// step, if any.
+  int try_scales(const std::vector<int>& steps, const ForEach& for_each,
+                 std::optional<Correction>& best) const {
+    std::vector<std::optional<Correction>> of_steps(steps.size());
+    for_each(steps.size(), [&](std::size_t i) {
+      try_scale(std::pow(10, double(steps[i]) / scales_per_decade), of_steps[i]);
+    });
+    int taken = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      if (of_steps[i] && (!best || of_steps[i]->error.mrse() < best->error.mrse())) {
+        best = std::move(of_steps[i]);
+        taken = steps[i];
+      }
+    return taken;
+  }
+
   void try_scale(double scale, std::optional<Correction>& best) const {
     auto placed = place_poles(model_.A, model_.B, scaled_poles(poles_, scale));
     auto* placement = std::get_if<PolePlacement>(&placed);

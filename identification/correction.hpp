@@ -50,11 +50,11 @@ struct CorrectionSearch {
   std::optional<Correction> best;  // absent where none lowers the error by more than 1 %
 };
 
-/// Tries the 41 scales 10^-1, 10^-0.95, ... 10^1 with both N and takes the one of least MRSE over
-/// the rows `tune`, among models that are stable. Every model runs freely from the first of the
-/// rows looked at on: at most the last 20,000 of `identify` and the first 20,000 of `tune`, which
-/// follow `identify`. y0 moves by as much as the mean residual over the `identify` rows moved, so
-/// that the operating point found there stays.
+/// Tries the 11 scales 10^-1, 10^-0.8, ... 10^1 with both N, then those in steps of 10^0.05 beside
+/// the best, and takes the one of least MRSE over the rows `tune`, among models that are stable.
+/// Every model runs freely from the first of the rows looked at on: at most the last 20,000 of
+/// `identify` and the first 20,000 of `tune`, which follow `identify`. y0 moves by as much as the
+/// mean residual over the `identify` rows moved, so that the operating point found there stays.
 /// The result does not depend on `for_each`.
 /// Requires a stable, well-formed model, finite rows, and neither range empty.
 CorrectionSearch search_correction(const StateSpaceModel& model, const Record& record,

@@ -130,6 +130,15 @@ void NormalEquations::end_segment() {
   segments_.push_back(std::move(elimination));
 }
 
+namespace {
+
+/// 0 of 0.
+Vector inverse_roots(const Vector& values) {
+  return values.unaryExpr([](double value) { return value > 0 ? 1 / std::sqrt(value) : 0.0; });
+}
+
+}  // namespace
+
 std::optional<RegressionSolution> NormalEquations::solve(double damping, double least_pivot) const {
   const Index n = columns_.n, unknowns = columns_.target() - n;
   Vector weight = sums_.diagonal().head(unknowns);
@@ -142,17 +151,39 @@ std::optional<RegressionSolution> NormalEquations::solve(double damping, double 
   }
   Matrix G = sums_.topLeftCorner(unknowns, unknowns);
   G.diagonal() = weight;
-  const Vector scale = weight.unaryExpr([](double w) { return w > 0 ? 1 / std::sqrt(w) : 0.0; });
+  const Vector scale = inverse_roots(weight);
   G = (scale.asDiagonal() * G * scale.asDiagonal()).eval();
   const Eigen::LLT<Matrix> llt(G);
   if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least_pivot))
     return std::nullopt;
 
   const Vector target = sums_.col(unknowns).head(unknowns);
-  const Vector found = scale.asDiagonal() * llt.solve(scale.asDiagonal() * target);
+  return solution_of(scale.asDiagonal() * llt.solve(scale.asDiagonal() * target));
+}
+
+std::optional<RegressionSolution> NormalEquations::solve_without_small(double least_size) const {
+  constexpr double noise = 1e-3;  // of the target: what is left out does not show beside it
+  const Index unknowns = columns_.target() - columns_.n;
+  const Vector scale = inverse_roots(sums_.diagonal().head(unknowns));
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(
+      scale.asDiagonal() * sums_.topLeftCorner(unknowns, unknowns) * scale.asDiagonal());
+  if (eigen.info() != Eigen::Success) return std::nullopt;
+  const Vector inverse = eigen.eigenvalues().unaryExpr(
+      [least_size](double value) { return value > least_size * least_size ? 1 / value : 0.0; });
+  const Vector target = scale.asDiagonal() * sums_.col(unknowns).head(unknowns);
+  RegressionSolution solution = solution_of(
+      scale.asDiagonal() *
+      (eigen.eigenvectors() * inverse.cwiseProduct(eigen.eigenvectors().transpose() * target)));
+  if (!(solution.sum_of_squares > noise * noise * sums_(unknowns, unknowns))) return std::nullopt;
+  return solution;
+}
+
+/// With the sum of squares of the undamped equations.
+RegressionSolution NormalEquations::solution_of(const Vector& found) const {
+  const Index unknowns = found.size();
+  const Vector target = sums_.col(unknowns).head(unknowns);
   RegressionSolution solution{Vector::Zero(columns_.target()), {}, 0};
   solution.theta.tail(unknowns) = found;
-  // Of the undamped equations.
   solution.sum_of_squares =
       std::max(0.0, sums_(unknowns, unknowns) - 2 * target.dot(found) +
                         found.dot(sums_.topLeftCorner(unknowns, unknowns) * found));

@@ -65,11 +65,18 @@ class NormalEquations {
   /// column has for its own, the others known.
   std::optional<RegressionSolution> solve(double damping, double least_pivot) const;
 
+  /// Without the combinations of columns, each scaled to size 1, that are smaller than
+  /// `least_size`; of least norm in this scale. Absent where it leaves less of the target than an
+  /// orthogonal factor might: when a thousandth would show what was left out.
+  std::optional<RegressionSolution> solve_without_small(double least_size) const;
+
  private:
   struct Elimination {
     Matrix inverse;  // of the initial state's own sums
     Matrix coupling;
   };
+  RegressionSolution solution_of(const Vector& found) const;
+
   Columns columns_;
   std::vector<Matrix> of_output_;  // sums of the open segment, one for each output
   Matrix sums_;                    // of the closed segments, over the columns after x0

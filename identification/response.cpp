@@ -49,6 +49,9 @@ Fitted fit(const StateSpaceModel& dynamics, bool direct, const Record& record,
   const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
   if (const auto solution = sums.solve(0, least_pivot(accuracy)))
     return from(*solution, columns, dynamics);
+  if (accuracy == Accuracy::fast)
+    if (const auto solution = sums.solve_without_small(least_pivot(accuracy)))
+      return from(*solution, columns, dynamics);
   const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, record, segments, {});
   return from(factor.solve(), columns, dynamics);
 }

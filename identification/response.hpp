@@ -19,7 +19,7 @@ struct Response {
 };
 
 /// What is asked of the normal equations before the regressors themselves are factored: `fast` some
-/// five digits of the solution, `exact` ten.
+/// five digits of the solution, or of the output where that is not determined, `exact` ten.
 enum class Accuracy { fast, exact };
 
 /// B, D, y0 and the initial states for A (stable) and C over `rows`; of least norm where the rows

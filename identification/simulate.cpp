@@ -77,12 +77,27 @@ UncertainState through_hole(const StateSpaceModel& model, const Record& record,
 Matrix observability_of(const StateSpaceModel& model, Index count) {
   const Index p = model.outputs();
   Matrix observability(count * p, model.order());
-  Matrix CAk = model.C;
-  for (Index k = 0; k < count; ++k) {
-    observability.middleRows(k * p, p) = CAk;
-    CAk = (CAk * model.A).eval();
+  observability.topRows(p) = model.C;
+  Matrix power = model.A;  // A^known
+  for (Index known = 1; known < count; known *= 2) {
+    const Index more = std::min(known, count - known);
+    observability.middleRows(known * p, more * p) = observability.topRows(more * p) * power;
+    power = (power * power).eval();
   }
   return observability;
+}
+
+/// The least-squares solution of least norm.
+Vector least_squares(const Matrix& left, const Vector& right) {
+  // An error of 1e-16 in the sums moves the solution by that over the pivot's square.
+  constexpr double least_pivot = 1e-3;
+  const Vector scale = left.colwise().norm().transpose().unaryExpr(
+      [](double norm) { return norm > 0 ? 1 / norm : 0.0; });
+  const Matrix scaled = left * scale.asDiagonal();
+  const Eigen::LLT<Matrix> llt(scaled.transpose() * scaled);
+  if (llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > least_pivot)
+    return scale.asDiagonal() * llt.solve(scaled.transpose() * right);
+  return left.completeOrthogonalDecomposition().solve(right);
 }
 
 /// y[k] less the response from the state x, below each other.
@@ -158,7 +173,7 @@ Vector estimate_initial_state(const StateSpaceModel& model, const Record& record
   const Matrix observability = observability_of(model, count);
   const Vector free_response = remainder_of(model, record, segment, count, Vector::Zero(n));
   if (!observability.allFinite() || !free_response.allFinite()) return Vector::Zero(n);
-  return observability.completeOrthogonalDecomposition().solve(free_response);
+  return least_squares(observability, free_response);
 }
 
 Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange rows,

@@ -149,7 +149,7 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
     prepared.timer.begin(phase);
   };
   const auto result =
-      identify(data.record, {parts.identify.begin, parts.tune.end}, options, &kept.sums());
+      identify(data.record, parts.fitted(), options, &kept.sums());
   if (const auto* verdict = std::get_if<identification::Verdict>(&result))
     return refuse(prepared, name(verdict->code), verdict->reason);
   prepared.timer.begin("correct");

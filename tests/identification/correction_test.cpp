@@ -138,7 +138,7 @@ TEST(Correction, KeepsTheMeanResidualOfTheIdentifiedRows) {
 }
 
 TEST(Correction, IsTheModelWithItsOwnFeedback) {
-  const Mistaken m = mistaken(4);
+  const Mistaken m = mistaken(3);
   const CorrectionSearch search = search_correction(m.model, m.record, {0, 1000}, {1000, 2000});
   ASSERT_TRUE(search.best);
   const Correction& best = *search.best;

@@ -54,6 +54,22 @@ TEST(Response, FallsBackWhereTheNormalEquationsLoseTooMuch) {
   EXPECT_LT((found.model.B - truth.B).norm(), 1e-6);
 }
 
+TEST(Response, OfAlmostEqualInputsIsAsNearAndSharesTheEffectBesideNoise) {
+  testing::Noise noise(3);
+  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
+  Record record = testing::excited(truth, noise, 400, 0);
+  record.u.col(1) = record.u.col(0) + 1e-7 * noise.normal(400, 1);
+  record.y = testing::simulated(truth, record.u, Vector::Zero(2));
+  record.y += 0.01 * record.y.norm() / 20 * noise.normal(400, 1);
+  const auto fitted = [&](Accuracy accuracy) {
+    return fit_response(truth.A, truth.C, true, record, record.all(), accuracy);
+  };
+  const Response fast = fitted(Accuracy::fast), exact = fitted(Accuracy::exact);
+  EXPECT_LT(output_error(fast, record), 1.01 * output_error(exact, record));
+  EXPECT_LT((fast.model.B.col(0) - fast.model.B.col(1)).norm(), 1e-3 * fast.model.B.norm());
+  EXPECT_GT((exact.model.B.col(0) - exact.model.B.col(1)).norm(), exact.model.B.norm());
+}
+
 TEST(Response, OfEqualInputsSharesTheEffect) {
   testing::Noise noise(4);
   const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
