@@ -1,5 +1,7 @@
 #include "identification/adaptation.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "identification/simulate.hpp"

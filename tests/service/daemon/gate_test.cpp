@@ -204,20 +204,6 @@ const Case of_an_offset[] = {
        c.confirmation = 100;
      },
      Outcome::approved},
-    {"UnusualOperationThatMoreTelemetryMayEnd",
-     [](auto& e, auto& c) {
-       e.champion->movement = 0.66;
-       c.confirmation = 100;
-     },
-     Outcome::on_probation},
-    {"OperationThatIsUsual",
-     [](auto& e, auto& c) {
-       e.champion->movement = 0.67;
-       c.confirmation = 100;
-     },
-     Outcome::approved},
-    {"UnusualOperationWithoutProbation", [](auto& e, auto&) { e.champion->movement = 0; },
-     Outcome::approved},
     {"ConstantOffsetWithoutProbation", [](auto& e, auto&) { is_off_by_a_constant(e, -10); },
      Outcome::approved},
     {"ConstantOffsetAndByHand",
@@ -234,6 +220,23 @@ const Case of_an_offset[] = {
        c.confirmation = 100;
      },
      Outcome::unvouched},
+};
+
+const Case of_the_operation[] = {
+    {"UnusualOperationThatMoreTelemetryMayEnd",
+     [](auto& e, auto& c) {
+       e.champion->movement = 0.66;
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"OperationThatIsUsual",
+     [](auto& e, auto& c) {
+       e.champion->movement = 0.67;
+       c.confirmation = 100;
+     },
+     Outcome::approved},
+    {"UnusualOperationWithoutProbation", [](auto& e, auto&) { e.champion->movement = 0; },
+     Outcome::approved},
 };
 
 void errs_as_where_validated(Evidence& e, double sure_percent_there) {
@@ -393,6 +396,7 @@ const auto name_of = [](const auto& one) { return one.param.name; };
 INSTANTIATE_TEST_SUITE_P(OfTheCandidate, Gate, testing::ValuesIn(of_the_candidate), name_of);
 INSTANTIATE_TEST_SUITE_P(NotSurelyBetter, Gate, testing::ValuesIn(not_surely_better), name_of);
 INSTANTIATE_TEST_SUITE_P(OfAnOffset, Gate, testing::ValuesIn(of_an_offset), name_of);
+INSTANTIATE_TEST_SUITE_P(OfTheOperation, Gate, testing::ValuesIn(of_the_operation), name_of);
 INSTANTIATE_TEST_SUITE_P(WithoutAChange, Gate, testing::ValuesIn(without_a_change), name_of);
 INSTANTIATE_TEST_SUITE_P(WhereTheChampionWasValidated, Gate,
                          testing::ValuesIn(where_the_champion_was_validated), name_of);

@@ -33,7 +33,7 @@ class Provenance : public DaemonTest {
   storage::Registry registry{database};
 };
 
-TEST_F(Provenance, NamesThreePartsThatNeverMix) {
+TEST_F(Provenance, NamesItsThreeParts) {
   KeptWindow kept = kept_window_of("SAT", plant());
   const auto json = nlohmann::json::parse(record(day + 10 * minute, kept).provenance_json);
   const auto& parts = json["parts"];
