@@ -88,28 +88,7 @@ class Search {
     return taken;
   }
 
-  void try_scale(double scale, std::optional<Correction>& best) const {
-    auto placed = place_poles(model_.A, model_.B, scaled_poles(poles_, scale));
-    auto* placement = std::get_if<PolePlacement>(&placed);
-    if (!placement) return;
-    const StateSpaceModel fed_back = with_feedback(model_, placement->gain);
-    if (!is_stable(fed_back.A)) return;
-    Correction correction;
-    correction.model = fed_back;
-    correction.scale = scale;
-    correction.gain = placement->gain;
-    correction.input_gain.setIdentity(model_.inputs(), model_.inputs());
-    correction.uncontrollable = placement->uncontrollable;
-    consider(correction, best);
-    const std::optional<Matrix> N =
-        static_gain_ ? input_gain(*static_gain_, fed_back, deviations_) : std::nullopt;
-    if (!N) return;
-    correction.keeps_static_gain = true;
-    correction.input_gain = *N;
-    correction.model.B = model_.B * *N;
-    correction.model.D = model_.D * *N;
-    consider(correction, best);
-  }
+  void try_scale(double scale, std::optional<Correction>& best) const;
 
   /// Keeps the operating point and takes the correction where it is the best so far.
   void consider(Correction correction, std::optional<Correction>& best) const {
@@ -148,6 +127,29 @@ class Search {
   Vector deviations_, mean_residual_;
   Score plain_;
 };
+
+void Search::try_scale(double scale, std::optional<Correction>& best) const {
+  auto placed = place_poles(model_.A, model_.B, scaled_poles(poles_, scale));
+  auto* placement = std::get_if<PolePlacement>(&placed);
+  if (!placement) return;
+  const StateSpaceModel fed_back = with_feedback(model_, placement->gain);
+  if (!is_stable(fed_back.A)) return;
+  Correction correction;
+  correction.model = fed_back;
+  correction.scale = scale;
+  correction.gain = placement->gain;
+  correction.input_gain.setIdentity(model_.inputs(), model_.inputs());
+  correction.uncontrollable = placement->uncontrollable;
+  consider(correction, best);
+  const std::optional<Matrix> N =
+      static_gain_ ? input_gain(*static_gain_, fed_back, deviations_) : std::nullopt;
+  if (!N) return;
+  correction.keeps_static_gain = true;
+  correction.input_gain = *N;
+  correction.model.B = model_.B * *N;
+  correction.model.D = model_.D * *N;
+  consider(correction, best);
+}
 
 }  // namespace
 
