@@ -27,32 +27,67 @@ std::vector<Index> places_above_zero(const Vector& values) {
   return places;
 }
 
+/// Share of the variance of centred samples that carries on from one to the next.
+double carried_on(const Vector& z) {
+  const Index pairs = z.size() - 1;
+  return z.head(pairs).dot(z.tail(pairs)) / z.squaredNorm();
+}
+
+/// Principal components of inputs (N x m) of mean 0 and deviation 1, by columns of unit norm.
+struct Components {
+  Matrix moving, noise;
+};
+
+Components components_of(const Matrix& u) {
+  constexpr double small = 0.05, half = 0.5;
+  if (u.cols() == 0) return {};
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(u.transpose() * u / double(u.rows()));
+  std::vector<Index> moving, noise;
+  for (Index i = 0; i < u.cols(); ++i) {
+    const bool moves = eigen.eigenvalues()(i) > small * small ||
+                       carried_on(u * eigen.eigenvectors().col(i)) > half;
+    (moves ? moving : noise).push_back(i);
+  }
+  return {eigen.eigenvectors()(Eigen::all, moving), eigen.eigenvectors()(Eigen::all, noise)};
+}
+
 }  // namespace
 
-StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowRange rows) {
+StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowRange rows,
+                        GainsOfNoise gains_of_noise) {
   const auto u = record.u.middleRows(rows.begin, rows.size());
   const auto y = record.y.middleRows(rows.begin, rows.size());
   const Vector of_u = deviations(u), of_y = deviations(y);
   const Vector per_y = (of_y.array() > 0).select(of_y.cwiseInverse(), 1.0);
-  const std::vector<Index> moving = places_above_zero(of_u);
+  const std::vector<Index> inputs = places_above_zero(of_u);
   const Vector mean = u.colwise().mean();
-  const Matrix per_u = Vector(of_u(moving)).cwiseInverse().asDiagonal();
+  const Vector deviation = of_u(inputs);
+  const Matrix per_u = deviation.cwiseInverse().asDiagonal();
   Record rest;
   rest.period_s = record.period_s;
   rest.segments = segments_from(record, rows);
-  rest.u = (u.rowwise() - mean.transpose())(Eigen::all, moving) * per_u;
-  rest.y = (y - free_run(known, record, rows)) * per_y.asDiagonal();
+  rest.u = (u.rowwise() - mean.transpose())(Eigen::all, inputs) * per_u;
+  const Components components = components_of(rest.u);
+  StateSpaceModel model = known;
+  if (gains_of_noise == GainsOfNoise::dropped) {
+    const Matrix noise =
+        deviation.asDiagonal() * components.noise * components.noise.transpose() * per_u;
+    model.B(Eigen::all, inputs) -= (known.B(Eigen::all, inputs) * noise).eval();
+    model.D(Eigen::all, inputs) -= (known.D(Eigen::all, inputs) * noise).eval();
+  }
+  rest.y = (y - free_run(model, record, rows)) * per_y.asDiagonal();
+  rest.u = (rest.u * components.moving).eval();
+  const Matrix to_components = components.moving.transpose() * per_u;
   const StateSpaceModel moves =
       fit_response(known.A, per_y.asDiagonal() * known.C, true, rest, rest.all(), Accuracy::fast)
           .model;
-  const Matrix dB = moves.B * per_u;
-  const Matrix dD = per_y.cwiseInverse().asDiagonal() * moves.D * per_u;
+  const Matrix dB = moves.B * to_components;
+  const Matrix dD = per_y.cwiseInverse().asDiagonal() * moves.D * to_components;
   const Matrix I = Matrix::Identity(known.order(), known.order());
   const Matrix static_gain = known.C * (I - known.A).partialPivLu().solve(dB) + dD;
-  StateSpaceModel model = known;
-  model.B(Eigen::all, moving) += dB;
-  model.D(Eigen::all, moving) += dD;
-  model.y0 += moves.y0.cwiseQuotient(per_y) - static_gain * (mean - known.u0)(moving);
+  model.B(Eigen::all, inputs) += dB;
+  model.D(Eigen::all, inputs) += dD;
+  model.y0 += moves.y0.cwiseQuotient(per_y) - static_gain * (mean - known.u0)(inputs);
   return model;
 }
 

@@ -8,6 +8,13 @@
 //
 // The least squares solution is the one of least norm, in inputs of mean 0 and deviation 1: what
 // the samples do not determine stays as it was, and the gain of an input that does not move.
+//
+// Currents into a node and out of it add up to nothing but the noise of their sensors. The gain of
+// such a sum follows that noise, may have any size and sign, and does harm once one of the sensors
+// is off by a little. A principal component of the inputs that is below a twentieth of their
+// deviation, and carries on from one sample to the next with less than half of its variance, is
+// taken for noise, and no gain of it is fitted (principal component regression: I. T. Jolliffe,
+// Principal Component Analysis, 2nd ed., Springer 2002, ch. 8).
 #pragma once
 
 #include "identification/record.hpp"
@@ -15,8 +22,13 @@
 
 namespace reident::identification {
 
+/// The gains that a model has for components of the inputs that show noise alone in the rows: other
+/// samples may have told them, or these very rows.
+enum class GainsOfNoise { kept, dropped };
+
 /// `known` with B, D and y0 moved to fit its simulated output to the rows. Requires a stable,
 /// well-formed model of the record's channels and period, and finite rows, at least one.
-StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowRange rows);
+StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowRange rows,
+                        GainsOfNoise gains_of_noise);
 
 }  // namespace reident::identification

@@ -59,7 +59,8 @@ ChosenModel corrected(const identification::Record& record, const Identified& id
     pole_placement["keeps_static_gain"] = best->keeps_static_gain;
     pole_placement["uncontrollable_poles"] = best->uncontrollable.size();
   }
-  chosen.dynamics = adapted(chosen.dynamics, record, parts.fitted());
+  chosen.dynamics =
+      adapted(chosen.dynamics, record, parts.fitted(), identification::GainsOfNoise::dropped);
   return chosen;
 }
 
@@ -148,8 +149,7 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
     if (stop()) throw Stopped();
     prepared.timer.begin(phase);
   };
-  const auto result =
-      identify(data.record, parts.fitted(), options, &kept.sums());
+  const auto result = identify(data.record, parts.fitted(), options, &kept.sums());
   if (const auto* verdict = std::get_if<identification::Verdict>(&result))
     return refuse(prepared, name(verdict->code), verdict->reason);
   prepared.timer.begin("correct");
@@ -176,7 +176,8 @@ std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
     return std::nullopt;
   const WindowParts& parts = prepared.candidate->parts;
   Candidate candidate = candidate_of(request, prepared.data,
-                                     {adapted(known.dynamics, prepared.data.record, parts.fitted()),
+                                     {adapted(known.dynamics, prepared.data.record, parts.fitted(),
+                                              identification::GainsOfNoise::kept),
                                       fmt::format("A and C of version {}", number)},
                                      parts);
   candidate.adapted_from = number;

@@ -114,12 +114,13 @@ Refusal against_scores(const Evidence& e, const EquipmentConfig& limits) {
 
 Refusal against_baseline(const Evidence& e, const EquipmentConfig& limits) {
   if (e.baseline) {
-    if (!e.baseline->sure_percent || !(*e.baseline->sure_percent > 0))
+    if (!(e.baseline->sure_percent > limits.margin_percent))
       return GateDecision{
           Outcome::not_better_than_baseline,
-          fmt::format("MRSE {:.3f} % is not surely below that of the simulator's own telemetry, "
-                      "{:.3f} % on the same samples.",
-                      e.baseline->mrse_percent, e.baseline->rival_mrse_percent)};
+          fmt::format("MRSE {:.3f} % does not surely undercut the simulator's own telemetry "
+                      "({:.3f} % on the same samples) by {:g} %.",
+                      e.baseline->mrse_percent, e.baseline->rival_mrse_percent,
+                      limits.margin_percent)};
     return std::nullopt;
   }
   if (limits.baseline_mrse_percent && e.mrse_percent >= *limits.baseline_mrse_percent)

@@ -121,12 +121,16 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
   const PairedRuns after = since(window.end);
   if (!after.rows.empty())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
-  if (request_of(incumbent) == request)
-    look.movement = movement(incumbent, record.u(runs.rows, Eigen::all));
+  const Duration validation = model.validated_on.end - model.validated_on.begin;
+  if (request_of(incumbent) == request) {
+    const PairedRuns last = since(until - validation);
+    look.movement =
+        last.rows.empty() ? 0 : movement(incumbent, record.u(last.rows, Eigen::all));
+  }
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
   look.is_last = until >= window.end + equipment.confirmation &&
                  static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks;
-  if (look.comparison.rival_mrse_percent < look.champion_validated_mrse_percent)
+  if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent))
     if (const auto past =
             runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
       look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
@@ -209,10 +213,10 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (look.comparison.mrse_percent > limits.max_mrse_percent)
       return fmt::format("that is above the limit of {:g} %.", limits.max_mrse_percent);
     if (look.after.rows == 0) return "of the telemetry after its window nothing is left.";
-    if (!(look.after.reduction_percent > 0))
+    if (!(look.after.sure_percent > 0.0))
       return fmt::format(
-          "on the {} samples after its window alone it has {:.3f} % and the champion "
-          "{:.3f} %.",
+          "on the {} samples after its window alone it has {:.3f} % and the champion {:.3f} %, "
+          "which is not surely less.",
           look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent);
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
@@ -232,8 +236,7 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     return std::nullopt;
   }();
   const bool hurries =
-      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent) &&
-      look.after.sure_percent > 0.0;
+      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
   if (!against && (look.is_last || hurries))
     return decision(
         DecisionKind::approve, look,

@@ -4,7 +4,7 @@
 //
 // The free runs of the version and of the champion, begun with the window, go on over that
 // telemetry, and are compared over the validation part and it together, over it alone, and, where
-// the champion errs less than where it was validated, with what validated it too. A change
+// the champion errs hardly more than where it was validated, with what validated it too. A change
 // of the equipment that is too new to fill the validation part is so followed sooner than by the
 // next window, and a stretch of unusual operation is told from one.
 #pragma once
@@ -32,18 +32,18 @@ struct LongerLook {
   /// nothing is left of it.
   Evidence::Comparison after;
   /// The same on what validated the champion, before the version's window, and on all of this
-  /// together. Looked at where the champion errs less now than there; absent where less than half
-  /// of that is left.
+  /// together. Looked at where the champion was not left behind; absent where less than half of
+  /// that is left.
   std::optional<Evidence::Comparison> with_past{};
   /// `comparison` with the champion's mean error taken from it, where a sensor that no relation
   /// binds could show that error.
   std::optional<Evidence::Comparison> without_offset{};
-  double movement = 1;  // of the validation part and what came after it (run_comparison.hpp)
+  /// Of the last telemetry, as much as the validation part (run_comparison.hpp); 0 where none came.
+  double movement = 1;
 };
 
 /// Approval or rejection; absent where more telemetry has to tell. Before the last look only a
-/// champion that was left behind is replaced, otherwise nothing hurries, and only by a version that
-/// is surely better on what came after its window.
+/// champion that was left behind is replaced: otherwise nothing hurries.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 

@@ -73,12 +73,15 @@ double movement(const EquipmentModel& model, const Matrix& u) {
   const std::vector<Signal> visited = with_ranges(model.inputs, u);
   double least = 1;
   for (Index q = 0; q < gain->rows(); ++q) {
+    const Signal& output = model.outputs[static_cast<std::size_t>(q)];
     double moved = 0, all = 0;
     for (std::size_t j = 0; j < model.inputs.size(); ++j) {
-      const double effect = std::abs((*gain)(q, static_cast<Index>(j)));
       const double range = model.inputs[j].high - model.inputs[j].low;
-      moved += effect * std::min(range, visited[j].high - visited[j].low);
-      all += effect * range;
+      if (!(range > 0)) continue;
+      const double effect =
+          std::min(std::abs((*gain)(q, static_cast<Index>(j))) * range, output.high - output.low);
+      moved += effect * std::min(1.0, (visited[j].high - visited[j].low) / range);
+      all += effect;
     }
     if (all > 0) least = std::min(least, moved / all);
   }

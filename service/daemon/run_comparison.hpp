@@ -52,7 +52,8 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
                                    const Checks& checks, storage::TimeRange range);
 
 /// Share of the ranges of the model's inputs that `u` (N x m, N at least 1) moves over, weighted by
-/// what each of them moves the output by, in a steady state; the smallest one of any output.
+/// what each of them moves the output by, in a steady state and by its own range at most; the
+/// smallest one of any output.
 double movement(const EquipmentModel& model, const identification::Matrix& u);
 
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,

@@ -23,7 +23,7 @@ TEST(Adaptation, FindsGainsAndOffsetThatMovedAndKeepsThePoles) {
   truth.D.col(1) *= 0.5;
   truth.y0 << 3, -1;
   const Record record = testing::with_gap(testing::excited(truth, noise, 900, 0), 300, 320);
-  const StateSpaceModel found = adapted(known, record, record.all());
+  const StateSpaceModel found = adapted(known, record, record.all(), GainsOfNoise::kept);
   EXPECT_EQ(found.A, known.A);
   EXPECT_EQ(found.C, known.C);
   EXPECT_LT((found.B - truth.B).norm(), 1e-6);
@@ -35,7 +35,7 @@ TEST(Adaptation, OfAModelThatFitsChangesNothing) {
   testing::Noise noise(2);
   const StateSpaceModel known = testing::random_system(noise, 3, 2, 1);
   const Record record = testing::excited(known, noise, 600, 0);
-  const StateSpaceModel found = adapted(known, record, record.all());
+  const StateSpaceModel found = adapted(known, record, record.all(), GainsOfNoise::kept);
   EXPECT_LT((found.B - known.B).norm() + (found.D - known.D).norm(), 1e-8);
   EXPECT_LT((found.y0 - known.y0).norm(), 1e-8);
 }
@@ -50,7 +50,7 @@ TEST(Adaptation, LeavesTheGainOfAnInputThatDoesNotMove) {
   Record record = testing::excited(known, noise, 600, 0);
   record.u.col(1).setConstant(0.1);
   record.y = testing::simulated(truth, record.u, Vector::Zero(3));
-  const StateSpaceModel found = adapted(known, record, record.all());
+  const StateSpaceModel found = adapted(known, record, record.all(), GainsOfNoise::kept);
   EXPECT_EQ(found.B.col(1), known.B.col(1));
   EXPECT_EQ(found.D.col(1), known.D.col(1));
   EXPECT_LT((found.B.col(0) - truth.B.col(0)).norm(), 1e-6);
@@ -64,9 +64,62 @@ TEST(Adaptation, OfInputsThatDoNotMoveFindsTheOffset) {
   Record record = testing::excited(known, noise, 600, 0);
   record.u.setConstant(0.1);
   record.y = testing::simulated(known, record.u, Vector::Ones(3)).array() + 2;
-  const StateSpaceModel found = adapted(known, record, record.all());
+  const StateSpaceModel found = adapted(known, record, record.all(), GainsOfNoise::kept);
   EXPECT_EQ(found.B, known.B);
   EXPECT_NEAR(found.y0(0), known.y0(0) + 2, 1e-6);
+}
+
+/// Two currents into a node, what flows out of it, and a model that makes much of their sum.
+struct Node {
+  StateSpaceModel truth, mistaken;
+  Record record;
+  Vector balance;  // of the inputs
+};
+
+Node node(double imbalance) {
+  testing::Noise noise(6);
+  const Index rows = 2000;
+  Matrix u = noise.normal(rows, 3);
+  for (Index k = 1; k < rows; ++k) u.row(k) += 0.95 * u.row(k - 1);
+  u.col(2) = u.col(0) + u.col(1);
+  Vector slow = noise.normal(rows, 1);
+  for (Index k = 1; k < rows; ++k) slow(k) += 0.95 * slow(k - 1);
+  const Matrix seen =
+      u + 0.02 * noise.normal(rows, 3) + imbalance * slow * Eigen::RowVector3d(0, 0, 1);
+  Node result{testing::random_system(noise, 2, 3, 1), {}, {}, Eigen::Vector3d(1, 1, -1)};
+  result.truth.u0.setZero();
+  result.truth.B -= result.truth.B * result.balance * result.balance.transpose() / 3;
+  result.truth.D -= result.truth.D * result.balance * result.balance.transpose() / 3;
+  result.mistaken = result.truth;
+  result.mistaken.B += 50 * Vector::Ones(2) * result.balance.transpose();
+  result.record = contiguous_record(
+      1, seen,
+      testing::simulated(result.truth, seen, Vector::Zero(2)) + 0.1 * noise.normal(rows, 1));
+  return result;
+}
+
+TEST(Adaptation, DropsTheGainOfASumThatShowsNoiseAlone) {
+  const Node one = node(0);
+  const StateSpaceModel found =
+      adapted(one.mistaken, one.record, one.record.all(), GainsOfNoise::dropped);
+  EXPECT_LT((found.B * one.balance).norm(), 0.01 * (one.mistaken.B * one.balance).norm());
+  EXPECT_LT(output_error(found, one.record), 1.1 * output_error(one.truth, one.record));
+}
+
+TEST(Adaptation, KeepsTheGainOfASumThatOtherSamplesHaveTold) {
+  const Node one = node(0);
+  const StateSpaceModel found =
+      adapted(one.mistaken, one.record, one.record.all(), GainsOfNoise::kept);
+  EXPECT_LT(((found.B - one.mistaken.B) * one.balance).norm(),
+            0.05 * (one.mistaken.B * one.balance).norm());
+}
+
+TEST(Adaptation, FitsTheGainOfASumThatCarriesOnFromSampleToSample) {
+  const Node one = node(0.1);
+  for (const GainsOfNoise gains : {GainsOfNoise::kept, GainsOfNoise::dropped}) {
+    const StateSpaceModel found = adapted(one.mistaken, one.record, one.record.all(), gains);
+    EXPECT_LT(((found.B - one.truth.B) * one.balance).norm(), 0.2 * one.truth.B.norm());
+  }
 }
 
 TEST(Adaptation, LooksAtTheRowsThatItIsGivenAlone) {
@@ -78,8 +131,9 @@ TEST(Adaptation, LooksAtTheRowsThatItIsGivenAlone) {
   Record spoilt = record;
   spoilt.y.bottomRows(300).array() += 5;
   const RowRange rows{0, 500};
-  EXPECT_EQ(adapted(known, record, rows).B, adapted(known, spoilt, rows).B);
-  EXPECT_LT((adapted(known, record, rows).B - truth.B).norm(), 1e-6);
+  EXPECT_EQ(adapted(known, record, rows, GainsOfNoise::kept).B,
+            adapted(known, spoilt, rows, GainsOfNoise::kept).B);
+  EXPECT_LT((adapted(known, record, rows, GainsOfNoise::kept).B - truth.B).norm(), 1e-6);
 }
 
 }  // namespace

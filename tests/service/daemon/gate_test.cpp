@@ -367,17 +367,17 @@ const Case beside_its_rivals[] = {
        c.baseline_mrse_percent = 5.01;
      },
      Outcome::approved},
-    {"FirstAndNotSurelyBetterThanTheSimulator",
+    {"FirstAndNotSurelyBetterThanTheSimulatorByTheMargin",
      [](auto& e, auto& c) {
        e.champion.reset();
-       e.baseline = {500, 5, 6, 16.7, 0.0};
+       e.baseline = {500, 5, 6, 16.7, 5.0};
        c.baseline_mrse_percent = 100;
      },
      Outcome::not_better_than_baseline},
-    {"FirstAndSurelyBetterThanTheSimulator",
+    {"FirstAndSurelyBetterThanTheSimulatorByTheMargin",
      [](auto& e, auto& c) {
        e.champion.reset();
-       e.baseline = {500, 5, 6, 16.7, 0.1};
+       e.baseline = {500, 5, 6, 16.7, 5.1};
        c.baseline_mrse_percent = 1;
      },
      Outcome::approved},

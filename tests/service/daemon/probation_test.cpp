@@ -53,11 +53,13 @@ TEST(JudgeProbation, LeavesAChampionThatErrsAsEverUntilTheLastLook) {
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
-TEST(JudgeProbation, WaitsForTheLastLookWhereWhatCameAfterTheWindowIsNotSure) {
+TEST(JudgeProbation, ApprovesNothingThatIsNotSurelyBetterAfterItsWindow) {
   LongerLook look = sure_of(40);
-  look.after.sure_percent = -1;
+  look.after.sure_percent = 0;
   EXPECT_FALSE(judge_probation(look, {}));
   look.is_last = true;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+  look.after.sure_percent = 0.1;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "service/daemon/refresh.hpp"
+#include "service/daemon/run_comparison.hpp"
 #include "tests/service/daemon/daemon_fixture.hpp"
 
 namespace reident::test {
@@ -101,6 +102,22 @@ TEST_F(Rivals, AnOperationThatMovesTheInputsLessIsUnusual) {
   // The input v moves the output half as much as u does, so that it counts as a third.
   operate(day + 60 * minute, 601, {.v = 0, .gain = 2});
   EXPECT_NEAR(run(day + 70 * minute).evidence.champion->movement, 0.67, 0.02);
+}
+
+TEST(Movement, CountsAnInputByTheOutputsRangeAtMost) {
+  using identification::Matrix;
+  using identification::Vector;
+  EquipmentModel model;  // of one input that is held near a point, and another
+  model.inputs = {{"held", "V", 27.9, 28.1}, {"other", "A", 0, 10}};
+  model.outputs = {{"y", "V", 0, 5}};
+  model.dynamics.A = Matrix::Zero(0, 0);
+  model.dynamics.B = Matrix::Zero(0, 2);
+  model.dynamics.C = Matrix::Zero(1, 0);
+  model.dynamics.D = (Matrix(1, 2) << 1000, 0.5).finished();
+  model.dynamics.u0 = Vector::Zero(2);
+  model.dynamics.y0 = Vector::Zero(1);
+  const Matrix u = (Matrix(3, 2) << 27.9, 2, 28, 4, 28.1, 2).finished();
+  EXPECT_NEAR(movement(model, u), 0.6, 1e-12);
 }
 
 TEST_F(Rivals, WhatMayBeAConstantAloneHasToAgreeAllOverTheChampionsWindow) {
