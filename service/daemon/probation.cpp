@@ -124,13 +124,14 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
   const Duration validation = model.validated_on.end - model.validated_on.begin;
   if (request_of(incumbent) == request) {
     const PairedRuns last = since(until - validation);
-    look.movement =
-        last.rows.empty() ? 0 : movement(incumbent, record.u(last.rows, Eigen::all));
+    look.movement = last.rows.empty() ? 0 : movement(incumbent, record.u(last.rows, Eigen::all));
   }
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
   look.is_last = until >= window.end + equipment.confirmation &&
                  static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks;
-  if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent))
+  const double as_ever =
+      look.champion_validated_mrse_percent * (1 + equipment.margin_percent / 100);
+  if (look.comparison.rival_mrse_percent < as_ever)
     if (const auto past =
             runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
       look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
@@ -213,11 +214,12 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (look.comparison.mrse_percent > limits.max_mrse_percent)
       return fmt::format("that is above the limit of {:g} %.", limits.max_mrse_percent);
     if (look.after.rows == 0) return "of the telemetry after its window nothing is left.";
-    if (!(look.after.sure_percent > 0.0))
+    if (!(look.after.reduction_percent > 0 && look.after.sure_percent > -limits.margin_percent))
       return fmt::format(
-          "on the {} samples after its window alone it has {:.3f} % and the champion {:.3f} %, "
-          "which is not surely less.",
-          look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent);
+          "on the {} samples after its window alone it has {:.3f} % and the champion {:.3f} %: it "
+          "may err more there by {:g} %.",
+          look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent,
+          limits.margin_percent);
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);
@@ -236,7 +238,8 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     return std::nullopt;
   }();
   const bool hurries =
-      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
+      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent) &&
+      look.after.sure_percent > 0.0;
   if (!against && (look.is_last || hurries))
     return decision(
         DecisionKind::approve, look,

@@ -32,8 +32,8 @@ struct LongerLook {
   /// nothing is left of it.
   Evidence::Comparison after;
   /// The same on what validated the champion, before the version's window, and on all of this
-  /// together. Looked at where the champion was not left behind; absent where less than half of
-  /// that is left.
+  /// together. Looked at where the champion errs by less than the margin more than there; absent
+  /// where less than half of that is left.
   std::optional<Evidence::Comparison> with_past{};
   /// `comparison` with the champion's mean error taken from it, where a sensor that no relation
   /// binds could show that error.
@@ -43,7 +43,8 @@ struct LongerLook {
 };
 
 /// Approval or rejection; absent where more telemetry has to tell. Before the last look only a
-/// champion that was left behind is replaced: otherwise nothing hurries.
+/// champion that was left behind is replaced, otherwise nothing hurries, and only by a version that
+/// is surely better on what came after its window.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 

@@ -53,14 +53,23 @@ TEST(JudgeProbation, LeavesAChampionThatErrsAsEverUntilTheLastLook) {
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
-TEST(JudgeProbation, ApprovesNothingThatIsNotSurelyBetterAfterItsWindow) {
+TEST(JudgeProbation, WaitsForTheLastLookWhereWhatCameAfterTheWindowIsNotSure) {
   LongerLook look = sure_of(40);
   look.after.sure_percent = 0;
   EXPECT_FALSE(judge_probation(look, {}));
   look.is_last = true;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
-  look.after.sure_percent = 0.1;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
+TEST(JudgeProbation, ApprovesNothingThatMayErrMoreByTheMarginAfterItsWindow) {
+  LongerLook look = sure_of(40);
+  look.is_last = true;
+  look.after.sure_percent = -14.9;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.after.sure_percent = -15;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+  look.after.sure_percent.reset();
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
 }
 
 TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
