@@ -1,7 +1,10 @@
 #include "identification/adaptation.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
+#include "identification/kernels.hpp"
 #include "identification/response.hpp"
 #include "identification/simulate.hpp"
 
@@ -27,10 +30,29 @@ std::vector<Index> places_above_zero(const Vector& values) {
   return places;
 }
 
-/// Share of the variance of centred samples that carries on from one to the next.
-double carried_on(const Vector& z) {
-  const Index pairs = z.size() - 1;
-  return z.head(pairs).dot(z.tail(pairs)) / z.squaredNorm();
+/// Rows after which inputs of such weights have samples of their own: those between are held.
+Index rows_held(const Matrix& u, const Vector& weights) {
+  constexpr double takes_part = 0.1;
+  Index most = 1;
+  for (Index i = 0; i < u.cols(); ++i) {
+    if (std::abs(weights(i)) < takes_part) continue;
+    const auto change = u.col(i).tail(u.rows() - 1).array() != u.col(i).head(u.rows() - 1).array();
+    most = std::max(most, (u.rows() - 1) / std::max<Index>(1, change.count()));
+  }
+  return most;
+}
+
+/// Share of the variance of centred samples that carries on for so many rows.
+double carried_on(const Vector& z, const std::vector<Segment>& segments, Index lag) {
+  double product = 0, energy = 0;
+  for (const Segment& segment : segments) {
+    const Index pairs = segment.size() - lag;
+    if (pairs < 1) continue;
+    const auto before = z.segment(segment.begin, pairs);
+    product += before.dot(z.segment(segment.begin + lag, pairs));
+    energy += before.squaredNorm();
+  }
+  return energy > 0 ? product / energy : 0;
 }
 
 /// Principal components of inputs (N x m) of mean 0 and deviation 1, by columns of unit norm.
@@ -38,14 +60,23 @@ struct Components {
   Matrix moving, noise;
 };
 
-Components components_of(const Matrix& u) {
+Components components_of(const Matrix& u, const std::vector<Segment>& segments) {
   constexpr double small = 0.05, half = 0.5;
-  if (u.cols() == 0) return {};
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(u.transpose() * u / double(u.rows()));
+  constexpr double determined = 1e-6;  // below it is the rounding of inputs that follow from others
+  const Index m = u.cols();
+  if (m == 0) return {};
+  const Matrix samples = u.transpose();
+  const VectorSequence sequence{samples.data(), m, m};
+  Matrix sums = Matrix::Zero(m, m);
+  add_outer_products(sequence, sequence, u.rows(), Triangle::lower, sums.data());
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(sums / double(u.rows()));
   std::vector<Index> moving, noise;
-  for (Index i = 0; i < u.cols(); ++i) {
-    const bool moves = eigen.eigenvalues()(i) > small * small ||
-                       carried_on(u * eigen.eigenvectors().col(i)) > half;
+  for (Index i = 0; i < m; ++i) {
+    const double size = std::sqrt(std::max(0.0, eigen.eigenvalues()(i)));
+    const Vector weights = eigen.eigenvectors().col(i);
+    const bool moves =
+        size > small ||
+        (size > determined && carried_on(u * weights, segments, rows_held(u, weights)) > half);
     (moves ? moving : noise).push_back(i);
   }
   return {eigen.eigenvectors()(Eigen::all, moving), eigen.eigenvectors()(Eigen::all, noise)};
@@ -67,7 +98,7 @@ StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowR
   rest.period_s = record.period_s;
   rest.segments = segments_from(record, rows);
   rest.u = (u.rowwise() - mean.transpose())(Eigen::all, inputs) * per_u;
-  const Components components = components_of(rest.u);
+  const Components components = components_of(rest.u, rest.segments);
   StateSpaceModel model = known;
   if (gains_of_noise == GainsOfNoise::dropped) {
     const Matrix noise =

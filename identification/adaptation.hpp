@@ -12,9 +12,9 @@
 // Currents into a node and out of it add up to nothing but the noise of their sensors. The gain of
 // such a sum follows that noise, may have any size and sign, and does harm once one of the sensors
 // is off by a little. A principal component of the inputs that is below a twentieth of their
-// deviation, and carries on from one sample to the next with less than half of its variance, is
-// taken for noise, and no gain of it is fitted (principal component regression: I. T. Jolliffe,
-// Principal Component Analysis, 2nd ed., Springer 2002, ch. 8).
+// deviation, and carries on from one sample of its sensors to the next with less than half of its
+// variance, is taken for noise, and no gain of it is fitted (principal component regression: I. T.
+// Jolliffe, Principal Component Analysis, 2nd ed., Springer 2002, ch. 8).
 #pragma once
 
 #include "identification/record.hpp"

@@ -162,7 +162,9 @@ std::optional<RegressionSolution> NormalEquations::solve(double damping, double 
 }
 
 std::optional<RegressionSolution> NormalEquations::solve_without_small(double least_size) const {
-  constexpr double noise = 1e-3;  // of the target: what is left out does not show beside it
+  constexpr double noise = 1e-3;      // of the target
+  constexpr double unseen = 0.01;     // of what is left of it
+  constexpr double rounding = 1e-13;  // of the sums
   const Index unknowns = columns_.target() - columns_.n;
   const Vector scale = inverse_roots(sums_.diagonal().head(unknowns));
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(
@@ -170,11 +172,18 @@ std::optional<RegressionSolution> NormalEquations::solve_without_small(double le
   if (eigen.info() != Eigen::Success) return std::nullopt;
   const Vector inverse = eigen.eigenvalues().unaryExpr(
       [least_size](double value) { return value > least_size * least_size ? 1 / value : 0.0; });
-  const Vector target = scale.asDiagonal() * sums_.col(unknowns).head(unknowns);
-  RegressionSolution solution = solution_of(
-      scale.asDiagonal() *
-      (eigen.eigenvectors() * inverse.cwiseProduct(eigen.eigenvectors().transpose() * target)));
-  if (!(solution.sum_of_squares > noise * noise * sums_(unknowns, unknowns))) return std::nullopt;
+  const Vector target =
+      eigen.eigenvectors().transpose() * (scale.asDiagonal() * sums_.col(unknowns).head(unknowns));
+  RegressionSolution solution =
+      solution_of(scale.asDiagonal() * (eigen.eigenvectors() * inverse.cwiseProduct(target)));
+  double left_out = 0;
+  for (Index i = 0; i < unknowns; ++i)
+    if (inverse(i) == 0 && eigen.eigenvalues()(i) > rounding)
+      left_out += target(i) * target(i) / eigen.eigenvalues()(i);
+  const double total = sums_(unknowns, unknowns);
+  if (!(total > 0 && solution.sum_of_squares > noise * noise * total &&
+        left_out < unseen * solution.sum_of_squares))
+    return std::nullopt;
   return solution;
 }
 

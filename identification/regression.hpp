@@ -66,8 +66,8 @@ class NormalEquations {
   std::optional<RegressionSolution> solve(double damping, double least_pivot) const;
 
   /// Without the combinations of columns, each scaled to size 1, that are smaller than
-  /// `least_size`; of least norm in this scale. Absent where it leaves less of the target than an
-  /// orthogonal factor might: when a thousandth would show what was left out.
+  /// `least_size`; of least norm in this scale. Absent where these would show: where a thousandth
+  /// of the target or less is left, or they lower its sum of squares by a hundredth.
   std::optional<RegressionSolution> solve_without_small(double least_size) const;
 
  private:

@@ -93,10 +93,13 @@ Vector least_squares(const Matrix& left, const Vector& right) {
   constexpr double least_pivot = 1e-3;
   const Vector scale = left.colwise().norm().transpose().unaryExpr(
       [](double norm) { return norm > 0 ? 1 / norm : 0.0; });
-  const Matrix scaled = left * scale.asDiagonal();
-  const Eigen::LLT<Matrix> llt(scaled.transpose() * scaled);
+  const Matrix scaled = scale.asDiagonal() * left.transpose();
+  const VectorSequence rows{scaled.data(), scaled.rows(), scaled.rows()};
+  Matrix sums = Matrix::Zero(scaled.rows(), scaled.rows());
+  add_outer_products(rows, rows, scaled.cols(), Triangle::lower, sums.data());
+  const Eigen::LLT<Matrix> llt(sums);
   if (llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > least_pivot)
-    return scale.asDiagonal() * llt.solve(scaled.transpose() * right);
+    return scale.asDiagonal() * llt.solve(scaled * right);
   return left.completeOrthogonalDecomposition().solve(right);
 }
 

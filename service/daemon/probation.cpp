@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -121,10 +122,11 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
   const PairedRuns after = since(window.end);
   if (!after.rows.empty())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
-  const Duration validation = model.validated_on.end - model.validated_on.begin;
   if (request_of(incumbent) == request) {
-    const PairedRuns last = since(until - validation);
-    look.movement = last.rows.empty() ? 0 : movement(incumbent, record.u(last.rows, Eigen::all));
+    const Duration validation = model.validated_on.end - model.validated_on.begin;
+    const auto last = std::min(std::ssize(runs.rows), validation / request.period);
+    look.movement = movement(
+        incumbent, record.u(std::vector(runs.rows.end() - last, runs.rows.end()), Eigen::all));
   }
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
   look.is_last = until >= window.end + equipment.confirmation &&
@@ -214,12 +216,11 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (look.comparison.mrse_percent > limits.max_mrse_percent)
       return fmt::format("that is above the limit of {:g} %.", limits.max_mrse_percent);
     if (look.after.rows == 0) return "of the telemetry after its window nothing is left.";
-    if (!(look.after.reduction_percent > 0 && look.after.sure_percent > -limits.margin_percent))
+    if (!(look.after.reduction_percent > 0))
       return fmt::format(
-          "on the {} samples after its window alone it has {:.3f} % and the champion {:.3f} %: it "
-          "may err more there by {:g} %.",
-          look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent,
-          limits.margin_percent);
+          "on the {} samples after its window alone it has {:.3f} % and the champion "
+          "{:.3f} %.",
+          look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent);
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);

@@ -1,6 +1,7 @@
 #include "identification/adaptation.hpp"
 
 #include <cmath>
+#include <cstdint>
 
 #include <gtest/gtest.h>
 
@@ -76,16 +77,17 @@ struct Node {
   Vector balance;  // of the inputs
 };
 
-Node node(double imbalance) {
-  testing::Noise noise(6);
+Node node(double imbalance, std::uint64_t seed = 6, double sensor_noise = 0.02, Index held = 1) {
+  testing::Noise noise(seed);
   const Index rows = 2000;
   Matrix u = noise.normal(rows, 3);
   for (Index k = 1; k < rows; ++k) u.row(k) += 0.95 * u.row(k - 1);
   u.col(2) = u.col(0) + u.col(1);
   Vector slow = noise.normal(rows, 1);
   for (Index k = 1; k < rows; ++k) slow(k) += 0.95 * slow(k - 1);
-  const Matrix seen =
-      u + 0.02 * noise.normal(rows, 3) + imbalance * slow * Eigen::RowVector3d(0, 0, 1);
+  Matrix seen = u + sensor_noise * noise.normal(rows, 3);
+  seen.col(2) += imbalance * slow;
+  for (Index k = 0; k < rows; ++k) seen.row(k) = seen.row(k - k % held).eval();
   Node result{testing::random_system(noise, 2, 3, 1), {}, {}, Eigen::Vector3d(1, 1, -1)};
   result.truth.u0.setZero();
   result.truth.B -= result.truth.B * result.balance * result.balance.transpose() / 3;
@@ -104,6 +106,26 @@ TEST(Adaptation, DropsTheGainOfASumThatShowsNoiseAlone) {
       adapted(one.mistaken, one.record, one.record.all(), GainsOfNoise::dropped);
   EXPECT_LT((found.B * one.balance).norm(), 0.01 * (one.mistaken.B * one.balance).norm());
   EXPECT_LT(output_error(found, one.record), 1.1 * output_error(one.truth, one.record));
+}
+
+TEST(Adaptation, DropsTheGainOfASumOfNoiseThatIsHeld) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Node one = node(0, seed, 0.02, 4);
+    const StateSpaceModel found =
+        adapted(one.mistaken, one.record, one.record.all(), GainsOfNoise::dropped);
+    EXPECT_LT((found.B * one.balance).norm(), 0.01 * (one.mistaken.B * one.balance).norm());
+  }
+}
+
+TEST(Adaptation, FitsNoGainOfASumThatIsZeroButForRounding) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Node one = node(0, seed, 0);
+    for (const GainsOfNoise gains : {GainsOfNoise::kept, GainsOfNoise::dropped}) {
+      const StateSpaceModel found = adapted(one.truth, one.record, one.record.all(), gains);
+      EXPECT_LT((found.B - one.truth.B).norm(), one.truth.B.norm());
+      EXPECT_LT((found.y0 - one.truth.y0).norm(), 1);
+    }
+  }
 }
 
 TEST(Adaptation, KeepsTheGainOfASumThatOtherSamplesHaveTold) {

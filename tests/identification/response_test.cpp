@@ -70,6 +70,23 @@ TEST(Response, OfAlmostEqualInputsIsAsNearAndSharesTheEffectBesideNoise) {
   EXPECT_GT((exact.model.B.col(0) - exact.model.B.col(1)).norm(), exact.model.B.norm());
 }
 
+TEST(Response, FollowsWhatInputsThatAreAlmostEqualTellBesideNoise) {
+  testing::Noise noise(3);
+  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
+  Record record = testing::excited(truth, noise, 400, 0);
+  const Matrix between = noise.normal(400, 1);
+  record.u.col(1) = record.u.col(0) + 3e-6 * between;
+  Matrix alone = Matrix::Zero(400, 2);
+  alone.col(1) = between;
+  record.y = testing::simulated(truth, alone, Vector::Zero(2));
+  record.y += 0.002 * record.y.norm() / 20 * noise.normal(400, 1);
+  const auto error = [&](Accuracy accuracy) {
+    return output_error(fit_response(truth.A, truth.C, true, record, record.all(), accuracy),
+                        record);
+  };
+  EXPECT_LT(error(Accuracy::fast), 1.01 * error(Accuracy::exact));
+}
+
 TEST(Response, OfEqualInputsSharesTheEffect) {
   testing::Noise noise(4);
   const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);

@@ -61,17 +61,6 @@ TEST(JudgeProbation, WaitsForTheLastLookWhereWhatCameAfterTheWindowIsNotSure) {
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
-TEST(JudgeProbation, ApprovesNothingThatMayErrMoreByTheMarginAfterItsWindow) {
-  LongerLook look = sure_of(40);
-  look.is_last = true;
-  look.after.sure_percent = -14.9;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-  look.after.sure_percent = -15;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
-  look.after.sure_percent.reset();
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
-}
-
 TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
   LongerLook look = sure_of(10);
   look.comparison.reduction_percent = 15;
