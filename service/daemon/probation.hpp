@@ -38,7 +38,7 @@ struct LongerLook {
   /// `comparison` with the champion's mean error taken from it, where a sensor that no relation
   /// binds could show that error.
   std::optional<Evidence::Comparison> without_offset{};
-  /// Of the last telemetry, as many samples as the validation part has at most (run_comparison.hpp).
+  /// Of the last telemetry, as many samples as the validation part has (run_comparison.hpp).
   double movement = 1;
 };
 
