@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "identification/kernels.hpp"
+#include "identification/gram.hpp"
 #include "identification/response.hpp"
 #include "identification/simulate.hpp"
 
@@ -65,11 +65,7 @@ Components components_of(const Matrix& u, const std::vector<Segment>& segments) 
   constexpr double determined = 1e-6;  // below it is the rounding of inputs that follow from others
   const Index m = u.cols();
   if (m == 0) return {};
-  const Matrix samples = u.transpose();
-  const VectorSequence sequence{samples.data(), m, m};
-  Matrix sums = Matrix::Zero(m, m);
-  add_outer_products(sequence, sequence, u.rows(), Triangle::lower, sums.data());
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(sums / double(u.rows()));
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(lower_gram(u.transpose()) / double(u.rows()));
   std::vector<Index> moving, noise;
   for (Index i = 0; i < m; ++i) {
     const double size = std::sqrt(std::max(0.0, eigen.eigenvalues()(i)));

@@ -6,8 +6,9 @@
 //
 //   y[k] - y_known[k] = C A^k dx0 + sum_{j<k} C A^(k-1-j) dB u[j] + dD u[k] + dy0
 //
-// The least squares solution is the one of least norm, in inputs of mean 0 and deviation 1: what
-// the samples do not determine stays as it was, and the gain of an input that does not move.
+// in inputs of mean 0 and deviation 1. The least squares solution is the one of least norm
+// (regression.hpp says in which scale): what the samples do not determine stays as it was, and the
+// gain of an input that does not move.
 //
 // Currents into a node and out of it add up to nothing but the noise of their sensors. The gain of
 // such a sum follows that noise, may have any size and sign, and does harm once one of the sensors

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "identification/gram.hpp"
 #include "identification/kernels.hpp"
 
 namespace reident::identification {
@@ -94,10 +95,7 @@ Vector least_squares(const Matrix& left, const Vector& right) {
   const Vector scale = left.colwise().norm().transpose().unaryExpr(
       [](double norm) { return norm > 0 ? 1 / norm : 0.0; });
   const Matrix scaled = scale.asDiagonal() * left.transpose();
-  const VectorSequence rows{scaled.data(), scaled.rows(), scaled.rows()};
-  Matrix sums = Matrix::Zero(scaled.rows(), scaled.rows());
-  add_outer_products(rows, rows, scaled.cols(), Triangle::lower, sums.data());
-  const Eigen::LLT<Matrix> llt(sums);
+  const Eigen::LLT<Matrix> llt(lower_gram(scaled));
   if (llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > least_pivot)
     return scale.asDiagonal() * llt.solve(scaled * right);
   return left.completeOrthogonalDecomposition().solve(right);

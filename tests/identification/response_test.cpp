@@ -43,24 +43,36 @@ TEST(Response, AgreesWithExplicitRegressors) {
   }
 }
 
+/// A system of two inputs that differ by noise of the size `apart` times theirs.
+struct AlmostEqualInputs {
+  explicit AlmostEqualInputs(double apart)
+      : truth(testing::random_system(noise, 2, 2, 1)),
+        record(testing::excited(truth, noise, 400, 0)),
+        between(noise.normal(400, 1)) {
+    record.u.col(1) = record.u.col(0) + apart * between;
+    record.y = testing::simulated(truth, record.u, Vector::Zero(2));
+  }
+
+  testing::Noise noise{3};
+  StateSpaceModel truth;
+  Record record;
+  Matrix between;
+};
+
 TEST(Response, FallsBackWhereTheNormalEquationsLoseTooMuch) {
-  testing::Noise noise(3);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
-  Record record = testing::excited(truth, noise, 400, 0);
-  record.u.col(1) = record.u.col(0) + 1e-6 * noise.normal(400, 1);
-  record.y = testing::simulated(truth, record.u, Vector::Zero(2));
+  const AlmostEqualInputs inputs(1e-6);
+  const StateSpaceModel& truth = inputs.truth;
+  const Record& record = inputs.record;
   const Response found = fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::fast);
   EXPECT_LT(output_error(found, record), 1e-12);
   EXPECT_LT((found.model.B - truth.B).norm(), 1e-6);
 }
 
 TEST(Response, OfAlmostEqualInputsIsAsNearAndSharesTheEffectBesideNoise) {
-  testing::Noise noise(3);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
-  Record record = testing::excited(truth, noise, 400, 0);
-  record.u.col(1) = record.u.col(0) + 1e-7 * noise.normal(400, 1);
-  record.y = testing::simulated(truth, record.u, Vector::Zero(2));
-  record.y += 0.01 * record.y.norm() / 20 * noise.normal(400, 1);
+  AlmostEqualInputs inputs(1e-7);
+  const StateSpaceModel& truth = inputs.truth;
+  Record& record = inputs.record;
+  record.y += 0.01 * record.y.norm() / 20 * inputs.noise.normal(400, 1);
   const auto fitted = [&](Accuracy accuracy) {
     return fit_response(truth.A, truth.C, true, record, record.all(), accuracy);
   };
@@ -71,15 +83,13 @@ TEST(Response, OfAlmostEqualInputsIsAsNearAndSharesTheEffectBesideNoise) {
 }
 
 TEST(Response, FollowsWhatInputsThatAreAlmostEqualTellBesideNoise) {
-  testing::Noise noise(3);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
-  Record record = testing::excited(truth, noise, 400, 0);
-  const Matrix between = noise.normal(400, 1);
-  record.u.col(1) = record.u.col(0) + 3e-6 * between;
+  AlmostEqualInputs inputs(3e-6);
+  const StateSpaceModel& truth = inputs.truth;
+  Record& record = inputs.record;
   Matrix alone = Matrix::Zero(400, 2);
-  alone.col(1) = between;
+  alone.col(1) = inputs.between;
   record.y = testing::simulated(truth, alone, Vector::Zero(2));
-  record.y += 0.002 * record.y.norm() / 20 * noise.normal(400, 1);
+  record.y += 0.002 * record.y.norm() / 20 * inputs.noise.normal(400, 1);
   const auto error = [&](Accuracy accuracy) {
     return output_error(fit_response(truth.A, truth.C, true, record, record.all(), accuracy),
                         record);
