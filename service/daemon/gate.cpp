@@ -28,7 +28,8 @@ constexpr double slowest_limit = 1.0;
 constexpr double fault_limit = 1.0 / 400;
 
 /// Without its payload a spacecraft moves the inputs of its equipment over three quarters of what
-/// it else does, in safe mode over six tenths (tests/trust).
+/// it else does, in safe mode over a quarter to two thirds and a little more (tests/trust): the
+/// upper end of that is missed.
 constexpr double least_movement = 2.0 / 3;
 
 constexpr std::array names{
