@@ -27,10 +27,9 @@ constexpr double slowest_limit = 1.0;
 /// Honest telemetry has at most 1 find in 1000 ticks (tests/trust).
 constexpr double fault_limit = 1.0 / 400;
 
-/// Without its payload a spacecraft moves the inputs of its equipment over three quarters of what
-/// it else does, in safe mode over a quarter to two thirds and a little more (tests/trust): the
-/// upper end of that is missed.
-constexpr double least_movement = 2.0 / 3;
+/// Without its payload a spacecraft moves the inputs of its equipment over 0.54 and more of what it
+/// else does, in safe mode over 0.2 to 0.53 (tests/trust).
+constexpr double least_movement = 0.55;
 
 constexpr std::array names{
     std::pair{Outcome::approved, std::string_view("approved")},

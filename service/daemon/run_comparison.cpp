@@ -71,19 +71,29 @@ double movement(const EquipmentModel& model, const Matrix& u) {
   const auto gain = static_gain(model.dynamics);
   if (!gain || model.inputs.empty()) return 1;
   const std::vector<Signal> visited = with_ranges(model.inputs, u);
+  struct Share {
+    double moved = 0, of = 0;
+
+    void add(double share, double weight) {
+      moved += share * weight;
+      of += weight;
+    }
+    double value() const { return of > 0 ? moved / of : 1; }
+  };
   double least = 1;
   for (Index q = 0; q < gain->rows(); ++q) {
     const Signal& output = model.outputs[static_cast<std::size_t>(q)];
-    double moved = 0, all = 0;
+    const double output_range = output.high - output.low;
+    Share all, free;
     for (std::size_t j = 0; j < model.inputs.size(); ++j) {
       const double range = model.inputs[j].high - model.inputs[j].low;
       if (!(range > 0)) continue;
-      const double effect =
-          std::min(std::abs((*gain)(q, static_cast<Index>(j))) * range, output.high - output.low);
-      moved += effect * std::min(1.0, (visited[j].high - visited[j].low) / range);
-      all += effect;
+      const double share = std::min(1.0, (visited[j].high - visited[j].low) / range);
+      const double effect = std::abs((*gain)(q, static_cast<Index>(j))) * range;
+      all.add(share, std::min(effect, output_range));
+      if (effect <= output_range) free.add(share, effect);
     }
-    if (all > 0) least = std::min(least, moved / all);
+    least = std::min({least, all.value(), free.value()});
   }
   return least;
 }

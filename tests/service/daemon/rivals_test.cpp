@@ -104,20 +104,30 @@ TEST_F(Rivals, AnOperationThatMovesTheInputsLessIsUnusual) {
   EXPECT_NEAR(run(day + 70 * minute).evidence.champion->movement, 0.67, 0.02);
 }
 
-TEST(Movement, CountsAnInputByTheOutputsRangeAtMost) {
+/// Of an input with an effect of 200 on an output of range 5, and one with an effect of 4.
+EquipmentModel of_an_input_that_is_held() {
   using identification::Matrix;
   using identification::Vector;
-  EquipmentModel model;  // of one input that is held near a point, and another
+  EquipmentModel model;
   model.inputs = {{"held", "V", 27.9, 28.1}, {"other", "A", 0, 10}};
   model.outputs = {{"y", "V", 0, 5}};
   model.dynamics.A = Matrix::Zero(0, 0);
   model.dynamics.B = Matrix::Zero(0, 2);
   model.dynamics.C = Matrix::Zero(1, 0);
-  model.dynamics.D = (Matrix(1, 2) << 1000, 0.5).finished();
+  model.dynamics.D = (Matrix(1, 2) << 1000, 0.4).finished();
   model.dynamics.u0 = Vector::Zero(2);
   model.dynamics.y0 = Vector::Zero(1);
-  const Matrix u = (Matrix(3, 2) << 27.9, 2, 28, 4, 28.1, 2).finished();
-  EXPECT_NEAR(movement(model, u), 0.6, 1e-12);
+  return model;
+}
+
+TEST(Movement, IsThatOfTheOtherInputsWhereOneIsHeldNearAPoint) {
+  const identification::Matrix u{{27.9, 2}, {28, 4}, {28.1, 2}};
+  EXPECT_NEAR(movement(of_an_input_that_is_held(), u), 0.2, 1e-12);
+}
+
+TEST(Movement, CountsAnInputByTheOutputsRangeAtMost) {
+  const identification::Matrix u{{28, 0}, {28.02, 10}};
+  EXPECT_NEAR(movement(of_an_input_that_is_held(), u), (5 * 0.1 + 4) / 9, 1e-12);
 }
 
 TEST_F(Rivals, WhatMayBeAConstantAloneHasToAgreeAllOverTheChampionsWindow) {
