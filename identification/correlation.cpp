@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "identification/kernels.hpp"
 #include "identification/quantiles.hpp"
 
 namespace reident::identification {
@@ -12,16 +13,27 @@ namespace {
 constexpr double confidence = 0.95;
 const double two_sided = normal_quantile((1 + confidence) / 2);
 
-/// sum a[t - lag] b[t] within the stretches; lag >= 0.
-double lagged_product(const Vector& a, const Vector& b, const std::vector<RowRange>& stretches,
-                      Index lag) {
-  double sum = 0;
+/// sum a[t - lag] b[t] within the stretches, for `count` lags from `first_lag` (at least 0) on. Of
+/// `taken` samples of a at once, each meets as many of b for its lags: those at a constant lag lie
+/// on a diagonal of the outer products.
+Vector lagged_products(const Vector& a, const Vector& b, const std::vector<RowRange>& stretches,
+                       Index first_lag, Index count) {
+  constexpr Index taken = 6;
+  const Index met = count + taken - 1;
+  Matrix products = Matrix::Zero(met, taken);
   for (const RowRange& stretch : stretches) {
-    const Index count = stretch.size() - lag;
-    if (count > 0)
-      sum += a.segment(stretch.begin, count).dot(b.segment(stretch.begin + lag, count));
+    const Index pairs = stretch.size() - first_lag;
+    if (pairs < 1) continue;
+    const Index blocks = (pairs + taken - 1) / taken;
+    Vector early = Vector::Zero(blocks * taken), late = Vector::Zero((blocks - 1) * taken + met);
+    early.head(pairs) = a.segment(stretch.begin, pairs);
+    late.head(pairs) = b.segment(stretch.begin + first_lag, pairs);
+    add_outer_products({late.data(), met, taken}, {early.data(), taken, taken}, blocks,
+                       Triangle::full, products.data());
   }
-  return sum;
+  Vector sums = Vector::Zero(count);
+  for (Index j = 0; j < taken; ++j) sums += products.col(j).segment(j, count);
+  return sums;
 }
 
 double normalised(double product, double energy) {
@@ -71,9 +83,11 @@ Index Series::pairs(Index lag) const {
 }
 
 double Series::autocorrelation(Index lag) {
+  constexpr Index at_once = 27;
   while (static_cast<Index>(known_.size()) <= lag) {
     const auto next = static_cast<Index>(known_.size());
-    known_.push_back(normalised(lagged_product(centred_, centred_, stretches_, next), energy_));
+    for (const double product : lagged_products(centred_, centred_, stretches_, next, at_once))
+      known_.push_back(normalised(product, energy_));
   }
   return known_[static_cast<std::size_t>(lag)];
 }
@@ -96,10 +110,10 @@ Correlogram cross_correlogram(Series& input, Series& residual, Index lags) {
   const double energy = u.norm() * e.norm();
   const double deviation = std::sqrt(bartlett_factor(input, residual)) / double(input.rows());
   Correlogram result{-reach, Vector(2 * reach + 1), Vector(2 * reach + 1)};
+  const Vector before = lagged_products(e, u, input.stretches(), 1, reach);
+  const Vector behind = lagged_products(u, e, input.stretches(), 0, reach + 1);
   for (Index lag = -reach; lag <= reach; ++lag) {
-    const double product = lag < 0 ? lagged_product(e, u, input.stretches(), -lag)
-                                   : lagged_product(u, e, input.stretches(), lag);
-    result.r(lag + reach) = normalised(product, energy);
+    result.r(lag + reach) = normalised(lag < 0 ? before(-lag - 1) : behind(lag), energy);
     result.bound(lag + reach) =
         two_sided * deviation * std::sqrt(double(input.pairs(std::abs(lag))));
   }
