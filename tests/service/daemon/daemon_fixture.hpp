@@ -81,6 +81,29 @@ class DaemonTest : public testing::Test {
     return frames;
   }
 
+  struct Operation {
+    double u = 1, v = 1;  // of how the inputs else move
+    double gain = 1;
+    double offset = 0;
+    double noise = 0.001;
+    storage::Time since = INT64_MIN;  // from when on the inputs move so
+  };
+  /// The same plant, operated otherwise.
+  static std::vector<storage::TelemetryFrame> operation(storage::Time begin, int seconds,
+                                                        const Operation& now) {
+    auto frames = telemetry(begin, seconds, 0, now.noise);
+    double state = 0;
+    for (auto& frame : frames) {
+      if (frame.generation_time >= now.since) {
+        frame.samples[0].value *= now.u;
+        frame.samples[1].value *= now.v;
+      }
+      frame.samples[2].value += now.offset + state;
+      state = 0.9 * state + 0.1 * now.gain * (frame.samples[0].value + frame.samples[1].value / 2);
+    }
+    return frames;
+  }
+
   /// Windows of 10 minutes that slide by 5.
   static EquipmentConfig plant() {
     EquipmentConfig equipment;

@@ -228,6 +228,16 @@ TEST_F(Probation, EndsWithARejectionWhereTheChampionIsAsGood) {
   EXPECT_EQ(status(2), "rejected");
 }
 
+TEST_F(Probation, IsNotEndedWithAnApprovalByAnUnusualOperation) {
+  archive.append(operation(day + 10 * minute, 901,
+                           {.u = 0.3, .v = 0.3, .gain = 2, .since = window_end + second}));
+  make_version(window_end, "on_probation", DecisionKind::wait);
+  EXPECT_TRUE(look(window_end + 4 * minute).empty());
+  EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
+              HasSubstr("an unusual operation, which says little of the usual one"));
+  EXPECT_EQ(status(2), "rejected");
+}
+
 TEST_F(Probation, GivesTheChampionNoTelemetryThatItDoesNotBelieve) {
   std::vector<storage::TelemetryFrame> frames = telemetry(day + 10 * minute, 901);
   frames[700].samples[1].value = 500;

@@ -32,22 +32,8 @@ class Rivals : public DaemonTest {
     archive.append(frames);
   }
 
-  struct Operation {
-    double u = 1, v = 1;  // of how the inputs else move
-    double gain = 1;
-    double offset = 0;
-    double noise = 0.001;
-  };
   void operate(storage::Time begin, int seconds, const Operation& now) {
-    auto frames = telemetry(begin, seconds, 0, now.noise);
-    double state = 0;
-    for (auto& frame : frames) {
-      frame.samples[0].value *= now.u;
-      frame.samples[1].value *= now.v;
-      frame.samples[2].value += now.offset + state;
-      state = 0.9 * state + 0.1 * now.gain * (frame.samples[0].value + frame.samples[1].value / 2);
-    }
-    archive.append(frames);
+    archive.append(operation(begin, seconds, now));
   }
 
   storage::Database database = open();
