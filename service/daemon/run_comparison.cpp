@@ -67,33 +67,49 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
   return RunsOfBoth{std::move(record), std::move(runs)};
 }
 
+namespace {
+
+/// A signal that stays near a point and leaves it for transients crosses its range whatever the
+/// operation: a bus voltage deviates by a thirtieth of it, currents by a tenth and more.
+bool is_held(const identification::Vector& values) {
+  constexpr double held = 0.05;
+  const double range = values.maxCoeff() - values.minCoeff();
+  const double mean_square =
+      (values.array() - values.mean()).square().sum() / static_cast<double>(values.size());
+  return range > 0 && std::sqrt(mean_square) < held * range;
+}
+
+struct Share {
+  double moved = 0, of = 0;
+
+  void add(double share, double weight) {
+    moved += share * weight;
+    of += weight;
+  }
+};
+
+}  // namespace
+
 double movement(const EquipmentModel& model, const Matrix& u) {
   const auto gain = static_gain(model.dynamics);
   if (!gain || model.inputs.empty()) return 1;
   const std::vector<Signal> visited = with_ranges(model.inputs, u);
-  struct Share {
-    double moved = 0, of = 0;
-
-    void add(double share, double weight) {
-      moved += share * weight;
-      of += weight;
-    }
-    double value() const { return of > 0 ? moved / of : 1; }
-  };
   double least = 1;
   for (Index q = 0; q < gain->rows(); ++q) {
     const Signal& output = model.outputs[static_cast<std::size_t>(q)];
-    const double output_range = output.high - output.low;
     Share all, free;
     for (std::size_t j = 0; j < model.inputs.size(); ++j) {
       const double range = model.inputs[j].high - model.inputs[j].low;
       if (!(range > 0)) continue;
+      const auto column = static_cast<Index>(j);
       const double share = std::min(1.0, (visited[j].high - visited[j].low) / range);
-      const double effect = std::abs((*gain)(q, static_cast<Index>(j))) * range;
-      all.add(share, std::min(effect, output_range));
-      if (effect <= output_range) free.add(share, effect);
+      const double effect =
+          std::min(std::abs((*gain)(q, column)) * range, output.high - output.low);
+      all.add(share, effect);
+      if (!is_held(u.col(column))) free.add(share, effect);
     }
-    least = std::min({least, all.value(), free.value()});
+    const Share& counted = free.of > 0 ? free : all;
+    if (counted.of > 0) least = std::min(least, counted.moved / counted.of);
   }
   return least;
 }

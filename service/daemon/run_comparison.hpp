@@ -53,9 +53,7 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
 
 /// Share of the ranges of the model's inputs that `u` (N x m, N at least 1) moves over, weighted by
 /// what each of them moves the output by, in a steady state and by its own range at most; the
-/// smallest one of any output, of all inputs and of those alone that move it by no more than that.
-/// One that would move it by more, as a bus voltage that is held near a point, crosses its range in
-/// transients whatever the operation.
+/// smallest one of any output. Inputs that are held near a point count where there are no others.
 double movement(const EquipmentModel& model, const identification::Matrix& u);
 
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,

@@ -225,13 +225,13 @@ const Case of_an_offset[] = {
 const Case of_the_operation[] = {
     {"UnusualOperationThatMoreTelemetryMayEnd",
      [](auto& e, auto& c) {
-       e.champion->movement = 0.54;
+       e.champion->movement = 0.52;
        c.confirmation = 100;
      },
      Outcome::on_probation},
     {"OperationThatIsUsual",
      [](auto& e, auto& c) {
-       e.champion->movement = 0.56;
+       e.champion->movement = 0.54;
        c.confirmation = 100;
      },
      Outcome::approved},

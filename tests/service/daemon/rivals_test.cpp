@@ -90,12 +90,12 @@ TEST_F(Rivals, AnOperationThatMovesTheInputsLessIsUnusual) {
   EXPECT_NEAR(run(day + 70 * minute).evidence.champion->movement, 0.67, 0.02);
 }
 
-/// Of an input with an effect of 200 on an output of range 5, and one with an effect of 4.
-EquipmentModel of_an_input_that_is_held() {
+/// A voltage with an effect of 200 on an output of range 5, and a current with one of 4.
+EquipmentModel of_a_voltage_and_a_current() {
   using identification::Matrix;
   using identification::Vector;
   EquipmentModel model;
-  model.inputs = {{"held", "V", 27.9, 28.1}, {"other", "A", 0, 10}};
+  model.inputs = {{"V", "V", 27.9, 28.1}, {"I", "A", 0, 10}};
   model.outputs = {{"y", "V", 0, 5}};
   model.dynamics.A = Matrix::Zero(0, 0);
   model.dynamics.B = Matrix::Zero(0, 2);
@@ -106,14 +106,37 @@ EquipmentModel of_an_input_that_is_held() {
   return model;
 }
 
-TEST(Movement, IsThatOfTheOtherInputsWhereOneIsHeldNearAPoint) {
-  const identification::Matrix u{{27.9, 2}, {28, 4}, {28.1, 2}};
-  EXPECT_NEAR(movement(of_an_input_that_is_held(), u), 0.2, 1e-12);
-}
-
 TEST(Movement, CountsAnInputByTheOutputsRangeAtMost) {
   const identification::Matrix u{{28, 0}, {28.02, 10}};
-  EXPECT_NEAR(movement(of_an_input_that_is_held(), u), (5 * 0.1 + 4) / 9, 1e-12);
+  EXPECT_NEAR(movement(of_a_voltage_and_a_current(), u), (5 * 0.1 + 4) / 9, 1e-12);
+}
+
+/// The voltage is held near a point but for two transients, the current moves over `share` of its
+/// range.
+identification::Matrix transients(double share) {
+  identification::Matrix u(4000, 2);
+  for (identification::Index k = 0; k < u.rows(); ++k) {
+    const bool first = k == 1000, second = k == 2000;
+    u.row(k) << (first ? 27.9 : second ? 28.1 : 28.0), (k % 2 == 0 ? 0 : 10 * share);
+  }
+  return u;
+}
+
+TEST(Movement, IsThatOfTheOthersWhereAnInputIsHeldNearAPoint) {
+  EXPECT_NEAR(movement(of_a_voltage_and_a_current(), transients(0.2)), 0.2, 1e-12);
+}
+
+TEST(Movement, IsOfInputsThatAreHeldWhereThereAreNoOthers) {
+  EquipmentModel model = of_a_voltage_and_a_current();
+  model.inputs.pop_back();
+  model.dynamics.B = identification::Matrix::Zero(0, 1);
+  model.dynamics.D = identification::Matrix{{1000}};
+  model.dynamics.u0 = identification::Vector::Zero(1);
+  EXPECT_NEAR(movement(model, transients(0).leftCols(1)), 1, 1e-12);
+}
+
+TEST(Movement, OfAnInputThatStandsStillIsNothing) {
+  EXPECT_NEAR(movement(of_a_voltage_and_a_current(), transients(0)), 0, 1e-12);
 }
 
 TEST_F(Rivals, WhatMayBeAConstantAloneHasToAgreeAllOverTheChampionsWindow) {
