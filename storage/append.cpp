@@ -20,8 +20,14 @@ bool same_value(double a, double b) {
 }
 
 Quality quality_of(const Sample& sample) {
-  return std::isfinite(sample.value) ? std::min(sample.quality, Quality::invalid)
-                                     : Quality::invalid;
+  const bool is_known = sample.quality <= qualities.back();
+  return is_known && std::isfinite(sample.value) ? sample.quality : Quality::invalid;
+}
+
+/// As one value does that a decoder rounds to single precision.
+bool differ_by_rounding(double a, double b) {
+  constexpr double resolution = 1e-6;
+  return std::abs(a - b) <= resolution * std::max(std::abs(a), std::abs(b));
 }
 
 // The distance of two times can be twice as large as a Time holds.
@@ -178,7 +184,12 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head,
         ++(same ? source.duplicates : source.conflicts);
         ++(same ? report_.duplicates : report_.conflicts);
       }
-      if (!is_new && arrival.quality >= kept->quality) continue;
+      if (!is_new && contradicts(*kept, arrival)) {
+        kept->quality = Quality::disputed;
+        changed = true;
+      }
+      if (!is_new && (kept->quality == Quality::disputed || arrival.quality >= kept->quality))
+        continue;
       kept = {arrival.value, arrival.quality, source.tracker.source};
       changed = true;
     }
@@ -187,6 +198,11 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head,
     if (before) replaced.push_back(time, *before);
   }
   return landed;
+}
+
+bool Append::contradicts(const Held& kept, const Arrival& arrival) const {
+  return kept.quality == Quality::good && arrival.quality == Quality::good &&
+         frames_[arrival.frame].numbered && !differ_by_rounding(kept.value, arrival.value);
 }
 
 std::optional<Held> Append::held(const SeriesHead& head, Time time) {

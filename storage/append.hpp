@@ -66,6 +66,8 @@ class Append {
   /// Both give what landed or changed, ascending in time; `replaced` gets what was there before.
   SampleColumns all_new(const SeriesArrivals& series);
   SampleColumns settled(const SeriesArrivals& series, SeriesHead& head, SampleColumns& replaced);
+  /// A file that is imported contradicts nothing: what was received stands.
+  bool contradicts(const Held& kept, const Arrival& arrival) const;
   std::optional<Held> held(const SeriesHead& head, Time time);
   void save(SeriesHead& head, SampleColumns&& landed);
   std::optional<Time> sealed_until(const std::string& spacecraft);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t magic = 0x6B686372;  // "rchk"
 constexpr std::uint32_t version = 1;
 constexpr std::size_t checked_bytes = ChunkSummary::bytes - 8;  // before the summary's checksum
-constexpr auto worst_quality = static_cast<std::int64_t>(Quality::invalid);
+constexpr auto last_quality = static_cast<std::int64_t>(qualities.back());
 
 struct Header {
   ChunkSummary summary;
@@ -278,7 +278,7 @@ bool ChunkDecoder::decode_values(Bytes part, Selection wanted, std::vector<doubl
 bool ChunkDecoder::decode_qualities(Bytes part, Selection wanted, std::vector<Quality>& out) {
   ByteReader in(part);
   if (const auto constant = IntegerDecoder::get_constant(in, wanted.of)) {
-    if (!in.at_end() || *constant < 0 || *constant > worst_quality) return false;
+    if (!in.at_end() || *constant < 0 || *constant > last_quality) return false;
     out.insert(out.end(), wanted.count, static_cast<Quality>(*constant));
     return true;
   }
@@ -288,7 +288,7 @@ bool ChunkDecoder::decode_qualities(Bytes part, Selection wanted, std::vector<Qu
   const std::size_t before = out.size();
   out.resize(before + wanted.count);
   for (std::size_t i = 0; i < wanted.count; ++i) {
-    known &= numbers_[i] >= 0 && numbers_[i] <= worst_quality;
+    known &= numbers_[i] >= 0 && numbers_[i] <= last_quality;
     out[before + i] = static_cast<Quality>(numbers_[i]);
   }
   return known;

@@ -44,7 +44,8 @@ void migrate(sqlite::Connection& connection, std::int64_t version) {
     samples_to_chunks(connection);
     connection.execute(schema::without_samples_of_2());
   }
-  connection.execute(schema::from_3_to_4());
+  if (version < 4) connection.execute(schema::from_3_to_4());
+  connection.execute(schema::user_version());
 }
 
 }  // namespace reident::storage

@@ -77,7 +77,7 @@ std::optional<ChunkError> read_run(Bytes bytes, Run& run) {
   run.value = in.bytes(count * sizeof(double));
   for (std::size_t i = 0; i < ((flags & one_quality) != 0 ? 1 : samples); ++i) {
     const std::uint8_t quality = in.byte();
-    if (quality > static_cast<std::uint8_t>(Quality::invalid))
+    if (quality > static_cast<std::uint8_t>(qualities.back()))
       return damaged("has a quality that is none");
     run.quality.push_back(static_cast<Quality>(quality));
   }

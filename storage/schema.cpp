@@ -320,10 +320,6 @@ std::string joined(std::initializer_list<std::string_view> parts) {
   return sql;
 }
 
-std::string user_version() {
-  return "PRAGMA user_version = " + std::to_string(version) + ";";
-}
-
 }  // namespace
 
 std::string creation() {
@@ -374,7 +370,11 @@ std::string without_samples_of_2() {
 }
 
 std::string from_3_to_4() {
-  return joined({"DROP VIEW lineage;", lineage_view, decision_of_4}) + user_version();
+  return joined({"DROP VIEW lineage;", lineage_view, decision_of_4});
+}
+
+std::string user_version() {
+  return "PRAGMA user_version = " + std::to_string(version) + ";";
 }
 
 }  // namespace reident::storage::schema

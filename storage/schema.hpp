@@ -7,16 +7,20 @@
 namespace reident::storage::schema {
 
 inline constexpr std::int64_t application_id = 0x72656964;  // "reid"
-inline constexpr std::int64_t version = 4;                  // kept in SQLite's user_version
+inline constexpr std::int64_t version = 5;                  // kept in SQLite's user_version
 
 /// Statements that make everything in an empty file, application_id and user_version included.
 std::string creation();
 
 /// Statements that take a file from one version to the next. Version 3 has no table `sample`: it is
-/// dropped once its rows are in chunks. The last of them sets user_version.
+/// dropped once its rows are in chunks. Files of version 4 differ from those of 5 in what they may
+/// hold: no quality `disputed`.
 std::string from_1_to_2();
 std::string from_2_to_3();
 std::string without_samples_of_2();
 std::string from_3_to_4();
+
+/// Says that the file is of this version.
+std::string user_version();
 
 }  // namespace reident::storage::schema

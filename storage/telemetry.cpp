@@ -10,6 +10,8 @@ std::string_view name(Quality quality) {
       return "out of limits";
     case Quality::suspect:
       return "suspect";
+    case Quality::disputed:
+      return "disputed";
     case Quality::invalid:
       break;
   }

@@ -1,6 +1,7 @@
 // Telemetry as SATCS distributes it and as the archive keeps it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,8 +21,18 @@ struct TimeRange {
   bool operator==(const TimeRange&) const = default;
 };
 
-/// Ascending from best to worst: of two values for one identity the lower wins.
-enum class Quality : std::uint8_t { good = 0, out_of_limits = 1, suspect = 2, invalid = 3 };
+/// As telemetry flags a sample, ascending from best to worst: of two values for one identity the
+/// lower wins. `disputed` is the archive's own: good telemetry gave two values for that identity,
+/// and nobody can tell which is true.
+enum class Quality : std::uint8_t {
+  good = 0,
+  out_of_limits = 1,
+  suspect = 2,
+  invalid = 3,
+  disputed = 4
+};
+inline constexpr std::array qualities = {Quality::good, Quality::out_of_limits, Quality::suspect,
+                                         Quality::invalid, Quality::disputed};
 std::string_view name(Quality quality);
 
 /// Telemetry of the satellite, or of the simulator under improvement. The same parameter of both

@@ -145,8 +145,8 @@ void read_row(const Json& row, storage::SampleColumns& samples) {
   append_column(row["values"], size, samples.value, read_number);
   append_column(row.at("quality"), size, samples.quality, [](const Json& value) {
     const int quality = value.get<int>();
-    if (quality < 0 || quality > static_cast<int>(storage::Quality::invalid))
-      throw std::invalid_argument("a quality is none of 0 to 3");
+    if (quality < 0 || quality > static_cast<int>(storage::qualities.back()))
+      throw std::invalid_argument("a quality is none of 0 to 4");
     return static_cast<storage::Quality>(quality);
   });
   append_column(row.at("source"), size, samples.source,

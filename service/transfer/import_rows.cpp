@@ -246,7 +246,7 @@ std::optional<Error> LongRows::read_quality(const Reader& reader, storage::Quali
   const auto read = parse_quality(reader.cells()[*quality_]);
   if (!read)
     return cell_error(reader, *quality_,
-                      "is no quality; use good, out of limits, suspect or invalid");
+                      "is no quality; use good, out of limits, suspect, invalid or disputed");
   quality = *read;
   return std::nullopt;
 }

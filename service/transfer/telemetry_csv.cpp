@@ -32,8 +32,8 @@ bool same_words(std::string_view a, std::string_view b) {
   });
 }
 
-template <class T>
-std::optional<T> by_name(std::string_view cell, std::initializer_list<T> all) {
+template <class T, std::size_t count>
+std::optional<T> by_name(std::string_view cell, const std::array<T, count>& all) {
   for (const T one : all)
     if (same_words(trimmed(cell), storage::name(one))) return one;
   return std::nullopt;
@@ -55,12 +55,11 @@ std::optional<double> parse_value(std::string_view cell) {
 }
 
 std::optional<storage::Quality> parse_quality(std::string_view cell) {
-  using storage::Quality;
-  return by_name(cell, {Quality::good, Quality::out_of_limits, Quality::suspect, Quality::invalid});
+  return by_name(cell, storage::qualities);
 }
 
 std::optional<storage::Origin> parse_origin(std::string_view cell) {
-  return by_name(cell, {storage::Origin::real, storage::Origin::simulated});
+  return by_name(cell, std::array{storage::Origin::real, storage::Origin::simulated});
 }
 
 std::optional<TimeUnit> parse_time_unit(std::string_view text) {

@@ -1,6 +1,7 @@
 #include "storage/sql/series_blocks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace reident::storage::sql {
@@ -153,9 +154,9 @@ void SeriesBlocks::load_chunk(const ChunkEntry& chunk, TimeBounds& piece) {
 
 void SeriesBlocks::filter() {
   if (!filters()) return;
-  bool quality_fits[4];
-  for (std::uint8_t i = 0; i < 4; ++i)
-    quality_fits[i] = selection_.quality.has(name(static_cast<Quality>(i)));
+  std::array<bool, qualities.size()> quality_fits{};
+  for (const Quality quality : qualities)
+    quality_fits[static_cast<std::size_t>(quality)] = selection_.quality.has(name(quality));
   std::int64_t source = -1;
   bool source_fits = false;
   std::vector<std::size_t> kept;

@@ -92,9 +92,10 @@ std::optional<std::int64_t> step_argument(sqlite3_value* argument) {
 void narrow_to_quality(TextChoice& quality, sqlite3_value* argument) {
   if (sqlite3_value_type(argument) == SQLITE_NULL) return;
   const std::string text = text_of(argument);
-  for (std::uint8_t i = 0; i < 4; ++i)
-    if (text == name(static_cast<Quality>(i))) return quality.intersect({text});
-  refuse("quality is '" + text + "': give 'good', 'out of limits', 'suspect' or 'invalid'");
+  for (const Quality one : qualities)
+    if (text == name(one)) return quality.intersect({text});
+  refuse("quality is '" + text +
+         "': give 'good', 'out of limits', 'suspect', 'invalid' or 'disputed'");
 }
 
 }  // namespace reident::storage::sql

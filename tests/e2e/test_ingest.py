@@ -163,6 +163,7 @@ class Faults(EndToEnd):
             second: 1.0, second + NS: 2.0, second + 2 * NS: 3.0, second + 3 * NS: 4.0,
             second + 4 * NS: None, 4_000_000_000 * NS: 7.0, -(2**63): -1.0, 2**63 - 1: -2.0,
             second + 8 * NS: 8.0, second + 9 * NS: 9.0})
+        self.assertEqual(samples["drive", second + NS], (2.0, "disputed"))
         infinite = [quality for (_, at), (_, quality) in samples.items() if at == second + 4 * NS]
         self.assertEqual(infinite, ["invalid"] * 3)
         self.assertIn((4_000_000_000, second + 7 * NS),

@@ -12,10 +12,11 @@ MINUTE_NS = 60 * NS
 
 
 class Contract:
-    """The archive as the contract has it: the better quality wins, then the first."""
+    """The archive as the contract has it: the better quality wins, then the first, disputed."""
 
     def __init__(self):
         self.samples = {}
+        self.disputed = set()
         self.duplicates = self.conflicts = 0
 
     def take(self, samples, later_ns=0):
@@ -27,6 +28,7 @@ class Contract:
                 self.duplicates += 1
             else:
                 self.conflicts += 1
+                self.disputed.add(key)
 
 
 class Lies(EndToEnd):
@@ -86,7 +88,10 @@ class Lies(EndToEnd):
         self.assertEqual(state["conflicts"], contract.conflicts)
         self.assertEqual(state["clock_jumps"], 60)
 
-        stored = {key: value for key, (value, _) in self.samples().items()}
+        samples = self.samples()
+        self.assertEqual({key for key, (_, quality) in samples.items() if quality != "good"},
+                         contract.disputed)
+        stored = {key: value for key, (value, _) in samples.items()}
         # DDS keeps the order within a sender alone: between two, either may be the first.
         for key, value in simulated.items():
             self.assertIn(stored[key], (value, truth[key]))
@@ -113,8 +118,9 @@ class Lies(EndToEnd):
         self.assertEqual(state["conflicts"], len(wrong))
         self.assertEqual(state["duplicates"], len(truth) - len(wrong))
         stored = self.samples()
-        self.assertEqual({key for key, (_, quality) in stored.items() if quality == "invalid"},
-                         set())
+        self.assertEqual({key for key, (_, quality) in stored.items() if quality == "disputed"},
+                         wrong.keys())
+        self.assertEqual({quality for _, quality in stored.values()}, {"good", "disputed"})
         self.assertEqual({key: value for key, (value, _) in stored.items()}, truth | wrong)
 
 

@@ -57,7 +57,11 @@ class Model {
       return;
     }
     ++(bits(found->second.value) == bits(incoming.value) ? report.duplicates : report.conflicts);
-    if (incoming.quality < found->second.quality) found->second = incoming;
+    Kept& kept = found->second;
+    if (kept.quality == Quality::good && incoming.quality == Quality::good &&
+        kept.value != incoming.value)
+      kept.quality = Quality::disputed;
+    if (kept.quality != Quality::disputed && incoming.quality < kept.quality) kept = incoming;
   }
 };
 
@@ -70,8 +74,7 @@ rc::Gen<std::vector<T>> few(rc::Gen<T> one) {
 rc::Gen<Sample> samples() {
   return rc::gen::build<Sample>(
       rc::gen::set(&Sample::parameter, rc::gen::inRange(1U, 4U)),
-      rc::gen::set(&Sample::quality, rc::gen::element(Quality::good, Quality::out_of_limits,
-                                                      Quality::suspect, Quality::invalid)),
+      rc::gen::set(&Sample::quality, rc::gen::elementOf(qualities)),
       rc::gen::set(&Sample::value, rc::gen::element(0.0, -0.0, 1.0, 28.5, std::nan(""),
                                                     std::numeric_limits<double>::infinity())));
 }

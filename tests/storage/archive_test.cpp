@@ -152,9 +152,21 @@ TEST_F(ArchiveTest, SettlesTwoSamplesOfOneIdentity) {
        Quality::invalid,
        false},
       {"another value, same quality: the first",
+       {1, Quality::out_of_limits, 5},
+       {1, Quality::out_of_limits, 6},
+       5,
+       Quality::out_of_limits,
+       true},
+      {"another good value: nobody can tell which is true",
        {1, Quality::good, 5},
        {1, Quality::good, 6},
        5,
+       Quality::disputed,
+       true},
+      {"the same good value in single precision",
+       {1, Quality::good, 28.13},
+       {1, Quality::good, 28.13F},
+       28.13,
        Quality::good,
        true},
       {"better quality wins",
@@ -227,6 +239,23 @@ TEST_F(ArchiveTest, SettlesTwoSamplesOfOneIdentity) {
       EXPECT_THAT(kept.quality, ElementsAre(c.quality));
     }
   }
+}
+
+TEST_F(ArchiveTest, KeepsADisputedSampleSoWhateverComesAgain) {
+  append({frame(1, 1, {{1, Quality::good, 5}}), frame(2, 1, {{1, Quality::good, 6}})});
+  for (const double value : {5.0, 6.0, 7.0})
+    EXPECT_TRUE(append({frame(3, 1, {{1, Quality::good, value}})}).touched.empty()) << value;
+  EXPECT_THAT(read_all(archive, 1).value, ElementsAre(5.0));
+  EXPECT_THAT(read_all(archive, 1).quality, ElementsAre(Quality::disputed));
+}
+
+TEST_F(ArchiveTest, LetsNoFileDisputeWhatWasReceived) {
+  append({frame(1, 1, {{1, Quality::good, 5}})});
+  TelemetryFrame row = frame(0, 1, {{1, Quality::good, 6}});
+  row.numbered = false;
+  EXPECT_EQ(append({row}).conflicts, 1U);
+  EXPECT_THAT(read_all(archive, 1).value, ElementsAre(5.0));
+  EXPECT_THAT(read_all(archive, 1).quality, ElementsAre(Quality::good));
 }
 
 TEST_F(ArchiveTest, CountsASampleTwiceInOneFrameAsADuplicate) {

@@ -88,9 +88,7 @@ Columns any_columns() {
   Columns columns;
   columns.time = any_times(count);
   columns.value = any_values(count);
-  columns.quality = *rc::gen::container<std::vector<Quality>>(
-      count, rc::gen::element(Quality::good, Quality::good, Quality::out_of_limits,
-                              Quality::suspect, Quality::invalid));
+  columns.quality = *rc::gen::container<std::vector<Quality>>(count, rc::gen::elementOf(qualities));
   columns.source = *rc::gen::container<std::vector<std::int64_t>>(
       count, *rc::gen::element(rc::gen::just<std::int64_t>(7), rc::gen::inRange<std::int64_t>(1, 4),
                                rc::gen::arbitrary<std::int64_t>()));

@@ -67,7 +67,7 @@ TEST_F(Migration, KeepsEveryRowAndItsMeaning) {
               ElementsAre("BDR|1|approved|NULL|d1|{\"a\":1}||", "BDR|2|superseded|1|d2|{\"a\":2}||",
                           "MEA|1|waiting|NULL|d3|{\"a\":3}||"));
   EXPECT_THAT(rows(path, "PRAGMA user_version; PRAGMA integrity_check; PRAGMA foreign_key_check"),
-              ElementsAre("4", "ok"));
+              ElementsAre("5", "ok"));
 }
 
 TEST_F(Migration, GoesOnWhereTheOldProgramStopped) {
@@ -145,6 +145,18 @@ INSERT INTO decision VALUES
   { const Database made(folder / "new.db", Mode::read_write); }
   const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
   EXPECT_THAT(rows(path, schema), ElementsAreArray(rows(folder / "new.db", schema)));
+}
+
+TEST(MigrationFrom4, ChangesTheNumberOfTheVersionAlone) {
+  const TemporaryFolder folder;
+  const auto path = folder / "old.db";
+  const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
+  { const Database made(path, Mode::read_write); }
+  const auto before = rows(path, schema);
+  rows(path, "PRAGMA user_version = 4");
+  { const Database migrated(path, Mode::read_write); }
+  EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
+  EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre("5"));
 }
 
 // Three series of several chunks each: a ramp of unusual values, one sample, a long one.

@@ -24,8 +24,7 @@ using Texts = std::vector<std::string>;
 rc::Gen<TelemetryFrame> frames() {
   const auto samples = rc::gen::build<Sample>(
       rc::gen::set(&Sample::parameter, rc::gen::inRange(1U, 5U)),
-      rc::gen::set(&Sample::quality, rc::gen::element(Quality::good, Quality::out_of_limits,
-                                                      Quality::suspect, Quality::invalid)),
+      rc::gen::set(&Sample::quality, rc::gen::elementOf(qualities)),
       rc::gen::set(&Sample::value, rc::gen::element(0.0, -0.0, 1.0, 2.0, 28.5, -7.25,
                                                     std::numeric_limits<double>::quiet_NaN(),
                                                     std::numeric_limits<double>::infinity(),

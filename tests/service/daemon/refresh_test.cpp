@@ -218,6 +218,18 @@ TEST_F(Refresh, LeavesSamplesOfBadQualityOut) {
   EXPECT_LT(result.candidate->outputs[0].high, 20);
 }
 
+TEST_F(Refresh, LeavesOutWhatTwoFramesOfOneTimeDisagreeAbout) {
+  const auto frames = telemetry(day, 601);
+  std::vector<storage::TelemetryFrame> restamped(frames.begin() + 100, frames.begin() + 160);
+  for (auto& frame : restamped)
+    for (storage::Sample& sample : frame.samples) sample.value += 1e6;
+  archive.append(restamped);
+  archive.append(frames);
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  EXPECT_LT(result.candidate->outputs[0].high, 20);
+}
+
 TEST_F(Refresh, GivesTheSameBitsWhateverWasKeptOfEarlierWindows) {
   EquipmentConfig equipment = plant();
   equipment.window = 40 * minute;

@@ -40,10 +40,7 @@ std::vector<storage::TelemetryFrame> any_frames() {
                         rc::gen::arbitrary<storage::Time>());
     for (std::uint32_t id = 1; id <= 3; ++id)
       if (*rc::gen::arbitrary<bool>())
-        frame.samples.push_back({id,
-                                 *rc::gen::element(Quality::good, Quality::out_of_limits,
-                                                   Quality::suspect, Quality::invalid),
-                                 any_value()});
+        frame.samples.push_back({id, *rc::gen::elementOf(storage::qualities), any_value()});
     frames.push_back(std::move(frame));
   }
   return frames;

@@ -60,8 +60,7 @@ TEST(TelemetryCsv, ATimeColumnSaysItsUnit) {
 }
 
 TEST(TelemetryCsv, QualitiesAreReadAsTheyAreShown) {
-  for (const Quality quality :
-       {Quality::good, Quality::out_of_limits, Quality::suspect, Quality::invalid})
+  for (const Quality quality : storage::qualities)
     EXPECT_EQ(parse_quality(storage::name(quality)), quality);
   EXPECT_EQ(parse_quality(" out_of_limits "), Quality::out_of_limits);
   EXPECT_EQ(parse_quality("fine"), std::nullopt);
