@@ -129,8 +129,9 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
         incumbent, record.u(std::vector(runs.rows.end() - last, runs.rows.end()), Eigen::all));
   }
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
-  look.is_last = until >= window.end + equipment.confirmation &&
-                 static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks;
+  if (until >= window.end + equipment.confirmation &&
+      static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks)
+    look.stage = LongerLook::Stage::due;
   const double as_ever =
       look.champion_validated_mrse_percent * (1 + equipment.margin_percent / 100);
   if (look.comparison.rival_mrse_percent < as_ever)
@@ -179,21 +180,19 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
     if (!same_outputs(model, incumbent))
       return rejection(fmt::format("champion {} has other outputs.", champion->number));
     const bool vouching = needs_vouching(registry, version, equipment);
-    const auto until = [&](storage::Time end) {
-      return longer_look(archive, version.window, model, incumbent, equipment, vouching, end);
-    };
     const storage::Time confirmed = version.window.end + equipment.confirmation;
-    const bool is_overdue = *time > confirmed;
-    auto look = until(std::min(*time, confirmed));
-    if (is_overdue && !(look && look->is_last)) {
-      look = until(*time);
-      if (look) look->is_last = true;
-    }
-    if (look) {
+    const auto judged = [&](storage::Time until) -> std::optional<NewDecision> {
+      auto look =
+          longer_look(archive, version.window, model, incumbent, equipment, vouching, until);
+      if (!look) return std::nullopt;
       look->champion = champion->number;
+      if (until > confirmed) look->stage = LongerLook::Stage::last;
       return judge_probation(*look, equipment);
-    }
-    if (!is_overdue) return std::nullopt;
+    };
+    if (since < confirmed)
+      if (auto found = judged(std::min(*time, confirmed))) return found;
+    if (*time <= confirmed) return std::nullopt;
+    if (auto found = judged(*time)) return found;
     return rejection("no telemetry to judge it by is left.");
   } catch (const std::invalid_argument&) {
     return rejection("its model or the champion's is damaged in the registry.");
@@ -238,17 +237,25 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           both->rival_mrse_percent);
     return std::nullopt;
   }();
-  const bool hurries =
-      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent) &&
-      look.after.sure_percent > 0.0;
-  if (!against && (look.is_last || hurries))
+  using Stage = LongerLook::Stage;
+  const bool left_behind =
+      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
+  const bool surely_after = look.after.sure_percent > 0.0;
+  const bool suffices =
+      look.stage == Stage::early ? left_behind && surely_after : left_behind || surely_after;
+  if (!against && suffices)
     return decision(
         DecisionKind::approve, look,
         fmt::format("Confirmed: the reduction is {:.2f} %, and with a confidence of {:g} % at "
                     "least {:.2f} %.",
                     reduction.percent, limits.confidence_percent, reduction.sure_percent));
-  if (!look.is_last) return std::nullopt;
-  return decision(DecisionKind::reject, look, "Not confirmed: " + *against);
+  if (look.stage == Stage::early || (look.stage == Stage::due && !against)) return std::nullopt;
+  if (against) return decision(DecisionKind::reject, look, "Not confirmed: " + *against);
+  return decision(
+      DecisionKind::reject, look,
+      fmt::format("Not confirmed: on the {} samples after its window alone it has {:.3f} % and the "
+                  "champion {:.3f} %, which is not surely less.",
+                  look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent));
 }
 
 bool record(storage::Registry& registry, const storage::Standing& standing,

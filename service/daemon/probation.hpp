@@ -22,7 +22,12 @@ namespace reident {
 
 /// What the validation part and telemetry after it show of a version.
 struct LongerLook {
-  bool is_last = false;     // no more telemetry is waited for
+  enum class Stage {
+    early,  // more telemetry comes
+    due,    // all of `confirmation` has come
+    last    // no more telemetry is waited for
+  };
+  Stage stage = Stage::early;
   storage::Time until = 0;  // end of the telemetry
   double fault_share = 0;   // of the window and what came after it (plausibility.hpp)
   std::int64_t champion = 0;
@@ -42,9 +47,10 @@ struct LongerLook {
   double movement = 1;
 };
 
-/// Approval or rejection; absent where more telemetry has to tell. Before the last look only a
-/// champion that was left behind is replaced, otherwise nothing hurries, and only by a version that
-/// is surely better on what came after its window.
+/// Approval or rejection; absent where more telemetry has to tell. An early look replaces only a
+/// champion that was left behind, otherwise nothing hurries, and only by a version that is surely
+/// better on what came after its window. From `due` on either of the two is enough: a champion that
+/// errs little more than ever is worth waiting for until a version is surely better than it.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 
@@ -61,8 +67,8 @@ using RecordProbation = std::function<bool(const storage::Standing&, const Proba
 
 /// Looks at the equipment's versions on probation with telemetry until `reached`, that of the
 /// newest window first: when it has gone on for three quarters and all of `confirmation`
-/// behind the version's window. Where less than `min_coverage` of it has come by then and is
-/// believed, the last look waits as long again and takes in what came meanwhile. Looks that
+/// behind the version's window, and, where that decides nothing or less than `min_coverage` of it
+/// has come by then and is believed, once more when as long again has passed. Looks that
 /// telemetry until `since` allowed are not repeated. A version whose window is older than the
 /// champion's, or less than `min_interval` newer, is rejected, and one of which no telemetry is
 /// left. Nothing is decided while an operator holds the equipment or decides on his own, nor from

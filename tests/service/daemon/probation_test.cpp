@@ -35,36 +35,53 @@ TEST(JudgeProbation, ApprovesOnceTheReductionIsSurelyAThirdOfTheMargin) {
   EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["comparison"]["rows"], 500);
 }
 
-TEST(JudgeProbation, WaitsForMoreAndRejectsAtTheLastLook) {
+TEST(JudgeProbation, WaitsForMoreAndRejectsOnceItHasCome) {
   LongerLook look = sure_of(5);
   EXPECT_FALSE(judge_probation(look, {}));
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
 }
 
-TEST(JudgeProbation, LeavesAChampionThatErrsAsEverUntilTheLastLook) {
+TEST(JudgeProbation, LeavesAChampionThatErrsAsEverUntilAllHasCome) {
   LongerLook look = sure_of(40);
   look.champion_validated_mrse_percent = 5.4;  // it errs by 8 now
   EXPECT_FALSE(judge_probation(look, {}));
   look.champion_validated_mrse_percent = 5.3;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
   look.champion_validated_mrse_percent = 8;
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
-TEST(JudgeProbation, WaitsForTheLastLookWhereWhatCameAfterTheWindowIsNotSure) {
+TEST(JudgeProbation, WaitsForMoreWhereWhatCameAfterTheWindowIsNotSure) {
   LongerLook look = sure_of(40);
   look.after.sure_percent = 0;
   EXPECT_FALSE(judge_probation(look, {}));
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
+TEST(JudgeProbation, WaitsAsLongAgainToBeSurelyBetterThanAChampionThatErrsAsEver) {
+  LongerLook look = sure_of(40);
+  look.champion_validated_mrse_percent = 8;
+  look.after.sure_percent = 0;
+  look.stage = LongerLook::Stage::due;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::last;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("champion 8.000 %, which is not surely less"));
+  look.after.sure_percent = 0.1;
+  for (const auto stage : {LongerLook::Stage::due, LongerLook::Stage::last}) {
+    look.stage = stage;
+    EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  }
 }
 
 TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
   LongerLook look = sure_of(10);
   look.comparison.reduction_percent = 15;
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
 }
 
@@ -87,7 +104,7 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
                 .reduction_percent = -20,
                 .sure_percent = {}};
   EXPECT_FALSE(judge_probation(look, {}));
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("on the 100 samples after its window alone it has 6.000 %"));
@@ -95,7 +112,7 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
 
 TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginOverBoth) {
   LongerLook look = sure_of(40);
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   look.champion_validated_mrse_percent = 20;
   look.with_past = {.rows = 100,
                     .mrse_percent = 20,
@@ -114,7 +131,7 @@ TEST(JudgeProbation, ApprovesNothingAboveTheLimitOfTheError) {
   LongerLook look = sure_of(40);
   look.comparison.mrse_percent = 20.1;
   EXPECT_FALSE(judge_probation(look, {}));
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("above the limit of 20 %"));
 }
 
@@ -124,7 +141,7 @@ TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
   look.fault_share = 0.0026;
   EXPECT_FALSE(judge_probation(look, {}));
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("0.26 faults of sensors found in 100 ticks"));
@@ -136,7 +153,7 @@ TEST(JudgeProbation, ApprovesNothingInAnUnusualOperation) {
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
   look.movement = 0.52;
   EXPECT_FALSE(judge_probation(look, {}));
-  look.is_last = true;
+  look.stage = LongerLook::Stage::due;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("move over 52 % of the ranges"));
@@ -260,7 +277,7 @@ TEST_F(Probation, WaitsAsLongAgainForTelemetryThatDidNotCome) {
 TEST_F(Probation, IsDecidedByWhatComesLaterWhereTooLittleCame) {
   const auto frames = telemetry(day + 10 * minute, 1201, 2);
   archive.append({frames.begin(), frames.begin() + 602});
-  archive.append({frames.begin() + 840, frames.end()});  // four minutes are lost
+  archive.append({frames.begin() + 900, frames.end()});  // five minutes are lost
   EquipmentConfig brief = equipment;
   brief.hold = second;  // nothing is held into the hole
   make_version_of(brief, window_end, "on_probation", DecisionKind::wait);
