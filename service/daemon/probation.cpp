@@ -241,8 +241,9 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
   const bool left_behind =
       is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
   const bool surely_after = look.after.sure_percent > 0.0;
-  const bool suffices =
-      look.stage == Stage::early ? left_behind && surely_after : left_behind || surely_after;
+  const bool surely_ever = look.with_past && look.with_past->sure_percent > needed;
+  const bool suffices = look.stage == Stage::early ? left_behind && surely_after
+                                                   : left_behind || surely_after || surely_ever;
   if (!against && suffices)
     return decision(
         DecisionKind::approve, look,

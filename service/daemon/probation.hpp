@@ -49,8 +49,9 @@ struct LongerLook {
 
 /// Approval or rejection; absent where more telemetry has to tell. An early look replaces only a
 /// champion that was left behind, otherwise nothing hurries, and only by a version that is surely
-/// better on what came after its window. From `due` on either of the two is enough: a champion that
-/// errs little more than ever is worth waiting for until a version is surely better than it.
+/// better on what came after its window. From `due` on either of the two is enough, or that it is so
+/// over all of `with_past`: beside a champion that errs little more than ever there is time to wait
+/// for that.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 

@@ -71,11 +71,14 @@ TEST(JudgeProbation, WaitsAsLongAgainToBeSurelyBetterThanAChampionThatErrsAsEver
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("champion 8.000 %, which is not surely less"));
-  look.after.sure_percent = 0.1;
-  for (const auto stage : {LongerLook::Stage::due, LongerLook::Stage::last}) {
-    look.stage = stage;
-    EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-  }
+  LongerLook after = look, with_past = look;
+  after.after.sure_percent = 0.1;
+  with_past.with_past = sure_of(5.1).comparison;
+  for (const auto stage : {LongerLook::Stage::due, LongerLook::Stage::last})
+    for (LongerLook sure : {after, with_past}) {
+      sure.stage = stage;
+      EXPECT_EQ(judge_probation(sure, {})->kind, DecisionKind::approve);
+    }
 }
 
 TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
