@@ -14,7 +14,7 @@
 namespace reident::identification {
 
 /// Samples of one channel, ascending in time. `usable[i] == 0` marks a sample that must not be
-/// used (invalid or suspect); it ends the hold of the sample before it.
+/// used (of bad quality); it ends the hold of the sample before it.
 struct ChannelSamples {
   std::span<const std::int64_t> time_ns;
   std::span<const double> value;

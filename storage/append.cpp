@@ -201,8 +201,9 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head,
 }
 
 bool Append::contradicts(const Held& kept, const Arrival& arrival) const {
-  return kept.quality == Quality::good && arrival.quality == Quality::good &&
-         frames_[arrival.frame].numbered && !differ_by_rounding(kept.value, arrival.value);
+  const TelemetryFrame& frame = frames_[arrival.frame];
+  return frame.origin == Origin::real && frame.numbered && kept.quality == Quality::good &&
+         arrival.quality == Quality::good && !differ_by_rounding(kept.value, arrival.value);
 }
 
 std::optional<Held> Append::held(const SeriesHead& head, Time time) {

@@ -66,7 +66,8 @@ class Append {
   /// Both give what landed or changed, ascending in time; `replaced` gets what was there before.
   SampleColumns all_new(const SeriesArrivals& series);
   SampleColumns settled(const SeriesArrivals& series, SeriesHead& head, SampleColumns& replaced);
-  /// A file that is imported contradicts nothing: what was received stands.
+  /// A file that is imported contradicts nothing, for what was received stands; nor does a
+  /// simulator, which may be run twice over the same time.
   bool contradicts(const Held& kept, const Arrival& arrival) const;
   std::optional<Held> held(const SeriesHead& head, Time time);
   void save(SeriesHead& head, SampleColumns&& landed);

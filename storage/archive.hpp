@@ -2,9 +2,9 @@
 //
 // A sample's identity is (spacecraft, origin, parameter, generation time). The same sample twice is
 // one sample; of two values for one identity the better quality wins, then the first. Values are
-// the same when their bits are, and all NaNs are one value. Where two good values of frames differ
-// by more than rounding the first one stays, for good, with the quality `disputed`. A parameter
-// needs no descriptor to be archived.
+// the same when their bits are, and all NaNs are one value. Where a frame of the satellite brings
+// another good value than the one that is there, by more than rounding, that one stays for ever
+// with the quality `disputed`. A parameter needs no descriptor to be archived.
 #pragma once
 
 #include <optional>

@@ -238,7 +238,7 @@ bool may_wait(const Evidence& e, const EquipmentConfig& limits) {
 }
 
 std::string wait_of(const EquipmentConfig& limits) {
-  return fmt::format(" Waits for up to {} of telemetry after its window.",
+  return fmt::format(" Waits for {} of telemetry after its window, or for twice as much.",
                      duration_text(limits.confirmation));
 }
 

@@ -24,7 +24,7 @@ namespace reident {
 struct LongerLook {
   enum class Stage {
     early,  // more telemetry comes
-    due,    // all of `confirmation` has come
+    due,    // `confirmation` has passed, and telemetry of it has come
     last    // no more telemetry is waited for
   };
   Stage stage = Stage::early;
@@ -49,9 +49,9 @@ struct LongerLook {
 
 /// Approval or rejection; absent where more telemetry has to tell. An early look replaces only a
 /// champion that was left behind, otherwise nothing hurries, and only by a version that is surely
-/// better on what came after its window. From `due` on either of the two is enough, or that it is so
-/// over all of `with_past`: beside a champion that errs little more than ever there is time to wait
-/// for that.
+/// better on what came after its window. From `due` on either of the two is enough, or that it is
+/// so by a third of the margin over all of `with_past`: beside a champion that errs little more
+/// than ever there is time to wait for that.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 

@@ -92,7 +92,7 @@ Columns samples_from(std::span<const std::uint8_t>& data) {
     samples.time.push_back(time);
     samples.value.push_back(data[3] < 250 ? data[2] / 10.0 + data[3]
                                           : std::bit_cast<double>(std::uint64_t{data[2]} << 55));
-    samples.quality.push_back(static_cast<Quality>(data[4] % 4));
+    samples.quality.push_back(qualities[data[4] % qualities.size()]);
     samples.source.push_back(data[4] / 64);
     data = data.subspan(5);
   }

@@ -58,8 +58,8 @@ class Model {
     }
     ++(bits(found->second.value) == bits(incoming.value) ? report.duplicates : report.conflicts);
     Kept& kept = found->second;
-    if (kept.quality == Quality::good && incoming.quality == Quality::good &&
-        kept.value != incoming.value)
+    if (origin == Origin::real && kept.quality == Quality::good &&
+        incoming.quality == Quality::good && kept.value != incoming.value)
       kept.quality = Quality::disputed;
     if (kept.quality != Quality::disputed && incoming.quality < kept.quality) kept = incoming;
   }
@@ -161,7 +161,8 @@ RC_GTEST_PROP(AppendProperty, LongStretchesInAnyOrderStayWhatTheyAre, ()) {
     std::vector<TelemetryFrame> batch;
     for (Time t = begin; t < begin + length; ++t)
       batch.push_back(frame(static_cast<std::uint64_t>(t), t,
-                            {{1, static_cast<Quality>(length % 4), static_cast<double>(length)},
+                            {{1, qualities[static_cast<std::size_t>(length) % qualities.size()],
+                              static_cast<double>(length)},
                              {2, Quality::good, static_cast<double>(t % 7)}}));
     if (length % 3 == 0) std::reverse(batch.begin(), batch.end());
     archive->append(batch);

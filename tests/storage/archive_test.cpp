@@ -163,12 +163,6 @@ TEST_F(ArchiveTest, SettlesTwoSamplesOfOneIdentity) {
        5,
        Quality::disputed,
        true},
-      {"the same good value in single precision",
-       {1, Quality::good, 28.13},
-       {1, Quality::good, 28.13F},
-       28.13,
-       Quality::good,
-       true},
       {"better quality wins",
        {1, Quality::suspect, 5},
        {1, Quality::good, 6},
@@ -256,6 +250,24 @@ TEST_F(ArchiveTest, LetsNoFileDisputeWhatWasReceived) {
   EXPECT_EQ(append({row}).conflicts, 1U);
   EXPECT_THAT(read_all(archive, 1).value, ElementsAre(5.0));
   EXPECT_THAT(read_all(archive, 1).quality, ElementsAre(Quality::good));
+}
+
+TEST_F(ArchiveTest, TakesTheRoundingOfAValueForNoDispute) {
+  for (const auto& [time, second] : {std::pair{1, 28.000014}, {2, 28.000056}, {3, -28.0}})
+    append(
+        {frame(1, time, {{1, Quality::good, 28}}), frame(2, time, {{1, Quality::good, second}})});
+  EXPECT_THAT(read_all(archive, 1).quality,
+              ElementsAre(Quality::good, Quality::disputed, Quality::disputed));
+}
+
+TEST_F(ArchiveTest, LetsASimulatorSayAnotherThingOfTheSameTime) {
+  TelemetryFrame simulated = frame(1, 1, {{1, Quality::good, 5}});
+  simulated.origin = Origin::simulated;
+  TelemetryFrame again = frame(2, 1, {{1, Quality::good, 6}});
+  again.origin = Origin::simulated;
+  append({simulated, again});
+  EXPECT_THAT(read_all(archive, 1, Origin::simulated).value, ElementsAre(5.0));
+  EXPECT_THAT(read_all(archive, 1, Origin::simulated).quality, ElementsAre(Quality::good));
 }
 
 TEST_F(ArchiveTest, CountsASampleTwiceInOneFrameAsADuplicate) {

@@ -57,8 +57,8 @@ void ExpectedArchive::add(const TelemetryFrame& frame, const Sample& sample, Sou
     return;
   }
   ++(bits(kept->second.value) == bits(incoming.value) ? counts.duplicates : counts.conflicts);
-  if (kept->second.quality == Quality::good && incoming.quality == Quality::good &&
-      kept->second.value != incoming.value)
+  if (frame.origin == Origin::real && kept->second.quality == Quality::good &&
+      incoming.quality == Quality::good && kept->second.value != incoming.value)
     kept->second.quality = Quality::disputed;
   if (kept->second.quality != Quality::disputed && incoming.quality < kept->second.quality)
     kept->second = incoming;

@@ -64,6 +64,19 @@ TEST_F(LateTest, MarksABetterQualityButNoDuplicateAndNoLostConflict) {
   EXPECT_THAT(ranges(), ElementsAre(TimeRange{1 * hour, 1 * hour + 1}));
 }
 
+TEST_F(LateTest, MarksADisputeAndKeepsWhatWasReadBefore) {
+  arrive(1 * hour, 1, 5);
+  archive.seal("CB4", 10 * hour);
+  arrive(1 * hour, 1, 6);
+  EXPECT_THAT(ranges(), ElementsAre(TimeRange{1 * hour, 1 * hour + 1}));
+  const auto batches = archive.revisions("CB4", Origin::real, 1, {0, 2 * hour});
+  ASSERT_EQ(batches.size(), 1U);
+  const Series before = archive.before(batches[0] - 1).read("CB4", Origin::real, 1, {0, 2 * hour});
+  EXPECT_THAT(before.quality, ElementsAre(Quality::good));
+  EXPECT_THAT(archive.read("CB4", Origin::real, 1, {0, 2 * hour}).quality,
+              ElementsAre(Quality::disputed));
+}
+
 TEST_F(LateTest, SealsEachSpacecraftAloneAndOnlyForward) {
   archive.seal("CB4A", 20 * hour);
   arrive(1 * hour);

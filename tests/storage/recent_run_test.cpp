@@ -35,7 +35,7 @@ Columns any_columns(std::mt19937_64& random, std::size_t count, bool odd) {
     columns.time.push_back(time);
     time += odd ? 1 + static_cast<Time>(random() % 3'000'000'000) : 1'000'000'000;
     columns.value.push_back(std::bit_cast<double>(random()));
-    columns.quality.push_back(odd ? static_cast<Quality>(random() % 4) : Quality::suspect);
+    columns.quality.push_back(odd ? qualities[random() % qualities.size()] : Quality::suspect);
     columns.source.push_back(odd ? static_cast<std::int64_t>(random()) : 7);
   }
   return columns;

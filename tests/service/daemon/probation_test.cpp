@@ -71,6 +71,8 @@ TEST(JudgeProbation, WaitsAsLongAgainToBeSurelyBetterThanAChampionThatErrsAsEver
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("champion 8.000 %, which is not surely less"));
+  look.with_past = sure_of(5).comparison;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
   LongerLook after = look, with_past = look;
   after.after.sure_percent = 0.1;
   with_past.with_past = sure_of(5.1).comparison;

@@ -163,10 +163,10 @@ RC_GTEST_PROP(HistoryRows, samples_come_back, ()) {
   const auto size = *rc::gen::inRange<std::size_t>(1, 20);
   const bool uniform = *rc::gen::arbitrary<bool>();
   for (std::size_t i = 0; i < size; ++i)
-    samples.push_back(any_time(), {any_number(),
-                                   uniform ? storage::Quality::suspect
-                                           : static_cast<storage::Quality>(*rc::gen::inRange(0, 4)),
-                                   uniform ? 7 : *rc::gen::arbitrary<std::int64_t>()});
+    samples.push_back(
+        any_time(), {any_number(),
+                     uniform ? storage::Quality::suspect : *rc::gen::elementOf(storage::qualities),
+                     uniform ? 7 : *rc::gen::arbitrary<std::int64_t>()});
   const auto again = there_and_back<storage::SampleColumns>(row_of(samples, 0, size));
   RC_ASSERT(again.time == samples.time);
   RC_ASSERT(again.quality == samples.quality);
