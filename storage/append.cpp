@@ -173,8 +173,7 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head,
       const Arrival& arrival = series.arrivals[order[i]];
       Source& source = source_of(arrival);
       if (!std::isfinite(arrival.value)) ++source.non_finite, ++report_.non_finite;
-      const bool is_new = !kept;
-      if (is_new) {
+      if (!kept) {
         frame_is_new_[arrival.frame] = 1;
         ++report_.stored;
         ++head.samples;
@@ -183,13 +182,12 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head,
         const bool same = same_value(kept->value, arrival.value);
         ++(same ? source.duplicates : source.conflicts);
         ++(same ? report_.duplicates : report_.conflicts);
+        if (contradicts(*kept, arrival)) {
+          kept->quality = Quality::disputed;
+          changed = true;
+        }
+        if (kept->quality == Quality::disputed || arrival.quality >= kept->quality) continue;
       }
-      if (!is_new && contradicts(*kept, arrival)) {
-        kept->quality = Quality::disputed;
-        changed = true;
-      }
-      if (!is_new && (kept->quality == Quality::disputed || arrival.quality >= kept->quality))
-        continue;
       kept = {arrival.value, arrival.quality, source.tracker.source};
       changed = true;
     }

@@ -55,8 +55,8 @@ struct EquipmentConfig {
   double max_disagreement_percent = 10;  // from the champion where the window was not, of the
                                          // output's range
   Duration min_interval = 0;             // between the windows of two versions; a quarter of slide
-  Duration confirmation = 0;  // telemetry after its window, at most twice as much, that may yet
-                              // confirm a candidate; default slide, 0: none
+  Duration confirmation = 0;             // telemetry after its window, or twice as much, that may
+                                         // yet confirm a candidate; default slide, 0: none
   std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where its
                                                 // telemetry does not tell it
   ApprovalPolicy approval = ApprovalPolicy::automatic;

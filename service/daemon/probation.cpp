@@ -132,6 +132,7 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
   if (until >= window.end + equipment.confirmation &&
       static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks)
     look.stage = LongerLook::Stage::due;
+  if (until > window.end + equipment.confirmation) look.stage = LongerLook::Stage::last;
   const double as_ever =
       look.champion_validated_mrse_percent * (1 + equipment.margin_percent / 100);
   if (look.comparison.rival_mrse_percent < as_ever)
@@ -186,7 +187,6 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
           longer_look(archive, version.window, model, incumbent, equipment, vouching, until);
       if (!look) return std::nullopt;
       look->champion = champion->number;
-      if (until > confirmed) look->stage = LongerLook::Stage::last;
       return judge_probation(*look, equipment);
     };
     if (since < confirmed)
@@ -251,12 +251,13 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
                     "least {:.2f} %.",
                     reduction.percent, limits.confidence_percent, reduction.sure_percent));
   if (look.stage == Stage::early || (look.stage == Stage::due && !against)) return std::nullopt;
-  if (against) return decision(DecisionKind::reject, look, "Not confirmed: " + *against);
   return decision(
       DecisionKind::reject, look,
-      fmt::format("Not confirmed: on the {} samples after its window alone it has {:.3f} % and the "
-                  "champion {:.3f} %, which is not surely less.",
-                  look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent));
+      "Not confirmed: " +
+          against.value_or(fmt::format(
+              "on the {} samples after its window alone it has {:.3f} % and the champion {:.3f} %, "
+              "which is not surely less.",
+              look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent)));
 }
 
 bool record(storage::Registry& registry, const storage::Standing& standing,

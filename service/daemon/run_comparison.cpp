@@ -19,6 +19,30 @@ using identification::Matrix;
 using identification::Record;
 using identification::RowRange;
 using identification::Segment;
+using identification::Vector;
+
+namespace {
+
+/// A signal that stays near a point and leaves it for transients crosses its range whatever the
+/// operation: a bus voltage deviates by a thirtieth of it, currents by a tenth and more.
+bool is_held(const Vector& values) {
+  constexpr double held = 0.05;
+  const double range = values.maxCoeff() - values.minCoeff();
+  const double mean_square =
+      (values.array() - values.mean()).square().sum() / static_cast<double>(values.size());
+  return range > 0 && std::sqrt(mean_square) < held * range;
+}
+
+struct Share {
+  double moved = 0, of = 0;
+
+  void add(double share, double weight) {
+    moved += share * weight;
+    of += weight;
+  }
+};
+
+}  // namespace
 
 std::optional<Run> run_beside(const storage::Archive& archive, const EquipmentModel& model,
                               const WindowRequest& request, const Record& record,
@@ -66,29 +90,6 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
       paired(record, record.all(), free_run(candidate.dynamics, record, record.all()), *theirs);
   return RunsOfBoth{std::move(record), std::move(runs)};
 }
-
-namespace {
-
-/// A signal that stays near a point and leaves it for transients crosses its range whatever the
-/// operation: a bus voltage deviates by a thirtieth of it, currents by a tenth and more.
-bool is_held(const identification::Vector& values) {
-  constexpr double held = 0.05;
-  const double range = values.maxCoeff() - values.minCoeff();
-  const double mean_square =
-      (values.array() - values.mean()).square().sum() / static_cast<double>(values.size());
-  return range > 0 && std::sqrt(mean_square) < held * range;
-}
-
-struct Share {
-  double moved = 0, of = 0;
-
-  void add(double share, double weight) {
-    moved += share * weight;
-    of += weight;
-  }
-};
-
-}  // namespace
 
 double movement(const EquipmentModel& model, const Matrix& u) {
   const auto gain = static_gain(model.dynamics);

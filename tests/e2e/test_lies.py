@@ -12,7 +12,9 @@ MINUTE_NS = 60 * NS
 
 
 class Contract:
-    """The archive as the contract has it: the better quality wins, then the first, disputed."""
+    """The archive as the contract has it: the better quality wins, then the first.
+
+    A good value that another good one contradicts is disputed."""
 
     def __init__(self):
         self.samples = {}

@@ -168,7 +168,7 @@ TEST_F(ImportTest, MistakesAreNamedWithFileLineColumnAndRemedy) {
         Case{"a,b\n1,2\n", "no column looks like a time; name it with --time"},
         Case{"parameter,time,value,quality\nV,1700000000,1,fine\n",
              ":2: 'fine' in column 'quality' is no quality; use good, out of limits, suspect, "
-             "invalid"},
+             "invalid or disputed"},
         Case{"parameter,time,value\n,1700000000,1\n", ":2: '' in column 'parameter' names no"},
         Case{"parameter,time,value\nV,1700000000,high\n", ":2: 'high' in column 'value' is no"},
         Case{"t,u_v,u_mv\n1700000000,1,2\n", "would both be parameter 'u'"}}) {
