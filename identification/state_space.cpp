@@ -1,6 +1,7 @@
 #include "identification/state_space.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 
@@ -15,6 +16,12 @@ double largest_eigenvalue(const Matrix& A) {
 
 double spectral_radius(const StateSpaceModel& model) {
   return largest_eigenvalue(model.A);
+}
+
+double slowest_time_constant_s(const StateSpaceModel& model) {
+  const double radius = spectral_radius(model);
+  if (radius <= 0) return 0;
+  return radius < 1 ? -model.period_s / std::log(radius) : std::numeric_limits<double>::infinity();
 }
 
 bool is_stable(const Matrix& A) {

@@ -20,13 +20,6 @@ KeptWindow::KeptWindow(const WindowRequest& request, identification::Index block
       sums_({static_cast<identification::Index>(request.inputs.size() + request.outputs.size()),
              block_rows, KeptChunks::chunk_ticks}) {}
 
-TickRange KeptWindow::ticks_of(storage::TimeRange range) const {
-  const auto at_or_after = [this](storage::Time time) {
-    return -floor_divide(-time, request_.period);
-  };
-  return {at_or_after(range.begin), at_or_after(range.end)};
-}
-
 void KeptWindow::make_holes(const TickSet& holes, TickRange ticks) {
   for (const TickRange& changed : differing(holes, inside(holes_, ticks))) sums_.forget(changed);
   TickSet all = outside(holes_, ticks);
@@ -48,7 +41,7 @@ std::variant<WindowData, UnknownParameter> KeptWindow::load(const storage::Archi
     channels_ = std::move(channels);
   }
 
-  const TickRange ticks = ticks_of(window);
+  const TickRange ticks = ticks_of(window, request_.period);
   constexpr std::int64_t earliest = std::numeric_limits<std::int64_t>::min();
   const std::int64_t first_chunk = floor_divide(ticks.begin, KeptChunks::chunk_ticks);
   const TickRange past{earliest, first_chunk * KeptChunks::chunk_ticks};
@@ -71,7 +64,8 @@ std::variant<WindowData, UnknownParameter> KeptWindow::load(const storage::Archi
 void KeptWindow::forget(storage::TimeRange range) {
   // A sample serves the ticks until it is too old.
   const storage::Time latest = std::numeric_limits<storage::Time>::max() - request_.hold;
-  const TickRange ticks = ticks_of({range.begin, std::min(range.end, latest) + request_.hold});
+  const TickRange ticks =
+      ticks_of({range.begin, std::min(range.end, latest) + request_.hold}, request_.period);
   samples_.forget(ticks);
   checks_.forget(ticks);
   sums_.forget(ticks);

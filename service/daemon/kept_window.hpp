@@ -42,7 +42,6 @@ class KeptWindow {
   std::int64_t ticks_read() const { return ticks_read_; }
 
  private:
-  identification::TickRange ticks_of(storage::TimeRange range) const;
   /// Forgets the sums in which these holes differ from those that they were made with.
   void make_holes(const identification::TickSet& holes, identification::TickRange ticks);
 

@@ -129,8 +129,9 @@ ordered_json to_json(const Plausibility& plausibility, Duration period) {
   return json;
 }
 
-double fault_share(const Plausibility& plausibility, std::int64_t ticks) {
-  return static_cast<double>(plausibility.holes.size()) / static_cast<double>(ticks);
+double fault_share(const Plausibility& plausibility, TickRange ticks) {
+  return static_cast<double>(inside(plausibility.holes, ticks).size()) /
+         static_cast<double>(ticks.end - ticks.begin);
 }
 
 std::string worst_of(const Plausibility& plausibility, Duration period) {

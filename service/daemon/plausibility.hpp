@@ -53,9 +53,9 @@ class PlausibilityChecks {
   std::vector<BoundRelation> relations_;
 };
 
-/// Faults that were found, each once, over the ticks of the stretch, whether they have telemetry or
-/// not.
-double fault_share(const Plausibility& plausibility, std::int64_t ticks);
+/// Faults that were found in `ticks`, at least one, each once, over their number, whether they have
+/// telemetry or not.
+double fault_share(const Plausibility& plausibility, identification::TickRange ticks);
 
 /// For an attempt's evidence. Of more than 20 stretches the longest are told.
 nlohmann::ordered_json to_json(const Plausibility& plausibility, Duration period);

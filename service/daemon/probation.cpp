@@ -15,7 +15,6 @@
 #include "service/daemon/kept_window.hpp"
 #include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"
-#include "service/support/floor_divide.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident {
@@ -55,7 +54,8 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
       {"fault_share", look.fault_share},
       {"movement", look.movement},
       {"comparison", to_json(look.comparison)},
-      {"after_window", to_json(look.after)}};
+      {"after_window", to_json(look.after)},
+      {"with_window", to_json(look.with_window)}};
   if (look.with_past) evidence["with_past"] = to_json(*look.with_past);
   if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
   const Evidence::Comparison& comparison = look.comparison;
@@ -94,6 +94,17 @@ bool needs_vouching(const storage::Registry& registry, const storage::Version& v
          evidence.value("/champion/unbound"_json_pointer, nlohmann::json::array()).size() > 0;
 }
 
+/// For so long before the window free runs go on already, so that little is left of the states that
+/// they begin with: a twentieth in three time constants of the slowest mode.
+Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent,
+                storage::TimeRange window) {
+  constexpr double time_constants = 3;
+  const double slowest_s = std::max(slowest_time_constant_s(model.dynamics),
+                                    slowest_time_constant_s(incumbent.dynamics));
+  const auto most = static_cast<double>(window.end - window.begin);
+  return static_cast<Duration>(time_constants * std::min(1e9 * slowest_s, most));
+}
+
 /// Absent where there is too little to compare on.
 std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::TimeRange window,
                                       const EquipmentModel& model, const EquipmentModel& incumbent,
@@ -101,24 +112,26 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
                                       storage::Time until) {
   LongerLook look;
   look.until = until;
-  const storage::TimeRange range{window.begin, look.until};
+  const storage::TimeRange range{window.begin - run_up(model, incumbent, window), look.until};
   const WindowRequest request = request_of(model);
   const auto loaded = KeptWindow(request, 1, checks_of(equipment)).load(archive, range);
   const auto* data = std::get_if<WindowData>(&loaded);
   if (!data) return std::nullopt;
-  look.fault_share = fault_share(data->plausibility, (range.end - range.begin) / request.period);
+  look.fault_share =
+      fault_share(data->plausibility, ticks_of({window.begin, range.end}, request.period));
   const identification::Record& record = data->record;
   look.champion_validated_mrse_percent = incumbent.validation.mrse();
   const auto theirs = run_beside(archive, incumbent, request, record, range);
   if (!theirs) return std::nullopt;
   const identification::Matrix outputs = free_run(model.dynamics, record, record.all());
   const auto since = [&](storage::Time begin) {
-    const std::int64_t first_tick = -floor_divide(-begin, request.period);
+    const std::int64_t first_tick = ticks_of({begin, range.end}, request.period).begin;
     return paired(record, {first_row_at(record, first_tick), record.rows()}, outputs, *theirs);
   };
   PairedRuns runs = since(model.validated_on.begin);
   if (runs.rows.empty()) return std::nullopt;
   look.comparison = compare(runs, equipment.confidence_percent, Course::changing);
+  look.with_window = compare(since(window.begin), equipment.confidence_percent, Course::changing);
   const PairedRuns after = since(window.end);
   if (!after.rows.empty())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
@@ -220,6 +233,11 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           "on the {} samples after its window alone it has {:.3f} % and the champion "
           "{:.3f} %.",
           look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent);
+    if (!(look.with_window.reduction_percent > 0))
+      return fmt::format(
+          "over all of its window and what came after it, it has {:.3f} % and the champion {:.3f} "
+          "%.",
+          look.with_window.mrse_percent, look.with_window.rival_mrse_percent);
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);

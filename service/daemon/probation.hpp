@@ -2,11 +2,12 @@
 // part alone not surely, or mostly by a constant, or in an unusual operation, or while nothing
 // tells of a change. Telemetry that comes after their windows decides.
 //
-// The free runs of the version and of the champion, begun with the window, go on over that
-// telemetry, and are compared over the validation part and it together, over it alone, and, where
-// the champion errs hardly more than where it was validated, with what validated it too. A change
-// of the equipment that is too new to fill the validation part is so followed sooner than by the
-// next window, and a stretch of unusual operation is told from one.
+// The free runs of the version and of the champion, begun so long before the window that what they
+// begin with is forgotten, go on over that telemetry, and are compared over the validation part and
+// it together, over it alone, over all of the window too, and, where the champion errs hardly more
+// than where it was validated, with what validated it too. A change of the equipment that is too
+// new to fill the validation part is so followed sooner than by the next window, and a stretch of
+// unusual operation is told from one.
 #pragma once
 
 #include <functional>
@@ -36,6 +37,8 @@ struct LongerLook {
   /// The same on what came after the window alone, by which nothing was chosen; without rows where
   /// nothing is left of it.
   Evidence::Comparison after;
+  /// The same with all of the window, to most of which the version was fitted.
+  Evidence::Comparison with_window;
   /// The same on what validated the champion, before the version's window, and on all of this
   /// together. Looked at where the champion errs by less than the margin more than there; absent
   /// where less than half of that is left.

@@ -38,13 +38,9 @@ double outside_share(const Matrix& u, const std::vector<Signal>& inputs) {
   return static_cast<double>(outside.size()) / static_cast<double>(u.rows());
 }
 
-/// The longest time constant, of the pole of largest magnitude, over the window's length.
 double slowest_over_window(const identification::StateSpaceModel& model,
                            storage::TimeRange window) {
-  const double radius = spectral_radius(model);
-  if (radius <= 0) return 0;
-  const double time_constant_s = -model.period_s / std::log(radius);
-  return time_constant_s * 1e9 / static_cast<double>(window.end - window.begin);
+  return slowest_time_constant_s(model) * 1e9 / static_cast<double>(window.end - window.begin);
 }
 
 Evidence evidence_of(const storage::Archive& archive, const storage::Registry& registry,
@@ -67,9 +63,8 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
   evidence.residual_over_span =
       residual_over_span(validation(record.y), validation(candidate.y_hat), record.y);
   evidence.outside_share = outside_share(validation(record.u), model.inputs);
-  evidence.fault_share =
-      fault_share(prepared.data.plausibility,
-                  (request.window.end - request.window.begin) / request.equipment.sample_period);
+  evidence.fault_share = fault_share(prepared.data.plausibility,
+                                     ticks_of(request.window, request.equipment.sample_period));
   evidence.window_end = request.window.end;
   evidence.mean = against_mean(prepared, confidence);
   evidence.champion =

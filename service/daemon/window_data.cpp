@@ -6,6 +6,7 @@
 #include <map>
 
 #include "identification/grid.hpp"
+#include "service/support/floor_divide.hpp"
 
 namespace reident {
 namespace {
@@ -125,6 +126,10 @@ std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSour
                     .evaluate(load_samples(archive, request, data, window));
   data.coverage = data.read_coverage = coverage_of(data.record, window, request.period);
   return data;
+}
+
+identification::TickRange ticks_of(storage::TimeRange range, Duration period) {
+  return {-floor_divide(-range.begin, period), -floor_divide(-range.end, period)};
 }
 
 storage::Time time_of_row(const identification::Record& record, identification::Index row,

@@ -93,6 +93,9 @@ std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSour
                                                        const WindowRequest& request,
                                                        storage::TimeRange window);
 
+/// The ticks of this period in `range`.
+identification::TickRange ticks_of(storage::TimeRange range, Duration period);
+
 /// Time of a row of a record with this period.
 storage::Time time_of_row(const identification::Record& record, identification::Index row,
                           Duration period);

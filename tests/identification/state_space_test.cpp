@@ -1,5 +1,6 @@
 #include "identification/state_space.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -17,6 +18,17 @@ TEST(StateSpace, SpectralRadiusIsTheLargestModulus) {
   EXPECT_NEAR(spectral_radius(model), 1, 1e-15);
   model.A.resize(0, 0);
   EXPECT_EQ(spectral_radius(model), 0);
+}
+
+TEST(StateSpace, SlowestTimeConstantIsThatOfTheLargestModulus) {
+  StateSpaceModel model;
+  model.period_s = 8;
+  model.A = Vector{{0.5, -std::exp(-0.01)}}.asDiagonal();
+  EXPECT_NEAR(slowest_time_constant_s(model), 800, 1e-9);
+  model.A.setIdentity();
+  EXPECT_EQ(slowest_time_constant_s(model), std::numeric_limits<double>::infinity());
+  model.A.setZero();
+  EXPECT_EQ(slowest_time_constant_s(model), 0);
 }
 
 TEST(StateSpace, StableMeansInsideTheUnitCircle) {

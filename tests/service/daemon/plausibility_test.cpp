@@ -63,6 +63,12 @@ class LyingSensors : public DaemonTest {
   storage::Registry registry{database};
 };
 
+TEST(FaultShare, IsOfTheTicksAlone) {
+  Plausibility found;
+  found.holes = {{0, 5}, {9, 12}, {18, 19}, {30, 31}};
+  EXPECT_EQ(fault_share(found, {10, 30}), 2.0 / 20);
+}
+
 TEST_F(LyingSensors, AreLeftOutWhereARelationDoesNotHold) {
   auto lied = frames(day, 1201);
   bias(lied, 300, 600, 0.3);

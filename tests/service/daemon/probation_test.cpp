@@ -1,10 +1,15 @@
 #include "service/daemon/probation.hpp"
 
+#include <cmath>
+#include <functional>
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include "service/daemon/probation_watch.hpp"
 #include "service/daemon/refresh.hpp"
+#include "service/model/model_json.hpp"
 #include "tests/service/daemon/daemon_fixture.hpp"
 
 namespace reident::test {
@@ -22,7 +27,7 @@ LongerLook sure_of(double percent) {
                      .rival_mrse_percent = 8,
                      .reduction_percent = 37.5,
                      .sure_percent = percent};
-  look.after = look.comparison;
+  look.after = look.with_window = look.comparison;
   return look;
 }
 
@@ -115,6 +120,23 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
   EXPECT_THAT(found->reason, HasSubstr("on the 100 samples after its window alone it has 6.000 %"));
 }
 
+TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverItsWindowToo) {
+  LongerLook look = sure_of(40);
+  look.with_window = {.rows = 900,
+                      .mrse_percent = 8,
+                      .rival_mrse_percent = 8,
+                      .reduction_percent = 0,
+                      .sure_percent = {}};
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason,
+              HasSubstr("over all of its window and what came after it, it has 8.000 "
+                        "% and the champion 8.000 %"));
+  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["with_window"]["rows"], 900);
+}
+
 TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginOverBoth) {
   LongerLook look = sure_of(40);
   look.stage = LongerLook::Stage::due;
@@ -183,12 +205,17 @@ class Probation : public DaemonTest {
     make_version_of(equipment, end, outcome, kind);
   }
   void make_version_of(const EquipmentConfig& config, storage::Time end, const std::string& outcome,
-                       DecisionKind kind) {
+                       DecisionKind kind, const std::function<void(EquipmentModel&)>& alter = {}) {
     KeptWindow nothing = kept_window_of("SAT", config);
     RefreshResult result =
         refresh(archive, registry, {"SAT", config, {end - config.window, end}, "slide", "d"},
                 nothing, {}, [] { return false; });
     ASSERT_TRUE(result.candidate) << result.attempt.reason;
+    if (alter) {
+      EquipmentModel model = equipment_model_from_json(result.version.model_json);
+      alter(model);
+      result.version.model_json = to_json(model).dump();
+    }
     result.attempt.outcome = outcome;
     registry.record(result.attempt, result.version, {kind, "gate", "for the test"});
   }
@@ -248,6 +275,48 @@ TEST_F(Probation, EndsWithARejectionWhereTheChampionIsAsGood) {
   EXPECT_TRUE(look(window_end + 4 * minute).empty());
   ASSERT_EQ(look(window_end + 5 * minute).size(), 1U);
   EXPECT_EQ(status(2), "rejected");
+}
+
+/// Adds a mode that no input moves, and takes as much from the output's offset: what a run begins
+/// with makes up for that until the mode has fallen.
+void make_up_by_a_slow_mode(EquipmentModel& model, double offset, double time_constant_s) {
+  identification::StateSpaceModel& known = model.dynamics;
+  identification::StateSpaceModel slow = known;
+  const auto n = known.order();
+  slow.A = identification::Matrix::Zero(n + 1, n + 1);
+  slow.A.topLeftCorner(n, n) = known.A;
+  slow.A(n, n) = std::exp(-known.period_s / time_constant_s);
+  slow.B = identification::Matrix::Zero(n + 1, known.inputs());
+  slow.B.topRows(n) = known.B;
+  slow.C = identification::Matrix::Ones(1, n + 1);
+  slow.C.leftCols(n) = known.C;
+  slow.K = identification::Matrix::Zero(n + 1, 1);
+  slow.y0.array() -= offset;
+  known = slow;
+  model.tracking.reset();
+}
+
+TEST_F(Probation, LetsNoFirstStateMakeUpForAnOffset) {
+  constexpr double offset = 1;  // about twice the error of the champion
+  const storage::Time end = day + 50 * minute;
+  archive.append(telemetry(day + 10 * minute, 2701, 2));
+  const auto with_mode_of = [&](double time_constant_s) {
+    make_version_of(equipment, end, "on_probation", DecisionKind::wait,
+                    [time_constant_s](EquipmentModel& model) {
+                      make_up_by_a_slow_mode(model, offset, time_constant_s);
+                    });
+    const auto found = look(end + 5 * minute).at(0).decision;
+    const auto evidence = nlohmann::json::parse(found.evidence_json);
+    EXPECT_EQ(evidence["with_window"]["rows"], 600 + 300);
+    return std::pair(found.kind, evidence["comparison"]["mrse_percent"].get<double>());
+  };
+  const auto [slow, slow_error] = with_mode_of(1200);
+  EXPECT_EQ(slow, DecisionKind::reject);
+  EXPECT_GT(slow_error, 0.8 * 10 * offset) << "of an output about 10";
+  // What never falls makes up for it in a simulator's run too.
+  const auto [steady, steady_error] = with_mode_of(1e9);
+  EXPECT_EQ(steady, DecisionKind::approve);
+  EXPECT_LT(steady_error, 1);
 }
 
 TEST_F(Probation, IsNotEndedWithAnApprovalByAnUnusualOperation) {
