@@ -81,7 +81,7 @@ Components components_of(const Matrix& u, const std::vector<Segment>& segments) 
 }  // namespace
 
 StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowRange rows,
-                        GainsOfNoise gains_of_noise) {
+                        KnownFrom from) {
   const auto u = record.u.middleRows(rows.begin, rows.size());
   const auto y = record.y.middleRows(rows.begin, rows.size());
   const Vector of_u = deviations(u), of_y = deviations(y);
@@ -96,7 +96,7 @@ StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowR
   rest.u = (u.rowwise() - mean.transpose())(Eigen::all, inputs) * per_u;
   const Components components = components_of(rest.u, rest.segments);
   StateSpaceModel model = known;
-  if (gains_of_noise == GainsOfNoise::dropped) {
+  if (from == KnownFrom::these_rows) {
     const Matrix noise =
         deviation.asDiagonal() * components.noise * components.noise.transpose() * per_u;
     model.B(Eigen::all, inputs) -= (known.B(Eigen::all, inputs) * noise).eval();
@@ -105,8 +105,11 @@ StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowR
   rest.y = (y - free_run(model, record, rows)) * per_y.asDiagonal();
   rest.u = (rest.u * components.moving).eval();
   const Matrix to_components = components.moving.transpose() * per_u;
+  const Matrix C = per_y.asDiagonal() * known.C;
   const StateSpaceModel moves =
-      fit_response(known.A, per_y.asDiagonal() * known.C, true, rest, rest.all(), Accuracy::fast)
+      (from == KnownFrom::these_rows
+           ? fit_response(known.A, C, true, rest, rest.all(), Accuracy::fast)
+           : fit_change(known.A, C, rest, rest.all()))
           .model;
   const Matrix dB = moves.B * to_components;
   const Matrix dD = per_y.cwiseInverse().asDiagonal() * moves.D * to_components;

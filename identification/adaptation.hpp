@@ -6,9 +6,12 @@
 //
 //   y[k] - y_known[k] = C A^k dx0 + sum_{j<k} C A^(k-1-j) dB u[j] + dD u[k] + dy0
 //
-// in inputs of mean 0 and deviation 1. The least squares solution is the one of least norm
-// (regression.hpp says in which scale): what the samples do not determine stays as it was, and the
-// gain of an input that does not move.
+// in inputs of mean 0 and deviation 1. What the samples do not tell stays as it was, and the gain
+// of an input that does not move. A model that was identified from the samples themselves moves to
+// the solution of least squares, of least norm where they do not determine it (regression.hpp says
+// in which scale). One that other samples have told moves as far as these tell surely
+// (response.hpp, fit_change): the gain of a mode that is slow beside the samples follows what
+// little else happens in them, and a run that lasts longer than they do would drift away with it.
 //
 // Currents into a node and out of it add up to nothing but the noise of their sensors. The gain of
 // such a sum follows that noise, may have any size and sign, and does harm once one of the sensors
@@ -23,13 +26,13 @@
 
 namespace reident::identification {
 
-/// The gains that a model has for components of the inputs that show noise alone in the rows: other
-/// samples may have told them, or these very rows.
-enum class GainsOfNoise { kept, dropped };
+/// What the known model was identified from. Gains that it has for components of the inputs which
+/// show noise alone in the rows are dropped where these very rows told them, and else kept.
+enum class KnownFrom { these_rows, other_rows };
 
 /// `known` with B, D and y0 moved to fit its simulated output to the rows. Requires a stable,
 /// well-formed model of the record's channels and period, and finite rows, at least one.
 StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowRange rows,
-                        GainsOfNoise gains_of_noise);
+                        KnownFrom from);
 
 }  // namespace reident::identification

@@ -161,30 +161,50 @@ std::optional<RegressionSolution> NormalEquations::solve(double damping, double 
   return solution_of(scale.asDiagonal() * llt.solve(scale.asDiagonal() * target));
 }
 
-std::optional<RegressionSolution> NormalEquations::solve_without_small(double least_size) const {
-  constexpr double noise = 1e-3;      // of the target
-  constexpr double unseen = 0.01;     // of what is left of it
-  constexpr double rounding = 1e-13;  // of the sums
+std::optional<NormalEquations::Components> NormalEquations::components() const {
   const Index unknowns = columns_.target() - columns_.n;
   const Vector scale = inverse_roots(sums_.diagonal().head(unknowns));
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(
       scale.asDiagonal() * sums_.topLeftCorner(unknowns, unknowns) * scale.asDiagonal());
   if (eigen.info() != Eigen::Success) return std::nullopt;
-  const Vector inverse = eigen.eigenvalues().unaryExpr(
+  return Components{
+      scale, eigen.eigenvectors(), eigen.eigenvalues(),
+      eigen.eigenvectors().transpose() * (scale.asDiagonal() * sums_.col(unknowns).head(unknowns))};
+}
+
+std::optional<RegressionSolution> NormalEquations::solve_without_small(double least_size) const {
+  constexpr double noise = 1e-3;      // of the target
+  constexpr double unseen = 0.01;     // of what is left of it
+  constexpr double rounding = 1e-13;  // of the sums
+  const auto found = components();
+  if (!found) return std::nullopt;
+  const auto& [scale, columns, squares, target] = *found;
+  const Vector inverse = squares.unaryExpr(
       [least_size](double value) { return value > least_size * least_size ? 1 / value : 0.0; });
-  const Vector target =
-      eigen.eigenvectors().transpose() * (scale.asDiagonal() * sums_.col(unknowns).head(unknowns));
   RegressionSolution solution =
-      solution_of(scale.asDiagonal() * (eigen.eigenvectors() * inverse.cwiseProduct(target)));
+      solution_of(scale.asDiagonal() * (columns * inverse.cwiseProduct(target)));
   double left_out = 0;
-  for (Index i = 0; i < unknowns; ++i)
-    if (inverse(i) == 0 && eigen.eigenvalues()(i) > rounding)
-      left_out += target(i) * target(i) / eigen.eigenvalues()(i);
-  const double total = sums_(unknowns, unknowns);
+  for (Index i = 0; i < squares.size(); ++i)
+    if (inverse(i) == 0 && squares(i) > rounding) left_out += target(i) * target(i) / squares(i);
+  const double total = sums_(squares.size(), squares.size());
   if (!(total > 0 && solution.sum_of_squares > noise * noise * total &&
         left_out < unseen * solution.sum_of_squares))
     return std::nullopt;
   return solution;
+}
+
+std::optional<RegressionSolution> NormalEquations::solve_shrunk(double noise,
+                                                                double least_size) const {
+  const auto found = components();
+  if (!found) return std::nullopt;
+  const auto& [scale, columns, squares, target] = *found;
+  Vector coefficients = Vector::Zero(squares.size());
+  for (Index i = 0; i < squares.size(); ++i) {
+    if (!(squares(i) > least_size * least_size)) continue;
+    const double explained = target(i) * target(i) / squares(i);
+    if (explained > 0) coefficients(i) = target(i) / squares(i) * (explained / (explained + noise));
+  }
+  return solution_of(scale.asDiagonal() * (columns * coefficients));
 }
 
 /// With the sum of squares of the undamped equations.

@@ -70,11 +70,24 @@ class NormalEquations {
   /// of the target or less is left, or they lower its sum of squares by a hundredth.
   std::optional<RegressionSolution> solve_without_small(double least_size) const;
 
+  /// Of each principal component of the columns, scaled to size 1, the share s / (s + noise) of its
+  /// coefficient, s being what it explains of the target's sum of squares: none of those that are
+  /// smaller than `least_size`.
+  std::optional<RegressionSolution> solve_shrunk(double noise, double least_size) const;
+
  private:
   struct Elimination {
     Matrix inverse;  // of the initial state's own sums
     Matrix coupling;
   };
+  /// The columns in the directions of their principal components.
+  struct Components {
+    Vector scale;    // of the columns, to size 1
+    Matrix columns;  // a column for each component
+    Vector squares;  // of their sizes
+    Vector target;   // its products with them
+  };
+  std::optional<Components> components() const;
   RegressionSolution solution_of(const Vector& found) const;
 
   Columns columns_;

@@ -1,9 +1,12 @@
 #include "identification/response.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "identification/correlation.hpp"
 #include "identification/regression.hpp"
+#include "identification/simulate.hpp"
 
 namespace reident::identification {
 namespace {
@@ -43,10 +46,13 @@ double least_pivot(Accuracy accuracy) {
   return accuracy == Accuracy::fast ? 1e-5 : 1e-3;
 }
 
-Fitted fit(const StateSpaceModel& dynamics, bool direct, const Record& record,
-           const std::vector<Segment>& segments, Accuracy accuracy) {
-  const Columns columns{dynamics.A.rows(), record.u.cols(), dynamics.C.rows(), direct, false};
-  const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
+Columns columns_of(const StateSpaceModel& dynamics, bool direct) {
+  return {dynamics.order(), dynamics.inputs(), dynamics.outputs(), direct, false};
+}
+
+Fitted fit(const NormalEquations& sums, const StateSpaceModel& dynamics, bool direct,
+           const Record& record, const std::vector<Segment>& segments, Accuracy accuracy) {
+  const Columns columns = columns_of(dynamics, direct);
   if (const auto solution = sums.solve(0, least_pivot(accuracy)))
     return from(*solution, columns, dynamics);
   if (accuracy == Accuracy::fast)
@@ -54,6 +60,37 @@ Fitted fit(const StateSpaceModel& dynamics, bool direct, const Record& record,
       return from(*solution, columns, dynamics);
   const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, record, segments, {});
   return from(factor.solve(), columns, dynamics);
+}
+
+Fitted fit(const StateSpaceModel& dynamics, bool direct, const Record& record,
+           const std::vector<Segment>& segments, Accuracy accuracy) {
+  const auto sums =
+      accumulate<NormalEquations>(columns_of(dynamics, direct), dynamics, record, segments, {});
+  return fit(sums, dynamics, direct, record, segments, accuracy);
+}
+
+/// Rows that count as one in the errors of the output whose errors last longest.
+double correlated_rows_of_errors(const Fitted& fitted, const Record& record,
+                                 const std::vector<Segment>& segments) {
+  std::vector<RowRange> stretches;
+  Index rows = 0;
+  for (const Segment& segment : segments) {
+    stretches.push_back({rows, rows + segment.size()});
+    rows += segment.size();
+  }
+  Matrix errors(rows, record.y.cols());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const RowRange of_segment{segments[i].begin, segments[i].end};
+    errors.middleRows(stretches[i].begin, stretches[i].size()) =
+        record.y.middleRows(of_segment.begin, of_segment.size()) -
+        free_run(fitted.model, record, of_segment, fitted.x0[i]);
+  }
+  double most = 1;
+  for (Index q = 0; q < errors.cols(); ++q) {
+    Series series(errors.col(q), stretches);
+    most = std::max(most, correlated_rows(series));
+  }
+  return most;
 }
 
 Response response_of(const Fitted& fitted, Index rows) {
@@ -80,6 +117,19 @@ Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Recor
   const std::vector<Segment> segments = segments_within(record, rows);
   return response_of(fit(with_dynamics(A, C, record), direct, record, segments, accuracy),
                      rows.size());
+}
+
+Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows) {
+  constexpr double half_at = 4;  // the square of two standard deviations
+  const std::vector<Segment> segments = segments_within(record, rows);
+  const StateSpaceModel dynamics = with_dynamics(A, C, record);
+  const Columns columns = columns_of(dynamics, true);
+  const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
+  const Fitted full = fit(sums, dynamics, true, record, segments, Accuracy::fast);
+  const double variance = full.sum_of_squares / static_cast<double>(rows.size() * columns.p) *
+                          correlated_rows_of_errors(full, record, segments);
+  const auto shrunk = sums.solve_shrunk(half_at * variance, least_pivot(Accuracy::fast));
+  return response_of(shrunk ? from(*shrunk, columns, dynamics) : full, rows.size());
 }
 
 Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,

@@ -27,8 +27,15 @@ enum class Accuracy { fast, exact };
 Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
                       RowRange rows, Accuracy accuracy);
 
-/// The same, with A and C moved by at most `steps` Levenberg-Marquardt steps that lower the output
-/// error. The result is stable when A is.
+/// The same for a target that is what a known model leaves of the output, with D: the least squares
+/// solution where the rows tell it, and near zero where they do not. Of each principal component of
+/// the regressors the share t^2 / (t^2 + 4) is taken, t being its coefficient over its standard
+/// deviation: a generalized ridge regression (A. E. Hoerl, R. W. Kennard, Technometrics 12(1),
+/// 1970, section 5). Rows whose errors are correlated count as so many fewer.
+Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows);
+
+/// As fit_response, with A and C moved by at most `steps` Levenberg-Marquardt steps that lower the
+/// output error. The result is stable when A is.
 Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
                          RowRange rows, int steps);
 

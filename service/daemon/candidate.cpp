@@ -60,7 +60,7 @@ ChosenModel corrected(const identification::Record& record, const Identified& id
     pole_placement["uncontrollable_poles"] = best->uncontrollable.size();
   }
   chosen.dynamics =
-      adapted(chosen.dynamics, record, parts.fitted(), identification::GainsOfNoise::dropped);
+      adapted(chosen.dynamics, record, parts.fitted(), identification::KnownFrom::these_rows);
   return chosen;
 }
 
@@ -177,7 +177,7 @@ std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
   const WindowParts& parts = prepared.candidate->parts;
   Candidate candidate = candidate_of(request, prepared.data,
                                      {adapted(known.dynamics, prepared.data.record, parts.fitted(),
-                                              identification::GainsOfNoise::kept),
+                                              identification::KnownFrom::other_rows),
                                       fmt::format("A and C of version {}", number)},
                                      parts);
   candidate.adapted_from = number;

@@ -24,7 +24,7 @@ TEST(Adaptation, FindsGainsAndOffsetThatMovedAndKeepsThePoles) {
   truth.D.col(1) *= 0.5;
   truth.y0 << 3, -1;
   const Record record = testing::with_gap(testing::excited(truth, noise, 900, 0), 300, 320);
-  const StateSpaceModel found = adapted(known, record, record.all(), GainsOfNoise::kept);
+  const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
   EXPECT_EQ(found.A, known.A);
   EXPECT_EQ(found.C, known.C);
   EXPECT_LT((found.B - truth.B).norm(), 1e-6);
@@ -36,7 +36,7 @@ TEST(Adaptation, OfAModelThatFitsChangesNothing) {
   testing::Noise noise(2);
   const StateSpaceModel known = testing::random_system(noise, 3, 2, 1);
   const Record record = testing::excited(known, noise, 600, 0);
-  const StateSpaceModel found = adapted(known, record, record.all(), GainsOfNoise::kept);
+  const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
   EXPECT_LT((found.B - known.B).norm() + (found.D - known.D).norm(), 1e-8);
   EXPECT_LT((found.y0 - known.y0).norm(), 1e-8);
 }
@@ -51,7 +51,7 @@ TEST(Adaptation, LeavesTheGainOfAnInputThatDoesNotMove) {
   Record record = testing::excited(known, noise, 600, 0);
   record.u.col(1).setConstant(0.1);
   record.y = testing::simulated(truth, record.u, Vector::Zero(3));
-  const StateSpaceModel found = adapted(known, record, record.all(), GainsOfNoise::kept);
+  const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
   EXPECT_EQ(found.B.col(1), known.B.col(1));
   EXPECT_EQ(found.D.col(1), known.D.col(1));
   EXPECT_LT((found.B.col(0) - truth.B.col(0)).norm(), 1e-6);
@@ -65,7 +65,7 @@ TEST(Adaptation, OfInputsThatDoNotMoveFindsTheOffset) {
   Record record = testing::excited(known, noise, 600, 0);
   record.u.setConstant(0.1);
   record.y = testing::simulated(known, record.u, Vector::Ones(3)).array() + 2;
-  const StateSpaceModel found = adapted(known, record, record.all(), GainsOfNoise::kept);
+  const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
   EXPECT_EQ(found.B, known.B);
   EXPECT_NEAR(found.y0(0), known.y0(0) + 2, 1e-6);
 }
@@ -103,7 +103,7 @@ Node node(double imbalance, std::uint64_t seed = 6, double sensor_noise = 0.02, 
 TEST(Adaptation, DropsTheGainOfASumThatShowsNoiseAlone) {
   const Node one = node(0);
   const StateSpaceModel found =
-      adapted(one.mistaken, one.record, one.record.all(), GainsOfNoise::dropped);
+      adapted(one.mistaken, one.record, one.record.all(), KnownFrom::these_rows);
   EXPECT_LT((found.B * one.balance).norm(), 0.01 * (one.mistaken.B * one.balance).norm());
   EXPECT_LT(output_error(found, one.record), 1.1 * output_error(one.truth, one.record));
 }
@@ -112,7 +112,7 @@ TEST(Adaptation, DropsTheGainOfASumOfNoiseThatIsHeld) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Node one = node(0, seed, 0.02, 4);
     const StateSpaceModel found =
-        adapted(one.mistaken, one.record, one.record.all(), GainsOfNoise::dropped);
+        adapted(one.mistaken, one.record, one.record.all(), KnownFrom::these_rows);
     EXPECT_LT((found.B * one.balance).norm(), 0.01 * (one.mistaken.B * one.balance).norm());
   }
 }
@@ -120,8 +120,8 @@ TEST(Adaptation, DropsTheGainOfASumOfNoiseThatIsHeld) {
 TEST(Adaptation, FitsNoGainOfASumThatIsZeroButForRounding) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Node one = node(0, seed, 0);
-    for (const GainsOfNoise gains : {GainsOfNoise::kept, GainsOfNoise::dropped}) {
-      const StateSpaceModel found = adapted(one.truth, one.record, one.record.all(), gains);
+    for (const KnownFrom from : {KnownFrom::other_rows, KnownFrom::these_rows}) {
+      const StateSpaceModel found = adapted(one.truth, one.record, one.record.all(), from);
       EXPECT_LT((found.B - one.truth.B).norm(), one.truth.B.norm());
       EXPECT_LT((found.y0 - one.truth.y0).norm(), 1);
     }
@@ -131,16 +131,69 @@ TEST(Adaptation, FitsNoGainOfASumThatIsZeroButForRounding) {
 TEST(Adaptation, KeepsTheGainOfASumThatOtherSamplesHaveTold) {
   const Node one = node(0);
   const StateSpaceModel found =
-      adapted(one.mistaken, one.record, one.record.all(), GainsOfNoise::kept);
+      adapted(one.mistaken, one.record, one.record.all(), KnownFrom::other_rows);
   EXPECT_LT(((found.B - one.mistaken.B) * one.balance).norm(),
             0.05 * (one.mistaken.B * one.balance).norm());
 }
 
 TEST(Adaptation, FitsTheGainOfASumThatCarriesOnFromSampleToSample) {
   const Node one = node(0.1);
-  for (const GainsOfNoise gains : {GainsOfNoise::kept, GainsOfNoise::dropped}) {
-    const StateSpaceModel found = adapted(one.mistaken, one.record, one.record.all(), gains);
+  for (const KnownFrom from : {KnownFrom::other_rows, KnownFrom::these_rows}) {
+    const StateSpaceModel found = adapted(one.mistaken, one.record, one.record.all(), from);
     EXPECT_LT(((found.B - one.truth.B) * one.balance).norm(), 0.2 * one.truth.B.norm());
+  }
+}
+
+/// A model of a fast mode and of one that lasts longer than the rows do, whose errors change slowly
+/// as those of a model that is a little wrong.
+struct SlowMode {
+  explicit SlowMode(std::uint64_t seed) : known(testing::random_system(noise, 2, 1, 1)) {
+    noise = testing::Noise(seed);
+    known.A = Eigen::Vector2d(0.9, 0.9995).asDiagonal();
+    known.B << 1, 0.01;
+    known.C << 1, 1;
+    Vector u = noise.normal(rows, 1);
+    Vector error = noise.normal(rows, 1);
+    for (Index k = 1; k < rows; ++k) u(k) += 0.9 * u(k - 1);
+    for (Index k = 1; k < rows; ++k) error(k) += 0.99 * error(k - 1);
+    record = contiguous_record(1, u, testing::simulated(known, u, Vector::Zero(2)) + 0.1 * error);
+  }
+
+  static double static_gain(const StateSpaceModel& model) {
+    return (model.C * (Matrix::Identity(2, 2) - model.A).inverse() * model.B + model.D)(0);
+  }
+
+  static constexpr Index rows = 800;
+  testing::Noise noise{7};
+  StateSpaceModel known;
+  Record record;
+};
+
+TEST(Adaptation, LeavesTheGainOfAModeThatIsSlowerThanTheRowsTell) {
+  double moved_by_others = 0, moved_by_these = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SlowMode one(seed);
+    const auto moved = [&one](KnownFrom from) {
+      return std::abs(
+          SlowMode::static_gain(adapted(one.known, one.record, one.record.all(), from)) -
+          SlowMode::static_gain(one.known));
+    };
+    moved_by_others += moved(KnownFrom::other_rows);
+    moved_by_these += moved(KnownFrom::these_rows);
+  }
+  EXPECT_LT(moved_by_others, 0.5 * moved_by_these);
+}
+
+TEST(Adaptation, FollowsAGainThatTheRowsTellAmongErrorsThatLast) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SlowMode one(seed);
+    StateSpaceModel truth = one.known;
+    truth.B(0) *= 1.4;
+    one.record.y += testing::simulated(truth, one.record.u, Vector::Zero(2)) -
+                    testing::simulated(one.known, one.record.u, Vector::Zero(2));
+    const StateSpaceModel found =
+        adapted(one.known, one.record, one.record.all(), KnownFrom::other_rows);
+    EXPECT_NEAR(found.B(0), truth.B(0), 0.1);
   }
 }
 
@@ -153,9 +206,9 @@ TEST(Adaptation, LooksAtTheRowsThatItIsGivenAlone) {
   Record spoilt = record;
   spoilt.y.bottomRows(300).array() += 5;
   const RowRange rows{0, 500};
-  EXPECT_EQ(adapted(known, record, rows, GainsOfNoise::kept).B,
-            adapted(known, spoilt, rows, GainsOfNoise::kept).B);
-  EXPECT_LT((adapted(known, record, rows, GainsOfNoise::kept).B - truth.B).norm(), 1e-6);
+  EXPECT_EQ(adapted(known, record, rows, KnownFrom::other_rows).B,
+            adapted(known, spoilt, rows, KnownFrom::other_rows).B);
+  EXPECT_LT((adapted(known, record, rows, KnownFrom::other_rows).B - truth.B).norm(), 1e-6);
 }
 
 }  // namespace
