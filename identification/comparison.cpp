@@ -6,6 +6,7 @@
 #include "identification/correlation.hpp"
 #include "identification/error_confidence.hpp"
 #include "identification/quantiles.hpp"
+#include "identification/simulate.hpp"
 
 namespace reident::identification {
 namespace {
@@ -145,6 +146,11 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
       std::min(phi - quantile * chance.of_mean, least_without_a_stretch(all, rows, over));
   result.low = 1 - std::exp(-low);
   return result;
+}
+
+double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& stretches) {
+  const Array squares = square_changes(y - run, stretches).usual / 2;
+  return 100 * errors_of(squares, y.cwiseAbs2().colwise().mean().transpose()).mean();
 }
 
 }  // namespace reident::identification

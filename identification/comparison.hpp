@@ -43,4 +43,11 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
                                              const std::vector<RowRange>& stretches,
                                              double confidence, Course course);
 
+/// The MRSE, in percent, that the noise of the sensors alone would give a run: were a run's errors
+/// of consecutive rows independent of each other, half of their mean squared difference would be
+/// their mean square (J. von Neumann, Annals of Mathematical Statistics 12(4), 1941). The usual
+/// squared difference is taken (simulate.hpp), since what a model makes of a load step is no noise;
+/// of samples that are held over several rows it is 0. y and run are N x p, N >= 1.
+double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& stretches);
+
 }  // namespace reident::identification

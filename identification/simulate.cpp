@@ -116,16 +116,16 @@ Vector remainder_of(const StateSpaceModel& model, const Record& record, const Se
 
 }  // namespace
 
-SquareChanges square_changes(const Record& record) {
+SquareChanges square_changes(const Matrix& signals, const std::vector<RowRange>& stretches) {
   constexpr double median_of_a_normal = 0.4549;  // of chi-squared with one degree of freedom
-  const Index m = record.u.cols();
+  const Index m = signals.cols();
   SquareChanges result{Vector::Zero(m), Vector::Zero(m)};
   std::vector<double> squares;
   for (Index j = 0; j < m; ++j) {
     squares.clear();
-    for (const Segment& segment : record.segments)
-      for (Index k = segment.begin + 1; k < segment.end; ++k) {
-        const double change = record.u(k, j) - record.u(k - 1, j);
+    for (const RowRange& stretch : stretches)
+      for (Index k = stretch.begin + 1; k < stretch.end; ++k) {
+        const double change = signals(k, j) - signals(k - 1, j);
         squares.push_back(change * change);
       }
     if (squares.empty()) continue;
@@ -136,6 +136,12 @@ SquareChanges square_changes(const Record& record) {
     result.usual(j) = *middle / median_of_a_normal;
   }
   return result;
+}
+
+SquareChanges square_changes(const Record& record) {
+  std::vector<RowRange> stretches;
+  for (const Segment& segment : record.segments) stretches.push_back({segment.begin, segment.end});
+  return square_changes(record.u, stretches);
 }
 
 std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Record& record,

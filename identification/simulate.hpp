@@ -21,11 +21,14 @@ constexpr Index state_rows = 500;
 Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange rows,
                 const std::optional<Vector>& x0 = std::nullopt);
 
-/// Squares (m) of the inputs' changes from one tick to the next.
+/// Squares of signals' changes from one row to the next, one entry a signal.
 struct SquareChanges {
   Vector mean;
   Vector usual;  // the median, over that of the square of a unit normal: without rare steps
 };
+/// Of N x m signals within the stretches; 0 where no two rows follow each other.
+SquareChanges square_changes(const Matrix& signals, const std::vector<RowRange>& stretches);
+/// Of the record's inputs.
 SquareChanges square_changes(const Record& record);
 
 /// How uncertain a run is.

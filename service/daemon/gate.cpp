@@ -60,6 +60,13 @@ constexpr std::array names{
 
 constexpr double left_behind_factor = 1.5;
 
+/// By so many times the sensors' noise the candidate errs less, the noise taken from both errors.
+constexpr double least_gain_over_noise = 1.5;
+
+double without_noise(double mrse_percent, double noise_percent) {
+  return std::sqrt(std::max(0.0, mrse_percent * mrse_percent - noise_percent * noise_percent));
+}
+
 using Refusal = std::optional<GateDecision>;
 
 Refusal against_model(const Evidence& e) {
@@ -160,6 +167,13 @@ Refusal against_comparison(const Evidence::Champion& champion, const EquipmentCo
                     comparison.mrse_percent, champion.version, comparison.rival_mrse_percent,
                     limits.margin_percent, comparison.reduction_percent, *comparison.sure_percent,
                     limits.confidence_percent)};
+  if (!shows_beside_noise(comparison))
+    return GateDecision{
+        Outcome::not_better_than_champion,
+        fmt::format("MRSE {:.3f} % undercuts champion {} ({:.3f} % on the same samples) by too "
+                    "little beside the noise of the sensors ({:.3f} %).",
+                    comparison.mrse_percent, champion.version, comparison.rival_mrse_percent,
+                    comparison.noise_percent)};
   return std::nullopt;
 }
 
@@ -316,6 +330,13 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
 
 std::string_view name(Outcome outcome) {
   return names[static_cast<std::size_t>(outcome)].second;
+}
+
+bool shows_beside_noise(const Evidence::Comparison& comparison) {
+  const double noise = comparison.noise_percent;
+  return !(without_noise(comparison.rival_mrse_percent, noise) -
+               without_noise(comparison.mrse_percent, noise) <=
+           least_gain_over_noise * noise);
 }
 
 bool is_in_doubt(double fault_share) {

@@ -65,6 +65,7 @@ struct Evidence {
     double rival_mrse_percent = 0;       // not finite where the rival's run went astray
     double reduction_percent = 0;        // by which the candidate's MRSE is lower
     std::optional<double> sure_percent;  // lower bound of it; absent: the rows are too few
+    double noise_percent = 0;            // of the candidate's error there, what sensors alone make
   };
   /// Against the mean of each output over the same rows.
   Comparison mean;
@@ -116,6 +117,11 @@ struct GateDecision {
 /// Share of the margin that the reduction surely has to be with the champion's mean error taken
 /// from it, and, of a version on probation, over the validation part and what came after it.
 constexpr double sure_elsewhere = 1.0 / 3;
+
+/// Whether the candidate errs so much less than the other run that it shows beside the sensors'
+/// noise: what is less than that tells little of how the two will err, and a simulator gains
+/// nothing by it.
+bool shows_beside_noise(const Evidence::Comparison& comparison);
 
 /// Whether so many faults of sensors were found, each once, over the ticks looked at, that those
 /// which are too small to be found are enough to spoil a comparison with the champion.

@@ -57,6 +57,9 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
       {"after_window", to_json(look.after)},
       {"with_window", to_json(look.with_window)}};
   if (look.with_past) evidence["with_past"] = to_json(*look.with_past);
+  if (look.champion_worst_mrse_percent > 0)
+    evidence["champion_worst_mrse_percent"] = look.champion_worst_mrse_percent;
+  if (look.over_tenure) evidence["over_tenure"] = to_json(*look.over_tenure);
   if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
   const Evidence::Comparison& comparison = look.comparison;
   return {kind, "gate",
@@ -103,6 +106,23 @@ Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent,
                                     slowest_time_constant_s(incumbent.dynamics));
   const auto most = static_cast<double>(window.end - window.begin);
   return static_cast<Duration>(time_constants * std::min(1e9 * slowest_s, most));
+}
+
+/// Compares the two on what the champion has run on so far, where it erred there as it does now.
+void look_at_tenure(const storage::Archive& archive, storage::TimeRange window,
+                    const EquipmentModel& model, const EquipmentModel& incumbent,
+                    const EquipmentConfig& equipment, const PairedRuns& now, LongerLook& look) {
+  constexpr int windows = 4;
+  const storage::Time earliest = window.begin - windows * (window.end - window.begin);
+  const storage::TimeRange tenure{std::max(incumbent.validated_on.begin, earliest), window.begin};
+  if (tenure.end <= tenure.begin) return;
+  const auto both = run_both(archive, model, incumbent, request_of(model), checks_of(equipment),
+                             tenure, run_up(model, incumbent, window));
+  if (!both) return;
+  look.champion_worst_mrse_percent = worst_of_rival(both->runs, now.y.rows());
+  if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent))
+    look.over_tenure =
+        compare(joined(both->runs, now), equipment.confidence_percent, Course::changing);
 }
 
 /// Absent where there is too little to compare on.
@@ -152,6 +172,7 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
     if (const auto past =
             runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
       look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
+  look_at_tenure(archive, window, model, incumbent, equipment, runs, look);
   if (needs_vouching) {
     runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
     look.without_offset = compare(runs, equipment.confidence_percent, Course::changing);
@@ -241,6 +262,9 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);
+    if (!shows_beside_noise(look.comparison))
+      return fmt::format("that is too little less beside the noise of the sensors ({:.3f} %).",
+                         look.comparison.noise_percent);
     if (is_unusual(look.movement))
       return fmt::format(
           "there the inputs move over {:.0f} % of the ranges that the champion was "
@@ -253,6 +277,13 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           "over {} samples of then and now the version has {:.3f} % and the champion {:.3f} %.",
           look.champion_validated_mrse_percent, both->rows, both->mrse_percent,
           both->rival_mrse_percent);
+    if (const auto& all = look.over_tenure; all && !(all->reduction_percent > 0))
+      return fmt::format(
+          "since the champion was validated it had up to {:.3f} % already, so that nothing tells "
+          "of "
+          "a change; over {} samples of then and now the version has {:.3f} % and the champion "
+          "{:.3f} %.",
+          look.champion_worst_mrse_percent, all->rows, all->mrse_percent, all->rival_mrse_percent);
     return std::nullopt;
   }();
   using Stage = LongerLook::Stage;

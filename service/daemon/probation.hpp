@@ -4,10 +4,10 @@
 //
 // The free runs of the version and of the champion, begun so long before the window that what they
 // begin with is forgotten, go on over that telemetry, and are compared over the validation part and
-// it together, over it alone, over all of the window too, and, where the champion errs hardly more
-// than where it was validated, with what validated it too. A change of the equipment that is too
-// new to fill the validation part is so followed sooner than by the next window, and a stretch of
-// unusual operation is told from one.
+// it together, over it alone, over all of the window too, where the champion errs hardly more than
+// where it was validated, with what validated it too, and where it errs as it has before, with all
+// that it has run on. A change of the equipment that is too new to fill the validation part is so
+// followed sooner than by the next window, and a stretch of unusual operation is told from one.
 #pragma once
 
 #include <functional>
@@ -43,6 +43,11 @@ struct LongerLook {
   /// together. Looked at where the champion errs by less than the margin more than there; absent
   /// where less than half of that is left.
   std::optional<Evidence::Comparison> with_past{};
+  /// The same on all that the champion has run on since it was validated, before the version's
+  /// window and four windows back at most, and on what `comparison` is of. Looked at where the
+  /// champion errs less than 1.5 times what it did in the worst stretch of then that is as long.
+  std::optional<Evidence::Comparison> over_tenure{};
+  double champion_worst_mrse_percent = 0;  // there; 0 where it did not run for so long
   /// `comparison` with the champion's mean error taken from it, where a sensor that no relation
   /// binds could show that error.
   std::optional<Evidence::Comparison> without_offset{};

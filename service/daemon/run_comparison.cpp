@@ -79,15 +79,18 @@ PairedRuns paired(const Record& record, RowRange rows, const Matrix& candidate, 
 
 std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const EquipmentModel& candidate,
                                    const EquipmentModel& rival, const WindowRequest& request,
-                                   const Checks& checks, storage::TimeRange range) {
-  auto loaded = KeptWindow(request, 1, checks).load(archive, range);
+                                   const Checks& checks, storage::TimeRange range,
+                                   Duration run_up) {
+  const storage::TimeRange longer{range.begin - run_up, range.end};
+  auto loaded = KeptWindow(request, 1, checks).load(archive, longer);
   auto* data = std::get_if<WindowData>(&loaded);
   if (!data) return std::nullopt;
   Record& record = data->record;
-  const auto theirs = run_beside(archive, rival, request, record, range);
+  const auto theirs = run_beside(archive, rival, request, record, longer);
   if (!theirs) return std::nullopt;
-  PairedRuns runs =
-      paired(record, record.all(), free_run(candidate.dynamics, record, record.all()), *theirs);
+  const Index first = first_row_at(record, ticks_of(range, request.period).begin);
+  PairedRuns runs = paired(record, {first, record.rows()},
+                           free_run(candidate.dynamics, record, record.all()), *theirs);
   return RunsOfBoth{std::move(record), std::move(runs)};
 }
 
@@ -122,6 +125,7 @@ Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
   result.mrse_percent = identification::score(runs.y, runs.candidate).mrse();
   result.rival_mrse_percent = identification::score(runs.y, runs.rival).mrse();
   result.reduction_percent = 100 * (1 - result.mrse_percent / result.rival_mrse_percent);
+  result.noise_percent = identification::noise_percent(runs.y, runs.candidate, runs.stretches);
   if (std::isfinite(result.mrse_percent) && std::isfinite(result.rival_mrse_percent))
     if (const auto sure = identification::compare_runs(
             runs.y, runs.rival, runs.candidate, runs.stretches, confidence_percent / 100, course))
@@ -143,6 +147,16 @@ std::optional<PairedRuns> runs_where_validated(const storage::Archive& archive,
   if (!both || static_cast<double>(both->runs.rows.size()) < least_share * ticks)
     return std::nullopt;
   return std::move(both->runs);
+}
+
+double worst_of_rival(const PairedRuns& runs, Index rows) {
+  constexpr Index steps = 8;  // of a stretch
+  double worst = 0;
+  for (Index begin = 0; begin + rows <= runs.y.rows(); begin += std::max<Index>(1, rows / steps))
+    worst = std::max(worst, identification::score(runs.y.middleRows(begin, rows),
+                                                  runs.rival.middleRows(begin, rows))
+                                .mrse());
+  return worst;
 }
 
 PairedRuns joined(const PairedRuns& first, const PairedRuns& second) {
@@ -174,6 +188,7 @@ nlohmann::ordered_json to_json(const Evidence::Comparison& comparison) {
   json["sure_reduction_percent"] = comparison.sure_percent
                                        ? nlohmann::ordered_json(*comparison.sure_percent)
                                        : nlohmann::ordered_json(nullptr);
+  json["noise_percent"] = comparison.noise_percent;
   return json;
 }
 

@@ -41,15 +41,16 @@ PairedRuns paired(const identification::Record& record, identification::RowRange
                   const identification::Matrix& candidate, const Run& rival);
 
 /// The free runs of both on what is believed of the telemetry in `range`, for which `request` asks
-/// as the candidate does (the rival's on all of its own, where it asks otherwise). Absent where a
-/// parameter of either is not described.
+/// as the candidate does (the rival's on all of its own, where it asks otherwise), begun `run_up`
+/// before it. Absent where a parameter of either is not described.
 struct RunsOfBoth {
   identification::Record record;  // the candidate's
   PairedRuns runs;
 };
 std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const EquipmentModel& candidate,
                                    const EquipmentModel& rival, const WindowRequest& request,
-                                   const Checks& checks, storage::TimeRange range);
+                                   const Checks& checks, storage::TimeRange range,
+                                   Duration run_up = 0);
 
 /// Share of the ranges of the model's inputs that `u` (N x m, N at least 1) moves over, weighted by
 /// what each of them moves the output by, in a steady state and by its own range at most; the
@@ -67,6 +68,9 @@ std::optional<PairedRuns> runs_where_validated(const storage::Archive& archive,
                                                const EquipmentModel& champion,
                                                const EquipmentModel& model, const Checks& checks,
                                                storage::Time end);
+
+/// The rival's largest MRSE, in percent, over any `rows` consecutive rows; 0 where there are fewer.
+double worst_of_rival(const PairedRuns& runs, identification::Index rows);
 
 /// Both of them, one after the other.
 PairedRuns joined(const PairedRuns& first, const PairedRuns& second);

@@ -61,9 +61,9 @@ class Judgement(EndToEnd):
         self.configure([plant.equipment(slide="10min", confirmation="4min", order=4,
                                         unvouched="approve")])
         daemon = self.start_daemon()
-        self.replay_rows("before", count=601, noise=0.3)
+        self.replay_rows("before", count=601, noise=0.2)
         self.assertEqual(self.champion(), 1, self.attempts())
-        changed = {"gain": 1.2, "noise": 0.3}
+        changed = {"gain": 1.3, "noise": 0.2}
         self.replay_rows("after", first=601, count=640, **changed)
         tried = [row[2] for row in self.attempts()]
         self.assertEqual(tried, ["approved", "on_probation"])

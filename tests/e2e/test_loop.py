@@ -133,14 +133,19 @@ class Loop(EndToEnd):
         self.assertLess(drawing.stat().st_size, 500_000)
         root = ElementTree.parse(drawing).getroot()
         groups = {group.get("id"): group for group in root.iter(f"{SVG}g")}
-        self.assertLessEqual({"output-1-real", "output-1-simulated", "output-1-error",
-                              "singular-values", "poles"}, set(groups))
+        self.assertLessEqual({"output-1-real", "output-1-simulated", "output-1-error", "poles"},
+                             set(groups))
         for name in ("real", "simulated", "error"):
             points = "".join(line.get("points") for line in groups[f"output-1-{name}"])
             self.assertGreater(len(points.split()), 400, name)
         shaded = {rect.get("class") for rect in root.iter(f"{SVG}rect")}
         self.assertLessEqual({"identify", "tune", "validate"}, shaded)
         self.assertEqual(len(list(groups["poles"])), new["order"])
+        status, text = self.reident("plot", f"SAT/PLANT@{first}", "-o", drawing, "--database",
+                                    self.database)
+        self.assertEqual(status, 0, text)
+        drawn = {group.get("id") for group in ElementTree.parse(drawing).getroot().iter(f"{SVG}g")}
+        self.assertIn("singular-values", drawn, "of a version that is identified, not adapted")
 
         for status, says, *words in [
                 (2, "99", "plot", "SAT/PLANT@99"),

@@ -191,5 +191,35 @@ TEST(PairedComparison, SaysNothingOfTooFewRowsZerosOrInfinities) {
   EXPECT_FALSE(compare_runs(t.y, astray, t.run, {{0, rows}}, confidence, Course::steady));
 }
 
+TEST(NoisePercent, IsWhatChangesFromRowToRow) {
+  testing::Noise noise(43);
+  const Vector run = (5 + 4 * first_order(noise, rows, 0.99).array()).matrix();
+  const Vector slow = first_order(noise, rows, 0.999), sensor = 0.1 * first_order(noise, rows, 0);
+  const double size = run.norm() / std::sqrt(double(rows));
+  const Vector y = run + slow + sensor;
+  EXPECT_NEAR(noise_percent(y, run, {{0, rows}}), 100 * 0.1 / size, 0.1 * 100 * 0.1 / size);
+}
+
+TEST(NoisePercent, IsNotWhatStepsLeaveNorWhatGapsHide) {
+  testing::Noise noise(44);
+  const Vector sensor = 0.1 * first_order(noise, rows, 0), run = Vector::Constant(rows, 5);
+  Vector y = run + sensor;
+  for (Index k = 0; k < rows; k += 40) y.segment(k, 2).array() += 3;
+  const double expected = 100 * 0.1 / (y.norm() / std::sqrt(double(rows)));
+  EXPECT_NEAR(noise_percent(y, run, {{0, rows}}), expected, 0.15 * expected);
+  std::vector<RowRange> alone;
+  for (Index k = 0; k < rows; ++k) alone.push_back({k, k + 1});
+  EXPECT_NEAR(noise_percent(y, run, alone), 0, 1e-9);
+}
+
+TEST(NoisePercent, IsTheMeanOfTheOutputs) {
+  Matrix y(rows, 2);
+  for (Index k = 0; k < rows; ++k) y.row(k) << (k % 2 ? 1 : 3), (k % 2 ? 10 : 11);
+  const Matrix run = Matrix::Zero(rows, 2);
+  const auto of = [&](Index q) { return noise_percent(y.col(q), run.col(q), {{0, rows}}); };
+  EXPECT_GT(of(0), 5 * of(1));
+  EXPECT_NEAR(noise_percent(y, run, {{0, rows}}), (of(0) + of(1)) / 2, 1e-9);
+}
+
 }  // namespace
 }  // namespace reident::identification

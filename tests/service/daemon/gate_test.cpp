@@ -139,6 +139,17 @@ const Case not_surely_better[] = {
        c.confirmation = 100;
      },
      Outcome::on_probation},
+    {"BetterByLittleBesideTheNoise",
+     [](auto& e, auto&) { e.champion->comparison->noise_percent = 2.2; },
+     Outcome::not_better_than_champion},
+    {"BetterByEnoughBesideTheNoise",
+     [](auto& e, auto&) { e.champion->comparison->noise_percent = 2.1; }, Outcome::approved},
+    {"BetterByLittleBesideTheNoiseWhereMoreTelemetryMayTell",
+     [](auto& e, auto& c) {
+       e.champion->comparison->noise_percent = 2.2;
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
     {"NotBetterByTheMarginWhateverMoreTelemetryTells",
      [](auto& e, auto& c) {
        e.champion->comparison->sure_percent = 0;
@@ -408,6 +419,14 @@ TEST(GateReason, NamesTheFiguresThatDecided) {
   EXPECT_EQ(decide(evidence, limits()).reason,
             "MRSE 5.000 % does not surely undercut champion 3 (5.500 % on the same samples) by 5 "
             "%: the reduction is 9.09 %, and 3.20 % with a confidence of 99 %.");
+}
+
+TEST(GateReason, OfALittleGainNamesTheNoise) {
+  Evidence evidence = good();
+  evidence.champion->comparison->noise_percent = 3;
+  EXPECT_EQ(decide(evidence, limits()).reason,
+            "MRSE 5.000 % undercuts champion 3 (8.000 % on the same samples) by too little beside "
+            "the noise of the sensors (3.000 %).");
 }
 
 TEST(GateReason, OfAHoldNamesWhoHoldsAndWhy) {

@@ -16,175 +16,7 @@ namespace reident::test {
 namespace {
 
 using storage::DecisionKind;
-using testing::AllOf;
 using testing::HasSubstr;
-
-LongerLook sure_of(double percent) {
-  LongerLook look;
-  look.champion = 3;
-  look.comparison = {.rows = 500,
-                     .mrse_percent = 5,
-                     .rival_mrse_percent = 8,
-                     .reduction_percent = 37.5,
-                     .sure_percent = percent};
-  look.after = look.with_window = look.comparison;
-  return look;
-}
-
-TEST(JudgeProbation, ApprovesOnceTheReductionIsSurelyAThirdOfTheMargin) {
-  const auto found = judge_probation(sure_of(5.1), {});
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->kind, DecisionKind::approve);
-  EXPECT_EQ(found->actor, "gate");
-  EXPECT_THAT(found->reason, AllOf(HasSubstr("champion 3 has 8.000 %"), HasSubstr("5.10 %")));
-  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["comparison"]["rows"], 500);
-}
-
-TEST(JudgeProbation, WaitsForMoreAndRejectsOnceItHasCome) {
-  LongerLook look = sure_of(5);
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.stage = LongerLook::Stage::due;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
-}
-
-TEST(JudgeProbation, LeavesAChampionThatErrsAsEverUntilAllHasCome) {
-  LongerLook look = sure_of(40);
-  look.champion_validated_mrse_percent = 5.4;  // it errs by 8 now
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.champion_validated_mrse_percent = 5.3;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-  look.champion_validated_mrse_percent = 8;
-  look.stage = LongerLook::Stage::due;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-}
-
-TEST(JudgeProbation, WaitsForMoreWhereWhatCameAfterTheWindowIsNotSure) {
-  LongerLook look = sure_of(40);
-  look.after.sure_percent = 0;
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.stage = LongerLook::Stage::due;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-}
-
-TEST(JudgeProbation, WaitsAsLongAgainToBeSurelyBetterThanAChampionThatErrsAsEver) {
-  LongerLook look = sure_of(40);
-  look.champion_validated_mrse_percent = 8;
-  look.after.sure_percent = 0;
-  look.stage = LongerLook::Stage::due;
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.stage = LongerLook::Stage::last;
-  const auto found = judge_probation(look, {});
-  EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("champion 8.000 %, which is not surely less"));
-  look.with_past = sure_of(5).comparison;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
-  LongerLook after = look, with_past = look;
-  after.after.sure_percent = 0.1;
-  with_past.with_past = sure_of(5.1).comparison;
-  for (const auto stage : {LongerLook::Stage::due, LongerLook::Stage::last})
-    for (LongerLook sure : {after, with_past}) {
-      sure.stage = stage;
-      EXPECT_EQ(judge_probation(sure, {})->kind, DecisionKind::approve);
-    }
-}
-
-TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
-  LongerLook look = sure_of(10);
-  look.comparison.reduction_percent = 15;
-  look.stage = LongerLook::Stage::due;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
-}
-
-TEST(JudgeProbation, AsksForMoreThanAnOffsetWhereNoSensorVouchesForIt) {
-  LongerLook look = sure_of(40);
-  look.without_offset = sure_of(4).comparison;
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.without_offset = sure_of(6).comparison;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-  look.without_offset->sure_percent.reset();
-  EXPECT_FALSE(judge_probation(look, {}));
-}
-
-TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
-  // An unusual stretch in the validation part still outweighs what came after it.
-  LongerLook look = sure_of(40);
-  look.after = {.rows = 100,
-                .mrse_percent = 6,
-                .rival_mrse_percent = 5,
-                .reduction_percent = -20,
-                .sure_percent = {}};
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.stage = LongerLook::Stage::due;
-  const auto found = judge_probation(look, {});
-  EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("on the 100 samples after its window alone it has 6.000 %"));
-}
-
-TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverItsWindowToo) {
-  LongerLook look = sure_of(40);
-  look.with_window = {.rows = 900,
-                      .mrse_percent = 8,
-                      .rival_mrse_percent = 8,
-                      .reduction_percent = 0,
-                      .sure_percent = {}};
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.stage = LongerLook::Stage::due;
-  const auto found = judge_probation(look, {});
-  EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason,
-              HasSubstr("over all of its window and what came after it, it has 8.000 "
-                        "% and the champion 8.000 %"));
-  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["with_window"]["rows"], 900);
-}
-
-TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginOverBoth) {
-  LongerLook look = sure_of(40);
-  look.stage = LongerLook::Stage::due;
-  look.champion_validated_mrse_percent = 20;
-  look.with_past = {.rows = 100,
-                    .mrse_percent = 20,
-                    .rival_mrse_percent = 20,
-                    .reduction_percent = 0,
-                    .sure_percent = {}};
-  const auto found = judge_probation(look, {});
-  EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("has 20.000 % and the champion 20.000 %"));
-  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["with_past"]["rows"], 100);
-  look.with_past->reduction_percent = 15.1;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-}
-
-TEST(JudgeProbation, ApprovesNothingAboveTheLimitOfTheError) {
-  LongerLook look = sure_of(40);
-  look.comparison.mrse_percent = 20.1;
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.stage = LongerLook::Stage::due;
-  EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("above the limit of 20 %"));
-}
-
-TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
-  LongerLook look = sure_of(40);
-  look.fault_share = 0.0025;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-  look.fault_share = 0.0026;
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.stage = LongerLook::Stage::due;
-  const auto found = judge_probation(look, {});
-  EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("0.26 faults of sensors found in 100 ticks"));
-}
-
-TEST(JudgeProbation, ApprovesNothingInAnUnusualOperation) {
-  LongerLook look = sure_of(40);
-  look.movement = 0.54;
-  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-  look.movement = 0.52;
-  EXPECT_FALSE(judge_probation(look, {}));
-  look.stage = LongerLook::Stage::due;
-  const auto found = judge_probation(look, {});
-  EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("move over 52 % of the ranges"));
-}
 
 /// Champion 1 is of a plant of gain 1; version 2 is on probation.
 class Probation : public DaemonTest {
@@ -317,6 +149,38 @@ TEST_F(Probation, LetsNoFirstStateMakeUpForAnOffset) {
   const auto [steady, steady_error] = with_mode_of(1e9);
   EXPECT_EQ(steady, DecisionKind::approve);
   EXPECT_LT(steady_error, 1);
+}
+
+/// Another gain from `since` on, after forty minutes of the old one with ten of `before` in them.
+class ProbationAfterLong : public Probation {
+ protected:
+  static constexpr storage::Time since = day + 60 * minute;
+
+  storage::NewDecision decided_after(double before) {
+    archive.append(telemetry(day + 10 * minute, 1200, 1));
+    archive.append(telemetry(day + 30 * minute, 600, before));
+    archive.append(telemetry(day + 40 * minute, 1200, 1));
+    archive.append(telemetry(since, 901, 2));
+    make_version(since + 10 * minute, "on_probation", DecisionKind::wait);
+    return look(since + 15 * minute).at(0).decision;
+  }
+};
+
+TEST_F(ProbationAfterLong, EndsWithAnApprovalWhereTheChampionHasNeverErredSo) {
+  const auto found = decided_after(1);
+  EXPECT_EQ(found.kind, DecisionKind::approve) << found.reason;
+  const auto evidence = nlohmann::json::parse(found.evidence_json);
+  EXPECT_LT(1.5 * evidence["champion_worst_mrse_percent"].get<double>(),
+            evidence["comparison"]["rival_mrse_percent"].get<double>());
+  EXPECT_FALSE(evidence.contains("over_tenure"));
+}
+
+TEST_F(ProbationAfterLong, EndsWithARejectionWhereTheChampionHasErredSoAndWasRight) {
+  const auto found = decided_after(2);
+  EXPECT_EQ(found.kind, DecisionKind::reject);
+  EXPECT_THAT(found.reason, HasSubstr("so that nothing tells of a change"));
+  const auto evidence = nlohmann::json::parse(found.evidence_json);
+  EXPECT_EQ(evidence["over_tenure"]["rows"], 2400 + 180 + 300) << "four windows and what is new";
 }
 
 TEST_F(Probation, IsNotEndedWithAnApprovalByAnUnusualOperation) {

@@ -1,0 +1,207 @@
+// The decision of one look at a version on probation.
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "service/daemon/probation.hpp"
+
+namespace reident::test {
+namespace {
+
+using storage::DecisionKind;
+using testing::AllOf;
+using testing::HasSubstr;
+
+LongerLook sure_of(double percent) {
+  LongerLook look;
+  look.champion = 3;
+  look.comparison = {.rows = 500,
+                     .mrse_percent = 5,
+                     .rival_mrse_percent = 8,
+                     .reduction_percent = 37.5,
+                     .sure_percent = percent};
+  look.after = look.with_window = look.comparison;
+  return look;
+}
+
+TEST(JudgeProbation, ApprovesOnceTheReductionIsSurelyAThirdOfTheMargin) {
+  const auto found = judge_probation(sure_of(5.1), {});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, DecisionKind::approve);
+  EXPECT_EQ(found->actor, "gate");
+  EXPECT_THAT(found->reason, AllOf(HasSubstr("champion 3 has 8.000 %"), HasSubstr("5.10 %")));
+  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["comparison"]["rows"], 500);
+}
+
+TEST(JudgeProbation, WaitsForMoreAndRejectsOnceItHasCome) {
+  LongerLook look = sure_of(5);
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+}
+
+TEST(JudgeProbation, LeavesAChampionThatErrsAsEverUntilAllHasCome) {
+  LongerLook look = sure_of(40);
+  look.champion_validated_mrse_percent = 5.4;  // it errs by 8 now
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.champion_validated_mrse_percent = 5.3;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.champion_validated_mrse_percent = 8;
+  look.stage = LongerLook::Stage::due;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
+TEST(JudgeProbation, WaitsForMoreWhereWhatCameAfterTheWindowIsNotSure) {
+  LongerLook look = sure_of(40);
+  look.after.sure_percent = 0;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
+TEST(JudgeProbation, WaitsAsLongAgainToBeSurelyBetterThanAChampionThatErrsAsEver) {
+  LongerLook look = sure_of(40);
+  look.champion_validated_mrse_percent = 8;
+  look.after.sure_percent = 0;
+  look.stage = LongerLook::Stage::due;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::last;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("champion 8.000 %, which is not surely less"));
+  look.with_past = sure_of(5).comparison;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+  LongerLook after = look, with_past = look;
+  after.after.sure_percent = 0.1;
+  with_past.with_past = sure_of(5.1).comparison;
+  for (const auto stage : {LongerLook::Stage::due, LongerLook::Stage::last})
+    for (LongerLook sure : {after, with_past}) {
+      sure.stage = stage;
+      EXPECT_EQ(judge_probation(sure, {})->kind, DecisionKind::approve);
+    }
+}
+
+TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
+  LongerLook look = sure_of(10);
+  look.comparison.reduction_percent = 15;
+  look.stage = LongerLook::Stage::due;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+}
+
+TEST(JudgeProbation, AsksForMoreThanAnOffsetWhereNoSensorVouchesForIt) {
+  LongerLook look = sure_of(40);
+  look.without_offset = sure_of(4).comparison;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.without_offset = sure_of(6).comparison;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.without_offset->sure_percent.reset();
+  EXPECT_FALSE(judge_probation(look, {}));
+}
+
+TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
+  // An unusual stretch in the validation part still outweighs what came after it.
+  LongerLook look = sure_of(40);
+  look.after = {.rows = 100,
+                .mrse_percent = 6,
+                .rival_mrse_percent = 5,
+                .reduction_percent = -20,
+                .sure_percent = {}};
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("on the 100 samples after its window alone it has 6.000 %"));
+}
+
+TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverItsWindowToo) {
+  LongerLook look = sure_of(40);
+  look.with_window = {.rows = 900,
+                      .mrse_percent = 8,
+                      .rival_mrse_percent = 8,
+                      .reduction_percent = 0,
+                      .sure_percent = {}};
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason,
+              HasSubstr("over all of its window and what came after it, it has 8.000 "
+                        "% and the champion 8.000 %"));
+  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["with_window"]["rows"], 900);
+}
+
+TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginOverBoth) {
+  LongerLook look = sure_of(40);
+  look.stage = LongerLook::Stage::due;
+  look.champion_validated_mrse_percent = 20;
+  look.with_past = {.rows = 100,
+                    .mrse_percent = 20,
+                    .rival_mrse_percent = 20,
+                    .reduction_percent = 0,
+                    .sure_percent = {}};
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("has 20.000 % and the champion 20.000 %"));
+  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["with_past"]["rows"], 100);
+  look.with_past->reduction_percent = 15.1;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
+TEST(JudgeProbation, ApprovesNothingAboveTheLimitOfTheError) {
+  LongerLook look = sure_of(40);
+  look.comparison.mrse_percent = 20.1;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("above the limit of 20 %"));
+}
+
+TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverTheChampionsTenure) {
+  LongerLook look = sure_of(30);
+  look.stage = LongerLook::Stage::last;
+  look.champion_worst_mrse_percent = 6;
+  look.over_tenure = look.comparison;
+  look.over_tenure->reduction_percent = 1;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.over_tenure->reduction_percent = 0;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("it had up to 6.000 % already"));
+  EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["over_tenure"]["rows"], 500);
+}
+
+TEST(JudgeProbation, ApprovesNothingThatGainsLittleBesideTheNoise) {
+  LongerLook look = sure_of(30);
+  look.stage = LongerLook::Stage::last;
+  look.comparison.noise_percent = 2.1;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.comparison.noise_percent = 2.2;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("the noise of the sensors (2.200 %)"));
+}
+
+TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
+  LongerLook look = sure_of(40);
+  look.fault_share = 0.0025;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.fault_share = 0.0026;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("0.26 faults of sensors found in 100 ticks"));
+}
+
+TEST(JudgeProbation, ApprovesNothingInAnUnusualOperation) {
+  LongerLook look = sure_of(40);
+  look.movement = 0.54;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.movement = 0.52;
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("move over 52 % of the ranges"));
+}
+
+}  // namespace
+}  // namespace reident::test
