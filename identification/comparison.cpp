@@ -149,8 +149,29 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
 }
 
 double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& stretches) {
-  const Array squares = square_changes(y - run, stretches).usual / 2;
-  return 100 * errors_of(squares, y.cwiseAbs2().colwise().mean().transpose()).mean();
+  Array squares(y.cols());
+  for (Index q = 0; q < y.cols(); ++q) {
+    const Vector errors = y.col(q) - run.col(q);
+    std::vector<double> fresh;  // errors where a sample is new
+    std::vector<RowRange> of_fresh;
+    Index pairs = 0, changes = 0;
+    for (const RowRange& stretch : stretches) {
+      const auto first = static_cast<Index>(fresh.size());
+      for (Index k = stretch.begin + 1; k < stretch.end; ++k) {
+        ++pairs;
+        if (y(k, q) == y(k - 1, q)) continue;
+        ++changes;
+        fresh.push_back(errors(k));
+      }
+      of_fresh.push_back({first, static_cast<Index>(fresh.size())});
+    }
+    squares(q) =
+        2 * changes < pairs
+            ? square_changes(Eigen::Map<const Vector>(fresh.data(), std::ssize(fresh)), of_fresh)
+                  .usual(0)
+            : square_changes(errors, stretches).usual(0);
+  }
+  return 100 * errors_of(squares / 2, y.cwiseAbs2().colwise().mean().transpose()).mean();
 }
 
 }  // namespace reident::identification

@@ -47,7 +47,9 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
 /// of consecutive rows independent of each other, half of their mean squared difference would be
 /// their mean square (J. von Neumann, Annals of Mathematical Statistics 12(4), 1941). The usual
 /// squared difference is taken (simulate.hpp), since what a model makes of a load step is no noise;
-/// of samples that are held over several rows it is 0. y and run are N x p, N >= 1.
+/// all else that changes from row to row counts as noise. Of an output that mostly stays from one
+/// row to the next, as one whose samples are held, the rows count at which it does not. y and run
+/// are N x p, N >= 1, and finite.
 double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& stretches);
 
 }  // namespace reident::identification

@@ -193,7 +193,7 @@ std::optional<RegressionSolution> NormalEquations::solve_without_small(double le
   return solution;
 }
 
-std::optional<RegressionSolution> NormalEquations::solve_shrunk(double noise,
+std::optional<RegressionSolution> NormalEquations::solve_shrunk(double half_at,
                                                                 double least_size) const {
   const auto found = components();
   if (!found) return std::nullopt;
@@ -202,7 +202,8 @@ std::optional<RegressionSolution> NormalEquations::solve_shrunk(double noise,
   for (Index i = 0; i < squares.size(); ++i) {
     if (!(squares(i) > least_size * least_size)) continue;
     const double explained = target(i) * target(i) / squares(i);
-    if (explained > 0) coefficients(i) = target(i) / squares(i) * (explained / (explained + noise));
+    if (explained > 0)
+      coefficients(i) = target(i) / squares(i) * (explained / (explained + half_at));
   }
   return solution_of(scale.asDiagonal() * (columns * coefficients));
 }

@@ -70,10 +70,10 @@ class NormalEquations {
   /// of the target or less is left, or they lower its sum of squares by a hundredth.
   std::optional<RegressionSolution> solve_without_small(double least_size) const;
 
-  /// Of each principal component of the columns, scaled to size 1, the share s / (s + noise) of its
-  /// coefficient, s being what it explains of the target's sum of squares: none of those that are
-  /// smaller than `least_size`.
-  std::optional<RegressionSolution> solve_shrunk(double noise, double least_size) const;
+  /// Of each principal component of the columns, scaled to size 1, the share s / (s + half_at) of
+  /// its coefficient, s being what it explains of the target's sum of squares: none of those that
+  /// are smaller than `least_size`.
+  std::optional<RegressionSolution> solve_shrunk(double half_at, double least_size) const;
 
  private:
   struct Elimination {

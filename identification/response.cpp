@@ -120,15 +120,18 @@ Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Recor
 }
 
 Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows) {
-  constexpr double half_at = 4;  // the square of two standard deviations
+  constexpr double squared_deviations = 4;  // of a coefficient that is halved
   const std::vector<Segment> segments = segments_within(record, rows);
   const StateSpaceModel dynamics = with_dynamics(A, C, record);
   const Columns columns = columns_of(dynamics, true);
   const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
   const Fitted full = fit(sums, dynamics, true, record, segments, Accuracy::fast);
-  const double variance = full.sum_of_squares / static_cast<double>(rows.size() * columns.p) *
+  const Index told = rows.size() * columns.p - (columns.target() - columns.n) -
+                     columns.n * static_cast<Index>(segments.size());
+  if (told < 1) return response_of({dynamics, {}, 0}, rows.size());
+  const double variance = full.sum_of_squares / static_cast<double>(told) *
                           correlated_rows_of_errors(full, record, segments);
-  const auto shrunk = sums.solve_shrunk(half_at * variance, least_pivot(Accuracy::fast));
+  const auto shrunk = sums.solve_shrunk(squared_deviations * variance, least_pivot(Accuracy::fast));
   return response_of(shrunk ? from(*shrunk, columns, dynamics) : full, rows.size());
 }
 

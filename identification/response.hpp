@@ -31,7 +31,9 @@ Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Recor
 /// solution where the rows tell it, and near zero where they do not. Of each principal component of
 /// the regressors the share t^2 / (t^2 + 4) is taken, t being its coefficient over its standard
 /// deviation: a generalized ridge regression (A. E. Hoerl, R. W. Kennard, Technometrics 12(1),
-/// 1970, section 5). Rows whose errors are correlated count as so many fewer.
+/// 1970, section 5). Rows whose errors are correlated count as so many fewer, of all outputs as of
+/// the one where they are most, which is on the safe side. Nothing changes where there are no more
+/// rows than unknowns.
 Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows);
 
 /// As fit_response, with A and C moved by at most `steps` Levenberg-Marquardt steps that lower the

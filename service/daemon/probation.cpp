@@ -108,21 +108,24 @@ Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent,
   return static_cast<Duration>(time_constants * std::min(1e9 * slowest_s, most));
 }
 
-/// Compares the two on what the champion has run on so far, where it erred there as it does now.
-void look_at_tenure(const storage::Archive& archive, storage::TimeRange window,
-                    const EquipmentModel& model, const EquipmentModel& incumbent,
-                    const EquipmentConfig& equipment, const PairedRuns& now, LongerLook& look) {
+/// The two on what the champion has run on since it was validated, four windows before the
+/// version's at most. Absent where none of it is left, or what is cannot be decoded.
+std::optional<PairedRuns> runs_over_tenure(const storage::Archive& archive,
+                                           storage::TimeRange window, const EquipmentModel& model,
+                                           const EquipmentModel& incumbent, const Checks& checks) {
   constexpr int windows = 4;
   const storage::Time earliest = window.begin - windows * (window.end - window.begin);
   const storage::TimeRange tenure{std::max(incumbent.validated_on.begin, earliest), window.begin};
-  if (tenure.end <= tenure.begin) return;
-  const auto both = run_both(archive, model, incumbent, request_of(model), checks_of(equipment),
-                             tenure, run_up(model, incumbent, window));
-  if (!both) return;
-  look.champion_worst_mrse_percent = worst_of_rival(both->runs, now.y.rows());
-  if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent))
-    look.over_tenure =
-        compare(joined(both->runs, now), equipment.confidence_percent, Course::changing);
+  if (tenure.end <= tenure.begin) return std::nullopt;
+  try {
+    auto both = run_both(archive, model, incumbent, request_of(model), checks, tenure,
+                         run_up(model, incumbent, window));
+    if (!both) return std::nullopt;
+    return std::move(both->runs);
+  } catch (const storage::Error& error) {
+    if (error.kind() != storage::Error::Kind::corrupt) throw;
+    return std::nullopt;
+  }
 }
 
 /// Absent where there is too little to compare on.
@@ -172,7 +175,13 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
     if (const auto past =
             runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
       look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
-  look_at_tenure(archive, window, model, incumbent, equipment, runs, look);
+  if (const auto tenure =
+          runs_over_tenure(archive, window, model, incumbent, checks_of(equipment))) {
+    look.champion_worst_mrse_percent = worst_of_rival(*tenure, runs.y.rows());
+    if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent))
+      look.over_tenure =
+          compare(joined(*tenure, runs), equipment.confidence_percent, Course::changing);
+  }
   if (needs_vouching) {
     runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
     look.without_offset = compare(runs, equipment.confidence_percent, Course::changing);

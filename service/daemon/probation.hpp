@@ -1,6 +1,7 @@
 // Versions on probation: better than the champion by the margin, but on their windows' validation
-// part alone not surely, or mostly by a constant, or in an unusual operation, or while nothing
-// tells of a change. Telemetry that comes after their windows decides.
+// part alone not surely, or by little beside the sensors' noise, or mostly by a constant, or in an
+// unusual operation, or while nothing tells of a change. Telemetry that comes after their windows
+// decides.
 //
 // The free runs of the version and of the champion, begun so long before the window that what they
 // begin with is forgotten, go on over that telemetry, and are compared over the validation part and

@@ -125,7 +125,8 @@ Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
   result.mrse_percent = identification::score(runs.y, runs.candidate).mrse();
   result.rival_mrse_percent = identification::score(runs.y, runs.rival).mrse();
   result.reduction_percent = 100 * (1 - result.mrse_percent / result.rival_mrse_percent);
-  result.noise_percent = identification::noise_percent(runs.y, runs.candidate, runs.stretches);
+  if (std::isfinite(result.mrse_percent))
+    result.noise_percent = identification::noise_percent(runs.y, runs.candidate, runs.stretches);
   if (std::isfinite(result.mrse_percent) && std::isfinite(result.rival_mrse_percent))
     if (const auto sure = identification::compare_runs(
             runs.y, runs.rival, runs.candidate, runs.stretches, confidence_percent / 100, course))
@@ -151,12 +152,16 @@ std::optional<PairedRuns> runs_where_validated(const storage::Archive& archive,
 
 double worst_of_rival(const PairedRuns& runs, Index rows) {
   constexpr Index steps = 8;  // of a stretch
-  double worst = 0;
-  for (Index begin = 0; begin + rows <= runs.y.rows(); begin += std::max<Index>(1, rows / steps))
-    worst = std::max(worst, identification::score(runs.y.middleRows(begin, rows),
-                                                  runs.rival.middleRows(begin, rows))
-                                .mrse());
-  return worst;
+  if (rows < 1 || runs.y.rows() < rows) return 0;
+  const Matrix errors = runs.y - runs.rival;
+  const auto sizes = runs.y.colwise().norm().array() / std::sqrt(double(runs.y.rows()));
+  const auto error_from = [&](Index begin) {
+    return (errors.middleRows(begin, rows).colwise().norm().array() / sizes).mean();
+  };
+  double worst = error_from(runs.y.rows() - rows);
+  for (Index begin = 0; begin + rows < runs.y.rows(); begin += std::max<Index>(1, rows / steps))
+    worst = std::max(worst, error_from(begin));
+  return std::isfinite(worst) ? 100 * worst / std::sqrt(double(rows)) : 0;
 }
 
 PairedRuns joined(const PairedRuns& first, const PairedRuns& second) {

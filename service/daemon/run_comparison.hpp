@@ -69,7 +69,8 @@ std::optional<PairedRuns> runs_where_validated(const storage::Archive& archive,
                                                const EquipmentModel& model, const Checks& checks,
                                                storage::Time end);
 
-/// The rival's largest MRSE, in percent, over any `rows` consecutive rows; 0 where there are fewer.
+/// The rival's largest error over so many rows, in steps of an eighth of them, in percent of the
+/// outputs over all rows as the MRSE is; 0 where there are fewer, or where that is not finite.
 double worst_of_rival(const PairedRuns& runs, identification::Index rows);
 
 /// Both of them, one after the other.

@@ -184,6 +184,13 @@ TEST(Adaptation, LeavesTheGainOfAModeThatIsSlowerThanTheRowsTell) {
   EXPECT_LT(moved_by_others, 0.5 * moved_by_these);
 }
 
+TEST(Adaptation, MovesNothingWhereTheRowsAreFewerThanTheUnknowns) {
+  const SlowMode one(1);
+  const StateSpaceModel found = adapted(one.known, one.record, {0, 5}, KnownFrom::other_rows);
+  EXPECT_EQ(found.B, one.known.B);
+  EXPECT_EQ(found.D, one.known.D);
+}
+
 TEST(Adaptation, FollowsAGainThatTheRowsTellAmongErrorsThatLast) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SlowMode one(seed);

@@ -212,6 +212,30 @@ TEST(NoisePercent, IsNotWhatStepsLeaveNorWhatGapsHide) {
   EXPECT_NEAR(noise_percent(y, run, alone), 0, 1e-9);
 }
 
+TEST(NoisePercent, OfHeldSamplesIsThatOfTheSamples) {
+  testing::Noise noise(45);
+  constexpr Index held = 16;
+  const Vector run = (5 + 4 * first_order(noise, rows * 4, 0.999).array()).matrix();
+  const Vector sensor = 0.1 * first_order(noise, rows * 4, 0);
+  Vector y = run + sensor;
+  for (Index k = 0; k < y.size(); ++k) y(k) = y(k - k % held);
+  const double expected = 100 * 0.1 / (y.norm() / std::sqrt(double(y.size())));
+  EXPECT_NEAR(noise_percent(y, run, {{0, y.size()}}), expected, 0.15 * expected);
+}
+
+TEST(NoisePercent, LooksAtNoDifferenceOverAGap) {
+  testing::Noise noise(46);
+  const Vector sensor = 0.1 * first_order(noise, rows, 0), run = Vector::Constant(rows, 5);
+  Vector y = run + sensor;
+  std::vector<RowRange> stretches;
+  for (Index k = 0; k < rows; k += 2) {
+    stretches.push_back({k, k + 2});
+    y.segment(k, 2).array() += 3 * noise.normal();
+  }
+  const double expected = 100 * 0.1 / (y.norm() / std::sqrt(double(rows)));
+  EXPECT_NEAR(noise_percent(y, run, stretches), expected, 0.15 * expected);
+}
+
 TEST(NoisePercent, IsTheMeanOfTheOutputs) {
   Matrix y(rows, 2);
   for (Index k = 0; k < rows; ++k) y.row(k) << (k % 2 ? 1 : 3), (k % 2 ? 10 : 11);

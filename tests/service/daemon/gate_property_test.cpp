@@ -72,6 +72,7 @@ Outcome outcome(const Trial& one, const StateSpaceModel& candidate) {
   comparison.rows = rows;
   comparison.mrse_percent = evidence.mrse_percent;
   comparison.rival_mrse_percent = identification::score(record.y, of_champion).mrse();
+  comparison.noise_percent = identification::noise_percent(record.y, run, {{0, rows}});
   if (paired) comparison.sure_percent = 100 * paired->low;
   evidence.champion = Evidence::Champion{1, 0, comparison, std::nullopt};
   return decide(evidence, limits).outcome;
@@ -99,20 +100,21 @@ TEST(GateProperty, TheChampionPlusNoiseIsPromotedInFewerThanOneOfAHundredTrials)
             trials / 100);
 }
 
-TEST(GateProperty, AModelWhoseErrorIsATenthSmallerIsPromotedInMoreThanNineteenOfTwentyTrials) {
-  // Candidates between the champion and the plant: what of them errs by a tenth less is counted.
+TEST(GateProperty, AModelWhoseErrorIsHalfAsLargeIsPromotedInMoreThanNineteenOfTwentyTrials) {
+  // Candidates between the champion and the plant: what of them errs half as much is counted.
+  // Nearly half of the disturbances changes from row to row, as sensors' noise does.
   Noise noise(62);
   int better = 0, approved = 0;
   for (int i = 0; better < trials && i < 20 * trials; ++i) {
     Trial one = trial(noise);
     const StateSpaceModel candidate = one.champion;
     // The champion has lost its gain; the candidate still has it.
-    one.champion.C *= 0.8 + 0.1 * noise.uniform();
+    one.champion.C *= 0.6 + 0.3 * noise.uniform();
     one.champion.D *= one.champion.C(0, 0) / candidate.C(0, 0);
     const Record& record = one.validation;
     const double was = score_free_run(one.champion, record, record.all(), record.all()).mrse();
     const double is = score_free_run(candidate, record, record.all(), record.all()).mrse();
-    if (!(is < 0.9 * was)) continue;
+    if (!(is < 0.5 * was)) continue;
     ++better;
     approved += outcome(one, candidate) == Outcome::approved;
   }

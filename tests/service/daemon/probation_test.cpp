@@ -151,15 +151,15 @@ TEST_F(Probation, LetsNoFirstStateMakeUpForAnOffset) {
   EXPECT_LT(steady_error, 1);
 }
 
-/// Another gain from `since` on, after forty minutes of the old one with ten of `before` in them.
+/// Another gain from `since` on, after fifty minutes of the old one with four of `before` in them.
 class ProbationAfterLong : public Probation {
  protected:
   static constexpr storage::Time since = day + 60 * minute;
 
   storage::NewDecision decided_after(double before) {
-    archive.append(telemetry(day + 10 * minute, 1200, 1));
-    archive.append(telemetry(day + 30 * minute, 600, before));
-    archive.append(telemetry(day + 40 * minute, 1200, 1));
+    archive.append(telemetry(day + 10 * minute, 2280, 1));
+    archive.append(telemetry(day + 48 * minute, 240, before));
+    archive.append(telemetry(day + 52 * minute, 480, 1));
     archive.append(telemetry(since, 901, 2));
     make_version(since + 10 * minute, "on_probation", DecisionKind::wait);
     return look(since + 15 * minute).at(0).decision;

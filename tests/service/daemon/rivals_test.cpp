@@ -1,5 +1,7 @@
 #include "service/daemon/rivals.hpp"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 
 #include "service/daemon/refresh.hpp"
@@ -199,6 +201,19 @@ TEST_F(Rivals, AHoldLetsNoVersionThrough) {
   const RefreshResult result = run(day + 10 * minute);
   EXPECT_EQ(result.attempt.outcome, "held") << result.attempt.reason;
   EXPECT_EQ(result.decision->kind, storage::DecisionKind::wait);
+}
+
+TEST(WorstOfRival, IsThatOfTheWorstStretch) {
+  using identification::Matrix;
+  PairedRuns runs;
+  runs.y = Matrix::Constant(100, 1, 2);
+  runs.rival = runs.y;
+  runs.rival.bottomRows(10).array() += 1;
+  EXPECT_NEAR(worst_of_rival(runs, 10), 50, 1e-9);
+  EXPECT_NEAR(worst_of_rival(runs, 100), 50 * std::sqrt(0.1), 1e-9);
+  EXPECT_EQ(worst_of_rival(runs, 101), 0);
+  runs.y.setZero();
+  EXPECT_EQ(worst_of_rival(runs, 10), 0) << "an output that rests";
 }
 
 TEST(RowsOutside, AreThoseWhereAnInputLeavesItsRangeByMoreThanNoise) {
