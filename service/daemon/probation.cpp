@@ -128,11 +128,16 @@ std::optional<PairedRuns> runs_over_tenure(const storage::Archive& archive,
   }
 }
 
-/// Absent where there is too little to compare on.
-std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::TimeRange window,
-                                      const EquipmentModel& model, const EquipmentModel& incumbent,
-                                      const EquipmentConfig& equipment, bool needs_vouching,
-                                      storage::Time until) {
+struct Looked {
+  LongerLook look;
+  PairedRuns runs;  // what `look.comparison` is of
+};
+
+/// All but what the champion has run on. Absent where there is too little to compare on.
+std::optional<Looked> longer_look(const storage::Archive& archive, storage::TimeRange window,
+                                  const EquipmentModel& model, const EquipmentModel& incumbent,
+                                  const EquipmentConfig& equipment, bool needs_vouching,
+                                  storage::Time until) {
   LongerLook look;
   look.until = until;
   const storage::TimeRange range{window.begin - run_up(model, incumbent, window), look.until};
@@ -175,18 +180,19 @@ std::optional<LongerLook> longer_look(const storage::Archive& archive, storage::
     if (const auto past =
             runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
       look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
-  if (const auto tenure =
-          runs_over_tenure(archive, window, model, incumbent, checks_of(equipment))) {
-    look.champion_worst_mrse_percent = worst_of_rival(*tenure, runs.y.rows());
-    if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent))
-      look.over_tenure =
-          compare(joined(*tenure, runs), equipment.confidence_percent, Course::changing);
-  }
   if (needs_vouching) {
-    runs.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
-    look.without_offset = compare(runs, equipment.confidence_percent, Course::changing);
+    PairedRuns centred = runs;
+    centred.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
+    look.without_offset = compare(centred, equipment.confidence_percent, Course::changing);
   }
-  return look;
+  return Looked{std::move(look), std::move(runs)};
+}
+
+void add_tenure(LongerLook& look, const PairedRuns& tenure, const PairedRuns& runs,
+                double confidence_percent) {
+  look.champion_worst_mrse_percent = worst_of_rival(tenure, runs.y.rows());
+  if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent))
+    look.over_tenure = compare(joined(tenure, runs), confidence_percent, Course::changing);
 }
 
 /// What speaks against the version whatever came after its window.
@@ -226,11 +232,19 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
     const bool vouching = needs_vouching(registry, version, equipment);
     const storage::Time confirmed = version.window.end + equipment.confirmation;
     const auto judged = [&](storage::Time until) -> std::optional<NewDecision> {
-      auto look =
+      auto looked =
           longer_look(archive, version.window, model, incumbent, equipment, vouching, until);
-      if (!look) return std::nullopt;
-      look->champion = champion->number;
-      return judge_probation(*look, equipment);
+      if (!looked) return std::nullopt;
+      auto& [look, runs] = *looked;
+      look.champion = champion->number;
+      auto found = judge_probation(look, equipment);
+      if (!found || found->kind != DecisionKind::approve) return found;
+      // The champion's tenure, many times longer, can only speak against: it is read last.
+      const auto tenure =
+          runs_over_tenure(archive, version.window, model, incumbent, checks_of(equipment));
+      if (!tenure) return found;
+      add_tenure(look, *tenure, runs, equipment.confidence_percent);
+      return judge_probation(look, equipment);
     };
     if (since < confirmed)
       if (auto found = judged(std::min(*time, confirmed))) return found;
@@ -289,8 +303,7 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (const auto& all = look.over_tenure; all && !(all->reduction_percent > 0))
       return fmt::format(
           "since the champion was validated it had up to {:.3f} % already, so that nothing tells "
-          "of "
-          "a change; over {} samples of then and now the version has {:.3f} % and the champion "
+          "of a change; over {} samples of then and now the version has {:.3f} % and the champion "
           "{:.3f} %.",
           look.champion_worst_mrse_percent, all->rows, all->mrse_percent, all->rival_mrse_percent);
     return std::nullopt;
