@@ -204,6 +204,39 @@ TEST(Adaptation, FollowsAGainThatTheRowsTellAmongErrorsThatLast) {
   }
 }
 
+TEST(Adaptation, FollowsEachOfTwoOutputsOfOtherScalesAndMovesTheOtherHardlyMoreThanNoiseDoes) {
+  constexpr int seeds = 20;
+  constexpr double scale = 1e-3;  // of the second output
+  double wrong = 0, known_wrong = 0, moved = 0, moved_by_noise = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    testing::Noise noise(seed);
+    StateSpaceModel known = testing::random_system(noise, 3, 2, 2);
+    known.C.row(1) *= scale;
+    known.D.row(1) *= scale;
+    StateSpaceModel truth = known;
+    truth.D.row(1) *= 1.5;
+    Record record = testing::excited(truth, noise, 900, 0);
+    Matrix errors = noise.normal(900, 2);
+    for (Index i = 0; i < 2; ++i)
+      errors.col(i) *= 0.1 * (record.y.col(i).array() - record.y.col(i).mean()).matrix().norm() /
+                       std::sqrt(900.0);
+    record.y += errors;
+    const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
+    const auto off = [&](const StateSpaceModel& model, Index i) {
+      return (model.D.row(i) - truth.D.row(i)).norm() / truth.D.row(i).norm();
+    };
+    wrong += off(found, 1);
+    known_wrong += off(known, 1);
+    moved += std::pow(off(found, 0), 2);
+    Matrix regressors(900, 3);
+    regressors << record.u, Vector::Ones(900);
+    const Vector fitted = regressors.colPivHouseholderQr().solve(errors.col(0));
+    moved_by_noise += std::pow(fitted.head(2).norm() / truth.D.row(0).norm(), 2);
+  }
+  EXPECT_LT(wrong, 0.5 * known_wrong);
+  EXPECT_LT(moved, 2 * moved_by_noise);
+}
+
 TEST(Adaptation, LooksAtTheRowsThatItIsGivenAlone) {
   testing::Noise noise(4);
   const StateSpaceModel known = testing::random_system(noise, 3, 2, 1);

@@ -156,18 +156,20 @@ class ProbationAfterLong : public Probation {
  protected:
   static constexpr storage::Time since = day + 60 * minute;
 
-  storage::NewDecision decided_after(double before) {
+  void make_version_after(double before) {
     archive.append(telemetry(day + 10 * minute, 2280, 1));
+    archive.compact();
     archive.append(telemetry(day + 48 * minute, 240, before));
     archive.append(telemetry(day + 52 * minute, 480, 1));
     archive.append(telemetry(since, 901, 2));
     make_version(since + 10 * minute, "on_probation", DecisionKind::wait);
-    return look(since + 15 * minute).at(0).decision;
   }
+  storage::NewDecision decided() { return look(since + 15 * minute).at(0).decision; }
 };
 
 TEST_F(ProbationAfterLong, EndsWithAnApprovalWhereTheChampionHasNeverErredSo) {
-  const auto found = decided_after(1);
+  make_version_after(1);
+  const auto found = decided();
   EXPECT_EQ(found.kind, DecisionKind::approve) << found.reason;
   const auto evidence = nlohmann::json::parse(found.evidence_json);
   EXPECT_LT(1.5 * evidence["champion_worst_mrse_percent"].get<double>(),
@@ -176,11 +178,20 @@ TEST_F(ProbationAfterLong, EndsWithAnApprovalWhereTheChampionHasNeverErredSo) {
 }
 
 TEST_F(ProbationAfterLong, EndsWithARejectionWhereTheChampionHasErredSoAndWasRight) {
-  const auto found = decided_after(2);
+  make_version_after(2);
+  const auto found = decided();
   EXPECT_EQ(found.kind, DecisionKind::reject);
   EXPECT_THAT(found.reason, HasSubstr("so that nothing tells of a change"));
   const auto evidence = nlohmann::json::parse(found.evidence_json);
   EXPECT_EQ(evidence["over_tenure"]["rows"], 2400 + 180 + 300) << "four windows and what is new";
+}
+
+TEST_F(ProbationAfterLong, DoesNotAskForWhatTheChampionRanOnWhereThatIsDamaged) {
+  make_version_after(2);
+  damage_chunks(2);
+  const auto found = decided();
+  EXPECT_EQ(found.kind, DecisionKind::approve) << found.reason;
+  EXPECT_FALSE(nlohmann::json::parse(found.evidence_json).contains("over_tenure"));
 }
 
 TEST_F(Probation, IsNotEndedWithAnApprovalByAnUnusualOperation) {
