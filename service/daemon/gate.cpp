@@ -60,9 +60,6 @@ constexpr std::array names{
 
 constexpr double left_behind_factor = 1.5;
 
-/// By so many times the sensors' noise the candidate errs less, the noise taken from both errors.
-constexpr double least_gain_over_noise = 1.5;
-
 double without_noise(double mrse_percent, double noise_percent) {
   return std::sqrt(std::max(0.0, mrse_percent * mrse_percent - noise_percent * noise_percent));
 }
@@ -167,7 +164,7 @@ Refusal against_comparison(const Evidence::Champion& champion, const EquipmentCo
                     comparison.mrse_percent, champion.version, comparison.rival_mrse_percent,
                     limits.margin_percent, comparison.reduction_percent, *comparison.sure_percent,
                     limits.confidence_percent)};
-  if (!shows_beside_noise(comparison))
+  if (!shows_beside_noise(comparison, least_gain_over_noise))
     return GateDecision{
         Outcome::not_better_than_champion,
         fmt::format("MRSE {:.3f} % undercuts champion {} ({:.3f} % on the same samples) by too "
@@ -306,6 +303,13 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
                         champion.without_offset->rival_mrse_percent,
                         sure_elsewhere * limits.margin_percent) +
             wait_of(limits)};
+  if (!shows_beside_noise(*champion.comparison, plain_gain_over_noise))
+    return GateDecision{
+        Outcome::on_probation,
+        praise(e) +
+            fmt::format(" That is little less beside the noise of the sensors ({:.3f} %).",
+                        champion.comparison->noise_percent) +
+            wait_of(limits)};
   if (is_unusual(champion.movement))
     return GateDecision{
         Outcome::on_probation,
@@ -332,11 +336,11 @@ std::string_view name(Outcome outcome) {
   return names[static_cast<std::size_t>(outcome)].second;
 }
 
-bool shows_beside_noise(const Evidence::Comparison& comparison) {
+bool shows_beside_noise(const Evidence::Comparison& comparison, double times) {
   const double noise = comparison.noise_percent;
   return !(without_noise(comparison.rival_mrse_percent, noise) -
                without_noise(comparison.mrse_percent, noise) <=
-           least_gain_over_noise * noise);
+           times * noise);
 }
 
 bool is_in_doubt(double fault_share) {

@@ -118,10 +118,14 @@ struct GateDecision {
 /// from it, and, of a version on probation, over the validation part and what came after it.
 constexpr double sure_elsewhere = 1.0 / 3;
 
-/// Whether the candidate errs so much less than the other run that it shows beside the sensors'
-/// noise: what is less than that tells little of how the two will err, and a simulator gains
-/// nothing by it.
-bool shows_beside_noise(const Evidence::Comparison& comparison);
+/// Whether the candidate errs less than the other run by more than so many times the sensors'
+/// noise, the noise taken from both errors.
+bool shows_beside_noise(const Evidence::Comparison& comparison, double times);
+
+/// What is less tells little of how the two will err, and a simulator gains nothing by it.
+constexpr double least_gain_over_noise = 1.5;
+/// What is less has to last until the last look of a probation.
+constexpr double plain_gain_over_noise = 2;
 
 /// Whether so many faults of sensors were found, each once, over the ticks looked at, that those
 /// which are too small to be found are enough to spoil a comparison with the champion.

@@ -285,7 +285,7 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);
-    if (!shows_beside_noise(look.comparison))
+    if (!shows_beside_noise(look.comparison, least_gain_over_noise))
       return fmt::format("that is too little less beside the noise of the sensors ({:.3f} %).",
                          look.comparison.noise_percent);
     if (is_unusual(look.movement))
@@ -315,7 +315,9 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
   const bool surely_ever = look.with_past && look.with_past->sure_percent > needed;
   const bool suffices = look.stage == Stage::early ? left_behind && surely_after
                                                    : left_behind || surely_after || surely_ever;
-  if (!against && suffices)
+  const bool lasts_enough =
+      look.stage == Stage::last || shows_beside_noise(look.comparison, plain_gain_over_noise);
+  if (!against && suffices && lasts_enough)
     return decision(
         DecisionKind::approve, look,
         fmt::format("Confirmed: the reduction is {:.2f} %, and with a confidence of {:g} % at "

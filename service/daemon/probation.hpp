@@ -60,7 +60,8 @@ struct LongerLook {
 /// champion that was left behind, otherwise nothing hurries, and only by a version that is surely
 /// better on what came after its window. From `due` on either of the two is enough, or that it is
 /// so by a third of the margin over all of `with_past`: beside a champion that errs little more
-/// than ever there is time to wait for that.
+/// than ever there is time to wait for that. What it gains has to show plainly beside the noise
+/// until then, and at the last look to show.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 

@@ -150,6 +150,18 @@ const Case not_surely_better[] = {
        c.confirmation = 100;
      },
      Outcome::on_probation},
+    {"BetterNotPlainlyBesideTheNoiseWhereMoreTelemetryMayTell",
+     [](auto& e, auto& c) {
+       e.champion->comparison->noise_percent = 1.6;
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"BetterPlainlyBesideTheNoise",
+     [](auto& e, auto& c) {
+       e.champion->comparison->noise_percent = 1.5;
+       c.confirmation = 100;
+     },
+     Outcome::approved},
     {"NotBetterByTheMarginWhateverMoreTelemetryTells",
      [](auto& e, auto& c) {
        e.champion->comparison->sure_percent = 0;

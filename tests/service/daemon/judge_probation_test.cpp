@@ -179,6 +179,21 @@ TEST(JudgeProbation, ApprovesNothingThatGainsLittleBesideTheNoise) {
   EXPECT_THAT(found->reason, HasSubstr("the noise of the sensors (2.200 %)"));
 }
 
+TEST(JudgeProbation, ApprovesWhatGainsNotPlainlyBesideTheNoiseAtTheLastLookAlone) {
+  using Stage = LongerLook::Stage;
+  LongerLook look = sure_of(30);
+  look.comparison.noise_percent = 1.6;
+  for (const Stage stage : {Stage::early, Stage::due}) {
+    look.stage = stage;
+    EXPECT_FALSE(judge_probation(look, {}));
+  }
+  look.stage = Stage::last;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.stage = Stage::early;
+  look.comparison.noise_percent = 1.5;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
 TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
   LongerLook look = sure_of(40);
   look.fault_share = 0.0025;
