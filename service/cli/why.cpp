@@ -152,7 +152,7 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
       apart += fmt::format(" ({} % but for the champion's mean error here)",
                            figure(*elsewhere, "without_offset_percent"));
     sentences.push_back(fmt::format(
-        "On {} rows of the window of champion {}, with inputs that this one was not identified "
+        "On {} rows of the window of champion {}, with inputs that this one was not validated "
         "with, the two differ by {}; there they err by {} % and the champion by {} %.",
         figure(*elsewhere, "rows"), version, apart, figure(*elsewhere, "mrse_percent"),
         figure(*elsewhere, "champion_mrse_percent")));

@@ -124,7 +124,7 @@ bool shows_beside_noise(const Evidence::Comparison& comparison, double times);
 
 /// What is less tells little of how the two will err, and a simulator gains nothing by it.
 constexpr double least_gain_over_noise = 1.5;
-/// What is less has to last until the last look of a probation.
+/// What is less goes on probation, where it can, and has to last until the last look.
 constexpr double plain_gain_over_noise = 2;
 
 /// Whether so many faults of sensors were found, each once, over the ticks looked at, that those

@@ -46,7 +46,8 @@ struct LongerLook {
   std::optional<Evidence::Comparison> with_past{};
   /// The same on all that the champion has run on since it was validated, before the version's
   /// window and four windows back at most, and on what `comparison` is of. Looked at where the
-  /// champion errs less than 1.5 times what it did in the worst stretch of then that is as long.
+  /// champion errs less than 1.5 times what it did in the worst stretch of then that is as long, of
+  /// a version that would be approved otherwise.
   std::optional<Evidence::Comparison> over_tenure{};
   double champion_worst_mrse_percent = 0;  // there; 0 where it did not run for so long
   /// `comparison` with the champion's mean error taken from it, where a sensor that no relation
@@ -60,8 +61,8 @@ struct LongerLook {
 /// champion that was left behind, otherwise nothing hurries, and only by a version that is surely
 /// better on what came after its window. From `due` on either of the two is enough, or that it is
 /// so by a third of the margin over all of `with_past`: beside a champion that errs little more
-/// than ever there is time to wait for that. What it gains has to show plainly beside the noise
-/// until then, and at the last look to show.
+/// than ever there is time to wait for that. What it gains has to show plainly beside the noise,
+/// and at the last look to show.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 
@@ -83,7 +84,7 @@ using RecordProbation = std::function<bool(const storage::Standing&, const Proba
 /// telemetry until `since` allowed are not repeated. A version whose window is older than the
 /// champion's, or less than `min_interval` newer, is rejected, and one of which no telemetry is
 /// left. Nothing is decided while an operator holds the equipment or decides on his own, nor from
-/// telemetry that is damaged.
+/// telemetry that is damaged, but that a tenure which is damaged is not asked.
 void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
                        const std::string& spacecraft, const EquipmentConfig& equipment,
                        storage::Time since, storage::Time reached, const RecordProbation& record);

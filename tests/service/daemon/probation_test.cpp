@@ -11,6 +11,7 @@
 #include "service/daemon/refresh.hpp"
 #include "service/model/model_json.hpp"
 #include "tests/service/daemon/daemon_fixture.hpp"
+#include "tests/service/daemon/evidence_page.hpp"
 
 namespace reident::test {
 namespace {
@@ -184,6 +185,7 @@ TEST_F(ProbationAfterLong, EndsWithARejectionWhereTheChampionHasErredSoAndWasRig
   EXPECT_THAT(found.reason, HasSubstr("so that nothing tells of a change"));
   const auto evidence = nlohmann::json::parse(found.evidence_json);
   EXPECT_EQ(evidence["over_tenure"]["rows"], 2400 + 180 + 300) << "four windows and what is new";
+  EXPECT_THAT(not_on_the_page(evidence), testing::IsEmpty());
 }
 
 TEST_F(ProbationAfterLong, DoesNotAskForWhatTheChampionRanOnWhereThatIsDamaged) {

@@ -5,6 +5,7 @@
 
 #include "service/model/model_json.hpp"
 #include "tests/service/daemon/daemon_fixture.hpp"
+#include "tests/service/daemon/evidence_page.hpp"
 
 namespace reident::test {
 namespace {
@@ -125,6 +126,23 @@ TEST_F(Refresh, AdaptsTheChampionTooAndTakesTheBetterOfTwo) {
     EXPECT_EQ(result.candidate->method.starts_with("A and C of version 1"),
               of_champion < of_search);
   }
+}
+
+TEST_F(Refresh, KeepsNoEvidenceThatItsPageDoesNotName) {
+  auto frames = telemetry(day, 1201, 1, 0.3);
+  frames[200].samples[1].value = 500;  // is not believed
+  archive.append(frames);
+  const auto expect_all_named = [this](storage::Time end) {
+    const RefreshResult result = run(end);
+    const auto evidence = nlohmann::json::parse(result.attempt.evidence_json);
+    EXPECT_THAT(not_on_the_page(evidence), testing::IsEmpty());
+    record(result);
+    return evidence;
+  };
+  EXPECT_TRUE(expect_all_named(day + 10 * minute).contains("implausible"));
+  registry.put_on_hold("SAT", "PLANT", {"ana", "rehearsal", 1});
+  const auto second = expect_all_named(day + 15 * minute);
+  EXPECT_TRUE(second.contains("champion") && second.contains("hold"));
 }
 
 TEST_F(Refresh, ScoresAChampionOfOtherInputsOnItsOwnInputs) {
