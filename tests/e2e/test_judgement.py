@@ -68,7 +68,8 @@ class Judgement(EndToEnd):
         tried = [row[2] for row in self.attempts()]
         self.assertEqual(tried, ["approved", "on_probation"])
         self.assertEqual(self.champion(), 1)
-        self.replay_rows("later", first=1241, count=210, **changed)
+        # A gain of 1.6 times the sensors' noise has to last until the last look, after 8 min.
+        self.replay_rows("later", first=1241, count=470, **changed)
         wait_until(lambda: self.champion() == 2, "what came after the window approves the version")
         self.assertEqual([row[2] for row in self.attempts()], tried)
         wait_until(lambda: "version confirmed" in daemon.text(), "the log says so")
