@@ -28,8 +28,8 @@ class Telling {
  public:
   Telling(const Scenario& scenario, const LifeGroup& group, const Config& config,
           const std::vector<storage::ParameterDescriptor>& descriptors,
-          const std::filesystem::path& folder)
-      : scenario_(scenario), folder_(folder), config_(config) {
+          const std::filesystem::path& folder, Databases databases)
+      : scenario_(scenario), folder_(folder), databases_(databases), config_(config) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     config_.database = folder_ / "reident.db";
@@ -41,7 +41,7 @@ class Telling {
   }
   ~Telling() {
     service_.reset();
-    std::filesystem::remove_all(folder_);
+    if (databases_ == Databases::removed) std::filesystem::remove_all(folder_);
   }
 
   /// A frame of the spacecraft.
@@ -71,6 +71,7 @@ class Telling {
 
   const Scenario& scenario_;
   std::filesystem::path folder_;
+  Databases databases_;
   Config config_;
   std::optional<satcs::Liar> liar_;
   std::optional<SimulatedService> service_;
@@ -219,14 +220,15 @@ class Judge {
 }  // namespace
 
 std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& config,
-                                       const std::filesystem::path& folder) {
+                                       const std::filesystem::path& folder, Databases databases) {
   const Config chosen = config_of(group, config);
   const SpacecraftConfig& spacecraft = chosen.spacecraft.front();
   const auto descriptors = telemetry_of(spacecraft);
   std::vector<std::unique_ptr<Telling>> tellings;
   for (const Scenario& scenario : group.scenarios)
     tellings.push_back(std::make_unique<Telling>(scenario, group, chosen, descriptors,
-                                                 folder / std::to_string(scenario.number)));
+                                                 folder / std::to_string(scenario.number),
+                                                 databases));
   const Known known = fly(group, spacecraft, [&](const auto& frame, const auto& simulated) {
     for (const auto& telling : tellings) {
       if (frame.generation_time < group.start + simulator_sends) telling->take_simulated(simulated);

@@ -35,9 +35,13 @@ struct ScenarioOutcome {
   std::vector<satcs::Lie> lies;
 };
 
-/// `config` is the suite's; the databases of the scenarios are made in `folder` and removed.
+/// What becomes of the databases of the scenarios once these are scored.
+enum class Databases { removed, kept };
+
+/// `config` is the suite's; the database of each scenario is made in `folder`, <number>/reident.db.
 std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& config,
-                                       const std::filesystem::path& folder);
+                                       const std::filesystem::path& folder,
+                                       Databases databases = Databases::removed);
 
 /// The same of what reidentd made of the scenarios: `folder` has the database of each, <number>.db.
 /// Its clock was not the spacecraft's, so that a version counts from where the telemetry ended that

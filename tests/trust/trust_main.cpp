@@ -35,6 +35,7 @@ struct Options {
   std::string month;      // a file
   std::string dds;        // a file
   std::string databases;  // a folder
+  std::string keep;       // a folder
   std::uint64_t draw = 0;
   unsigned jobs = 2;
 };
@@ -101,7 +102,9 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
     try {
       for (std::size_t i = next++; i < groups.size(); i = next++) {
         outcomes[i] = options.databases.empty()
-                          ? run_group(groups[i], config, folder.path())
+                          ? (options.keep.empty()
+                                 ? run_group(groups[i], config, folder.path())
+                                 : run_group(groups[i], config, options.keep, Databases::kept))
                           : score_databases(groups[i], config, options.databases);
         const std::lock_guard lock(mutex);
         for (const ScenarioOutcome& outcome : outcomes[i]) {
@@ -160,6 +163,9 @@ int main(int argc, char** argv) {
   app.add_option("--databases", options.databases,
                  "run none; score what reidentd made of them, NUMBER.db of each in this folder")
       ->check(CLI::ExistingDirectory);
+  app.add_option("--keep", options.keep,
+                 "leave the database of each scenario in this folder, NUMBER/reident.db, for "
+                 "reident history, show and why");
   app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
   try {
