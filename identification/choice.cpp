@@ -181,9 +181,9 @@ HeldOutErrors Search::errors_on(const Candidate& candidate, std::size_t fold_ind
   const Fold fold = data_.folds[fold_index].with_fit_of(rows_of_fold);
   const StateSpaceModel& model = models_[fold_index][candidate.place];
   if (recipe.fit == ResponseFit::subspace) {
-    const Segment first = segments_within(record, fold.fit).front();
+    const std::vector<Segment> segments = segments_within(record, fold.fit);
     return held_out_errors(
-        {model, estimate_initial_state(model, record, first, initial_rows(model)), 0}, record,
+        {model, estimate_initial_state(model, record, segments, initial_rows(model)), 0}, record,
         fold);
   }
   return held_out_errors(

@@ -87,8 +87,8 @@ IdentifyResult identify_delayed(const Record& record, RowRange rows,
       found->warnings.push_back(channel_name("input", static_cast<Index>(i), options.input_names) +
                                 " acts after " + std::to_string(delays[i]) +
                                 " samples, which the model holds as as many states");
-  found->x0 = estimate_initial_state(found->model, record, segments_within(record, rows).front(),
-                                     state_rows);
+  found->x0 =
+      estimate_initial_state(found->model, record, segments_within(record, rows), state_rows);
   return result;
 }
 

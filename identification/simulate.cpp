@@ -41,6 +41,24 @@ std::int64_t most_bridged_ticks(const Record& record) {
   return std::max<std::int64_t>(60, record.rows() / 100);
 }
 
+std::int64_t ticks_between(const Segment& before, const Segment& after) {
+  return after.first_tick - (before.first_tick + before.size());
+}
+
+/// The inputs at the ticks of a hole (m x ticks), less the model's operating point: interpolated.
+Matrix inputs_within(const StateSpaceModel& model, const Record& record, const Segment& before,
+                     const Segment& after) {
+  const std::int64_t hole = ticks_between(before, after);
+  const Vector from = record.u.row(before.end - 1).transpose() - model.u0;
+  const Vector to = record.u.row(after.begin).transpose() - model.u0;
+  Matrix inputs(from.size(), hole);
+  for (std::int64_t k = 1; k <= hole; ++k) {
+    const double share = double(k) / double(hole + 1);
+    inputs.col(k - 1) = (1 - share) * from + share * to;
+  }
+  return inputs;
+}
+
 /// A state and a root of its covariance: P = L L'.
 struct UncertainState {
   Vector x;
@@ -55,16 +73,16 @@ constexpr double short_hole = 4;
 UncertainState through_hole(const StateSpaceModel& model, const Record& record,
                             const Segment& before, const Segment& after, const Vector& x,
                             const SquareChanges& changes) {
-  const std::int64_t hole = after.first_tick - (before.first_tick + before.size());
-  const Vector from = record.u.row(before.end - 1).transpose() - model.u0;
-  const Vector to = record.u.row(after.begin).transpose() - model.u0;
-  const Vector variance = (to - from).cwiseAbs2() / 4 + changes.usual * (1 + double(hole) / 4) +
+  const Matrix inputs = inputs_within(model, record, before, after);
+  const Index hole = inputs.cols();
+  const auto across = record.u.row(after.begin) - record.u.row(before.end - 1);
+  const Vector variance = across.transpose().cwiseAbs2() / 4 +
+                          changes.usual * (1 + double(hole) / 4) +
                           changes.mean * (std::max(0.0, double(hole) - short_hole) / 4);
   UncertainState result{x, Matrix::Zero(x.size(), x.size())};
   Matrix P = Matrix::Zero(x.size(), x.size());
-  for (std::int64_t k = 1; k <= hole; ++k) {
-    const double share = double(k) / double(hole + 1);
-    result.x = (model.A * result.x + model.B * ((1 - share) * from + share * to)).eval();
+  for (Index k = 0; k < hole; ++k) {
+    result.x = (model.A * result.x + model.B * inputs.col(k)).eval();
     P = (model.A * P * model.A.transpose() + model.B * variance.asDiagonal() * model.B.transpose())
             .eval();
   }
@@ -101,17 +119,117 @@ Vector least_squares(const Matrix& left, const Vector& right) {
   return left.completeOrthogonalDecomposition().solve(right);
 }
 
-/// y[k] less the response from the state x, below each other.
+/// Of each output's errors, by their mean squares and the output's size in the rows.
+Vector weights_of(const Vector& square_errors, const Record& record, const Segment& rows) {
+  constexpr double least_error = 1e-10;  // of the output's size: smaller ones are rounding
+  const Vector size = record.y.middleRows(rows.begin, rows.size()).cwiseAbs().colwise().maxCoeff();
+  return square_errors.cwiseSqrt().cwiseMax(least_error * size).cwiseInverse();
+}
+
+/// y[k] less the response from the state x, below each other. x becomes the state behind them.
 Vector remainder_of(const StateSpaceModel& model, const Record& record, const Segment& segment,
-                    Index count, const Vector& x) {
+                    Index count, Vector& x) {
   const Index p = model.outputs();
   Matrix response(count, p);
-  run_segment(model, record, {segment.begin, segment.begin + count, segment.first_tick}, x,
-              response, 0);
+  x = run_segment(model, record, {segment.begin, segment.begin + count, segment.first_tick}, x,
+                  response, 0);
   Vector remainder(count * p);
   for (Index k = 0; k < count; ++k)
     remainder.segment(k * p, p) = (record.y.row(segment.begin + k) - response.row(k)).transpose();
   return remainder;
+}
+
+/// The first `rows` rows of the segments, up to a hole that is not bridged, and within twice as
+/// many ticks.
+std::vector<Segment> first_rows(const Record& record, const std::vector<Segment>& segments,
+                                Index rows) {
+  const std::int64_t most_ticks = 2 * rows;
+  std::vector<Segment> parts;
+  for (const Segment& segment : segments) {
+    if (rows == 0 || segment.first_tick - segments.front().first_tick >= most_ticks) break;
+    if (!parts.empty() && ticks_between(parts.back(), segment) > most_bridged_ticks(record)) break;
+    const Index more = std::min(rows, segment.size());
+    parts.push_back({segment.begin, segment.begin + more, segment.first_tick});
+    rows -= more;
+  }
+  return parts;
+}
+
+/// What is known of a state: the smaller |R x - r| is, the likelier is x.
+struct Information {
+  Matrix R;
+  Vector r;
+};
+
+/// That of rows [R, r], whose columns are unknowns that are given up, then the state, then r: what
+/// is left where the former take their best values.
+Information without_unknowns(const Matrix& rows, Index given_up) {
+  const Index n = rows.cols() - 1 - given_up;
+  const Eigen::HouseholderQR<Matrix> qr(rows);
+  const Index left = std::min(rows.rows(), given_up + n) - given_up;
+  const Matrix triangle = qr.matrixQR().block(given_up, given_up, left, n + 1);
+  return {triangle.leftCols(n).triangularView<Eigen::Upper>(), triangle.col(n)};
+}
+
+Matrix power_of(Matrix A, std::int64_t exponent) {
+  Matrix power = Matrix::Identity(A.rows(), A.cols());
+  for (; exponent > 0; exponent /= 2) {
+    if (exponent % 2 == 1) power = (power * A).eval();
+    A = (A * A).eval();
+  }
+  return power;
+}
+
+/// Mean square errors of the model over a part, from the state that suits it best.
+Vector square_errors_of(const StateSpaceModel& model, const Record& record, const Segment& part) {
+  Matrix y_hat(part.size(), model.outputs());
+  run_segment(model, record, part, estimate_initial_state(model, record, {part}, part.size()),
+              y_hat, 0);
+  return (record.y.middleRows(part.begin, part.size()) - y_hat)
+             .colwise()
+             .squaredNorm()
+             .transpose() /
+         double(part.size());
+}
+
+/// State at the first row of several parts, from the last one back to it (a square-root information
+/// filter): through a hole the state is what interpolated inputs make of it, with the uncertainty
+/// that state_after_hole gives it, and the errors of the longest part are the noise.
+Vector state_before_holes(const StateSpaceModel& model, const Record& record,
+                          const std::vector<Segment>& parts) {
+  const Index n = model.order(), p = model.outputs();
+  const auto longest =
+      std::max_element(parts.begin(), parts.end(),
+                       [](const Segment& a, const Segment& b) { return a.size() < b.size(); });
+  const Vector weight = weights_of(square_errors_of(model, record, *longest), record, *longest);
+  const Matrix observability = observability_of(model, longest->size());
+  const SquareChanges changes = square_changes(record);
+  Information known{Matrix(0, n), Vector(0)};
+  for (std::size_t i = parts.size(); i-- > 0;) {
+    const Segment& part = parts[i];
+    const Index values = part.size() * p, behind = known.R.rows();
+    const Vector weights = weight.replicate(part.size(), 1);
+    Vector end = Vector::Zero(n);
+    const Vector remainder = remainder_of(model, record, part, part.size(), end);
+    Matrix rows(values + behind, n + 1);
+    rows.topLeftCorner(values, n) = weights.asDiagonal() * observability.topRows(values);
+    rows.col(n).head(values) = weights.cwiseProduct(remainder);
+    rows.bottomLeftCorner(behind, n) = known.R * power_of(model.A, part.size());
+    rows.col(n).tail(behind) = known.r - known.R * end;
+    if (!rows.allFinite()) return Vector::Zero(n);
+    known = without_unknowns(rows, 0);
+    if (i == 0) break;
+    const auto [x, L] = through_hole(model, record, parts[i - 1], part, Vector::Zero(n), changes);
+    Matrix hole = Matrix::Zero(known.R.rows() + n, 2 * n + 1);
+    hole.topLeftCorner(known.R.rows(), n) = known.R * L;
+    hole.block(0, n, known.R.rows(), n) =
+        known.R * power_of(model.A, ticks_between(parts[i - 1], part));
+    hole.col(2 * n).head(known.R.rows()) = known.r - known.R * x;
+    hole.bottomLeftCorner(n, n).setIdentity();
+    if (!hole.allFinite()) return Vector::Zero(n);
+    known = without_unknowns(hole, n);
+  }
+  return known.R.completeOrthogonalDecomposition().solve(known.r);
 }
 
 }  // namespace
@@ -147,22 +265,18 @@ SquareChanges square_changes(const Record& record) {
 std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Record& record,
                                        const Segment& before, const Segment& after, const Vector& x,
                                        const RunNoise& noise) {
-  constexpr double least_error = 1e-10;  // of the output's size: smaller ones are rounding
-  const std::int64_t hole = after.first_tick - (before.first_tick + before.size());
-  if (hole > most_bridged_ticks(record)) return std::nullopt;
+  if (ticks_between(before, after) > most_bridged_ticks(record)) return std::nullopt;
   const UncertainState prior = through_hole(model, record, before, after, x, noise.input_changes);
   const Index n = model.order(), count = std::min(state_rows, after.size());
   if (n == 0 || count == 0 || !prior.x.allFinite()) return prior.x;
-  const Vector size = record.y.middleRows(after.begin, count).cwiseAbs().colwise().maxCoeff();
-  const Vector weight = noise.square_errors.cwiseSqrt()
-                            .cwiseMax(least_error * size)
-                            .cwiseInverse()
-                            .replicate(count, 1);
+  const Segment first{after.begin, after.begin + count, after.first_tick};
+  const Vector weight = weights_of(noise.square_errors, record, first).replicate(count, 1);
   Matrix left(weight.size() + n, n);
   Vector right = Vector::Zero(weight.size() + n);
   left << weight.asDiagonal() * observability_of(model, count) * prior.L, Matrix::Identity(n, n);
+  Vector behind = prior.x;
   right.head(weight.size()) =
-      weight.cwiseProduct(remainder_of(model, record, after, count, prior.x));
+      weight.cwiseProduct(remainder_of(model, record, after, count, behind));
   if (!left.allFinite() || !right.allFinite()) return prior.x;
   return prior.x + prior.L * left.colPivHouseholderQr().solve(right);
 }
@@ -172,13 +286,15 @@ Index initial_rows(const StateSpaceModel& model) {
 }
 
 Vector estimate_initial_state(const StateSpaceModel& model, const Record& record,
-                              const Segment& segment, Index rows) {
+                              const std::vector<Segment>& segments, Index rows) {
+  const std::vector<Segment> parts = first_rows(record, segments, rows);
   const Index n = model.order();
-  const Index count = std::min(rows, segment.size());
-  if (n == 0 || count == 0) return Vector::Zero(n);
-
-  const Matrix observability = observability_of(model, count);
-  const Vector free_response = remainder_of(model, record, segment, count, Vector::Zero(n));
+  if (n == 0 || parts.empty()) return Vector::Zero(n);
+  if (parts.size() > 1) return state_before_holes(model, record, parts);
+  const Segment& part = parts.front();
+  const Matrix observability = observability_of(model, part.size());
+  Vector behind = Vector::Zero(n);
+  const Vector free_response = remainder_of(model, record, part, part.size(), behind);
   if (!observability.allFinite() || !free_response.allFinite()) return Vector::Zero(n);
   return least_squares(observability, free_response);
 }
@@ -196,9 +312,12 @@ Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange row
     const auto given = i == 0 ? x0
                               : state_after_hole(model, record, segments[i - 1], segment, x,
                                                  {changes, square_errors / double(out)});
-    x = run_segment(model, record, segment,
-                    given ? *given : estimate_initial_state(model, record, segment, state_rows),
-                    y_hat, out);
+    const auto from_here = segments.begin() + static_cast<std::ptrdiff_t>(i);
+    x = run_segment(
+        model, record, segment,
+        given ? *given
+              : estimate_initial_state(model, record, {from_here, segments.end()}, state_rows),
+        y_hat, out);
     square_errors +=
         (record.y.middleRows(segment.begin, segment.size()) - y_hat.middleRows(out, segment.size()))
             .cwiseAbs2()

@@ -53,10 +53,13 @@ std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Recor
 /// Rows that an estimate of the initial state needs: three times the order, at least one.
 Index initial_rows(const StateSpaceModel& model);
 
-/// Least-squares initial state at `segment.begin` from the outputs of the segment's first `rows`
-/// rows (all of them where the segment is shorter), minimum norm where they do not determine it.
+/// Least-squares initial state at the first row of `segments`, which are of the record and ascend,
+/// from the outputs of the first `rows` rows, minimum norm where they do not determine it. Holes
+/// that state_after_hole bridges are gone through as uncertainly as there, so that a run which
+/// begins just before one does not rest on the few rows there; rows behind a longer one, or further
+/// than twice `rows` ticks away, are not used.
 Vector estimate_initial_state(const StateSpaceModel& model, const Record& record,
-                              const Segment& segment, Index rows);
+                              const std::vector<Segment>& segments, Index rows);
 
 /// Errors of a simulated output against the measured one, one entry an output:
 ///   mrse_q = 100 ||y_q - yhat_q|| / ||y_q||            (the paper's equation 3 for one output)

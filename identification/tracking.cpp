@@ -156,7 +156,7 @@ Matrix tracked_run(const StateSpaceModel& model, const TrackingGain& gain, const
   for (const Segment& segment : segments_within(record, rows)) {
     const bool given = x0 && out == 0;
     Tracker tracker(model, gain,
-                    given ? *x0 : estimate_initial_state(model, record, segment, state_rows));
+                    given ? *x0 : estimate_initial_state(model, record, {segment}, state_rows));
     for (Index k = segment.begin; k < segment.end; ++k) {
       u = record.u.row(k).transpose();
       y = record.y.row(k).transpose();

@@ -346,10 +346,8 @@ void Identification::describe(Identified& result) const {
   const Index m = record_.u.cols();
   result.input_min = all_sums_.least().head(m);
   result.input_max = all_sums_.greatest().head(m);
-  Segment first = segments_.front();
-  first.begin += rows_.begin;
-  first.end += rows_.begin;
-  result.x0 = estimate_initial_state(result.model, record_, first, state_rows);
+  result.x0 =
+      estimate_initial_state(result.model, record_, segments_within(record_, rows_), state_rows);
 }
 
 }  // namespace

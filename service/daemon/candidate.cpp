@@ -70,7 +70,7 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   Candidate candidate{
       .model = {},
       .parts = parts,
-      .x0 = estimate_initial_state(chosen.dynamics, data.record, data.record.segments.front(),
+      .x0 = estimate_initial_state(chosen.dynamics, data.record, data.record.segments,
                                    identification::state_rows),
       .y_hat = {},
       .tuned_on = {},

@@ -81,7 +81,9 @@ identification::Matrix ChampionMonitor::run(const identification::Record& record
                                  {*changes, square_errors_ / static_cast<double>(run_rows_)});
     }
     state_ = bridged ? std::move(*bridged)
-                     : estimate_initial_state(model, record, segment, identification::state_rows);
+                     : estimate_initial_state(
+                           model, record, segments_within(record, {segment.begin, record.rows()}),
+                           identification::state_rows);
   }
   identification::Matrix outputs(segment.size(), model.outputs());
   for (Index k = 0; k < segment.size(); ++k) {

@@ -64,7 +64,7 @@ TEST(Predictor, StartsAgainAfterAGap) {
   const Segment after{30, 60, 40};
   Record as_run = s.record;
   as_run.y.middleRows(run.begin, run.size()) = y_hat;
-  const Vector x = estimate_initial_state(s.model, as_run, after, initial_rows(s.model));
+  const Vector x = estimate_initial_state(s.model, as_run, {after}, initial_rows(s.model));
   for (const Index steps : {1, 4, 25})
     EXPECT_LT((predictor.outputs(steps).bottomRows(30) - foretold(s, after, x, steps))
                   .cwiseAbs()

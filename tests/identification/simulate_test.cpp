@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,13 @@ StateSpaceModel with_operating_point(testing::Noise& noise) {
   model.u0 << 4, -7;
   model.y0 << 28, 3;
   return model;
+}
+
+std::vector<Index> record_rows_without(Index begin, Index end, Index rows) {
+  std::vector<Index> left;
+  for (Index k = 0; k < rows; ++k)
+    if (k < begin || k >= end) left.push_back(k);
+  return left;
 }
 
 TEST(FreeRun, FollowsTheEquationsOfTheModel) {
@@ -128,6 +136,33 @@ TEST(FreeRun, OfNoRowsIsEmpty) {
   EXPECT_EQ(free_run(with_operating_point(noise), record, {2, 2}).rows(), 0);
 }
 
+TEST(InitialState, DoesNotRestOnTheFewRowsBeforeAHole) {
+  testing::Noise noise(7);
+  const Matrix u = noise.normal(1500, 1);
+  const Holed holed(noise, u);
+  Record record = contiguous_record(
+      1, u, holed.y + 0.1 * noise.normal(u.rows(), 1));  // six rows, a hole of two, and the rest
+  record = testing::with_gap(record, 6, 8);
+  const Vector alone =
+      estimate_initial_state(holed.model, record, {record.segments.front()}, state_rows);
+  const Vector x0 = estimate_initial_state(holed.model, record, record.segments, state_rows);
+  EXPECT_GT(std::abs(alone(0)), 0.02);
+  EXPECT_LT(std::abs(x0(0)), 0.02) << "the integrator began at 0";
+  const Matrix run = free_run(holed.model, record, record.all());
+  const Matrix y = holed.y(record_rows_without(6, 8, u.rows()), Eigen::all);
+  EXPECT_LT((run - y).bottomRows(1400).cwiseAbs().maxCoeff(), 0.02);
+}
+
+TEST(InitialState, IsThatOfItsOwnRowsBeforeALongHole) {
+  testing::Noise noise(8);
+  const Matrix u = noise.normal(1500, 1);
+  const Holed holed(noise, u);
+  const Record record = testing::with_gap(contiguous_record(1, u, holed.y), 100, 300);
+  const std::vector<Segment> first{record.segments.front()};
+  EXPECT_EQ(estimate_initial_state(holed.model, record, record.segments, state_rows),
+            estimate_initial_state(holed.model, record, first, state_rows));
+}
+
 TEST(InitialState, IsOfLeastNormWhereItCannotBeSeen) {
   StateSpaceModel model{Matrix::Identity(2, 2) * 0.5,
                         Matrix::Zero(2, 1),
@@ -141,7 +176,7 @@ TEST(InitialState, IsOfLeastNormWhereItCannotBeSeen) {
   Matrix y(4, 1);
   y << 4, 2, 1, 0.5;
   const Record record = contiguous_record(1, Matrix::Zero(4, 1), y);
-  const Vector x0 = estimate_initial_state(model, record, record.segments[0], 4);
+  const Vector x0 = estimate_initial_state(model, record, {record.segments[0]}, 4);
   EXPECT_NEAR(x0(0), 2, 1e-12);
   EXPECT_NEAR(x0(1), 2, 1e-12);
 }

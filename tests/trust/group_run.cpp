@@ -226,9 +226,8 @@ std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& con
   const auto descriptors = telemetry_of(spacecraft);
   std::vector<std::unique_ptr<Telling>> tellings;
   for (const Scenario& scenario : group.scenarios)
-    tellings.push_back(std::make_unique<Telling>(scenario, group, chosen, descriptors,
-                                                 folder / std::to_string(scenario.number),
-                                                 databases));
+    tellings.push_back(std::make_unique<Telling>(
+        scenario, group, chosen, descriptors, folder / std::to_string(scenario.number), databases));
   const Known known = fly(group, spacecraft, [&](const auto& frame, const auto& simulated) {
     for (const auto& telling : tellings) {
       if (frame.generation_time < group.start + simulator_sends) telling->take_simulated(simulated);

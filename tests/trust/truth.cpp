@@ -106,7 +106,7 @@ ErrorCurve Truth::free_run(const EquipmentModel& model, storage::TimeRange range
   for (const identification::Segment& segment : record.segments) {
     const identification::RowRange rows{segment.begin, segment.end};
     const identification::Vector x0 =
-        estimate_initial_state(model.dynamics, record, segment, identification::state_rows);
+        estimate_initial_state(model.dynamics, record, {segment}, identification::state_rows);
     const Matrix y = record.y.middleRows(rows.begin, rows.size());
     curve.add(segment.first_tick * request.period, request.period, y,
               y - identification::free_run(model.dynamics, record, rows, x0));
