@@ -25,6 +25,8 @@ std::vector<std::string> mistakes(const IdentifyOptions& options) {
   if (options.max_input_delay < 0) found.push_back("the largest input delay must not be negative");
   if (options.max_input_delay > 0 && !options.input_delays.empty())
     found.push_back("the input delays are either given or chosen, not both");
+  if (!(options.longest_time_constant_s > 0))
+    found.push_back("the longest time constant must be positive");
   if (!(options.search_budget > 0)) found.push_back("the search budget must be positive");
   return found;
 }

@@ -86,11 +86,18 @@ IdentifyResult Identification::run() {
   std::vector<ScoredRecipe> ranked;
   if (auto verdict = choose(ranked)) return *verdict;
   phase("identify");
-  for (const ScoredRecipe& candidate : ranked)
-    if (auto identified = realise(candidate.recipe)) {
-      if (std::isfinite(candidate.error)) identified->held_out_error = candidate.error;
-      return std::move(*identified);
-    }
+  std::optional<Identified> best;
+  for (const ScoredRecipe& candidate : ranked) {
+    auto identified = realise(candidate.recipe);
+    if (!identified) continue;
+    const bool too_slow =
+        slowest_time_constant_s(identified->model) > options_.longest_time_constant_s;
+    if (best && too_slow) continue;
+    if (std::isfinite(candidate.error)) identified->held_out_error = candidate.error;
+    best = std::move(identified);
+    if (!too_slow) break;
+  }
+  if (best) return std::move(*best);
   return Verdict{VerdictCode::unstable,
                  "no choice that was stable on part of the rows is stable on all of them; choose "
                  "a longer window"};

@@ -44,13 +44,14 @@ struct ChosenModel {
 /// The identified model, or that with its poles moved where it errs less on the rows for choices;
 /// then with B, D and y0 fitted to these rows too.
 ChosenModel corrected(const identification::Record& record, const Identified& identified,
-                      const WindowParts& parts, const identification::ForEach& for_each,
-                      ordered_json& pole_placement) {
+                      const WindowParts& parts, double longest_time_constant_s,
+                      const identification::ForEach& for_each, ordered_json& pole_placement) {
   ChosenModel chosen{identified.model, method_text(identified.recipe)};
   const auto search = search_correction(identified.model, record, parts.identify, parts.tune,
                                         for_each ? for_each : identification::in_sequence);
   pole_placement = {{"plain_tune_mrse_percent", search.plain.mrse()}};
-  if (const auto& best = search.best) {
+  const auto& best = search.best;
+  if (best && slowest_time_constant_s(best->model) <= longest_time_constant_s) {
     chosen.dynamics = best->model;
     chosen.method += fmt::format(", poles placed at scale {:.3g}{}", best->scale,
                                  best->keeps_static_gain ? ", static gain kept" : "");
@@ -144,6 +145,8 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
                     100 * data.coverage, 100 * request.equipment.min_coverage));
   identification::IdentifyOptions options = options_of(request.equipment);
   options.tune_rows = parts.tune.size();
+  // What is slower the gate would turn away: the window cannot tell it.
+  options.longest_time_constant_s = 1e-9 * double(request.window.end - request.window.begin);
   options.for_each = for_each;
   options.on_phase = [&stop, &prepared](std::string_view phase) {
     if (stop()) throw Stopped();
@@ -156,7 +159,8 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
   const auto& identified = std::get<Identified>(result);
   describe_search(identified, prepared.search);
   const ChosenModel chosen =
-      corrected(data.record, identified, parts, for_each, prepared.search["pole_placement"]);
+      corrected(data.record, identified, parts, options.longest_time_constant_s, for_each,
+                prepared.search["pole_placement"]);
   prepared.timer.begin("score");
   prepared.candidate = candidate_of(request, data, chosen, parts);
 }

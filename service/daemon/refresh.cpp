@@ -137,7 +137,8 @@ std::optional<EquipmentModel> older_champion(const storage::Registry& registry,
 }
 
 /// Puts the champion, adapted to the window, in the candidate's place where it errs less on the
-/// validation part. How many candidates were compared there.
+/// validation part, or where the candidate is too slow for the gate. How many candidates were
+/// compared there.
 int choose_candidate(const storage::Registry& registry, const RefreshRequest& request,
                      PreparedWindow& prepared) {
   std::int64_t number = 0;
@@ -148,7 +149,9 @@ int choose_candidate(const storage::Registry& registry, const RefreshRequest& re
   const double identified = prepared.candidate->model.validation.mrse();
   const double adapted = other->model.validation.mrse();
   if (!std::isfinite(adapted)) return 1;
-  const bool is_better = adapted < identified;
+  const auto window_s = 1e-9 * static_cast<double>(request.window.end - request.window.begin);
+  const bool is_better = adapted < identified ||
+                         slowest_time_constant_s(prepared.candidate->model.dynamics) > window_s;
   prepared.evidence["adapted"] = {{"version", number},
                                   {"mrse_percent", adapted},
                                   {"identified_mrse_percent", identified},

@@ -45,6 +45,27 @@ TEST(Identify, WithoutNoiseTheModelIsTheSystem) {
   }
 }
 
+TEST(Identify, AModelThatIsTooSlowGivesWayToOneThatIsNot) {
+  testing::Noise noise(14);
+  StateSpaceModel truth = testing::random_system(noise, 2, 1, 1);
+  truth.A << std::exp(-1.0 / 20'000), 0, 0, 0.5;
+  truth.B << 0.02, 1;
+  truth.C << 1, 1;
+  truth.D << 0;
+  const Record record = testing::excited(truth, noise, 2000, 0.05);
+  IdentifyOptions options;
+  options.max_order = 3;
+  EXPECT_GT(slowest_time_constant_s(expect_model(record, record.all(), options).model), 2000);
+  options.longest_time_constant_s = 2000;
+  EXPECT_LT(slowest_time_constant_s(expect_model(record, record.all(), options).model), 2000);
+  options.order = 2;
+  options.longest_time_constant_s = 0.1;
+  EXPECT_GT(slowest_time_constant_s(expect_model(record, record.all(), options).model), 0.1)
+      << "there is no other";
+  options.longest_time_constant_s = 0;
+  EXPECT_THAT(mistakes(options), ElementsAre("the longest time constant must be positive"));
+}
+
 TEST(Identify, WithNoiseTheErrorFallsWithTheRows) {
   testing::Noise noise(12);
   const StateSpaceModel truth = testing::random_system(noise, 3, 2, 1, 0.9);
