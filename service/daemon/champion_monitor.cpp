@@ -54,6 +54,7 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
   const Duration period = period_of(model_);
   block_ = (validated.end - validated.begin) / reference_blocks / period * period;
   next_ = validated.end;
+  since_ = validated.end;
   if (block_ < period * identification::initial_rows(model_.dynamics)) return;
   telemetry_.emplace(request_of(model_), 1, checks_);
   const auto record = believed(archive, validated);
@@ -66,6 +67,13 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
   if (errors.size() < std::size_t{identification::ChangeDetector::least_blocks}) return;
   detector_.emplace(
       Eigen::Map<const identification::Vector>(errors.data(), static_cast<Index>(errors.size())));
+}
+
+storage::TimeRange ChampionMonitor::window_of(const Drift& drift,
+                                              const EquipmentConfig& equipment) {
+  const Duration half = equipment.window / 2 / equipment.sample_period * equipment.sample_period;
+  const storage::Time end = std::max(drift.end, drift.since + half);
+  return {std::max(drift.since, end - equipment.window), end};
 }
 
 identification::Matrix ChampionMonitor::run(const identification::Record& record,
@@ -154,8 +162,11 @@ std::optional<ChampionMonitor::Drift> ChampionMonitor::look(const storage::Archi
     for (; next_ < end; next_ += block_) {
       const storage::TimeRange block{next_, next_ + block_};
       const auto error = record ? log_error(*record, block, changes) : std::nullopt;
-      if (error && detector_->add(*error))
-        drift = Drift{version_, block.end, std::exp(*error - detector_->mean())};
+      if (!error) continue;
+      if (detector_->add(*error))
+        drift = Drift{version_, since_ + block_, block.end, std::exp(*error - detector_->mean())};
+      else if (detector_->statistic() == 0)
+        since_ = block.end;
     }
   }
   return drift;

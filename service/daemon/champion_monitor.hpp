@@ -27,9 +27,15 @@ class ChampionMonitor {
 
   struct Drift {
     std::int64_t version = 0;
-    storage::Time end = 0;   // of the block with which it was found
-    double error_ratio = 0;  // of that block's error to the usual one
+    storage::Time since = 0;  // end of the first block of those that told: it began in there
+    storage::Time end = 0;    // of the block with which it was found
+    double error_ratio = 0;   // of that block's error to the usual one
   };
+
+  /// From which to identify what the equipment is since then: telemetry of before tells nothing of
+  /// that, so that the window begins with the drift, and it ends where that was found, or later,
+  /// where half of the configured window lies behind its begin.
+  static storage::TimeRange window_of(const Drift& drift, const EquipmentConfig& equipment);
 
   /// Takes in the blocks that telemetry up to `reached` completes. A champion that was replaced is
   /// forgotten. Of a champion that was validated in the past at most `most_past` before `reached`
@@ -59,6 +65,7 @@ class ChampionMonitor {
   std::optional<KeptWindow> telemetry_;  // of the newest blocks and of as many as the reference
   Duration block_ = 0;
   storage::Time next_ = 0;        // begin of the next block
+  storage::Time since_ = 0;       // end of the last block that spoke against a drift
   identification::Vector state_;  // of the run, at the tick state_tick_
   std::optional<std::int64_t> state_tick_;
   identification::Vector square_errors_;  // of the run so far, summed over its rows

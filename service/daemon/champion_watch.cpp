@@ -39,11 +39,13 @@ std::vector<ChampionWatch::Drift> ChampionWatch::look(const storage::Archive& ar
     Watched& watched = watched_[i];
     const auto drift = look(watched, archive, registry, reached);
     if (!drift) continue;
-    feed.ask(*watched.spacecraft, watched.equipment->name, "drift", drift->end);
+    const storage::TimeRange window = ChampionMonitor::window_of(*drift, *watched.equipment);
+    feed.ask(*watched.spacecraft, watched.equipment->name, "drift", window);
     log::warning("monitor", "the champion drifts; its equipment is identified anew",
                  {{"equipment", *watched.spacecraft + "/" + watched.equipment->name},
                   {"version", drift->version},
-                  {"window_end", time_text(drift->end)},
+                  {"window_begin", time_text(window.begin)},
+                  {"window_end", time_text(window.end)},
                   {"error_ratio", drift->error_ratio}});
     drifts.push_back({watched.spacecraft, watched.equipment, *drift});
   }

@@ -38,9 +38,8 @@ double outside_share(const Matrix& u, const std::vector<Signal>& inputs) {
   return static_cast<double>(outside.size()) / static_cast<double>(u.rows());
 }
 
-double slowest_over_window(const identification::StateSpaceModel& model,
-                           storage::TimeRange window) {
-  return slowest_time_constant_s(model) * 1e9 / static_cast<double>(window.end - window.begin);
+double slowest_over_window(const identification::StateSpaceModel& model, Duration window) {
+  return slowest_time_constant_s(model) * 1e9 / static_cast<double>(window);
 }
 
 Evidence evidence_of(const storage::Archive& archive, const storage::Registry& registry,
@@ -56,7 +55,9 @@ Evidence evidence_of(const storage::Archive& archive, const storage::Registry& r
   Evidence evidence;
   evidence.well_formed = is_well_formed(model.dynamics);
   evidence.spectral_radius = spectral_radius(model.dynamics);
-  evidence.slowest_over_window = slowest_over_window(model.dynamics, request.window);
+  evidence.slowest_over_window = slowest_over_window(
+      model.dynamics, candidate.adapted_from ? request.equipment.window
+                                             : request.window.end - request.window.begin);
   evidence.validation_moves = every_column_moves(validation(record.y));
   evidence.mrse_percent = model.validation.mrse();
   evidence.fit_percent = model.validation.fit();

@@ -204,15 +204,18 @@ void WindowFeed::remember(std::vector<storage::TimeRange>& changed, storage::Tim
 
 std::optional<storage::Time> WindowFeed::ask(const std::string& spacecraft,
                                              const std::string& equipment, const std::string& cause,
-                                             std::optional<storage::Time> end) {
+                                             std::optional<storage::TimeRange> window) {
   MutexLock lock(mutex_);
   for (std::size_t i = 0; i < equipment_.size(); ++i) {
     if (equipment_[i].spacecraft != spacecraft || equipment_[i].config->name != equipment) continue;
     const storage::Time reached = scheduler_.reached(i);
     if (reached == INT64_MIN) return std::nullopt;
-    scheduler_.ask(i, end.value_or(reached), cause, clock_());
+    if (window)
+      scheduler_.ask(i, window->end, cause, clock_(), window->begin);
+    else
+      scheduler_.ask(i, reached, cause, clock_());
     changed_.notify_all();
-    return end.value_or(reached);
+    return window ? window->end : reached;
   }
   return std::nullopt;
 }

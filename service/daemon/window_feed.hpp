@@ -44,11 +44,11 @@ class WindowFeed : public ArchiveListener {
   void described(const std::vector<storage::ParameterDescriptor>& descriptors,
                  const storage::Archive& archive) override;
 
-  /// Asks for the window of an equipment that ends at `end`, or where its telemetry ends by now.
-  /// Returns that time; absent where no telemetry of such an equipment has come.
+  /// Asks for a window of an equipment: the one given, or that which ends where its telemetry ends
+  /// by now. Returns its end; absent where no telemetry of such an equipment has come.
   std::optional<storage::Time> ask(const std::string& spacecraft, const std::string& equipment,
                                    const std::string& cause,
-                                   std::optional<storage::Time> end = std::nullopt);
+                                   std::optional<storage::TimeRange> window = std::nullopt);
 
   /// Waits for a window that is due. Absent after stop().
   std::optional<Job> next();

@@ -18,7 +18,7 @@ WindowScheduler::WindowScheduler(const std::vector<Plan>& plans, Duration settle
     : settle_(settle) {
   for (const Plan& plan : plans) {
     assert(plan.slide > 0 && plan.window >= plan.slide);
-    equipment_.push_back({.plan = plan, .due = {}, .tried = {}, .running = {}});
+    equipment_.push_back({.plan = plan});
   }
 }
 
@@ -45,8 +45,8 @@ void WindowScheduler::reached(std::size_t equipment, storage::Time time) {
 }
 
 void WindowScheduler::ask(std::size_t equipment, storage::Time end, std::string cause,
-                          storage::Time now) {
-  equipment_[equipment].due[end] = {now - settle_, std::move(cause)};
+                          storage::Time now, std::optional<storage::Time> begin) {
+  equipment_[equipment].due[end] = {now - settle_, std::move(cause), begin};
 }
 
 void WindowScheduler::tried_before(std::size_t equipment, storage::Time end) {
@@ -61,7 +61,7 @@ std::optional<WindowScheduler::Job> WindowScheduler::next(storage::Time now) {
     for (const auto& [end, due] : state.due) {
       if (state.reached < end || (best && best->window.end <= end)) break;
       if (now - due.touched < settle_) continue;
-      best = Job{i, {end - state.plan.window, end}, due.cause};
+      best = Job{i, {due.begin.value_or(end - state.plan.window), end}, due.cause};
       break;
     }
   }
@@ -78,7 +78,7 @@ void WindowScheduler::finished(const Job& job, bool completed, storage::Time now
   if (completed)
     state.tried.insert(job.window.end);
   else
-    state.due.emplace(job.window.end, Due{now, job.cause});
+    state.due.emplace(job.window.end, Due{now, job.cause, job.window.begin});
   state.running.reset();
 }
 

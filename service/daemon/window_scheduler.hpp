@@ -46,8 +46,9 @@ class WindowScheduler {
   void touched(std::size_t equipment, storage::Time time, storage::Time now);
   /// Telemetry of the equipment has reached `time`; it never goes back.
   void reached(std::size_t equipment, storage::Time time);
-  /// Asks for the window that ends at `end`.
-  void ask(std::size_t equipment, storage::Time end, std::string cause, storage::Time now);
+  /// Asks for the window that ends at `end`, and begins at `begin` where that is given.
+  void ask(std::size_t equipment, storage::Time end, std::string cause, storage::Time now,
+           std::optional<storage::Time> begin = std::nullopt);
   /// The window that ends at `end` was tried in an earlier run of the service.
   void tried_before(std::size_t equipment, storage::Time end);
 
@@ -70,14 +71,15 @@ class WindowScheduler {
   struct Due {
     storage::Time touched = 0;  // when something last fell into it
     std::string cause;
+    std::optional<storage::Time> begin{};  // absent: as long as planned
   };
   struct Equipment {
     Plan plan;
     storage::Time reached = INT64_MIN;
     // Windows by their ends.
-    std::map<storage::Time, Due> due;
-    std::set<storage::Time> tried;
-    std::optional<storage::Time> running;
+    std::map<storage::Time, Due> due{};
+    std::set<storage::Time> tried{};
+    std::optional<storage::Time> running{};
   };
 
   std::vector<Equipment> equipment_;

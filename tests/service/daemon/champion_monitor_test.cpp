@@ -1,5 +1,7 @@
 #include "service/daemon/champion_monitor.hpp"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "service/daemon/refresh.hpp"
@@ -54,7 +56,35 @@ TEST_F(Monitor, FindsThatThePlantHasChangedBeforeAWindowHasSlid) {
   ASSERT_TRUE(drift);
   EXPECT_EQ(drift->version, 1);
   EXPECT_LT(drift->end, day + 25 * minute);
+  EXPECT_GE(drift->since, day + 20 * minute);
+  EXPECT_LT(drift->since, day + 21 * minute);
   EXPECT_GT(drift->error_ratio, 2);
+}
+
+TEST_F(Monitor, KeepsTheBeginOfADriftThatLastsAsLongAsTheChampion) {
+  archive.append(telemetry(day + 20 * minute + second, 1800));
+  archive.append(telemetry(day + 50 * minute + second, 1800, 1.5));
+  std::vector<ChampionMonitor::Drift> drifts;
+  for (storage::Time reached = day + 20 * minute; reached < day + 80 * minute;
+       reached += 10 * second)
+    if (const auto drift = look(reached)) drifts.push_back(*drift);
+  ASSERT_GT(drifts.size(), 2U);
+  for (const ChampionMonitor::Drift& drift : drifts)
+    EXPECT_TRUE(drift.since >= day + 50 * minute && drift.since < day + 51 * minute)
+        << (drift.since - day) / second;
+}
+
+TEST(WindowOfADrift, BeginsWithTheDriftOnceHalfAWindowLiesBehindIt) {
+  EquipmentConfig equipment;
+  equipment.window = 100;
+  equipment.sample_period = 4;
+  const auto window = [&equipment](storage::Time since, storage::Time end) {
+    return ChampionMonitor::window_of({.since = since, .end = end}, equipment);
+  };
+  EXPECT_EQ(window(1000, 1010), (storage::TimeRange{1000, 1048}));
+  EXPECT_EQ(window(1000, 1048), (storage::TimeRange{1000, 1048}));
+  EXPECT_EQ(window(1000, 1080), (storage::TimeRange{1000, 1080}));
+  EXPECT_EQ(window(1000, 1180), (storage::TimeRange{1080, 1180}));
 }
 
 TEST_F(Monitor, DoesNotTakeOneBadStretchForAChange) {

@@ -128,6 +128,20 @@ TEST_F(Refresh, AdaptsTheChampionTooAndTakesTheBetterOfTwo) {
   }
 }
 
+TEST_F(Refresh, MeasuresAChampionThatAShortWindowAdaptsByTheConfiguredWindow) {
+  archive.append(telemetry(day, 600, 1, 0.3));
+  record(run(day + 10 * minute));
+  archive.append(telemetry(day + 10 * minute, 301, 1.5, 0.3));
+  KeptWindow kept = kept_window_of("SAT", plant());
+  const RefreshResult result = refresh(
+      archive, registry,
+      {"SAT", plant(), {day + 10 * minute, day + 15 * minute}, "drift", "digest"}, kept, {}, never);
+  const auto evidence = nlohmann::json::parse(result.attempt.evidence_json);
+  ASSERT_TRUE(evidence.at("adapted").at("is_candidate"));
+  EXPECT_DOUBLE_EQ(result.evidence.slowest_over_window,
+                   slowest_time_constant_s(result.candidate->dynamics) / 600);
+}
+
 TEST_F(Refresh, KeepsNoEvidenceThatItsPageDoesNotName) {
   auto frames = telemetry(day, 1201, 1, 0.3);
   frames[200].samples[1].value = 500;  // is not believed

@@ -121,6 +121,19 @@ TEST_F(Scheduler, GivesAWindowThatWasAskedForAsSoonAsTelemetryHasReachedIt) {
   EXPECT_FALSE(scheduler.next(300)) << "the window that slides ends at 20";
 }
 
+TEST_F(Scheduler, GivesAWindowThatWasAskedForWithItsBegin) {
+  telemetry(0, 15, 100);
+  complete(200);
+  scheduler.ask(0, 14, "drift", 200, 2);
+  const auto job = scheduler.next(200);
+  EXPECT_EQ(job, (Job{0, {2, 14}, "drift"}));
+  scheduler.finished(*job, false, 200);
+  EXPECT_EQ(complete(300), (Job{0, {2, 14}, "drift"})) << "it was not completed";
+  scheduler.touched(0, 3, 300);
+  EXPECT_EQ(complete(400), (Job{0, {-20, 10}, "late telemetry"}));
+  EXPECT_EQ(complete(400), (Job{0, {-16, 14}, "late telemetry"})) << "then it is one like others";
+}
+
 TEST_F(Scheduler, KeepsTheCauseOfAWindowThatWasNotCompleted) {
   telemetry(0, 8, 100);
   scheduler.ask(0, 7, "asked for by ana", 100);
