@@ -310,6 +310,13 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
             fmt::format(" That is little less beside the noise of the sensors ({:.3f} %).",
                         champion.comparison->noise_percent) +
             wait_of(limits)};
+  if (!champion.still.empty())
+    return GateDecision{Outcome::on_probation,
+                        praise(e) +
+                            fmt::format(" But {} stands still all over the window: its sensor is "
+                                        "stuck, or the operation is not the usual one.",
+                                        champion.still) +
+                            wait_of(limits)};
   if (is_unusual(champion.movement))
     return GateDecision{
         Outcome::on_probation,

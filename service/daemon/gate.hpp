@@ -96,6 +96,7 @@ struct Evidence {
     std::vector<std::string> unbound{};
     double validated_mrse_percent = 0;  // where it was validated; 0: not known
     double movement = 1;                // of these samples (run_comparison.hpp)
+    std::string still{};                // input that stands still all over the window (the same)
     /// The comparison there, before the candidate's window. Looked at where the candidate is surely
     /// better and the champion was not left behind; absent where less than half is left.
     std::optional<Comparison> where_validated{};
@@ -124,6 +125,8 @@ bool shows_beside_noise(const Evidence::Comparison& comparison, double times);
 
 /// What is less tells little of how the two will err, and a simulator gains nothing by it.
 constexpr double least_gain_over_noise = 1.5;
+/// The same where so much of it lasts: surely all over a version's window and after it.
+constexpr double lasting_gain_over_noise = 1;
 /// What is less goes on probation, where it can, and has to last until the last look.
 constexpr double plain_gain_over_noise = 2;
 

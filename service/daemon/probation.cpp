@@ -53,9 +53,11 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
       {"champion_validated_mrse_percent", look.champion_validated_mrse_percent},
       {"fault_share", look.fault_share},
       {"movement", look.movement},
+      {"tenure_believed", look.tenure_believed},
       {"comparison", to_json(look.comparison)},
       {"after_window", to_json(look.after)},
       {"with_window", to_json(look.with_window)}};
+  if (!look.still.empty()) evidence["still"] = look.still;
   if (look.with_past) evidence["with_past"] = to_json(*look.with_past);
   if (look.champion_worst_mrse_percent > 0)
     evidence["champion_worst_mrse_percent"] = look.champion_worst_mrse_percent;
@@ -98,30 +100,28 @@ bool needs_vouching(const storage::Registry& registry, const storage::Version& v
 }
 
 /// For so long before the window free runs go on already, so that little is left of the states that
-/// they begin with: a twentieth in three time constants of the slowest mode.
-Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent,
-                storage::TimeRange window) {
+/// they begin with: a twentieth in three time constants of the slowest mode, of `longest` at most.
+Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent, Duration longest) {
   constexpr double time_constants = 3;
   const double slowest_s = std::max(slowest_time_constant_s(model.dynamics),
                                     slowest_time_constant_s(incumbent.dynamics));
-  const auto most = static_cast<double>(window.end - window.begin);
-  return static_cast<Duration>(time_constants * std::min(1e9 * slowest_s, most));
+  return static_cast<Duration>(time_constants *
+                               std::min(1e9 * slowest_s, static_cast<double>(longest)));
 }
 
-/// The two on what the champion has run on since it was validated, four windows before the
-/// version's at most. Absent where none of it is left, or what is cannot be decoded.
-std::optional<PairedRuns> runs_over_tenure(const storage::Archive& archive,
-                                           storage::TimeRange window, const EquipmentModel& model,
-                                           const EquipmentModel& incumbent, const Checks& checks) {
+/// The two on what the champion has run on since it was validated until `end`, four windows at
+/// most. Absent where none of it is left, or what is cannot be decoded.
+std::optional<RunsOfBoth> runs_over_tenure(const storage::Archive& archive, storage::Time end,
+                                           const EquipmentModel& model,
+                                           const EquipmentModel& incumbent,
+                                           const EquipmentConfig& equipment) {
   constexpr int windows = 4;
-  const storage::Time earliest = window.begin - windows * (window.end - window.begin);
-  const storage::TimeRange tenure{std::max(incumbent.validated_on.begin, earliest), window.begin};
+  const storage::TimeRange tenure{
+      std::max(incumbent.validated_on.begin, end - windows * equipment.window), end};
   if (tenure.end <= tenure.begin) return std::nullopt;
   try {
-    auto both = run_both(archive, model, incumbent, request_of(model), checks, tenure,
-                         run_up(model, incumbent, window));
-    if (!both) return std::nullopt;
-    return std::move(both->runs);
+    return run_both(archive, model, incumbent, request_of(model), checks_of(equipment), tenure,
+                    run_up(model, incumbent, equipment.window));
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::corrupt) throw;
     return std::nullopt;
@@ -140,7 +140,8 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
                                   storage::Time until) {
   LongerLook look;
   look.until = until;
-  const storage::TimeRange range{window.begin - run_up(model, incumbent, window), look.until};
+  const storage::TimeRange range{window.begin - run_up(model, incumbent, equipment.window),
+                                 look.until};
   const WindowRequest request = request_of(model);
   const auto loaded = KeptWindow(request, 1, checks_of(equipment)).load(archive, range);
   const auto* data = std::get_if<WindowData>(&loaded);
@@ -159,7 +160,8 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
   PairedRuns runs = since(model.validated_on.begin);
   if (runs.rows.empty()) return std::nullopt;
   look.comparison = compare(runs, equipment.confidence_percent, Course::changing);
-  look.with_window = compare(since(window.begin), equipment.confidence_percent, Course::changing);
+  const PairedRuns in_window = since(window.begin);
+  look.with_window = compare(in_window, equipment.confidence_percent, Course::changing);
   const PairedRuns after = since(window.end);
   if (!after.rows.empty())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
@@ -168,6 +170,7 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
     const auto last = std::min(std::ssize(runs.rows), validation / request.period);
     look.movement = movement(
         incumbent, record.u(std::vector(runs.rows.end() - last, runs.rows.end()), Eigen::all));
+    look.still = still_input(archive, incumbent, record.u(in_window.rows, Eigen::all));
   }
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
   if (until >= window.end + equipment.confirmation &&
@@ -188,11 +191,12 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
   return Looked{std::move(look), std::move(runs)};
 }
 
-void add_tenure(LongerLook& look, const PairedRuns& tenure, const PairedRuns& runs,
+void add_tenure(LongerLook& look, const RunsOfBoth& tenure, const PairedRuns& runs,
                 double confidence_percent) {
-  look.champion_worst_mrse_percent = worst_of_rival(tenure, runs.y.rows());
+  look.tenure_believed = tenure.believed_share;
+  look.champion_worst_mrse_percent = worst_of_rival(tenure.runs, runs.y.rows());
   if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent))
-    look.over_tenure = compare(joined(tenure, runs), confidence_percent, Course::changing);
+    look.over_tenure = compare(joined(tenure.runs, runs), confidence_percent, Course::changing);
 }
 
 /// What speaks against the version whatever came after its window.
@@ -241,7 +245,7 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
       if (!found || found->kind != DecisionKind::approve) return found;
       // The champion's tenure, many times longer, can only speak against: it is read last.
       const auto tenure =
-          runs_over_tenure(archive, version.window, model, incumbent, checks_of(equipment));
+          runs_over_tenure(archive, version.window.begin, model, incumbent, equipment);
       if (!tenure) return found;
       add_tenure(look, *tenure, runs, equipment.confidence_percent);
       return judge_probation(look, equipment);
@@ -262,7 +266,10 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
 }  // namespace
 
 std::optional<NewDecision> judge_probation(const LongerLook& look, const EquipmentConfig& limits) {
+  constexpr double least_believed = 0.5;
   const Reduction reduction = reduction_of(look);
+  const bool left_behind =
+      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
   const double needed = sure_elsewhere * limits.margin_percent;
   const auto against = [&]() -> std::optional<std::string> {
     if (is_in_doubt(look.fault_share))
@@ -285,9 +292,17 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
       return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
                          needed);
-    if (!shows_beside_noise(look.comparison, least_gain_over_noise))
+    const bool surely_throughout =
+        look.after.sure_percent > 0.0 && look.with_window.sure_percent > limits.margin_percent;
+    if (!shows_beside_noise(look.comparison,
+                            surely_throughout ? lasting_gain_over_noise : least_gain_over_noise))
       return fmt::format("that is too little less beside the noise of the sensors ({:.3f} %).",
                          look.comparison.noise_percent);
+    if (!look.still.empty())
+      return fmt::format(
+          "from the begin of its window on {} stands still: its sensor is stuck, or the operation "
+          "is an unusual one.",
+          look.still);
     if (is_unusual(look.movement))
       return fmt::format(
           "there the inputs move over {:.0f} % of the ranges that the champion was "
@@ -300,7 +315,12 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           "over {} samples of then and now the version has {:.3f} % and the champion {:.3f} %.",
           look.champion_validated_mrse_percent, both->rows, both->mrse_percent,
           both->rival_mrse_percent);
-    if (const auto& all = look.over_tenure; all && !(all->reduction_percent > 0))
+    if (!left_behind && look.tenure_believed < least_believed)
+      return fmt::format(
+          "the champion had {:.3f} % where it was validated, and of the telemetry from then to the "
+          "version's window {:.0f} % is believed, so that nothing tells of a change.",
+          look.champion_validated_mrse_percent, 100 * look.tenure_believed);
+    if (const auto& all = look.over_tenure; all && !(all->reduction_percent > needed))
       return fmt::format(
           "since the champion was validated it had up to {:.3f} % already, so that nothing tells "
           "of a change; over {} samples of then and now the version has {:.3f} % and the champion "
@@ -309,8 +329,6 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
     return std::nullopt;
   }();
   using Stage = LongerLook::Stage;
-  const bool left_behind =
-      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
   const bool surely_after = look.after.sure_percent > 0.0;
   const bool surely_ever = look.with_past && look.with_past->sure_percent > needed;
   const bool suffices = look.stage == Stage::early ? left_behind && surely_after

@@ -55,6 +55,10 @@ struct LongerLook {
   std::optional<Evidence::Comparison> without_offset{};
   /// Of the last telemetry, as many samples as the validation part has (run_comparison.hpp).
   double movement = 1;
+  /// Input that stands still from the begin of the window on (the same).
+  std::string still{};
+  /// Share of the telemetry of `over_tenure` before the window that is believed.
+  double tenure_believed = 1;
 };
 
 /// Approval or rejection; absent where more telemetry has to tell. An early look replaces only a
@@ -62,7 +66,8 @@ struct LongerLook {
 /// better on what came after its window. From `due` on either of the two is enough, or that it is
 /// so by a third of the margin over all of `with_past`: beside a champion that errs little more
 /// than ever there is time to wait for that. What it gains has to show plainly beside the noise,
-/// and at the last look to show.
+/// and at the last look to show; the noise itself is enough where the gain is surely above the
+/// margin over all of the window too, and sure on what came after it.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 

@@ -82,6 +82,7 @@ ordered_json to_json(const Evidence::Champion& champion) {
     json["mrse_percent"] = champion.comparison->rival_mrse_percent;
     json["validated_mrse_percent"] = champion.validated_mrse_percent;
     json["movement"] = champion.movement;
+    if (!champion.still.empty()) json["still"] = champion.still;
     json["comparison"] = to_json(*champion.comparison);
     if (champion.where_validated) json["where_validated"] = to_json(*champion.where_validated);
     if (champion.without_offset) json["without_offset"] = to_json(*champion.without_offset);

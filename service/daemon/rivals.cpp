@@ -84,7 +84,8 @@ std::optional<Evidence::Champion::Elsewhere> elsewhere(const storage::Archive& a
   const auto there =
       run_both(archive, candidate, champion, prepared.loaded, prepared.checks, stretch);
   if (!there) return std::nullopt;
-  const auto& [record, both] = *there;
+  const identification::Record& record = there->record;
+  const PairedRuns& both = there->runs;
   const std::vector<Index> outside = rows_outside(record.u, visited(prepared));
   std::vector<Index> places;
   for (std::size_t i = 0; i < both.rows.size(); ++i)
@@ -225,8 +226,10 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
                                   prepared.attempt.window)) {
     evidence.comparison = against_run(prepared, *run, confidence_percent);
     evidence.without_offset = against_run(prepared, *run, confidence_percent, &offset);
-    if (request_of(champion) == prepared.loaded)
+    if (request_of(champion) == prepared.loaded) {
       evidence.movement = movement(champion, validation_inputs(prepared));
+      evidence.still = still_input(archive, champion, prepared.data.record.u);
+    }
     if (evidence.without_offset)
       evidence.unbound = unbound_of(champion, prepared.data.plausibility, offset);
   }

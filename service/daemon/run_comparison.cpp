@@ -91,7 +91,8 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
   const Index first = first_row_at(record, ticks_of(range, request.period).begin);
   PairedRuns runs = paired(record, {first, record.rows()},
                            free_run(candidate.dynamics, record, record.all()), *theirs);
-  return RunsOfBoth{std::move(record), std::move(runs)};
+  const double believed = data->read_coverage > 0 ? data->coverage / data->read_coverage : 1;
+  return RunsOfBoth{std::move(record), std::move(runs), believed};
 }
 
 double movement(const EquipmentModel& model, const Matrix& u) {
@@ -116,6 +117,18 @@ double movement(const EquipmentModel& model, const Matrix& u) {
     if (counted.of > 0) least = std::min(least, counted.moved / counted.of);
   }
   return least;
+}
+
+std::string still_input(const storage::Archive& archive, const EquipmentModel& model,
+                        const Matrix& u) {
+  for (std::size_t j = 0; j < model.inputs.size(); ++j) {
+    const Signal& input = model.inputs[j];
+    const auto values = u.col(static_cast<Index>(j)).array();
+    if (!(input.high > input.low) || (values != values(0)).any()) continue;
+    const auto described = archive.parameter(model.spacecraft, input.name);
+    if (!described || described->kind != storage::ParameterKind::digital) return input.name;
+  }
+  return {};
 }
 
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,

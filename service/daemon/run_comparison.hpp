@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -46,6 +47,7 @@ PairedRuns paired(const identification::Record& record, identification::RowRange
 struct RunsOfBoth {
   identification::Record record;  // the candidate's
   PairedRuns runs;
+  double believed_share = 1;  // of the telemetry that came, that of `run_up` included
 };
 std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const EquipmentModel& candidate,
                                    const EquipmentModel& rival, const WindowRequest& request,
@@ -56,6 +58,12 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
 /// what each of them moves the output by, in a steady state and by its own range at most; the
 /// smallest one of any output. Inputs that are held near a point count where there are no others.
 double movement(const EquipmentModel& model, const identification::Matrix& u);
+
+/// The first input of the model that moved when it was identified and has one value in all of `u`
+/// (N x m, N at least 1), and is no switch; empty where there is none. A sensor's noise shows in
+/// telemetry of hours: what stands still all the time is stuck, or at rest in another operation.
+std::string still_input(const storage::Archive& archive, const EquipmentModel& model,
+                        const identification::Matrix& u);
 
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
                              identification::Course course);

@@ -258,6 +258,12 @@ const Case of_the_operation[] = {
        c.confirmation = 100;
      },
      Outcome::approved},
+    {"InputThatStandsStillAllOverTheWindow",
+     [](auto& e, auto& c) {
+       e.champion->still = "u";
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
     {"UnusualOperationWithoutProbation", [](auto& e, auto&) { e.champion->movement = 0; },
      Outcome::approved},
 };

@@ -159,9 +159,9 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverTheChampionsTenure) {
   look.stage = LongerLook::Stage::last;
   look.champion_worst_mrse_percent = 6;
   look.over_tenure = look.comparison;
-  look.over_tenure->reduction_percent = 1;
+  look.over_tenure->reduction_percent = 5.1;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-  look.over_tenure->reduction_percent = 0;
+  look.over_tenure->reduction_percent = 5;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("it had up to 6.000 % already"));
@@ -171,12 +171,27 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverTheChampionsTenure) {
 TEST(JudgeProbation, ApprovesNothingThatGainsLittleBesideTheNoise) {
   LongerLook look = sure_of(30);
   look.stage = LongerLook::Stage::last;
+  look.with_window.sure_percent = 15;
   look.comparison.noise_percent = 2.1;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
   look.comparison.noise_percent = 2.2;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("the noise of the sensors (2.200 %)"));
+}
+
+TEST(JudgeProbation, AsksForLessBesideTheNoiseOfWhatGainsSurelyAllOverItsWindowAndAfterIt) {
+  LongerLook look = sure_of(30);
+  look.stage = LongerLook::Stage::last;
+  look.with_window.sure_percent = 15.1;
+  look.after.sure_percent = 0.1;
+  look.comparison.noise_percent = 3.7;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.after.sure_percent = 0;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+  look.after.sure_percent = 0.1;
+  look.comparison.noise_percent = 3.8;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
 }
 
 TEST(JudgeProbation, ApprovesWhatGainsNotPlainlyBesideTheNoiseAtTheLastLookAlone) {
@@ -204,6 +219,30 @@ TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
   EXPECT_THAT(found->reason, HasSubstr("0.26 faults of sensors found in 100 ticks"));
+}
+
+TEST(JudgeProbation, ApprovesNothingWhileAnInputStandsStill) {
+  LongerLook look = sure_of(40);
+  look.still = "V_BUS";
+  EXPECT_FALSE(judge_probation(look, {}));
+  look.stage = LongerLook::Stage::due;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("V_BUS stands still"));
+}
+
+TEST(JudgeProbation, LeavesAChampionOfWhoseTenureHardlyAnythingIsBelievedUnlessItIsLeftBehind) {
+  LongerLook look = sure_of(40);
+  look.stage = LongerLook::Stage::last;
+  look.champion_validated_mrse_percent = 8;
+  look.tenure_believed = 0.5;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.tenure_believed = 0.49;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("49 % is believed"));
+  look.champion_validated_mrse_percent = 5;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
 TEST(JudgeProbation, ApprovesNothingInAnUnusualOperation) {

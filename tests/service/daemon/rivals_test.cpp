@@ -92,6 +92,19 @@ TEST_F(Rivals, AnOperationThatMovesTheInputsLessIsUnusual) {
   EXPECT_NEAR(run(day + 70 * minute).evidence.champion->movement, 0.67, 0.02);
 }
 
+TEST_F(Rivals, AnInputThatStandsStillAllOverTheWindowIsNamedUnlessItIsASwitch) {
+  archive.append(telemetry(day, 601));
+  record(run(day + 10 * minute));
+  operate(day + 20 * minute, 601, {.v = 0, .gain = 2});
+  EXPECT_EQ(run(day + 30 * minute).evidence.champion->still, "v");
+  operate(day + 40 * minute, 601, {.gain = 2});
+  EXPECT_EQ(run(day + 50 * minute).evidence.champion->still, "");
+  auto switches = descriptors();
+  switches[1].kind = storage::ParameterKind::digital;
+  archive.describe(switches);
+  EXPECT_EQ(run(day + 30 * minute).evidence.champion->still, "");
+}
+
 /// A voltage with an effect of 200 on an output of range 5, and a current with one of 4.
 EquipmentModel of_a_voltage_and_a_current() {
   using identification::Matrix;
