@@ -101,7 +101,7 @@ void WindowFeed::recover(const storage::Archive& archive, const storage::Registr
     all.spacecraft = equipment.spacecraft;
     all.equipment = equipment.config->name;
     for (const storage::Attempt& attempt : registry.attempts(all)) {
-      scheduler_.tried_before(i, attempt.window.end);
+      scheduler_.tried_before(i, attempt.window);
       equipment.tried_until = std::max(equipment.tried_until, attempt.window.end);
     }
   }

@@ -11,6 +11,7 @@ namespace {
 /// Times further from the epoch than this (year 2200) belong to no window: a clock that is wrong by
 /// centuries must not overflow the arithmetic below.
 constexpr storage::Time time_bound = 7'258'118'400'000'000'000;
+constexpr const char* late_telemetry = "late telemetry";
 
 }  // namespace
 
@@ -25,18 +26,23 @@ WindowScheduler::WindowScheduler(const std::vector<Plan>& plans, Duration settle
 void WindowScheduler::touched(std::size_t equipment, storage::Time time, storage::Time now) {
   if (time >= time_bound || time <= -time_bound) return;
   Equipment& state = equipment_[equipment];
-  const storage::Time first = (floor_divide(time, state.plan.slide) + 1) * state.plan.slide;
-  const auto touch = [&](storage::Time end) {
-    const bool again = state.tried.contains(end) || state.running == end;
-    state.due[end] = {now, again ? "late telemetry" : "slide"};
+  const auto touch = [&](storage::Time end, Begin begin, const char* cause) {
+    if (begin && time < *begin) return;
+    const auto due = state.due.try_emplace(end, Due{now, cause, begin}).first;
+    due->second.touched = now;
   };
-  touch(first);
-  if (state.running && *state.running > time && *state.running <= time + state.plan.window)
-    touch(*state.running);
-  // Later windows that hold the sample are due by samples of their own, unless they were tried.
-  for (auto it = state.tried.upper_bound(time);
-       it != state.tried.end() && *it <= time + state.plan.window; ++it)
-    touch(*it);
+  const storage::Time first = (floor_divide(time, state.plan.slide) + 1) * state.plan.slide;
+  const storage::Time last = time + state.plan.window;
+  // Later windows that hold the sample are due by samples of their own, unless they were tried or
+  // asked for.
+  for (auto it = state.due.upper_bound(time); it != state.due.end() && it->first <= last; ++it)
+    if (it->second.begin && *it->second.begin <= time) it->second.touched = now;
+  if (const auto& running = state.running; running && running->end > time && running->end <= last)
+    touch(running->end, running->begin, late_telemetry);
+  for (auto it = state.tried.upper_bound(time); it != state.tried.end() && it->first <= last; ++it)
+    touch(it->first, it->second, late_telemetry);
+  if (!state.tried.contains(first) && !(state.running && state.running->end == first))
+    touch(first, std::nullopt, "slide");
 }
 
 void WindowScheduler::reached(std::size_t equipment, storage::Time time) {
@@ -45,12 +51,14 @@ void WindowScheduler::reached(std::size_t equipment, storage::Time time) {
 }
 
 void WindowScheduler::ask(std::size_t equipment, storage::Time end, std::string cause,
-                          storage::Time now, std::optional<storage::Time> begin) {
+                          storage::Time now, Begin begin) {
   equipment_[equipment].due[end] = {now - settle_, std::move(cause), begin};
 }
 
-void WindowScheduler::tried_before(std::size_t equipment, storage::Time end) {
-  equipment_[equipment].tried.insert(end);
+void WindowScheduler::tried_before(std::size_t equipment, storage::TimeRange window) {
+  Equipment& state = equipment_[equipment];
+  const bool is_short = window.end - window.begin < state.plan.window;
+  state.tried.insert_or_assign(window.end, is_short ? Begin(window.begin) : std::nullopt);
 }
 
 std::optional<WindowScheduler::Job> WindowScheduler::next(storage::Time now) {
@@ -66,19 +74,21 @@ std::optional<WindowScheduler::Job> WindowScheduler::next(storage::Time now) {
     }
   }
   if (best) {
-    equipment_[best->equipment].running = best->window.end;
-    equipment_[best->equipment].due.erase(best->window.end);
+    Equipment& state = equipment_[best->equipment];
+    const auto due = state.due.find(best->window.end);
+    state.running = Running{due->first, due->second.begin};
+    state.due.erase(due);
   }
   return best;
 }
 
 void WindowScheduler::finished(const Job& job, bool completed, storage::Time now) {
   Equipment& state = equipment_[job.equipment];
-  assert(state.running == job.window.end);
+  assert(state.running && state.running->end == job.window.end);
   if (completed)
-    state.tried.insert(job.window.end);
+    state.tried.insert_or_assign(job.window.end, state.running->begin);
   else
-    state.due.emplace(job.window.end, Due{now, job.cause, job.window.begin});
+    state.due.emplace(job.window.end, Due{now, job.cause, state.running->begin});
   state.running.reset();
 }
 
@@ -109,7 +119,7 @@ bool WindowScheduler::pending_within(std::size_t equipment, storage::TimeRange r
   const auto overlaps = [&](storage::Time end) {
     return end - state.plan.window < range.end && range.begin < end;
   };
-  if (state.running && overlaps(*state.running)) return true;
+  if (state.running && overlaps(state.running->end)) return true;
   return std::any_of(state.due.begin(), state.due.end(),
                      [&](const auto& entry) { return overlaps(entry.first); });
 }

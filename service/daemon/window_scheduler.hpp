@@ -7,7 +7,8 @@
 //   - telemetry has reached its end, and
 //   - nothing has fallen into it for the time `settle` of the service's clock.
 // Others are asked for: by an operator, or because the champion drifts. They may end at any time,
-// and are due as soon as telemetry has reached it.
+// and are due as soon as telemetry has reached it; one that has a begin of its own keeps it when
+// late telemetry falls into it, and settles as others do.
 // One window of an equipment runs at a time, the oldest due first, so that a candidate meets the
 // champion of the windows before it. A window that keeps receiving late telemetry holds nothing up.
 //
@@ -17,7 +18,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -49,8 +49,8 @@ class WindowScheduler {
   /// Asks for the window that ends at `end`, and begins at `begin` where that is given.
   void ask(std::size_t equipment, storage::Time end, std::string cause, storage::Time now,
            std::optional<storage::Time> begin = std::nullopt);
-  /// The window that ends at `end` was tried in an earlier run of the service.
-  void tried_before(std::size_t equipment, storage::Time end);
+  /// The window was tried in an earlier run of the service.
+  void tried_before(std::size_t equipment, storage::TimeRange window);
 
   /// The next window to identify, which then counts as running; absent when none is due.
   std::optional<Job> next(storage::Time now);
@@ -68,18 +68,23 @@ class WindowScheduler {
   bool pending_within(std::size_t equipment, storage::TimeRange range) const;
 
  private:
+  using Begin = std::optional<storage::Time>;  // absent: as long as planned
   struct Due {
     storage::Time touched = 0;  // when something last fell into it
     std::string cause;
-    std::optional<storage::Time> begin{};  // absent: as long as planned
+    Begin begin{};
+  };
+  struct Running {
+    storage::Time end = 0;
+    Begin begin{};
   };
   struct Equipment {
     Plan plan;
     storage::Time reached = INT64_MIN;
     // Windows by their ends.
     std::map<storage::Time, Due> due{};
-    std::set<storage::Time> tried{};
-    std::optional<storage::Time> running{};
+    std::map<storage::Time, Begin> tried{};
+    std::optional<Running> running{};
   };
 
   std::vector<Equipment> equipment_;

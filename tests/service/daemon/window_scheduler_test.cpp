@@ -88,13 +88,17 @@ TEST_F(Scheduler, TriesAWindowAgainThatWasNotCompleted) {
 }
 
 TEST_F(Scheduler, KnowsWhatAnEarlierRunTried) {
-  scheduler.tried_before(0, 10);
-  scheduler.tried_before(0, 20);
-  scheduler.reached(0, 20);
+  scheduler.tried_before(0, {-20, 10});
+  scheduler.tried_before(0, {-10, 20});
+  scheduler.tried_before(0, {4, 24});
+  scheduler.tried_before(0, {6, 26});
+  scheduler.reached(0, 30);
   EXPECT_FALSE(scheduler.next(200));
   scheduler.touched(0, 5, 200);
   EXPECT_EQ(complete(300), (Job{0, {-20, 10}, "late telemetry"}));
   EXPECT_EQ(complete(300), (Job{0, {-10, 20}, "late telemetry"}));
+  EXPECT_EQ(complete(300), (Job{0, {4, 24}, "late telemetry"}));
+  EXPECT_FALSE(scheduler.next(300));
 }
 
 TEST_F(Scheduler, LooksAgainAtAWindowInWhichTelemetryLandedWhileItRan) {
@@ -131,7 +135,21 @@ TEST_F(Scheduler, GivesAWindowThatWasAskedForWithItsBegin) {
   EXPECT_EQ(complete(300), (Job{0, {2, 14}, "drift"})) << "it was not completed";
   scheduler.touched(0, 3, 300);
   EXPECT_EQ(complete(400), (Job{0, {-20, 10}, "late telemetry"}));
-  EXPECT_EQ(complete(400), (Job{0, {-16, 14}, "late telemetry"})) << "then it is one like others";
+  EXPECT_EQ(complete(400), (Job{0, {2, 14}, "late telemetry"}));
+  scheduler.touched(0, 1, 500);
+  EXPECT_EQ(complete(600), (Job{0, {-20, 10}, "late telemetry"}));
+  EXPECT_FALSE(scheduler.next(600)) << "it does not hold the sample at 1";
+}
+
+TEST_F(Scheduler, KeepsWhatWasAskedForWhereItEndsAsOneThatSlidesAndLetsItSettle) {
+  telemetry(0, 15, 100);
+  complete(200);
+  scheduler.ask(0, 20, "drift", 200, 12);
+  telemetry(15, 22, 300);
+  scheduler.touched(0, 11, 301);
+  scheduler.touched(0, 13, 302);
+  EXPECT_FALSE(scheduler.next(306));
+  EXPECT_EQ(complete(307), (Job{0, {12, 20}, "drift"}));
 }
 
 TEST_F(Scheduler, KeepsTheCauseOfAWindowThatWasNotCompleted) {
