@@ -52,10 +52,11 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
   }
   const storage::TimeRange validated = model_.validated_on;
   const Duration period = period_of(model_);
-  block_ = (validated.end - validated.begin) / reference_blocks / period * period;
+  block_ = std::max((validated.end - validated.begin) / reference_blocks / period,
+                    identification::initial_rows(model_.dynamics)) *
+           period;
   next_ = validated.end;
   since_ = validated.end;
-  if (block_ < period * identification::initial_rows(model_.dynamics)) return;
   telemetry_.emplace(request_of(model_), 1, checks_);
   const auto record = believed(archive, validated);
   if (!record) return;
@@ -71,8 +72,10 @@ void ChampionMonitor::watch(const storage::Archive& archive, const storage::Vers
 
 storage::TimeRange ChampionMonitor::window_of(const Drift& drift,
                                               const EquipmentConfig& equipment) {
-  const Duration half = equipment.window / 2 / equipment.sample_period * equipment.sample_period;
-  const storage::Time end = std::max(drift.end, drift.since + half);
+  const Duration period = equipment.sample_period;
+  const std::int64_t ticks = std::max(equipment.window / 2 / period, least_window_ticks(equipment));
+  const storage::Time end =
+      std::max(drift.end, drift.since + std::min(equipment.window, ticks * period));
   return {std::max(drift.since, end - equipment.window), end};
 }
 
@@ -152,7 +155,10 @@ std::optional<ChampionMonitor::Drift> ChampionMonitor::look(const storage::Archi
   if (made->version != version_)
     watch(archive, *registry.version(spacecraft_, equipment_, made->version));
   if (!detector_) return std::nullopt;
-  if (next_ < reached - most_past) next_ += (reached - most_past - next_) / block_ * block_;
+  if (next_ < reached - most_past) {
+    next_ += (reached - most_past - next_) / block_ * block_;
+    if (detector_->statistic() == 0) since_ = next_;
+  }
   std::optional<Drift> drift;
   while (next_ + block_ <= reached) {
     const Duration come = std::min<Duration>((reached - next_) / block_, most_together);

@@ -1,8 +1,9 @@
 // Scores the champion of an equipment on new telemetry, block by block, and tells when its errors
 // have grown for good.
 //
-// A block is a sixteenth of the stretch that the champion was validated on, whose blocks are the
-// reference (identification/change_detection.hpp). The free run goes on from block to block, as a
+// A block is a sixteenth of the stretch that the champion was validated on, and as many rows as its
+// initial state needs at least; that stretch's blocks are the reference
+// (identification/change_detection.hpp). The free run goes on from block to block, as a
 // simulator's does; after a gap its state is the one that agrees with the first telemetry behind.
 // Telemetry that is not believed (plausibility.hpp), judged beside the blocks before and those that
 // came with it, is a gap: a sensor that lies is no drift of the champion.
@@ -34,7 +35,7 @@ class ChampionMonitor {
 
   /// From which to identify what the equipment is since then: telemetry of before tells nothing of
   /// that, so that the window begins with the drift, and it ends where that was found, or later,
-  /// where half of the configured window lies behind its begin.
+  /// where half of the configured window, or what a window needs at least, lies behind its begin.
   static storage::TimeRange window_of(const Drift& drift, const EquipmentConfig& equipment);
 
   /// Takes in the blocks that telemetry up to `reached` completes. A champion that was replaced is

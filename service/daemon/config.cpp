@@ -212,16 +212,6 @@ int least_horizon(const EquipmentConfig& equipment) {
   return (equipment.max_order + outputs - 1) / outputs + 1;
 }
 
-/// Ticks that a window needs: the rows left to the subspace step, after the shares for validation
-/// and tuning, must be at least the columns that its 2 s block rows of inputs and outputs ask for.
-std::int64_t least_window_ticks(const EquipmentConfig& equipment) {
-  const double horizon = equipment.horizon.value_or(equipment.max_order + 1);
-  const auto channels = static_cast<double>(equipment.inputs.size() + equipment.outputs.size());
-  const double rows = 2 * horizon * (channels + 1);
-  return static_cast<std::int64_t>(
-      std::ceil(rows / (1 - equipment.tune_share - equipment.validation_share)));
-}
-
 void check_window(TableReader& reader, const EquipmentConfig& equipment) {
   const Duration period = equipment.sample_period;
   const std::int64_t ticks = equipment.window / period;
@@ -464,6 +454,14 @@ std::variant<Config, std::vector<ConfigMistake>> load_config(const std::filesyst
   const std::variant<std::string, ConfigMistake> read = read_file(path);
   if (const auto* mistake = std::get_if<ConfigMistake>(&read)) return std::vector{*mistake};
   return parse_config(std::get<std::string>(read), path.parent_path());
+}
+
+std::int64_t least_window_ticks(const EquipmentConfig& equipment) {
+  const double horizon = equipment.horizon.value_or(equipment.max_order + 1);
+  const auto channels = static_cast<double>(equipment.inputs.size() + equipment.outputs.size());
+  const double rows = 2 * horizon * (channels + 1);
+  return static_cast<std::int64_t>(
+      std::ceil(rows / (1 - equipment.tune_share - equipment.validation_share)));
 }
 
 }  // namespace reident

@@ -105,4 +105,9 @@ std::variant<Config, std::vector<ConfigMistake>> load_config(const std::filesyst
 std::variant<Config, std::vector<ConfigMistake>> parse_config(std::string_view text,
                                                               const std::filesystem::path& folder);
 
+/// Ticks that a window of the equipment needs: the rows left to the subspace step, after the shares
+/// for validation and tuning, must be at least the columns that its 2 s block rows of inputs and
+/// outputs ask for.
+std::int64_t least_window_ticks(const EquipmentConfig& equipment);
+
 }  // namespace reident

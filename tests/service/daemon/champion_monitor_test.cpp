@@ -78,6 +78,7 @@ TEST(WindowOfADrift, BeginsWithTheDriftOnceHalfAWindowLiesBehindIt) {
   EquipmentConfig equipment;
   equipment.window = 100;
   equipment.sample_period = 4;
+  equipment.max_order = 2;
   const auto window = [&equipment](storage::Time since, storage::Time end) {
     return ChampionMonitor::window_of({.since = since, .end = end}, equipment);
   };
@@ -85,6 +86,10 @@ TEST(WindowOfADrift, BeginsWithTheDriftOnceHalfAWindowLiesBehindIt) {
   EXPECT_EQ(window(1000, 1048), (storage::TimeRange{1000, 1048}));
   EXPECT_EQ(window(1000, 1080), (storage::TimeRange{1000, 1080}));
   EXPECT_EQ(window(1000, 1180), (storage::TimeRange{1080, 1180}));
+  equipment.max_order = 4;
+  EXPECT_EQ(window(1000, 1010), (storage::TimeRange{1000, 1080})) << "as many as it needs";
+  equipment.max_order = 6;
+  EXPECT_EQ(window(1000, 1010), (storage::TimeRange{1000, 1100})) << "no longer than configured";
 }
 
 TEST_F(Monitor, DoesNotTakeOneBadStretchForAChange) {
@@ -120,6 +125,14 @@ TEST_F(Monitor, ThatBeginsLateLooksAtTheRecentPastAlone) {
   ChampionMonitor later("SAT", equipment());
   EXPECT_FALSE(later.look(archive, registry, day + 150 * minute, 60 * minute));
   EXPECT_TRUE(look(day + 79 * minute)) << "one that began in time";
+}
+
+TEST_F(Monitor, ThatBeginsLateKnowsOfNoDriftBeforeWhatItLooksAt) {
+  archive.append(telemetry(day + 20 * minute + second, 7800, 1.5));
+  ChampionMonitor later("SAT", equipment());
+  const auto drift = later.look(archive, registry, day + 150 * minute, 60 * minute);
+  ASSERT_TRUE(drift);
+  EXPECT_GT(drift->since, day + 89 * minute);
 }
 
 }  // namespace
