@@ -313,8 +313,8 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
   if (!champion.still.empty())
     return GateDecision{Outcome::on_probation,
                         praise(e) +
-                            fmt::format(" But {} stands still all over the window: its sensor is "
-                                        "stuck, or the operation is not the usual one.",
+                            fmt::format(" But {} stands still all over the window: it is stuck, "
+                                        "or the operation is not the usual one.",
                                         champion.still) +
                             wait_of(limits)};
   if (is_unusual(champion.movement))

@@ -300,8 +300,8 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
                          look.comparison.noise_percent);
     if (!look.still.empty())
       return fmt::format(
-          "from the begin of its window on {} stands still: its sensor is stuck, or the operation "
-          "is an unusual one.",
+          "from the begin of its window on {} stands still: it is stuck, or the operation is not "
+          "the usual one.",
           look.still);
     if (is_unusual(look.movement))
       return fmt::format(

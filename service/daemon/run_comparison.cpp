@@ -121,12 +121,18 @@ double movement(const EquipmentModel& model, const Matrix& u) {
 
 std::string still_input(const storage::Archive& archive, const EquipmentModel& model,
                         const Matrix& u) {
+  const auto is_switch = [&](const std::string& parameter) {
+    const auto described = archive.parameter(model.spacecraft, parameter);
+    return described && described->kind == storage::ParameterKind::digital;
+  };
+  const std::vector<DerivedInput> derived = derived_inputs(model.inputs);
   for (std::size_t j = 0; j < model.inputs.size(); ++j) {
     const Signal& input = model.inputs[j];
     const auto values = u.col(static_cast<Index>(j)).array();
     if (!(input.high > input.low) || (values != values(0)).any()) continue;
-    const auto described = archive.parameter(model.spacecraft, input.name);
-    if (!described || described->kind != storage::ParameterKind::digital) return input.name;
+    const InputExpressions sources({input.name}, derived);
+    if (!std::all_of(sources.parameters().begin(), sources.parameters().end(), is_switch))
+      return input.name;
   }
   return {};
 }

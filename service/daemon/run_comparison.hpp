@@ -60,8 +60,9 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
 double movement(const EquipmentModel& model, const identification::Matrix& u);
 
 /// The first input of the model that moved when it was identified and has one value in all of `u`
-/// (N x m, N at least 1), and is no switch; empty where there is none. A sensor's noise shows in
-/// telemetry of hours: what stands still all the time is stuck, or at rest in another operation.
+/// (N x m, N at least 1), and is no switch or computed from switches alone; empty where there is
+/// none. A sensor's noise shows in telemetry of hours: what stands still all the time is stuck, or
+/// at rest in another operation.
 std::string still_input(const storage::Archive& archive, const EquipmentModel& model,
                         const identification::Matrix& u);
 

@@ -105,6 +105,21 @@ TEST_F(Rivals, AnInputThatStandsStillAllOverTheWindowIsNamedUnlessItIsASwitch) {
   EXPECT_EQ(run(day + 30 * minute).evidence.champion->still, "");
 }
 
+TEST_F(Rivals, ADerivedInputThatStandsStillIsNamedUnlessSwitchesAloneMakeIt) {
+  EquipmentModel model;
+  model.spacecraft = "SAT";
+  model.inputs = {{"sum", "", 0, 2, "u + v"}};
+  const identification::Matrix still = identification::Matrix::Ones(5, 1);
+  EXPECT_EQ(still_input(archive, model, still), "sum");
+  auto switches = descriptors();
+  switches[0].kind = storage::ParameterKind::digital;
+  archive.describe(switches);
+  EXPECT_EQ(still_input(archive, model, still), "sum");
+  switches[1].kind = storage::ParameterKind::digital;
+  archive.describe(switches);
+  EXPECT_EQ(still_input(archive, model, still), "");
+}
+
 /// A voltage with an effect of 200 on an output of range 5, and a current with one of 4.
 EquipmentModel of_a_voltage_and_a_current() {
   using identification::Matrix;
