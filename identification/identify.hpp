@@ -34,7 +34,7 @@ struct IdentifyOptions {
   std::optional<Weighting> weighting;       // absent: chosen
   std::optional<ResponseFit> response_fit;  // the way of B and D; absent: chosen
   std::optional<bool> direct_feedthrough;   // whether D may differ from zero; absent: chosen
-  /// A model with a slower mode gives way to the best one without; where all have one it stays.
+  /// A model with a slower mode gives way to the best one without that explains the outputs.
   double longest_time_constant_s = std::numeric_limits<double>::infinity();
   /// Whether A may be made stable where every model is unstable; the recipe then says so.
   bool may_enforce_stability = true;

@@ -19,9 +19,13 @@ double spectral_radius(const StateSpaceModel& model) {
 }
 
 double slowest_time_constant_s(const StateSpaceModel& model) {
-  const double radius = spectral_radius(model);
+  return slowest_time_constant_s(model.A, model.period_s);
+}
+
+double slowest_time_constant_s(const Matrix& A, double period_s) {
+  const double radius = largest_eigenvalue(A);
   if (radius <= 0) return 0;
-  return radius < 1 ? -model.period_s / std::log(radius) : std::numeric_limits<double>::infinity();
+  return radius < 1 ? -period_s / std::log(radius) : std::numeric_limits<double>::infinity();
 }
 
 bool is_stable(const Matrix& A) {

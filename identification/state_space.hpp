@@ -41,6 +41,7 @@ double spectral_radius(const StateSpaceModel& model);
 /// Seconds in which the slowest mode falls to 1/e of what it was: 0 for a spectral radius of 0,
 /// infinite where the model is not stable.
 double slowest_time_constant_s(const StateSpaceModel& model);
+double slowest_time_constant_s(const Matrix& A, double period_s);
 
 /// Every eigenvalue of the square, finite or non-finite matrix A lies inside the unit circle.
 bool is_stable(const Matrix& A);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "identification/choice.hpp"
 #include "identification/excitation.hpp"
@@ -16,6 +18,8 @@
 
 namespace reident::identification {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// One call of identify(): the steps in their order, each of which may end it with a verdict.
 class Identification {
@@ -46,7 +50,8 @@ class Identification {
   /// The only recipe there is, where the options leave no choice or the rows do not allow one.
   std::optional<Recipe> given_recipe(const HankelSupply& supply) const;
   Verdict too_few_samples(Index width, bool held_out) const;
-  std::optional<Verdict> useless(const std::vector<ScoredRecipe>& ranked, double constant) const;
+  /// `constant` is the error of the mean on rows held out; sets acceptable_error_.
+  std::optional<Verdict> useless(const std::vector<ScoredRecipe>& ranked, double constant);
   /// An order of n needs inputs that excite n + 1 block rows.
   std::optional<Verdict> limit_by_excitation(SearchSpace& space);
   /// Made when first asked for: a model that follows from the sums alone needs no rows.
@@ -54,8 +59,8 @@ class Identification {
   Index inputs() const { return static_cast<Index>(normalisation_.inputs.size()); }
   Index outputs() const { return static_cast<Index>(normalisation_.outputs.size()); }
   const HankelFactor& factor(int horizon);
-  /// The recipe on all rows, absent when it gives no stable model there.
-  std::optional<Identified> realise(const Recipe& recipe);
+  /// The recipe on all rows, absent when it gives no stable model there, or one that is slower.
+  std::optional<Identified> realise(const Recipe& recipe, double longest_time_constant_s);
   /// B, D and y0 on the way that the recipe says, and the refinement.
   StateSpaceModel respond(const Recipe& recipe, const Projection& projection,
                           const Dynamics& dynamics);
@@ -72,11 +77,12 @@ class Identification {
   bool keep_;
   StretchSums all_sums_;
   Normalisation normalisation_;
-  std::vector<Segment> segments_;       // of the rows, counted from the first
-  std::optional<Record> work_;          // both rows, normalised, without the channels left out
-  std::optional<HankelFactor> factor_;  // of all rows, at the horizon that was asked for last
+  std::vector<Segment> segments_;        // of the rows, counted from the first
+  std::optional<Record> work_;           // both rows, normalised, without the channels left out
+  std::map<int, HankelFactor> factors_;  // of all rows, by the horizon
   std::vector<std::string> warnings_;
   double work_spent_ = 0;
+  double acceptable_error_ = infinity;  // on rows held out; a larger one is useless
 };
 
 IdentifyResult Identification::run() {
@@ -85,17 +91,24 @@ IdentifyResult Identification::run() {
   phase("choose");
   std::vector<ScoredRecipe> ranked;
   if (auto verdict = choose(ranked)) return *verdict;
-  phase("identify");
   std::optional<Identified> best;
   for (const ScoredRecipe& candidate : ranked) {
-    auto identified = realise(candidate.recipe);
+    phase("identify");
+    // A model that does not explain the outputs takes no other one's place.
+    if (best && !(candidate.error < acceptable_error_)) break;
+    const double longest = options_.longest_time_constant_s;
+    auto identified = realise(candidate.recipe, best ? longest : infinity);
     if (!identified) continue;
-    const bool too_slow =
-        slowest_time_constant_s(identified->model) > options_.longest_time_constant_s;
-    if (best && too_slow) continue;
+    const double slowest = slowest_time_constant_s(identified->model);
+    if (best && slowest > longest) continue;
     if (std::isfinite(candidate.error)) identified->held_out_error = candidate.error;
+    if (best)
+      identified->warnings.push_back(
+          "of the models with smaller errors on rows held out each has a mode that is slower "
+          "than " +
+          four_digits(longest) + " s");
     best = std::move(identified);
-    if (!too_slow) break;
+    if (slowest <= longest) break;
   }
   if (best) return std::move(*best);
   return Verdict{VerdictCode::unstable,
@@ -204,7 +217,7 @@ std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked)
   if (given) {
     if (!options_.weighting)
       warnings_.push_back("too few rows to choose on rows held out; the weighting n4sid was taken");
-    ranked = {{*given, std::numeric_limits<double>::infinity()}};
+    ranked = {{*given, infinity}};
     if (!options_.may_enforce_stability) return std::nullopt;
     ranked.push_back(ranked.front());
     ranked.back().recipe.stability = Stability::enforced;
@@ -226,12 +239,12 @@ std::optional<Verdict> Identification::choose(std::vector<ScoredRecipe>& ranked)
 }
 
 std::optional<Verdict> Identification::useless(const std::vector<ScoredRecipe>& ranked,
-                                               double constant) const {
+                                               double constant) {
   const bool unstable = ranked.empty() || ranked.front().recipe.stability == Stability::enforced;
   // A system that really is unstable must not pass as a stable one that follows it a little.
   // Of many candidates, the best beats the mean by a little even on noise.
-  const double acceptable = (unstable ? 0.5 : 0.98) * constant;
-  if (!ranked.empty() && ranked.front().error < acceptable) return std::nullopt;
+  acceptable_error_ = (unstable ? 0.5 : 0.98) * constant;
+  if (!ranked.empty() && ranked.front().error < acceptable_error_) return std::nullopt;
   if (unstable && !options_.may_enforce_stability)
     return Verdict{
         VerdictCode::unstable,
@@ -265,10 +278,11 @@ const Record& Identification::work() {
 }
 
 const HankelFactor& Identification::factor(int horizon) {
-  if (factor_ && factor_->horizon == horizon) return *factor_;
-  factor_ = factor_of_sums(all_sums_, normalisation_, horizon);
-  if (!factor_) factor_ = factor_of_rows(work(), segments_, horizon);
-  return *factor_;
+  const auto found = factors_.find(horizon);
+  if (found != factors_.end()) return found->second;
+  auto made = factor_of_sums(all_sums_, normalisation_, horizon);
+  if (!made) made = factor_of_rows(work(), segments_, horizon);
+  return factors_.emplace(horizon, std::move(*made)).first->second;
 }
 
 std::optional<Verdict> Identification::limit_by_excitation(SearchSpace& space) {
@@ -317,12 +331,16 @@ StateSpaceModel Identification::respond(const Recipe& recipe, const Projection& 
   return fit_response(A, C, recipe.direct, work(), last(affordable), Accuracy::exact).model;
 }
 
-std::optional<Identified> Identification::realise(const Recipe& recipe) {
+std::optional<Identified> Identification::realise(const Recipe& recipe,
+                                                  double longest_time_constant_s) {
   const HankelFactor& hankel = factor(recipe.horizon);
   const Projection projection(hankel);
   auto [gamma, singular_values] = projection.observability(recipe.weighting);
   const Dynamics dynamics = shift_invariant(gamma, hankel.outputs, recipe.order, recipe.stability);
   if (!is_stable(dynamics.A)) return std::nullopt;
+  if (recipe.refinement_steps == 0 &&
+      slowest_time_constant_s(dynamics.A, record_.period_s) > longest_time_constant_s)
+    return std::nullopt;
   StateSpaceModel model = respond(recipe, projection, dynamics);
   Identified result;
   result.warnings = warnings_;

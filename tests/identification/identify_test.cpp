@@ -10,6 +10,7 @@
 namespace reident::identification {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -57,13 +58,29 @@ TEST(Identify, AModelThatIsTooSlowGivesWayToOneThatIsNot) {
   options.max_order = 3;
   EXPECT_GT(slowest_time_constant_s(expect_model(record, record.all(), options).model), 2000);
   options.longest_time_constant_s = 2000;
-  EXPECT_LT(slowest_time_constant_s(expect_model(record, record.all(), options).model), 2000);
+  const Identified second = expect_model(record, record.all(), options);
+  EXPECT_LT(slowest_time_constant_s(second.model), 2000);
+  EXPECT_THAT(second.warnings, Contains(HasSubstr("a mode that is slower than 2000 s")));
   options.order = 2;
   options.longest_time_constant_s = 0.1;
   EXPECT_GT(slowest_time_constant_s(expect_model(record, record.all(), options).model), 0.1)
       << "there is no other";
   options.longest_time_constant_s = 0;
   EXPECT_THAT(mistakes(options), ElementsAre("the longest time constant must be positive"));
+}
+
+TEST(Identify, AModelThatIsTooSlowDoesNotGiveWayToOneThatExplainsNothing) {
+  testing::Noise noise(15);
+  StateSpaceModel truth = testing::random_system(noise, 1, 1, 1);
+  truth.A << std::exp(-1.0 / 20'000);
+  truth.B << 0.02;
+  truth.C << 1;
+  truth.D << 0;
+  IdentifyOptions options;
+  options.longest_time_constant_s = 20;
+  const Identified found =
+      expect_model(testing::excited(truth, noise, 2000, 0.05), {0, 2000}, options);
+  EXPECT_GT(slowest_time_constant_s(found.model), 2000);
 }
 
 TEST(Identify, WithNoiseTheErrorFallsWithTheRows) {
