@@ -123,7 +123,9 @@ Vector least_squares(const Matrix& left, const Vector& right) {
 Vector weights_of(const Vector& square_errors, const Record& record, const Segment& rows) {
   constexpr double least_error = 1e-10;  // of the output's size: smaller ones are rounding
   const Vector size = record.y.middleRows(rows.begin, rows.size()).cwiseAbs().colwise().maxCoeff();
-  return square_errors.cwiseSqrt().cwiseMax(least_error * size).cwiseInverse();
+  return square_errors.cwiseSqrt().cwiseMax(least_error * size).unaryExpr([](double error) {
+    return error > 0 ? 1 / error : 0.0;  // an output that is zero and modelled so tells nothing
+  });
 }
 
 /// y[k] less the response from the state x, below each other. x becomes the state behind them.
@@ -180,29 +182,44 @@ Matrix power_of(Matrix A, std::int64_t exponent) {
   return power;
 }
 
-/// Mean square errors of the model over a part, from the state that suits it best.
-Vector square_errors_of(const StateSpaceModel& model, const Record& record, const Segment& part) {
-  Matrix y_hat(part.size(), model.outputs());
-  run_segment(model, record, part, estimate_initial_state(model, record, {part}, part.size()),
-              y_hat, 0);
-  return (record.y.middleRows(part.begin, part.size()) - y_hat)
-             .colwise()
-             .squaredNorm()
-             .transpose() /
-         double(part.size());
+Vector state_of_part(const StateSpaceModel& model, const Record& record, const Segment& part) {
+  Vector behind = Vector::Zero(model.order());
+  const Matrix observability = observability_of(model, part.size());
+  const Vector free_response = remainder_of(model, record, part, part.size(), behind);
+  if (!observability.allFinite() || !free_response.allFinite()) return Vector::Zero(model.order());
+  return least_squares(observability, free_response);
+}
+
+/// Mean square errors of the model over parts, each from the state that suits it best. Where that
+/// takes nearly all that the parts tell, what the outputs change from row to row stands for them.
+Vector square_errors_of(const StateSpaceModel& model, const Record& record,
+                        const std::vector<Segment>& parts) {
+  const auto taken = double(model.order()) / double(model.outputs());  // rows, by a state
+  Vector squares = Vector::Zero(model.outputs());
+  double left = 0;
+  for (const Segment& part : parts) {
+    if (double(part.size()) <= taken) continue;
+    Matrix y_hat(part.size(), model.outputs());
+    run_segment(model, record, part, state_of_part(model, record, part), y_hat, 0);
+    squares +=
+        (record.y.middleRows(part.begin, part.size()) - y_hat).colwise().squaredNorm().transpose();
+    left += double(part.size()) - taken;
+  }
+  if (left >= std::max(1.0, taken)) return squares / left;
+  return square_changes(record.y, {{parts.front().begin, parts.back().end}}).usual / 2;
 }
 
 /// State at the first row of several parts, from the last one back to it (a square-root information
 /// filter): through a hole the state is what interpolated inputs make of it, with the uncertainty
-/// that state_after_hole gives it, and the errors of the longest part are the noise.
+/// that state_after_hole gives it, and the model's errors over the parts are the noise.
 Vector state_before_holes(const StateSpaceModel& model, const Record& record,
                           const std::vector<Segment>& parts) {
   const Index n = model.order(), p = model.outputs();
-  const auto longest =
-      std::max_element(parts.begin(), parts.end(),
-                       [](const Segment& a, const Segment& b) { return a.size() < b.size(); });
-  const Vector weight = weights_of(square_errors_of(model, record, *longest), record, *longest);
-  const Matrix observability = observability_of(model, longest->size());
+  const Segment& longest =
+      *std::max_element(parts.begin(), parts.end(),
+                        [](const Segment& a, const Segment& b) { return a.size() < b.size(); });
+  const Vector weight = weights_of(square_errors_of(model, record, parts), record, longest);
+  const Matrix observability = observability_of(model, longest.size());
   const SquareChanges changes = square_changes(record);
   Information known{Matrix(0, n), Vector(0)};
   for (std::size_t i = parts.size(); i-- > 0;) {
@@ -216,7 +233,7 @@ Vector state_before_holes(const StateSpaceModel& model, const Record& record,
     rows.col(n).head(values) = weights.cwiseProduct(remainder);
     rows.bottomLeftCorner(behind, n) = known.R * power_of(model.A, part.size());
     rows.col(n).tail(behind) = known.r - known.R * end;
-    if (!rows.allFinite()) return Vector::Zero(n);
+    if (!rows.allFinite()) return state_of_part(model, record, parts.front());
     known = without_unknowns(rows, 0);
     if (i == 0) break;
     const auto [x, L] = through_hole(model, record, parts[i - 1], part, Vector::Zero(n), changes);
@@ -226,7 +243,7 @@ Vector state_before_holes(const StateSpaceModel& model, const Record& record,
         known.R * power_of(model.A, ticks_between(parts[i - 1], part));
     hole.col(2 * n).head(known.R.rows()) = known.r - known.R * x;
     hole.bottomLeftCorner(n, n).setIdentity();
-    if (!hole.allFinite()) return Vector::Zero(n);
+    if (!hole.allFinite()) return state_of_part(model, record, parts.front());
     known = without_unknowns(hole, n);
   }
   return known.R.completeOrthogonalDecomposition().solve(known.r);
@@ -291,12 +308,7 @@ Vector estimate_initial_state(const StateSpaceModel& model, const Record& record
   const Index n = model.order();
   if (n == 0 || parts.empty()) return Vector::Zero(n);
   if (parts.size() > 1) return state_before_holes(model, record, parts);
-  const Segment& part = parts.front();
-  const Matrix observability = observability_of(model, part.size());
-  Vector behind = Vector::Zero(n);
-  const Vector free_response = remainder_of(model, record, part, part.size(), behind);
-  if (!observability.allFinite() || !free_response.allFinite()) return Vector::Zero(n);
-  return least_squares(observability, free_response);
+  return state_of_part(model, record, parts.front());
 }
 
 Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange rows,

@@ -153,6 +153,53 @@ TEST(InitialState, DoesNotRestOnTheFewRowsBeforeAHole) {
   EXPECT_LT((run - y).bottomRows(1400).cwiseAbs().maxCoeff(), 0.02);
 }
 
+/// An integrator beside five fast states; no part between the holes has more rows than there are.
+TEST(InitialState, DoesNotRestOnTheFirstRowsWhereEverySeventhIsMissing) {
+  testing::Noise noise(9);
+  StateSpaceModel model{Matrix::Zero(6, 6),
+                        Matrix::Ones(6, 1),
+                        Matrix::Ones(1, 6),
+                        Matrix::Zero(1, 1),
+                        {},
+                        Vector::Zero(1),
+                        Vector::Zero(1),
+                        1};
+  model.A.diagonal() << 1, 0.1, 0.2, 0.3, 0.4, 0.5;
+  model.B(0, 0) = 0.01;
+  constexpr Index parts = 100;
+  double of_all = 0, of_the_first = 0;  // sums of squares
+  for (int i = 0; i < 20; ++i) {
+    const Matrix u = noise.normal(7 * parts, 1);
+    const Matrix y =
+        testing::simulated(model, u, Vector::Zero(6)) + 0.1 * noise.normal(u.rows(), 1);
+    Record record{1, Matrix(6 * parts, 1), Matrix(6 * parts, 1), {}};
+    for (Index part = 0; part < parts; ++part) {
+      record.u.middleRows(6 * part, 6) = u.middleRows(7 * part, 6);
+      record.y.middleRows(6 * part, 6) = y.middleRows(7 * part, 6);
+      record.segments.push_back({6 * part, 6 * part + 6, 7 * part});
+    }
+    const std::vector<Segment> first{record.segments.front()};
+    of_all += std::pow(estimate_initial_state(model, record, record.segments, state_rows)(0), 2);
+    of_the_first += std::pow(estimate_initial_state(model, record, first, state_rows)(0), 2);
+  }
+  EXPECT_LT(std::sqrt(of_all / of_the_first), 0.6);
+}
+
+TEST(InitialState, ComesFromTheOtherOutputsWhereOneIsZero) {
+  testing::Noise noise(10);
+  const Matrix u = noise.normal(600, 1);
+  const Holed holed(noise, u);
+  Record record = testing::with_gap(contiguous_record(1, u, holed.y), 100, 102);
+  const Vector alone = estimate_initial_state(holed.model, record, record.segments, state_rows);
+  StateSpaceModel model = holed.model;
+  model.C.conservativeResizeLike(Matrix::Zero(2, 2));
+  model.D = Matrix::Zero(2, 1);
+  model.y0 = Vector::Zero(2);
+  record.y.conservativeResizeLike(Matrix::Zero(record.rows(), 2));
+  const Vector x0 = estimate_initial_state(model, record, record.segments, state_rows);
+  EXPECT_LT((x0 - alone).norm(), 1e-6);
+}
+
 TEST(InitialState, IsThatOfItsOwnRowsBeforeALongHole) {
   testing::Noise noise(8);
   const Matrix u = noise.normal(1500, 1);
