@@ -1,5 +1,6 @@
 #include "service/daemon/window_attempt.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace reident {
@@ -31,6 +32,16 @@ bool record(const storage::Standing& standing, const ProbationDecision& found,
   return recorded;
 }
 
+/// The window without what lies before the champion's. That one begins later where it was asked for
+/// because an older champion drifted: telemetry of before is of what the equipment was then.
+storage::TimeRange window_of(const WindowFeed::Job& job, const storage::Registry& registry) {
+  storage::TimeRange window = job.window.window;
+  const auto champion = registry.champion(*job.spacecraft, job.equipment->name);
+  if (champion && champion->window.end <= window.end)
+    window.begin = std::max(window.begin, champion->window.begin);
+  return window;
+}
+
 }  // namespace
 
 void decide_probation(const storage::Archive& archive, const storage::Registry& registry,
@@ -47,13 +58,12 @@ std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
                                               const storage::Registry& registry, KeptWindow& kept,
                                               const AttemptContext& context) {
   for (const storage::TimeRange& changed : job.changed) kept.forget(changed);
-  const storage::TimeRange window = job.window.window;
+  const storage::Time end = job.window.window.end;
   // From here on the archive marks what still falls into the window.
-  context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, window.end); });
-  decide_probation(archive, registry, *job.spacecraft, *job.equipment, INT64_MIN, window.end,
-                   context);
-  const RefreshRequest request{*job.spacecraft, *job.equipment, window, job.window.cause,
-                               context.configuration_digest};
+  context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, end); });
+  decide_probation(archive, registry, *job.spacecraft, *job.equipment, INT64_MIN, end, context);
+  const RefreshRequest request{*job.spacecraft, *job.equipment, window_of(job, registry),
+                               job.window.cause, context.configuration_digest};
   // Read before the refresh looks at the champion and the hold.
   const storage::Standing standing = registry.standing(*job.spacecraft, job.equipment->name);
   RecordedAttempt attempt{

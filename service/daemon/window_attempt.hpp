@@ -37,7 +37,8 @@ void decide_probation(const storage::Archive& archive, const storage::Registry& 
                       storage::Time since, storage::Time reached, const AttemptContext& context);
 
 /// Seals the window, looks at the equipment's versions on probation with the telemetry up to its
-/// end, tries it and commits what came out; nothing is published. Absent, and nothing recorded of
+/// end, tries what of it does not lie before the champion's window and commits what came out;
+/// nothing is published. Absent, and nothing recorded of
 /// the window, where the equipment's standing is not the one that the attempt saw any more.
 /// `archive` and `registry` are of the calling thread; `kept` is of the job's equipment. Throws
 /// Stopped where `stop` answered true.
