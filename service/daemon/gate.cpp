@@ -310,6 +310,13 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
             fmt::format(" That is little less beside the noise of the sensors ({:.3f} %).",
                         champion.comparison->noise_percent) +
             wait_of(limits)};
+  if (static_cast<double>(champion.comparison->rows) < champion.slowest_rows)
+    return GateDecision{Outcome::on_probation,
+                        praise(e) +
+                            fmt::format(" But those are fewer than the slowest time constant of "
+                                        "the two lasts ({:.0f}).",
+                                        champion.slowest_rows) +
+                            wait_of(limits)};
   if (!champion.still.empty())
     return GateDecision{Outcome::on_probation,
                         praise(e) +

@@ -95,6 +95,7 @@ struct Evidence {
     /// Parameters whose sensors could show that mean error, and which no relation binds.
     std::vector<std::string> unbound{};
     double validated_mrse_percent = 0;  // where it was validated; 0: not known
+    double slowest_rows = 0;            // samples in the slowest time constant of the two
     double movement = 1;                // of these samples (run_comparison.hpp)
     std::string still{};                // input that stands still all over the window (the same)
     /// The comparison there, before the candidate's window. Looked at where the candidate is surely

@@ -56,13 +56,15 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
       {"tenure_believed", look.tenure_believed},
       {"comparison", to_json(look.comparison)},
       {"after_window", to_json(look.after)},
-      {"with_window", to_json(look.with_window)}};
+      {"with_window", to_json(look.with_window)},
+      {"without_offset", to_json(look.without_offset)},
+      {"needs_vouching", look.needs_vouching},
+      {"slowest_rows", look.slowest_rows}};
   if (!look.still.empty()) evidence["still"] = look.still;
   if (look.with_past) evidence["with_past"] = to_json(*look.with_past);
   if (look.champion_worst_mrse_percent > 0)
     evidence["champion_worst_mrse_percent"] = look.champion_worst_mrse_percent;
   if (look.over_tenure) evidence["over_tenure"] = to_json(*look.over_tenure);
-  if (look.without_offset) evidence["without_offset"] = to_json(*look.without_offset);
   const Evidence::Comparison& comparison = look.comparison;
   return {kind, "gate",
           fmt::format("MRSE {:.3f} % on {} samples of the validation part and after it, until {}; "
@@ -77,15 +79,34 @@ struct Reduction {
   double sure_percent = 0;
 };
 
-/// The smaller one, where the champion is looked at without its mean error too.
+/// The smaller one, where the champion's mean error has to be vouched for.
 Reduction reduction_of(const LongerLook& look) {
   const auto of = [](const Evidence::Comparison& comparison) -> Reduction {
     return {comparison.reduction_percent, comparison.sure_percent.value_or(-INFINITY)};
   };
   Reduction all = of(look.comparison);
-  if (!look.without_offset) return all;
-  const Reduction without = of(*look.without_offset);
+  if (!look.needs_vouching) return all;
+  const Reduction without = of(look.without_offset);
   return {std::min(all.percent, without.percent), std::min(all.sure_percent, without.sure_percent)};
+}
+
+double surely_needed_elsewhere(const EquipmentConfig& limits) {
+  return sure_elsewhere * limits.margin_percent;
+}
+
+/// In so many time constants little is left of the state that a mode was in: a twentieth.
+constexpr double time_constants = 3;
+
+/// Whether the champion may be right and its slowest mode away for a while: all that is surely
+/// gained is a constant, the comparison is too short to see that mode return, and the champion has
+/// not gone far beyond what it ever erred.
+bool may_be_excursion(const LongerLook& look, const EquipmentConfig& limits) {
+  constexpr double far = 3;
+  const double ever =
+      std::max(look.champion_validated_mrse_percent, look.champion_worst_mrse_percent);
+  return !(look.without_offset.sure_percent > surely_needed_elsewhere(limits)) &&
+         static_cast<double>(look.comparison.rows) < time_constants * look.slowest_rows &&
+         look.comparison.rival_mrse_percent < far * ever;
 }
 
 /// Whether a sensor that no relation binds could show the champion's mean error, as the attempt
@@ -100,13 +121,10 @@ bool needs_vouching(const storage::Registry& registry, const storage::Version& v
 }
 
 /// For so long before the window free runs go on already, so that little is left of the states that
-/// they begin with: a twentieth in three time constants of the slowest mode, of `longest` at most.
+/// they begin with: three time constants of the slowest mode, of `longest` at most.
 Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent, Duration longest) {
-  constexpr double time_constants = 3;
-  const double slowest_s = std::max(slowest_time_constant_s(model.dynamics),
-                                    slowest_time_constant_s(incumbent.dynamics));
-  return static_cast<Duration>(time_constants *
-                               std::min(1e9 * slowest_s, static_cast<double>(longest)));
+  const double slowest = 1e9 * model.dynamics.period_s * slowest_rows(model, incumbent);
+  return static_cast<Duration>(time_constants * std::min(slowest, static_cast<double>(longest)));
 }
 
 /// The two on what the champion has run on since it was validated until `end`, four windows at
@@ -150,6 +168,9 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
       fault_share(data->plausibility, ticks_of({window.begin, range.end}, request.period));
   const identification::Record& record = data->record;
   look.champion_validated_mrse_percent = incumbent.validation.mrse();
+  look.validated_mrse_percent = model.validation.mrse();
+  look.slowest_rows = slowest_rows(model, incumbent);
+  look.needs_vouching = needs_vouching;
   const auto theirs = run_beside(archive, incumbent, request, record, range);
   if (!theirs) return std::nullopt;
   const identification::Matrix outputs = free_run(model.dynamics, record, record.all());
@@ -183,20 +204,20 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
     if (const auto past =
             runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
       look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
-  if (needs_vouching) {
-    PairedRuns centred = runs;
-    centred.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
-    look.without_offset = compare(centred, equipment.confidence_percent, Course::changing);
-  }
+  PairedRuns centred = runs;
+  centred.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
+  look.without_offset = compare(centred, equipment.confidence_percent, Course::changing);
   return Looked{std::move(look), std::move(runs)};
 }
 
 void add_tenure(LongerLook& look, const RunsOfBoth& tenure, const PairedRuns& runs,
-                double confidence_percent) {
+                const EquipmentConfig& limits) {
   look.tenure_believed = tenure.believed_share;
   look.champion_worst_mrse_percent = worst_of_rival(tenure.runs, runs.y.rows());
-  if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent))
-    look.over_tenure = compare(joined(tenure.runs, runs), confidence_percent, Course::changing);
+  if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent) ||
+      may_be_excursion(look, limits))
+    look.over_tenure =
+        compare(joined(tenure.runs, runs), limits.confidence_percent, Course::changing);
 }
 
 /// What speaks against the version whatever came after its window.
@@ -247,7 +268,7 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
       const auto tenure =
           runs_over_tenure(archive, version.window.begin, model, incumbent, equipment);
       if (!tenure) return found;
-      add_tenure(look, *tenure, runs, equipment.confidence_percent);
+      add_tenure(look, *tenure, runs, equipment);
       return judge_probation(look, equipment);
     };
     if (since < confirmed)
@@ -267,10 +288,14 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
 
 std::optional<NewDecision> judge_probation(const LongerLook& look, const EquipmentConfig& limits) {
   constexpr double least_believed = 0.5;
+  constexpr double most_growth = 2;
   const Reduction reduction = reduction_of(look);
   const bool left_behind =
       is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
-  const double needed = sure_elsewhere * limits.margin_percent;
+  const bool excursion = may_be_excursion(look, limits);
+  const bool keeps_up = look.after.mrse_percent < most_growth * look.validated_mrse_percent;
+  const double needed = surely_needed_elsewhere(limits);
+  const double surely_needed = keeps_up ? needed : limits.margin_percent;
   const auto against = [&]() -> std::optional<std::string> {
     if (is_in_doubt(look.fault_share))
       return fmt::format(
@@ -289,11 +314,15 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           "over all of its window and what came after it, it has {:.3f} % and the champion {:.3f} "
           "%.",
           look.with_window.mrse_percent, look.with_window.rival_mrse_percent);
-    if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > needed))
-      return fmt::format("that is not {:g} % less, and surely {:g} %.", limits.margin_percent,
-                         needed);
-    const bool surely_throughout =
-        look.after.sure_percent > 0.0 && look.with_window.sure_percent > limits.margin_percent;
+    if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > surely_needed))
+      return fmt::format(
+          "that is not {:g} % less, and surely {:g} %{}.", limits.margin_percent, surely_needed,
+          keeps_up ? ""
+                   : fmt::format(", as it has to be of a version that has {:.3f} % after its "
+                                 "window and had {:.3f} % where it was validated",
+                                 look.after.mrse_percent, look.validated_mrse_percent));
+    const bool surely_throughout = !excursion && look.after.sure_percent > 0.0 &&
+                                   look.with_window.sure_percent > limits.margin_percent;
     if (!shows_beside_noise(look.comparison,
                             surely_throughout ? lasting_gain_over_noise : least_gain_over_noise))
       return fmt::format("that is too little less beside the noise of the sensors ({:.3f} %).",
@@ -326,6 +355,16 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           "of a change; over {} samples of then and now the version has {:.3f} % and the champion "
           "{:.3f} %.",
           look.champion_worst_mrse_percent, all->rows, all->mrse_percent, all->rival_mrse_percent);
+    if (const auto& all = look.over_tenure;
+        all && excursion &&
+        !(all->sure_percent > needed &&
+          static_cast<double>(all->rows) >= time_constants * look.slowest_rows))
+      return fmt::format(
+          "but for a constant the champion has {:.3f} %, and a mode with a time constant of {:.0f} "
+          "samples may make it for a while; over {} samples since the champion was validated the "
+          "version has {:.3f} % and the champion {:.3f} %.",
+          look.without_offset.rival_mrse_percent, look.slowest_rows, all->rows, all->mrse_percent,
+          all->rival_mrse_percent);
     return std::nullopt;
   }();
   using Stage = LongerLook::Stage;

@@ -11,6 +11,7 @@
 // followed sooner than by the next window, and a stretch of unusual operation is told from one.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -34,6 +35,8 @@ struct LongerLook {
   double fault_share = 0;   // of the window and what came after it (plausibility.hpp)
   std::int64_t champion = 0;
   double champion_validated_mrse_percent = 0;  // where it was validated
+  double validated_mrse_percent = INFINITY;    // the version, where it was
+  double slowest_rows = 0;                     // samples in the longer of their time constants
   Evidence::Comparison comparison;             // with the champion
   /// The same on what came after the window alone, by which nothing was chosen; without rows where
   /// nothing is left of it.
@@ -46,13 +49,13 @@ struct LongerLook {
   std::optional<Evidence::Comparison> with_past{};
   /// The same on all that the champion has run on since it was validated, before the version's
   /// window and four windows back at most, and on what `comparison` is of. Looked at where the
-  /// champion errs less than 1.5 times what it did in the worst stretch of then that is as long, of
-  /// a version that would be approved otherwise.
+  /// champion errs less than 1.5 times what it did in the worst stretch of then that is as long, or
+  /// its error may be an excursion of its slowest mode, of a version that would be approved
+  /// otherwise.
   std::optional<Evidence::Comparison> over_tenure{};
   double champion_worst_mrse_percent = 0;  // there; 0 where it did not run for so long
-  /// `comparison` with the champion's mean error taken from it, where a sensor that no relation
-  /// binds could show that error.
-  std::optional<Evidence::Comparison> without_offset{};
+  Evidence::Comparison without_offset;     // `comparison` without the champion's mean error
+  bool needs_vouching = false;             // a sensor that no relation binds could show that error
   /// Of the last telemetry, as many samples as the validation part has (run_comparison.hpp).
   double movement = 1;
   /// Input that stands still from the begin of the window on (the same).

@@ -81,6 +81,7 @@ ordered_json to_json(const Evidence::Champion& champion) {
   if (champion.comparison) {
     json["mrse_percent"] = champion.comparison->rival_mrse_percent;
     json["validated_mrse_percent"] = champion.validated_mrse_percent;
+    json["slowest_rows"] = champion.slowest_rows;
     json["movement"] = champion.movement;
     if (!champion.still.empty()) json["still"] = champion.still;
     json["comparison"] = to_json(*champion.comparison);

@@ -220,6 +220,7 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
   }
   if (!same_outputs(champion, candidate)) return std::nullopt;
   evidence.validated_mrse_percent = champion.validation.mrse();
+  evidence.slowest_rows = slowest_rows(candidate, champion);
   identification::Vector offset =
       identification::Vector::Zero(static_cast<Index>(champion.outputs.size()));
   if (const auto run = run_beside(archive, champion, prepared.loaded, prepared.data.record,

@@ -198,6 +198,11 @@ PairedRuns joined(const PairedRuns& first, const PairedRuns& second) {
   return both;
 }
 
+double slowest_rows(const EquipmentModel& one, const EquipmentModel& other) {
+  return std::max(slowest_time_constant_s(one.dynamics), slowest_time_constant_s(other.dynamics)) /
+         one.dynamics.period_s;
+}
+
 bool same_outputs(const EquipmentModel& one, const EquipmentModel& other) {
   return std::equal(one.outputs.begin(), one.outputs.end(), other.outputs.begin(),
                     other.outputs.end(),

@@ -85,6 +85,9 @@ double worst_of_rival(const PairedRuns& runs, identification::Index rows);
 /// Both of them, one after the other.
 PairedRuns joined(const PairedRuns& first, const PairedRuns& second);
 
+/// Samples of the first in the slowest time constant of the two.
+double slowest_rows(const EquipmentModel& one, const EquipmentModel& other);
+
 bool same_outputs(const EquipmentModel& one, const EquipmentModel& other);
 
 nlohmann::ordered_json to_json(const Evidence::Comparison& comparison);

@@ -298,6 +298,20 @@ const Case without_a_change[] = {
        c.confirmation = 100;
      },
      Outcome::approved},
+    {"FewerSamplesThanASlowModeLasts",
+     [](auto& e, auto& c) {
+       e.champion->slowest_rows = 500.1;
+       c.confirmation = 100;
+     },
+     Outcome::on_probation},
+    {"AsManySamplesAsASlowModeLasts",
+     [](auto& e, auto& c) {
+       e.champion->slowest_rows = 500;
+       c.confirmation = 100;
+     },
+     Outcome::approved},
+    {"FewerSamplesThanASlowModeLastsWithoutProbation",
+     [](auto& e, auto&) { e.champion->slowest_rows = 500.1; }, Outcome::approved},
     {"ChampionErrsAsWhereItWasValidatedWithoutProbation",
      [](auto& e, auto&) { e.champion->validated_mrse_percent = 8; }, Outcome::approved},
 };

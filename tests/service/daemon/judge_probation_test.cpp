@@ -1,4 +1,7 @@
 // The decision of one look at a version on probation.
+#include <functional>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -90,11 +93,71 @@ TEST(JudgeProbation, RejectsWhatIsSurelyBetterByLessThanTheMargin) {
 TEST(JudgeProbation, AsksForMoreThanAnOffsetWhereNoSensorVouchesForIt) {
   LongerLook look = sure_of(40);
   look.without_offset = sure_of(4).comparison;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.needs_vouching = true;
   EXPECT_FALSE(judge_probation(look, {}));
   look.without_offset = sure_of(6).comparison;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
-  look.without_offset->sure_percent.reset();
+  look.without_offset.sure_percent.reset();
   EXPECT_FALSE(judge_probation(look, {}));
+}
+
+/// A constant of twice what the champion ever erred, over two time constants and a half.
+LongerLook of_a_slow_mode() {
+  LongerLook look = sure_of(40);
+  look.stage = LongerLook::Stage::last;
+  look.champion_validated_mrse_percent = 4;
+  look.slowest_rows = 200;
+  look.without_offset.sure_percent = 5;
+  look.over_tenure = look.comparison;
+  look.over_tenure->rows = 600;
+  look.over_tenure->sure_percent = 5.1;
+  return look;
+}
+
+TEST(JudgeProbation, AsksTheTenureWhetherAConstantIsAnExcursionOfASlowMode) {
+  EXPECT_EQ(judge_probation(of_a_slow_mode(), {})->kind, DecisionKind::approve);
+  const std::vector<std::function<void(LongerLook&)>> against = {
+      [](LongerLook& look) { look.over_tenure->sure_percent = 5; },
+      [](LongerLook& look) { look.over_tenure->rows = 599; }};
+  const std::vector<std::function<void(LongerLook&)>> no_excursion = {
+      [](LongerLook& look) { look.without_offset.sure_percent = 5.1; },
+      [](LongerLook& look) { look.slowest_rows = 500.0 / 3; },
+      [](LongerLook& look) { look.champion_validated_mrse_percent = 8.0 / 3; }};
+  for (const auto& speak : against) {
+    LongerLook look = of_a_slow_mode();
+    speak(look);
+    const auto found = judge_probation(look, {});
+    EXPECT_EQ(found->kind, DecisionKind::reject);
+    EXPECT_THAT(found->reason, HasSubstr("a mode with a time constant of 200 samples may make it"));
+    for (const auto& change : no_excursion) {
+      LongerLook other = look;
+      change(other);
+      EXPECT_EQ(judge_probation(other, {})->kind, DecisionKind::approve);
+    }
+  }
+}
+
+TEST(JudgeProbation, TakesNoSmallGainBesideTheNoiseForLastingWhereASlowModeMayReturn) {
+  LongerLook look = of_a_slow_mode();
+  look.comparison.noise_percent = 2.5;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
+  look.slowest_rows = 100;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
+TEST(JudgeProbation, AsksForAllOfTheMarginWhereTheVersionDoesNotKeepUp) {
+  LongerLook look = sure_of(15);
+  look.stage = LongerLook::Stage::last;
+  look.validated_mrse_percent = 2.6;  // it errs by 5 after its window
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+  look.validated_mrse_percent = 2.5;
+  const auto found = judge_probation(look, {});
+  EXPECT_EQ(found->kind, DecisionKind::reject);
+  EXPECT_THAT(found->reason, HasSubstr("surely 15 %, as it has to be of a version that has 5.000 % "
+                                       "after its window and had 2.500 % where it was validated"));
+  look.comparison.sure_percent = 15.1;
+  EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
 
 TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
