@@ -109,6 +109,38 @@ bool may_be_excursion(const LongerLook& look, const EquipmentConfig& limits) {
          look.comparison.rival_mrse_percent < far * ever;
 }
 
+bool left_behind(const LongerLook& look) {
+  return is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
+}
+
+/// What speaks against the version of all that the champion has run on.
+std::optional<std::string> against_tenure(const LongerLook& look, const EquipmentConfig& limits) {
+  constexpr double least_believed = 0.5;
+  const double needed = surely_needed_elsewhere(limits);
+  if (!left_behind(look) && look.tenure_believed < least_believed)
+    return fmt::format(
+        "the champion had {:.3f} % where it was validated, and of the telemetry from then to the "
+        "version's window {:.0f} % is believed, so that nothing tells of a change.",
+        look.champion_validated_mrse_percent, 100 * look.tenure_believed);
+  if (const auto& all = look.over_tenure; all && !(all->reduction_percent > needed))
+    return fmt::format(
+        "since the champion was validated it had up to {:.3f} % already, so that nothing tells "
+        "of a change; over {} samples of then and now the version has {:.3f} % and the champion "
+        "{:.3f} %.",
+        look.champion_worst_mrse_percent, all->rows, all->mrse_percent, all->rival_mrse_percent);
+  if (const auto& all = look.over_tenure;
+      all && may_be_excursion(look, limits) &&
+      !(all->sure_percent > needed &&
+        static_cast<double>(all->rows) >= time_constants * look.slowest_rows))
+    return fmt::format(
+        "but for a constant the champion has {:.3f} %, and a mode with a time constant of {:.0f} "
+        "samples may make it for a while; over {} samples since the champion was validated the "
+        "version has {:.3f} % and the champion {:.3f} %.",
+        look.without_offset.rival_mrse_percent, look.slowest_rows, all->rows, all->mrse_percent,
+        all->rival_mrse_percent);
+  return std::nullopt;
+}
+
 /// Whether a sensor that no relation binds could show the champion's mean error, as the attempt
 /// found.
 bool needs_vouching(const storage::Registry& registry, const storage::Version& version,
@@ -287,12 +319,8 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
 }  // namespace
 
 std::optional<NewDecision> judge_probation(const LongerLook& look, const EquipmentConfig& limits) {
-  constexpr double least_believed = 0.5;
   constexpr double most_growth = 2;
   const Reduction reduction = reduction_of(look);
-  const bool left_behind =
-      is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
-  const bool excursion = may_be_excursion(look, limits);
   const bool keeps_up = look.after.mrse_percent < most_growth * look.validated_mrse_percent;
   const double needed = surely_needed_elsewhere(limits);
   const double surely_needed = keeps_up ? needed : limits.margin_percent;
@@ -321,7 +349,8 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
                    : fmt::format(", as it has to be of a version that has {:.3f} % after its "
                                  "window and had {:.3f} % where it was validated",
                                  look.after.mrse_percent, look.validated_mrse_percent));
-    const bool surely_throughout = !excursion && look.after.sure_percent > 0.0 &&
+    const bool surely_throughout = !may_be_excursion(look, limits) &&
+                                   look.after.sure_percent > 0.0 &&
                                    look.with_window.sure_percent > limits.margin_percent;
     if (!shows_beside_noise(look.comparison,
                             surely_throughout ? lasting_gain_over_noise : least_gain_over_noise))
@@ -344,34 +373,14 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           "over {} samples of then and now the version has {:.3f} % and the champion {:.3f} %.",
           look.champion_validated_mrse_percent, both->rows, both->mrse_percent,
           both->rival_mrse_percent);
-    if (!left_behind && look.tenure_believed < least_believed)
-      return fmt::format(
-          "the champion had {:.3f} % where it was validated, and of the telemetry from then to the "
-          "version's window {:.0f} % is believed, so that nothing tells of a change.",
-          look.champion_validated_mrse_percent, 100 * look.tenure_believed);
-    if (const auto& all = look.over_tenure; all && !(all->reduction_percent > needed))
-      return fmt::format(
-          "since the champion was validated it had up to {:.3f} % already, so that nothing tells "
-          "of a change; over {} samples of then and now the version has {:.3f} % and the champion "
-          "{:.3f} %.",
-          look.champion_worst_mrse_percent, all->rows, all->mrse_percent, all->rival_mrse_percent);
-    if (const auto& all = look.over_tenure;
-        all && excursion &&
-        !(all->sure_percent > needed &&
-          static_cast<double>(all->rows) >= time_constants * look.slowest_rows))
-      return fmt::format(
-          "but for a constant the champion has {:.3f} %, and a mode with a time constant of {:.0f} "
-          "samples may make it for a while; over {} samples since the champion was validated the "
-          "version has {:.3f} % and the champion {:.3f} %.",
-          look.without_offset.rival_mrse_percent, look.slowest_rows, all->rows, all->mrse_percent,
-          all->rival_mrse_percent);
-    return std::nullopt;
+    return against_tenure(look, limits);
   }();
   using Stage = LongerLook::Stage;
   const bool surely_after = look.after.sure_percent > 0.0;
   const bool surely_ever = look.with_past && look.with_past->sure_percent > needed;
-  const bool suffices = look.stage == Stage::early ? left_behind && surely_after
-                                                   : left_behind || surely_after || surely_ever;
+  const bool suffices = look.stage == Stage::early
+                            ? left_behind(look) && surely_after
+                            : left_behind(look) || surely_after || surely_ever;
   const bool lasts_enough =
       look.stage == Stage::last || shows_beside_noise(look.comparison, plain_gain_over_noise);
   if (!against && suffices && lasts_enough)
