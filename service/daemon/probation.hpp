@@ -1,14 +1,15 @@
 // Versions on probation: better than the champion by the margin, but on their windows' validation
-// part alone not surely, or by little beside the sensors' noise, or mostly by a constant, or in an
-// unusual operation, or while nothing tells of a change. Telemetry that comes after their windows
-// decides.
+// part alone not surely, or by little beside the sensors' noise, or mostly by a constant, or over
+// less than a slow mode lasts, or in an unusual operation, or while nothing tells of a change.
+// Telemetry that comes after their windows decides.
 //
 // The free runs of the version and of the champion, begun so long before the window that what they
 // begin with is forgotten, go on over that telemetry, and are compared over the validation part and
 // it together, over it alone, over all of the window too, where the champion errs hardly more than
-// where it was validated, with what validated it too, and where it errs as it has before, with all
-// that it has run on. A change of the equipment that is too new to fill the validation part is so
-// followed sooner than by the next window, and a stretch of unusual operation is told from one.
+// where it was validated, with what validated it too, and where it errs as it has before, or its
+// slowest mode may be away for a while, with all that it has run on. A change of the equipment that
+// is too new to fill the validation part is so followed sooner than by the next window, and a
+// stretch of unusual operation is told from one.
 #pragma once
 
 #include <cmath>
@@ -70,7 +71,9 @@ struct LongerLook {
 /// so by a third of the margin over all of `with_past`: beside a champion that errs little more
 /// than ever there is time to wait for that. What it gains has to show plainly beside the noise,
 /// and at the last look to show; the noise itself is enough where the gain is surely above the
-/// margin over all of the window too, and sure on what came after it.
+/// margin over all of the window too, and sure on what came after it, but not where the slowest
+/// mode may be away for a while. A version that errs after its window twice what it did where it
+/// was validated has to be surely better by all of the margin.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
 
