@@ -178,7 +178,7 @@ Refusal against_comparison(const Evidence::Champion& champion, const EquipmentCo
 /// off by one may be one of an unusual operation.
 bool gains_a_constant(const Evidence::Champion& champion, const EquipmentConfig& limits) {
   return champion.without_offset &&
-         !(champion.without_offset->sure_percent > sure_elsewhere * limits.margin_percent);
+         !(champion.without_offset->sure_percent > surely_needed_elsewhere(limits));
 }
 
 /// Where the equipment has changed from one model to another, the new one errs on the past about as
@@ -301,7 +301,7 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
             fmt::format(" But for a constant offset the champion has {:.3f} %, which is not "
                         "surely worse by {:g} %.",
                         champion.without_offset->rival_mrse_percent,
-                        sure_elsewhere * limits.margin_percent) +
+                        surely_needed_elsewhere(limits)) +
             wait_of(limits)};
   if (!shows_beside_noise(*champion.comparison, plain_gain_over_noise))
     return GateDecision{
@@ -348,6 +348,10 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
 
 std::string_view name(Outcome outcome) {
   return names[static_cast<std::size_t>(outcome)].second;
+}
+
+double surely_needed_elsewhere(const EquipmentConfig& limits) {
+  return limits.margin_percent / 3;
 }
 
 bool shows_beside_noise(const Evidence::Comparison& comparison, double times) {

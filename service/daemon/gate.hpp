@@ -116,9 +116,10 @@ struct GateDecision {
   std::string reason;  // one sentence with the figures that decided
 };
 
-/// Share of the margin that the reduction surely has to be with the champion's mean error taken
-/// from it, and, of a version on probation, over the validation part and what came after it.
-constexpr double sure_elsewhere = 1.0 / 3;
+/// What the reduction surely has to be, in percent, with the champion's mean error taken from it,
+/// and, of a version on probation, over the validation part and what came after it: a third of the
+/// margin.
+double surely_needed_elsewhere(const EquipmentConfig& limits);
 
 /// Whether the candidate errs less than the other run by more than so many times the sensors'
 /// noise, the noise taken from both errors.

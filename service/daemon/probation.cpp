@@ -90,10 +90,6 @@ Reduction reduction_of(const LongerLook& look) {
   return {std::min(all.percent, without.percent), std::min(all.sure_percent, without.sure_percent)};
 }
 
-double surely_needed_elsewhere(const EquipmentConfig& limits) {
-  return sure_elsewhere * limits.margin_percent;
-}
-
 /// In so many time constants little is left of the state that a mode was in: a twentieth.
 constexpr double time_constants = 3;
 
