@@ -56,7 +56,8 @@ def reference_lines(build, folder, rows, identify, tune, pictures):
         if name in SIMULATED:
             more += ["--baseline", simulated]
         if pictures:
-            more += ["--picture", pictures / f"{name.lower()}.svg"]
+            more += ["--picture", pictures / f"{name.lower()}.svg",
+                     "--unit", {"V": "V", "I": "A"}[output[0]]]
         yield name, line(build, real, inputs, output, identify, f"{identify + tune}:{rows}", more)
 
 

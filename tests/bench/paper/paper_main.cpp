@@ -48,13 +48,14 @@ class Drawing {
  public:
   static constexpr Index most_rows = 18'000;  // three orbits of the reference spacecraft
 
-  Drawing(const IdentifyData& data, const Parts& parts)
+  Drawing(const IdentifyData& data, const Parts& parts, const std::string& unit)
       : begin_(parts.validate.begin), rows_(std::min(most_rows, parts.validate.size())) {
     const Record& record = data.record;
     const Segment first = segments_within(record, parts.validate).front();
     rows_ = std::min(rows_, first.size());
     const auto time = [&](Index row) { return double(first.first_tick + row) * record.period_s; };
     picture_.output = data.outputs.front();
+    picture_.unit = unit;
     picture_.range = {static_cast<std::int64_t>(time(0) * 1e9),
                       static_cast<std::int64_t>(time(rows_) * 1e9)};
     picture_.x = Vector::LinSpaced(rows_, 0, time(rows_ - 1) - time(0));
@@ -134,7 +135,7 @@ ordered_json baseline(DataRequest request, const std::string& file, const Identi
 }
 
 ordered_json line(const DataRequest& request, const std::string& baseline_file,
-                  const std::string& picture_file) {
+                  const std::string& picture_file, const std::string& unit) {
   const IdentifyData data = data_of(request);
   const Parts parts{data.identify, {data.identify.end, data.validate.begin}, data.validate};
   if (parts.tune.size() <= 0) throw std::runtime_error("no rows to tune on");
@@ -143,7 +144,7 @@ ordered_json line(const DataRequest& request, const std::string& baseline_file,
     throw std::runtime_error(verdict->reason);
   const auto& identified = std::get<Identified>(result);
   const StateSpaceModel& model = identified.model;
-  Drawing drawing(data, parts);
+  Drawing drawing(data, parts, unit);
   ordered_json json = {{"order", model.order()},
                        {"rows",
                         {{"identify", parts.identify.size()},
@@ -169,7 +170,7 @@ ordered_json line(const DataRequest& request, const std::string& baseline_file,
 int main(int argc, char** argv) {
   CLI::App app("One line of the paper's table", "reident_paper_bench");
   DataRequest request;
-  std::string baseline_file, picture_file;
+  std::string baseline_file, picture_file, unit;
   app.add_option("file", request.file, "CSV file of telemetry")->required();
   app.add_option("--input", request.inputs)->required();
   app.add_option("--output", request.outputs)->required();
@@ -180,9 +181,10 @@ int main(int argc, char** argv) {
   app.add_option("--validate", request.validate)->required();
   app.add_option("--baseline", baseline_file, "the simulator's own telemetry at the same times");
   app.add_option("--picture", picture_file, "SVG file to draw to");
+  app.add_option("--unit", unit, "of the output, for the picture");
   CLI11_PARSE(app, argc, argv);
   try {
-    fmt::print("{}\n", line(request, baseline_file, picture_file).dump());
+    fmt::print("{}\n", line(request, baseline_file, picture_file, unit).dump());
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "reident_paper_bench: {}\n", error.what());

@@ -82,7 +82,8 @@ double draw_runs(Svg& svg, const PaperPicture& picture) {
   draw_line(svg, picture, picture.y, y, "measured");
   for (const PictureRun& run : picture.runs)
     if (run.style != "simulator") draw_line(svg, picture, run.y, y, run.style);
-  svg.turned_text({22, box.y + box.height / 2}, picture.output, "small");
+  svg.turned_text({22, box.y + box.height / 2},
+                  fmt::format("{} [{}]", picture.output, picture.unit), "small");
   return box.bottom();
 }
 
@@ -95,8 +96,11 @@ double draw_errors(Svg& svg, const PaperPicture& picture, double y) {
     draw_frame(svg, picture, box, scale, 4, &run == &picture.runs.back());
     svg.line({left, scale(0)}, {right, scale(0)}, "zero");
     draw_line(svg, picture, error, scale, run.style);
+    svg.turned_text({22, box.y + box.height / 2}, fmt::format("error [{}]", picture.unit), "small");
     svg.text({left, box.y - 7},
-             fmt::format("error of {}: MRSE {:.3g} %", run.name, run.mrse_percent), "small");
+             fmt::format("error of {}: MRSE {:.3g} % over all rows that validate", run.name,
+                         run.mrse_percent),
+             "small");
     y = box.bottom();
   }
   svg.text({right, y + 34}, "UTC", "small", "end");

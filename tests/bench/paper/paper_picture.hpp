@@ -19,7 +19,8 @@ struct PictureRun {
 
 struct PaperPicture {
   std::string title;
-  std::string output;  // with its unit
+  std::string output;
+  std::string unit;
   storage::TimeRange range;
   identification::Vector x;  // of the rows: seconds since the range began
   identification::Vector y;  // measured
