@@ -9,6 +9,7 @@
 #include "identification/simulate.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/floor_divide.hpp"
+#include "service/support/log.hpp"
 
 namespace reident {
 namespace {
@@ -40,7 +41,6 @@ ChampionMonitor::ChampionMonitor(std::string spacecraft, const EquipmentConfig& 
       checks_(checks_of(equipment)) {}
 
 void ChampionMonitor::watch(const storage::Archive& archive, const storage::Version& version) {
-  version_ = version.number;
   detector_.reset();
   state_tick_.reset();
   run_rows_ = 0;
@@ -152,8 +152,15 @@ std::optional<ChampionMonitor::Drift> ChampionMonitor::look(const storage::Archi
                                                             Duration most_past) {
   const auto made = registry.champion_decision(spacecraft_, equipment_);
   if (!made) return std::nullopt;
-  if (made->version != version_)
+  if (made->version != version_) {
+    version_ = 0;  // where the archive cannot be read now, it is begun with again
     watch(archive, *registry.version(spacecraft_, equipment_, made->version));
+    version_ = made->version;
+    if (!detector_)
+      log::warning("monitor",
+                   "too little can be read of what validated the champion; its drift is not told",
+                   {{"equipment", spacecraft_ + "/" + equipment_}, {"version", version_}});
+  }
   if (!detector_) return std::nullopt;
   if (next_ < reached - most_past) {
     next_ += (reached - most_past - next_) / block_ * block_;

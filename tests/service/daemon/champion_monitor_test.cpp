@@ -92,6 +92,14 @@ TEST(WindowOfADrift, BeginsWithTheDriftOnceHalfAWindowLiesBehindIt) {
   EXPECT_EQ(window(1000, 1010), (storage::TimeRange{1000, 1100})) << "no longer than configured";
 }
 
+TEST_F(Monitor, BeginsAgainWhereTheArchiveCouldNotBeRead) {
+  archive.append(telemetry(day + 20 * minute + second, 1800, 1.5));
+  run_sql("ALTER TABLE chunk RENAME TO gone");
+  EXPECT_THROW(look(day + 30 * minute), storage::Error);
+  run_sql("ALTER TABLE gone RENAME TO chunk");
+  EXPECT_TRUE(look(day + 50 * minute));
+}
+
 TEST_F(Monitor, DoesNotTakeOneBadStretchForAChange) {
   auto frames = telemetry(day + 20 * minute + second, 1800);
   for (std::size_t k = 300; k < 310; ++k) frames[k].samples[2].value = 1000;

@@ -30,15 +30,22 @@ class DaemonTest : public testing::Test {
 
   /// Makes what is in chunks of a parameter undecodable.
   void damage_chunks(std::uint32_t parameter) const {
+    EXPECT_GT(run_sql("UPDATE chunk_data SET bytes = zeroblob(length(bytes)) WHERE id IN (SELECT "
+                      "data FROM chunk "
+                      "JOIN series ON series.id = chunk.series WHERE parameter = " +
+                      std::to_string(parameter) + ")"),
+              0);
+  }
+
+  /// Behind the back of the programs. How many rows it changed.
+  int run_sql(const std::string& sql) const {
     sqlite3* handle = nullptr;
-    ASSERT_EQ(sqlite3_open(path().c_str(), &handle), SQLITE_OK);
-    const std::string sql =
-        "UPDATE chunk_data SET bytes = zeroblob(length(bytes)) WHERE id IN (SELECT data FROM chunk "
-        "JOIN series ON series.id = chunk.series WHERE parameter = " +
-        std::to_string(parameter) + ")";
-    ASSERT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
-    ASSERT_GT(sqlite3_changes(handle), 0);
+    EXPECT_EQ(sqlite3_open(path().c_str(), &handle), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(handle);
+    const int changes = sqlite3_changes(handle);
     sqlite3_close(handle);
+    return changes;
   }
 
   /// Inputs u (1) and v (2), output y (3).
