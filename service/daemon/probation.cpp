@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,7 @@
 
 #include "identification/simulate.hpp"
 #include "service/daemon/kept_window.hpp"
+#include "service/daemon/provenance.hpp"
 #include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/time_text.hpp"
@@ -46,6 +46,13 @@ NewDecision rejection(std::string reason) {
   return {DecisionKind::reject, "gate", "Not confirmed: " + std::move(reason), {}};
 }
 
+/// What counts of the champion's error, where a sensor that no relation binds could show the rest.
+std::string but_for_offset(const LongerLook& look) {
+  if (!look.needs_vouching) return {};
+  return fmt::format(", {:.3f} % but for a constant offset that no relation vouches for",
+                     look.without_offset.rival_mrse_percent);
+}
+
 NewDecision decision(DecisionKind kind, const LongerLook& look, const std::string& reason) {
   nlohmann::ordered_json evidence = {
       {"until_ns", look.until},
@@ -68,9 +75,9 @@ NewDecision decision(DecisionKind kind, const LongerLook& look, const std::strin
   const Evidence::Comparison& comparison = look.comparison;
   return {kind, "gate",
           fmt::format("MRSE {:.3f} % on {} samples of the validation part and after it, until {}; "
-                      "champion {} has {:.3f} % there. {}",
+                      "champion {} has {:.3f} % there{}. {}",
                       comparison.mrse_percent, comparison.rows, time_text(look.until),
-                      look.champion, comparison.rival_mrse_percent, reason),
+                      look.champion, comparison.rival_mrse_percent, but_for_offset(look), reason),
           evidence.dump()};
 }
 
@@ -109,16 +116,23 @@ bool left_behind(const LongerLook& look) {
   return is_left_behind(look.comparison.rival_mrse_percent, look.champion_validated_mrse_percent);
 }
 
+/// Whether it errs now as it did in the worst stretch of its tenure.
+bool as_before(const LongerLook& look) {
+  return !is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent);
+}
+
 /// What speaks against the version of all that the champion has run on.
 std::optional<std::string> against_tenure(const LongerLook& look, const EquipmentConfig& limits) {
   constexpr double least_believed = 0.5;
   const double needed = surely_needed_elsewhere(limits);
   if (!left_behind(look) && look.tenure_believed < least_believed)
     return fmt::format(
-        "the champion had {:.3f} % where it was validated, and of the telemetry from then to the "
-        "version's window {:.0f} % is believed, so that nothing tells of a change.",
+        "the champion had {:.3f} % where it was validated, and of the telemetry that leads from "
+        "then "
+        "to the version's window {:.0f} % is believed, so that nothing tells of a change.",
         look.champion_validated_mrse_percent, 100 * look.tenure_believed);
-  if (const auto& all = look.over_tenure; all && !(all->reduction_percent > needed))
+  if (const auto& all = look.over_tenure;
+      all && as_before(look) && !(all->reduction_percent > needed))
     return fmt::format(
         "since the champion was validated it had up to {:.3f} % already, so that nothing tells "
         "of a change; over {} samples of then and now the version has {:.3f} % and the champion "
@@ -144,19 +158,21 @@ bool needs_vouching(const storage::Registry& registry, const storage::Version& v
   if (limits.unvouched == UnvouchedPolicy::approve) return false;
   const auto attempt = registry.attempt(version.attempt);
   const auto evidence = nlohmann::json::parse(attempt->evidence_json, nullptr, false);
-  return evidence.is_object() &&
-         evidence.value("/champion/unbound"_json_pointer, nlohmann::json::array()).size() > 0;
+  if (!evidence.is_object()) return true;  // damaged
+  return evidence.value("/champion/unbound"_json_pointer, nlohmann::json::array()).size() > 0;
 }
 
 /// For so long before the window free runs go on already, so that little is left of the states that
-/// they begin with: three time constants of the slowest mode, of `longest` at most.
-Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent, Duration longest) {
+/// they begin with: three time constants of the slowest mode.
+Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent,
+                const EquipmentConfig& equipment) {
   const double slowest = 1e9 * model.dynamics.period_s * slowest_rows(model, incumbent);
-  return static_cast<Duration>(time_constants * std::min(slowest, static_cast<double>(longest)));
+  return static_cast<Duration>(
+      std::min(time_constants * slowest, static_cast<double>(longest_run_up(equipment))));
 }
 
 /// The two on what the champion has run on since it was validated until `end`, four windows at
-/// most. Absent where none of it is left, or what is cannot be decoded.
+/// most. Absent where that is nothing, none of it is left, or what is cannot be decoded.
 std::optional<RunsOfBoth> runs_over_tenure(const storage::Archive& archive, storage::Time end,
                                            const EquipmentModel& model,
                                            const EquipmentModel& incumbent,
@@ -166,8 +182,10 @@ std::optional<RunsOfBoth> runs_over_tenure(const storage::Archive& archive, stor
       std::max(incumbent.validated_on.begin, end - windows * equipment.window), end};
   if (tenure.end <= tenure.begin) return std::nullopt;
   try {
-    return run_both(archive, model, incumbent, request_of(model), checks_of(equipment), tenure,
-                    run_up(model, incumbent, equipment.window));
+    auto both = run_both(archive, model, incumbent, request_of(model), checks_of(equipment), tenure,
+                         run_up(model, incumbent, equipment));
+    if (both && both->runs.rows.empty()) return std::nullopt;
+    return both;
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::corrupt) throw;
     return std::nullopt;
@@ -186,8 +204,7 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
                                   storage::Time until) {
   LongerLook look;
   look.until = until;
-  const storage::TimeRange range{window.begin - run_up(model, incumbent, equipment.window),
-                                 look.until};
+  const storage::TimeRange range{window.begin - run_up(model, incumbent, equipment), look.until};
   const WindowRequest request = request_of(model);
   const auto loaded = KeptWindow(request, 1, checks_of(equipment)).load(archive, range);
   const auto* data = std::get_if<WindowData>(&loaded);
@@ -212,9 +229,9 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
   const PairedRuns in_window = since(window.begin);
   look.with_window = compare(in_window, equipment.confidence_percent, Course::changing);
   const PairedRuns after = since(window.end);
-  if (!after.rows.empty())
+  if (!after.rows.empty() && (after.y.array() != 0).colwise().any().all())
     look.after = compare(after, equipment.confidence_percent, Course::changing);
-  if (request_of(incumbent) == request) {
+  if (same_inputs(incumbent, model)) {
     const Duration validation = model.validated_on.end - model.validated_on.begin;
     const auto last = std::min(std::ssize(runs.rows), validation / request.period);
     look.movement = movement(
@@ -222,7 +239,7 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
     look.still = still_input(archive, incumbent, record.u(in_window.rows, Eigen::all));
   }
   const auto ticks = static_cast<double>(equipment.confirmation / request.period);
-  if (until >= window.end + equipment.confirmation &&
+  if (until >= window.end + equipment.confirmation && look.after.rows > 0 &&
       static_cast<double>(look.after.rows) >= equipment.min_coverage * ticks)
     look.stage = LongerLook::Stage::due;
   if (until > window.end + equipment.confirmation) look.stage = LongerLook::Stage::last;
@@ -242,8 +259,7 @@ void add_tenure(LongerLook& look, const RunsOfBoth& tenure, const PairedRuns& ru
                 const EquipmentConfig& limits) {
   look.tenure_believed = tenure.believed_share;
   look.champion_worst_mrse_percent = worst_of_rival(tenure.runs, runs.y.rows());
-  if (!is_left_behind(look.comparison.rival_mrse_percent, look.champion_worst_mrse_percent) ||
-      may_be_excursion(look, limits))
+  if (as_before(look) || may_be_excursion(look, limits))
     look.over_tenure =
         compare(joined(tenure.runs, runs), limits.confidence_percent, Course::changing);
 }
@@ -256,6 +272,9 @@ std::optional<NewDecision> against_window(const storage::Version& version,
     return rejection(
         "the champion that it was to replace was withdrawn; windows that end from now "
         "on are judged without one.");
+  if (equipment.confirmation == 0)
+    return rejection(
+        "`confirmation` is 0 now, so that no version waits for telemetry after its window.");
   const Duration newer = version.window.end - champion->window.end;
   if (newer < 0)
     return rejection(
@@ -277,6 +296,10 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
   if (auto refusal = against_window(version, champion, equipment)) return refusal;
   const auto time = look_time(version, equipment, since, reached);
   if (!time) return std::nullopt;
+  for (const storage::Version& one : {version, *champion})
+    if (const auto mistake = mistake_in(one))
+      return rejection(
+          fmt::format("version {} is damaged in the registry: {}.", one.number, *mistake));
   try {
     const EquipmentModel model = equipment_model_from_json(version.model_json);
     const EquipmentModel incumbent = equipment_model_from_json(champion->model_json);
@@ -304,8 +327,6 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
     if (*time <= confirmed) return std::nullopt;
     if (auto found = judged(*time)) return found;
     return rejection("no telemetry to judge it by is left.");
-  } catch (const std::invalid_argument&) {
-    return rejection("its model or the champion's is damaged in the registry.");
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::corrupt) throw;
     return std::nullopt;
@@ -327,7 +348,8 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
           100 * look.fault_share);
     if (look.comparison.mrse_percent > limits.max_mrse_percent)
       return fmt::format("that is above the limit of {:g} %.", limits.max_mrse_percent);
-    if (look.after.rows == 0) return "of the telemetry after its window nothing is left.";
+    if (look.after.rows == 0)
+      return "of the telemetry after its window none is believed and says anything.";
     if (!(look.after.reduction_percent > 0))
       return fmt::format(
           "on the {} samples after its window alone it has {:.3f} % and the champion "
@@ -393,6 +415,10 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
               "on the {} samples after its window alone it has {:.3f} % and the champion {:.3f} %, "
               "which is not surely less.",
               look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent)));
+}
+
+Duration longest_run_up(const EquipmentConfig& equipment) {
+  return 3 * equipment.window;
 }
 
 bool record(storage::Registry& registry, const storage::Standing& standing,

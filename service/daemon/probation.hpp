@@ -40,7 +40,7 @@ struct LongerLook {
   double slowest_rows = 0;                     // samples in the longer of their time constants
   Evidence::Comparison comparison;             // with the champion
   /// The same on what came after the window alone, by which nothing was chosen; without rows where
-  /// nothing is left of it.
+  /// nothing is left of it, or an output is 0 all over it.
   Evidence::Comparison after;
   /// The same with all of the window, to most of which the version was fitted.
   Evidence::Comparison with_window;
@@ -61,7 +61,8 @@ struct LongerLook {
   double movement = 1;
   /// Input that stands still from the begin of the window on (the same).
   std::string still{};
-  /// Share of the telemetry of `over_tenure` before the window that is believed.
+  /// Share that is believed of the telemetry that the runs over the champion's tenure go through
+  /// before the window, from where they are begun on.
   double tenure_believed = 1;
 };
 
@@ -76,6 +77,9 @@ struct LongerLook {
 /// was validated has to be surely better by all of the margin.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
+
+/// So long before a version's window its runs and the champion's may begin, at most.
+Duration longest_run_up(const EquipmentConfig& equipment);
 
 struct ProbationDecision {
   storage::Version version;

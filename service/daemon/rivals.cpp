@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 #include "identification/correction.hpp"
 #include "identification/simulate.hpp"
+#include "service/daemon/provenance.hpp"
 #include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 
@@ -211,14 +211,10 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
   Evidence::Champion evidence;
   evidence.version = version->number;
   evidence.window_end = version->window.end;
-  EquipmentModel champion;
-  try {
-    champion = equipment_model_from_json(version->model_json);
-  } catch (const std::invalid_argument&) {
-    // Damaged in the registry: it cannot be published either, and any good candidate replaces it.
-    return evidence;
-  }
-  if (!same_outputs(champion, candidate)) return std::nullopt;
+  // Damaged in the registry: it cannot be published either, and any good candidate replaces it.
+  if (mistake_in(*version)) return evidence;
+  const EquipmentModel champion = equipment_model_from_json(version->model_json);
+  if (!same_outputs(champion, candidate)) return evidence;
   evidence.validated_mrse_percent = champion.validation.mrse();
   evidence.slowest_rows = slowest_rows(candidate, champion);
   identification::Vector offset =
@@ -227,7 +223,7 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
                                   prepared.attempt.window)) {
     evidence.comparison = against_run(prepared, *run, confidence_percent);
     evidence.without_offset = against_run(prepared, *run, confidence_percent, &offset);
-    if (request_of(champion) == prepared.loaded) {
+    if (same_inputs(champion, candidate)) {
       evidence.movement = movement(champion, validation_inputs(prepared));
       evidence.still = still_input(archive, champion, prepared.data.record.u);
     }

@@ -203,6 +203,14 @@ double slowest_rows(const EquipmentModel& one, const EquipmentModel& other) {
          one.dynamics.period_s;
 }
 
+bool same_inputs(const EquipmentModel& one, const EquipmentModel& other) {
+  return one.dynamics.period_s == other.dynamics.period_s &&
+         std::equal(one.inputs.begin(), one.inputs.end(), other.inputs.begin(), other.inputs.end(),
+                    [](const Signal& a, const Signal& b) {
+                      return a.name == b.name && a.expression == b.expression;
+                    });
+}
+
 bool same_outputs(const EquipmentModel& one, const EquipmentModel& other) {
   return std::equal(one.outputs.begin(), one.outputs.end(), other.outputs.begin(),
                     other.outputs.end(),

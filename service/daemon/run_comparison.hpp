@@ -88,6 +88,9 @@ PairedRuns joined(const PairedRuns& first, const PairedRuns& second);
 /// Samples of the first in the slowest time constant of the two.
 double slowest_rows(const EquipmentModel& one, const EquipmentModel& other);
 
+/// Whether the same rows are inputs of both.
+bool same_inputs(const EquipmentModel& one, const EquipmentModel& other);
+
 bool same_outputs(const EquipmentModel& one, const EquipmentModel& other);
 
 nlohmann::ordered_json to_json(const Evidence::Comparison& comparison);

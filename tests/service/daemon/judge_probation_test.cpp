@@ -100,6 +100,10 @@ TEST(JudgeProbation, AsksForMoreThanAnOffsetWhereNoSensorVouchesForIt) {
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
   look.without_offset.sure_percent.reset();
   EXPECT_FALSE(judge_probation(look, {}));
+  look.without_offset.rival_mrse_percent = 5.2;
+  look.stage = LongerLook::Stage::last;
+  EXPECT_THAT(judge_probation(look, {})->reason,
+              HasSubstr("champion 3 has 8.000 % there, 5.200 % but for a constant offset"));
 }
 
 /// A constant of twice what the champion ever erred, over two time constants and a half.
@@ -144,6 +148,15 @@ TEST(JudgeProbation, TakesNoSmallGainBesideTheNoiseForLastingWhereASlowModeMayRe
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
   look.slowest_rows = 100;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
+}
+
+TEST(JudgeProbation, SaysThatAnErrorMayBeAnExcursionWhereItHasNotBeenSoLarge) {
+  LongerLook look = of_a_slow_mode();
+  look.champion_worst_mrse_percent = 4;  // half of what it is now
+  look.over_tenure->reduction_percent = look.over_tenure->sure_percent.emplace(3);
+  EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("a mode with a time constant"));
+  look.champion_worst_mrse_percent = 6;
+  EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("it had up to 6.000 % already"));
 }
 
 TEST(JudgeProbation, AsksForAllOfTheMarginWhereTheVersionDoesNotKeepUp) {

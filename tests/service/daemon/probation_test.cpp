@@ -48,6 +48,7 @@ class Probation : public DaemonTest {
       EquipmentModel model = equipment_model_from_json(result.version.model_json);
       alter(model);
       result.version.model_json = to_json(model).dump();
+      result.version.digest = model_digest(model);
     }
     result.attempt.outcome = outcome;
     registry.record(result.attempt, result.version, {kind, "gate", "for the test"});
@@ -72,7 +73,7 @@ class Probation : public DaemonTest {
     return config;
   }
 
-  const EquipmentConfig equipment = with_confirmation();
+  EquipmentConfig equipment = with_confirmation();
   storage::Database database = open();
   storage::Archive archive{database};
   storage::Registry registry{database};
@@ -272,6 +273,55 @@ TEST_F(Probation, IsLeftToTheOperatorWhoDecides) {
   by_hand.approval = ApprovalPolicy::by_hand;
   look_at_probation(archive, registry, "SAT", by_hand, INT64_MIN, window_end + 5 * minute,
                     [](const auto&, const auto&) { return ADD_FAILURE(), false; });
+}
+
+TEST_F(Probation, WaitsWhereAnOutputIsZeroAfterItsWindow) {
+  archive.append(telemetry(day + 10 * minute, 600, 2));
+  auto eclipse = telemetry(window_end, 601);
+  for (auto& frame : eclipse) frame.samples[2].value = 0;
+  archive.append(eclipse);
+  make_version(window_end, "on_probation", DecisionKind::wait);
+  equipment.screening = false;  // a sensor that is stuck is another matter
+  EXPECT_TRUE(look(window_end + 5 * minute).empty());
+  const auto found = look(window_end + 10 * minute).at(0).decision;
+  EXPECT_EQ(found.kind, DecisionKind::reject);
+  const auto evidence = nlohmann::json::parse(found.evidence_json);
+  EXPECT_EQ(evidence["comparison"]["rows"], 180 + 600) << found.reason;
+  EXPECT_EQ(evidence["after_window"]["rows"], 0);
+}
+
+TEST_F(Probation, KnowsAnUnusualOperationAlsoOnceItsHoldIsAnotherOne) {
+  archive.append(operation(day + 10 * minute, 901,
+                           {.u = 0.3, .v = 0.3, .gain = 2, .since = window_end + second}));
+  EquipmentConfig longer = equipment;
+  longer.hold = 5 * second;
+  make_version_of(longer, window_end, "on_probation", DecisionKind::wait);
+  EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
+              HasSubstr("an unusual operation"));
+}
+
+TEST_F(Probation, IsOverOnceNoneWaitsAnyMore) {
+  change_plant(2);
+  EquipmentConfig none = equipment;
+  none.confirmation = 0;
+  std::vector<ProbationDecision> found;
+  look_at_probation(archive, registry, "SAT", none, INT64_MIN, window_end + minute,
+                    [&](const storage::Standing&, const ProbationDecision& decided) {
+                      found.push_back(decided);
+                      return true;
+                    });
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].decision.kind, DecisionKind::reject);
+  EXPECT_THAT(found[0].decision.reason, HasSubstr("`confirmation` is 0 now"));
+}
+
+TEST_F(Probation, ApprovesNoModelThatIsNotTheOneOfItsDigest) {
+  change_plant(2);
+  run_sql("DROP TRIGGER version_update");
+  run_sql("UPDATE version SET digest = 'another' WHERE number = 2");
+  EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
+              HasSubstr("version 2 is damaged in the registry"));
+  EXPECT_EQ(status(2), "rejected");
 }
 
 TEST_F(Probation, IsOverWhereTheChampionHasOtherOutputs) {

@@ -62,6 +62,19 @@ TEST_F(Rivals, ASimulatorThatIsAsGoodKeepsItsModel) {
   EXPECT_EQ(result.attempt.outcome, "not_better_than_baseline") << result.attempt.reason;
 }
 
+TEST_F(Rivals, AChampionWithOtherOutputsGivesWayToNoOlderWindow) {
+  archive.append(telemetry(day, 1201));
+  record(run(day + 20 * minute));
+  EquipmentConfig other = plant();
+  other.inputs = {"v", "y"};
+  other.outputs = {"u"};
+  other.max_mrse_percent = 100;
+  const RefreshResult older = run(day + 15 * minute, other);
+  ASSERT_TRUE(older.evidence.champion) << older.attempt.reason;
+  EXPECT_FALSE(older.evidence.champion->comparison);
+  EXPECT_EQ(older.attempt.outcome, "older_than_champion") << older.attempt.reason;
+}
+
 TEST_F(Rivals, TelemetryOfTheSimulatorForLessThanHalfOfTheValidationIsNoBaseline) {
   archive.append(telemetry(day, 601));
   simulate(day + 8 * minute + 40 * second, 80, 0.5);
