@@ -30,8 +30,11 @@ void ArchiveKeeper::post_step() {
 std::vector<storage::ProtectedStretch> ArchiveKeeper::protection(
     const storage::Registry& registry, const storage::Archive& archive) const {
   std::vector<storage::ProtectedStretch> all = telemetry_of_versions(archive, registry);
-  const auto next = telemetry_of_next_windows(archive, config_, clock_());
-  all.insert(all.end(), next.begin(), next.end());
+  const auto add = [&all](const std::vector<storage::ProtectedStretch>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  add(telemetry_of_probations(archive, registry, config_));
+  add(telemetry_of_next_windows(archive, config_, clock_()));
   return all;
 }
 

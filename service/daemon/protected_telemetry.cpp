@@ -5,6 +5,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "service/daemon/probation.hpp"
 #include "service/daemon/provenance.hpp"
 #include "service/daemon/window_data.hpp"
 #include "service/model/model_json.hpp"
@@ -41,12 +42,12 @@ std::vector<std::string> parameters_of(const EquipmentModel& model) {
   return names;
 }
 
+/// What the version was made from, and all of `range`.
 void add(std::vector<ProtectedStretch>& stretches, const Descriptors& descriptors,
-         const storage::Version& version) {
+         const storage::Version& version, TimeRange range) {
   try {
     const EquipmentModel model = equipment_model_from_json(version.model_json);
-    TimeRange range = version.window;
-    for (const TimeRange& part : {model.identified_from, model.validated_on}) {
+    for (const TimeRange& part : {version.window, model.identified_from, model.validated_on}) {
       range.begin = std::min(range.begin, part.begin);
       range.end = std::max(range.end, part.end);
     }
@@ -56,7 +57,7 @@ void add(std::vector<ProtectedStretch>& stretches, const Descriptors& descriptor
       for (std::string& name : parameters_of(relation)) names.push_back(std::move(name));
     add(stretches, version.spacecraft, descriptors, names, range);
   } catch (const std::invalid_argument&) {
-    stretches.push_back({version.spacecraft, std::nullopt, version.window});
+    stretches.push_back({version.spacecraft, std::nullopt, range});
   }
 }
 
@@ -75,7 +76,26 @@ std::vector<ProtectedStretch> telemetry_of_versions(const storage::Archive& arch
     const Descriptors descriptors = archive.parameters(equipment.spacecraft);
     for (const std::int64_t number : published)
       if (const auto version = registry.version(equipment.spacecraft, equipment.equipment, number))
-        add(stretches, descriptors, *version);
+        add(stretches, descriptors, *version, version->window);
+  }
+  return stretches;
+}
+
+std::vector<ProtectedStretch> telemetry_of_probations(const storage::Archive& archive,
+                                                      const storage::Registry& registry,
+                                                      const Config& config) {
+  std::vector<ProtectedStretch> stretches;
+  for (const SpacecraftConfig& spacecraft : config.spacecraft) {
+    const Descriptors descriptors = archive.parameters(spacecraft.name);
+    for (const EquipmentConfig& equipment : spacecraft.equipment) {
+      if (equipment.approval != ApprovalPolicy::automatic) continue;
+      for (const std::int64_t number : registry.undecided(spacecraft.name, equipment.name,
+                                                          std::string(name(Outcome::on_probation))))
+        if (const auto version = registry.version(spacecraft.name, equipment.name, number))
+          add(stretches, descriptors, *version,
+              {before(version->window.begin, longest_run_up(equipment)),
+               version->window.end + 2 * equipment.confirmation});
+    }
   }
   return stretches;
 }

@@ -18,6 +18,12 @@ namespace reident {
 std::vector<storage::ProtectedStretch> telemetry_of_versions(const storage::Archive& archive,
                                                              const storage::Registry& registry);
 
+/// What versions on probation are judged by: the same, from where the runs may begin before the
+/// window to the last look.
+std::vector<storage::ProtectedStretch> telemetry_of_probations(const storage::Archive& archive,
+                                                               const storage::Registry& registry,
+                                                               const Config& config);
+
 /// What the next window of each equipment is read from, so that a limit of size that is too low
 /// does not take it away: the last window and slide before where the spacecraft's telemetry, or
 /// the clock, ends.

@@ -29,11 +29,13 @@ class ProtectedTelemetry : public DaemonTest {
   }
 
   /// The version of the window that ends at `end`, with a decision of that kind.
-  std::int64_t record(storage::Time end, DecisionKind kind = DecisionKind::approve) {
+  std::int64_t record(storage::Time end, DecisionKind kind = DecisionKind::approve,
+                      const std::string& outcome = "approved") {
     KeptWindow kept = kept_window_of("SAT", plant());
-    const RefreshResult result =
+    RefreshResult result =
         refresh(archive, registry, {"SAT", plant(), {end - plant().window, end}, "slide", "digest"},
                 kept, {}, [] { return false; });
+    result.attempt.outcome = outcome;
     return registry.record(result.attempt, result.version, {kind, "gate", "test"});
   }
   std::vector<ProtectedStretch> stretches() const {
@@ -71,6 +73,20 @@ TEST_F(ProtectedTelemetry, IsThatOfEveryVersionThatWasEverPublishedAndOfNoOther)
   registry.decide("SAT", "PLANT", 4, {DecisionKind::withdraw, "Ana", "wrong"}, day);
   registry.decide("SAT", "PLANT", first, {DecisionKind::withdraw, "Ana", "wrong"}, day);
   EXPECT_THAT(stretches(), SizeIs(2 * 3)) << "withdrawn ones were published too";
+}
+
+TEST_F(ProtectedTelemetry, OfProbationsGoesFromTheFirstRunToTheLastLook) {
+  Config config;
+  config.spacecraft = {{"SAT", {plant()}}};
+  config.spacecraft[0].equipment[0].confirmation = 4 * minute;
+  const std::int64_t version = record(day + 10 * minute, DecisionKind::wait, "on_probation");
+  record(day + 15 * minute, DecisionKind::wait, "unvouched");
+  const auto found = telemetry_of_probations(archive, registry, config);
+  ASSERT_THAT(found, SizeIs(3));
+  EXPECT_EQ(found[0].range,
+            (storage::TimeRange{day - 30 * minute - plant().hold, day + 18 * minute}));
+  registry.decide("SAT", "PLANT", version, {DecisionKind::reject, "gate", "worse"}, day);
+  EXPECT_THAT(telemetry_of_probations(archive, registry, config), IsEmpty());
 }
 
 TEST_F(ProtectedTelemetry, FollowsTheParametersOfAnExpression) {
