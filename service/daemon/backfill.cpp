@@ -105,26 +105,35 @@ class Backfill {
             config_.digest};
   }
 
+  identification::ForEach on_all_cores() {
+    return [this](std::size_t count, const std::function<void(std::size_t)>& task) {
+      workers_.for_each(count, task);
+    };
+  }
+
   void prepare(const Plan& plan, std::size_t begin, std::size_t first,
                std::vector<std::optional<PreparedWindow>>& prepared) {
     storage::Database database(config_.database, storage::Database::Mode::read_only);
     const storage::Archive archive(database);
     KeptWindow kept = kept_window_of(*plan.spacecraft, *plan.equipment);
-    const auto on_all_cores = [this](std::size_t count,
-                                     const std::function<void(std::size_t)>& task) {
-      workers_.for_each(count, task);
-    };
     for (std::size_t i = first; i < std::min(first + run_length, prepared.size()); ++i)
       prepared[i] = prepare_window(archive, request_of_window(plan, plan.ends[begin + i]), kept,
-                                   on_all_cores, [] { return false; });
+                                   on_all_cores(), [] { return false; });
   }
 
-  bool record(const RefreshRequest& request, PreparedWindow&& prepared) {
+  bool record(RefreshRequest request, PreparedWindow&& prepared) {
     look_at_probation(archive_, registry_, request.spacecraft, request.equipment, INT64_MIN,
                       request.window.end,
                       [this](const storage::Standing& standing, const ProbationDecision& found) {
                         return record(standing, found);
                       });
+    const storage::TimeRange window =
+        behind_champion(registry_, request.spacecraft, request.equipment.name, request.window);
+    if (window.begin > request.window.begin) {  // it was prepared before the champion was known
+      request.window = window;
+      KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
+      prepared = prepare_window(archive_, request, kept, on_all_cores(), [] { return false; });
+    }
     RefreshResult result = judge(archive_, registry_, request, std::move(prepared));
     result.attempt.time = clock_();
     if (result.candidate)

@@ -128,15 +128,11 @@ std::optional<EquipmentModel> older_champion(const storage::Registry& registry,
                                              const PreparedWindow& prepared, std::int64_t& number) {
   const EquipmentModel& identified = prepared.candidate->model;
   const auto version = registry.champion(identified.spacecraft, identified.equipment);
-  if (!version) return std::nullopt;
+  if (!version || mistake_in(*version)) return std::nullopt;
   number = version->number;
-  try {
-    EquipmentModel champion = equipment_model_from_json(version->model_json);
-    if (champion.validated_on.begin > identified.validated_on.begin) return std::nullopt;
-    return champion;
-  } catch (const std::invalid_argument&) {
-    return std::nullopt;
-  }
+  EquipmentModel champion = equipment_model_from_json(version->model_json);
+  if (champion.validated_on.begin > identified.validated_on.begin) return std::nullopt;
+  return champion;
 }
 
 /// Puts the champion, adapted to the window, in the candidate's place where it errs less on the
@@ -216,6 +212,14 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
   result.attempt = std::move(prepared.attempt);
   result.attempt.evidence_json = prepared.evidence.dump();
   return result;
+}
+
+storage::TimeRange behind_champion(const storage::Registry& registry, const std::string& spacecraft,
+                                   const std::string& equipment, storage::TimeRange window) {
+  const auto champion = registry.champion(spacecraft, equipment);
+  if (champion && champion->window.end <= window.end)
+    window.begin = std::max(window.begin, champion->window.begin);
+  return window;
 }
 
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,

@@ -22,6 +22,11 @@ struct RefreshResult {
   Evidence evidence;                             // meaningful with a candidate
 };
 
+/// The window without what lies before the champion's. That one begins later where it was asked for
+/// because an older champion drifted: telemetry of before is of what the equipment was then.
+storage::TimeRange behind_champion(const storage::Registry& registry, const std::string& spacecraft,
+                                   const std::string& equipment, storage::TimeRange window);
+
 /// The champion is that of the registry now.
 RefreshResult judge(const storage::Archive& archive, const storage::Registry& registry,
                     const RefreshRequest& request, PreparedWindow&& prepared);

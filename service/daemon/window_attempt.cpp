@@ -13,6 +13,8 @@ std::optional<std::int64_t> record(const storage::Standing& standing, RefreshRes
   context.write([&](storage::Registry& registry, auto&) {
     result.attempt.time = context.clock();
     if (!result.candidate) {
+      if (registry.standing(result.attempt.spacecraft, result.attempt.equipment) != standing)
+        return;
       registry.record(result.attempt);
       number = 0;
       return;
@@ -30,16 +32,6 @@ bool record(const storage::Standing& standing, const ProbationDecision& found,
   });
   if (recorded && context.decided) context.decided(found);
   return recorded;
-}
-
-/// The window without what lies before the champion's. That one begins later where it was asked for
-/// because an older champion drifted: telemetry of before is of what the equipment was then.
-storage::TimeRange window_of(const WindowFeed::Job& job, const storage::Registry& registry) {
-  storage::TimeRange window = job.window.window;
-  const auto champion = registry.champion(*job.spacecraft, job.equipment->name);
-  if (champion && champion->window.end <= window.end)
-    window.begin = std::max(window.begin, champion->window.begin);
-  return window;
 }
 
 }  // namespace
@@ -62,10 +54,12 @@ std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
   // From here on the archive marks what still falls into the window.
   context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, end); });
   decide_probation(archive, registry, *job.spacecraft, *job.equipment, INT64_MIN, end, context);
-  const RefreshRequest request{*job.spacecraft, *job.equipment, window_of(job, registry),
-                               job.window.cause, context.configuration_digest};
-  // Read before the refresh looks at the champion and the hold.
+  // Read before the champion and the hold are looked at.
   const storage::Standing standing = registry.standing(*job.spacecraft, job.equipment->name);
+  const RefreshRequest request{
+      *job.spacecraft, *job.equipment,
+      behind_champion(registry, *job.spacecraft, job.equipment->name, job.window.window),
+      job.window.cause, context.configuration_digest};
   RecordedAttempt attempt{
       refresh(archive, registry, request, kept, context.for_each, context.stop)};
   const auto number = record(standing, attempt.result, context);

@@ -1,5 +1,7 @@
 #include "service/daemon/window_attempt.hpp"
 
+#include <functional>
+
 #include <gtest/gtest.h>
 
 #include "tests/service/daemon/daemon_fixture.hpp"
@@ -13,16 +15,21 @@ class WindowAttempt : public DaemonTest {
     archive.describe(descriptors());
     archive.append(telemetry(day, 1801));
   }
-  RecordedAttempt attempt(storage::TimeRange window) {
+  RecordedAttempt attempt(storage::TimeRange window) { return *try_window(window); }
+  /// `before` runs before anything is written.
+  std::optional<RecordedAttempt> try_window(
+      storage::TimeRange window, const std::function<void()>& before = [] {}) {
     const WindowFeed::Job job{{0, window, "slide"}, &spacecraft, &equipment, {}};
     KeptWindow kept = kept_window_of(spacecraft, equipment);
     return attempt_window(job, archive, registry, kept,
                           {"digest",
-                           [this](const auto& task) { task(registry, archive); },
+                           [&](const auto& task) {
+                             before();
+                             task(registry, archive);
+                           },
                            [] { return day; },
                            {},
-                           [] { return false; }})
-        .value();
+                           [] { return false; }});
   }
 
   const std::string spacecraft = "SAT";
@@ -42,6 +49,18 @@ TEST_F(WindowAttempt, TriesNothingThatLiesBeforeTheChampionsWindow) {
   EXPECT_EQ(attempt({day, day + 10 * minute}).result.attempt.window,
             (storage::TimeRange{day, day + 10 * minute}))
       << "an older one";
+}
+
+TEST_F(WindowAttempt, IsNotRecordedWithoutAModelEitherOnceTheStandingIsAnotherOne) {
+  const storage::TimeRange empty{day + 60 * minute, day + 70 * minute};
+  int writes = 0;
+  const auto hold = [&] {
+    if (++writes == 2) registry.put_on_hold("SAT", "PLANT", {"ana", "rehearsal", 1});
+  };
+  EXPECT_FALSE(try_window(empty, hold));
+  EXPECT_EQ(writes, 2) << "the seal and the record";
+  EXPECT_TRUE(registry.attempts({}).empty());
+  EXPECT_EQ(attempt(empty).result.attempt.outcome, "low_coverage");
 }
 
 }  // namespace
