@@ -141,8 +141,10 @@ void identify_window(const RefreshRequest& request, KeptWindow& kept,
   if (data.coverage < request.equipment.min_coverage || parts.validate.size() == 0)
     return refuse(
         prepared, name(Outcome::low_coverage),
-        fmt::format("Only {:.1f} % of the window has every parameter valid; {:g} % are needed.",
-                    100 * data.coverage, 100 * request.equipment.min_coverage));
+        fmt::format("Only {:.1f} % of the window has every parameter valid{}; {:g} % are needed.",
+                    100 * data.coverage,
+                    request.equipment.derived.empty() ? "" : " and every derived input finite",
+                    100 * request.equipment.min_coverage));
   identification::IdentifyOptions options = options_of(request.equipment);
   options.tune_rows = parts.tune.size();
   // What is slower the gate would turn away: the window cannot tell it.

@@ -97,7 +97,14 @@ Refusal against_scores(const Evidence& e, const EquipmentConfig& limits) {
                         fmt::format("Fit {:.2f} % on unseen data is below the limit of {:g} % "
                                     "(0 % is a constant at the mean).",
                                     e.fit_percent, limits.min_fit_percent)};
-  if (!e.mean.sure_percent || !(*e.mean.sure_percent > 0))
+  if (!e.mean.sure_percent)
+    return GateDecision{
+        Outcome::fit_below_limit,
+        fmt::format(
+            "Fit {:.2f} % on {} unseen samples may be chance: they are too few, or too much "
+            "of one stretch, to tell.",
+            e.fit_percent, e.mean.rows)};
+  if (!(*e.mean.sure_percent > 0))
     return GateDecision{
         Outcome::fit_below_limit,
         fmt::format("Fit {:.2f} % on unseen data may be chance: with a confidence of {:g} % it is "
@@ -153,7 +160,8 @@ Refusal against_comparison(const Evidence::Champion& champion, const EquipmentCo
   if (!comparison.sure_percent)
     return GateDecision{
         Outcome::comparison_says_nothing,
-        fmt::format("Only {} samples compare the candidate with champion {}: too few to tell.",
+        fmt::format("{} samples compare the candidate with champion {}: too few, or too much of "
+                    "one stretch, to tell.",
                     comparison.rows, champion.version)};
   if (!(*comparison.sure_percent > limits.margin_percent))
     return GateDecision{
@@ -385,12 +393,13 @@ GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {
             praise(evidence) + fmt::format(" Waits: {} holds the equipment ({}).",
                                            evidence.hold->actor, evidence.hold->reason)};
   if (is_unvouched(evidence, limits))
-    return {Outcome::unvouched,
-            praise(evidence) +
-                fmt::format(" But for a constant offset the champion is not surely worse, and a "
-                            "sensor of {} would show the same; no relation binds it. Waits for an "
-                            "operator's approval.",
-                            fmt::join(evidence.champion->unbound, ", "))};
+    return {
+        Outcome::unvouched,
+        praise(evidence) +
+            fmt::format(" But for a constant offset the champion is not surely worse by {:g} %, "
+                        "and a sensor of {} would show the same; no relation binds it. Waits "
+                        "for an operator's approval.",
+                        limits.margin_percent, fmt::join(evidence.champion->unbound, ", "))};
   if (auto haste = against_haste(evidence, limits)) return *haste;
   if (limits.approval == ApprovalPolicy::by_hand)
     return {Outcome::waiting, praise(evidence) + " Waits for an operator's approval."};

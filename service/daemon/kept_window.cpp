@@ -54,9 +54,9 @@ std::variant<WindowData, UnknownParameter> KeptWindow::load(const storage::Archi
   });
   data.plausibility = checks_.look(source, data, samples, ticks);
   make_holes(inside(data.plausibility.holes, ticks), ticks);
-  data.read_coverage = coverage_of(samples, window, request_.period);
-  data.record = InputExpressions(request_.inputs, request_.derived)
-                    .evaluate(without(std::move(samples), data.plausibility.holes));
+  Record read = InputExpressions(request_.inputs, request_.derived).evaluate(std::move(samples));
+  data.read_coverage = coverage_of(read, window, request_.period);
+  data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);
   return data;
 }

@@ -65,7 +65,7 @@ struct WindowData {
   std::vector<Channel> input_channels;  // that the inputs are computed from
   std::vector<Channel> output_channels;
   Plausibility plausibility;  // of a KeptWindow with checks: its holes are not in the record
-  double coverage = 0;        // share of the window's ticks at which every channel is valid
+  double coverage = 0;        // share of the window's ticks that have a row
   double read_coverage = 0;   // the same before holes were made of what is not believed
 };
 

@@ -70,6 +70,7 @@ TEST_F(KeptWindows, ComputeDerivedInputsWithTheBitsOfAFreshRead) {
     const auto loaded = kept.load(archive, {day + begin * second, day + (begin + 1500) * second});
     const auto& data = std::get<WindowData>(loaded);
     EXPECT_NEAR(data.coverage, 1. / 3, 0.02) << "u is above 0 for 40 s of 120";
+    EXPECT_EQ(data.read_coverage, data.coverage) << "all of it is believed";
     EXPECT_GE(data.record.segments.size(), 12U);
     EXPECT_TRUE((data.record.u.col(1).array() == data.record.u.col(0).array() + 0.1).all());
   }
