@@ -128,8 +128,7 @@ std::optional<std::string> against_tenure(const LongerLook& look, const Equipmen
   if (!left_behind(look) && look.tenure_believed < least_believed)
     return fmt::format(
         "the champion had {:.3f} % where it was validated, and of the telemetry that leads from "
-        "then "
-        "to the version's window {:.0f} % is believed, so that nothing tells of a change.",
+        "then to the version's window {:.0f} % is believed, so that nothing tells of a change.",
         look.champion_validated_mrse_percent, 100 * look.tenure_believed);
   if (const auto& all = look.over_tenure;
       all && as_before(look) && !(all->reduction_percent > needed))
