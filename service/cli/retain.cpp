@@ -67,15 +67,12 @@ std::variant<Request, Refusal> request_of(const Arguments& arguments) {
 std::vector<ProtectedStretch> protection(const Arguments& arguments, const Request& request,
                                          storage::Database& database, storage::Time now) {
   std::vector<ProtectedStretch> all;
-  const auto add = [&all](const std::vector<ProtectedStretch>& more) {
-    all.insert(all.end(), more.begin(), more.end());
-  };
   const storage::Archive archive(database);
   const storage::Registry registry(database);
-  if (!arguments.including_versions) add(telemetry_of_versions(archive, registry));
+  if (!arguments.including_versions) all = telemetry_of_versions(archive, registry);
   if (request.config) {
-    add(telemetry_of_probations(archive, registry, *request.config));
-    add(telemetry_of_next_windows(archive, *request.config, now));
+    const auto needed = telemetry_still_needed(archive, registry, *request.config, now);
+    all.insert(all.end(), needed.begin(), needed.end());
   }
   return all;
 }

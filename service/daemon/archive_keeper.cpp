@@ -30,11 +30,8 @@ void ArchiveKeeper::post_step() {
 std::vector<storage::ProtectedStretch> ArchiveKeeper::protection(
     const storage::Registry& registry, const storage::Archive& archive) const {
   std::vector<storage::ProtectedStretch> all = telemetry_of_versions(archive, registry);
-  const auto add = [&all](const std::vector<storage::ProtectedStretch>& more) {
-    all.insert(all.end(), more.begin(), more.end());
-  };
-  add(telemetry_of_probations(archive, registry, config_));
-  add(telemetry_of_next_windows(archive, config_, clock_()));
+  const auto needed = telemetry_still_needed(archive, registry, config_, clock_());
+  all.insert(all.end(), needed.begin(), needed.end());
   return all;
 }
 

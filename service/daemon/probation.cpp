@@ -98,7 +98,7 @@ Reduction reduction_of(const LongerLook& look) {
 }
 
 /// In so many time constants little is left of the state that a mode was in: a twentieth.
-constexpr double time_constants = 3;
+constexpr int time_constants = 3;
 
 /// Whether the champion may be right and its slowest mode away for a while: all that is surely
 /// gained is a constant, the comparison is too short to see that mode return, and the champion has
@@ -162,7 +162,7 @@ bool needs_vouching(const storage::Registry& registry, const storage::Version& v
 }
 
 /// For so long before the window free runs go on already, so that little is left of the states that
-/// they begin with: three time constants of the slowest mode.
+/// they begin with: three time constants of the slowest mode, longest_run_up at most.
 Duration run_up(const EquipmentModel& model, const EquipmentModel& incumbent,
                 const EquipmentConfig& equipment) {
   const double slowest = 1e9 * model.dynamics.period_s * slowest_rows(model, incumbent);
@@ -295,10 +295,10 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
   if (auto refusal = against_window(version, champion, equipment)) return refusal;
   const auto time = look_time(version, equipment, since, reached);
   if (!time) return std::nullopt;
-  for (const storage::Version& one : {version, *champion})
-    if (const auto mistake = mistake_in(one))
+  for (const storage::Version* one : {&version, &*champion})
+    if (const auto mistake = mistake_in(*one))
       return rejection(
-          fmt::format("version {} is damaged in the registry: {}.", one.number, *mistake));
+          fmt::format("version {} is damaged in the registry: {}.", one->number, *mistake));
   try {
     const EquipmentModel model = equipment_model_from_json(version.model_json);
     const EquipmentModel incumbent = equipment_model_from_json(champion->model_json);
@@ -416,8 +416,19 @@ std::optional<NewDecision> judge_probation(const LongerLook& look, const Equipme
               look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent)));
 }
 
+std::vector<storage::Version> on_probation(const storage::Registry& registry,
+                                           const std::string& spacecraft,
+                                           const EquipmentConfig& equipment) {
+  std::vector<storage::Version> versions;
+  if (equipment.approval != ApprovalPolicy::automatic) return versions;
+  for (const std::int64_t number :
+       registry.undecided(spacecraft, equipment.name, std::string(name(Outcome::on_probation))))
+    versions.push_back(*registry.version(spacecraft, equipment.name, number));
+  return versions;
+}
+
 Duration longest_run_up(const EquipmentConfig& equipment) {
-  return 3 * equipment.window;
+  return time_constants * equipment.window;
 }
 
 bool record(storage::Registry& registry, const storage::Standing& standing,
@@ -432,11 +443,7 @@ bool record(storage::Registry& registry, const storage::Standing& standing,
 void look_at_probation(const storage::Archive& archive, const storage::Registry& registry,
                        const std::string& spacecraft, const EquipmentConfig& equipment,
                        storage::Time since, storage::Time reached, const RecordProbation& record) {
-  if (equipment.approval != ApprovalPolicy::automatic) return;
-  std::vector<storage::Version> versions;
-  for (const std::int64_t number :
-       registry.undecided(spacecraft, equipment.name, std::string(name(Outcome::on_probation))))
-    versions.push_back(*registry.version(spacecraft, equipment.name, number));
+  std::vector<storage::Version> versions = on_probation(registry, spacecraft, equipment);
   std::stable_sort(versions.begin(), versions.end(),
                    [](const auto& a, const auto& b) { return a.window.end > b.window.end; });
   for (const storage::Version& listed : versions) {

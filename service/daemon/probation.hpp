@@ -16,6 +16,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "service/daemon/config.hpp"
 #include "service/daemon/gate.hpp"
@@ -77,6 +78,12 @@ struct LongerLook {
 /// was validated has to be surely better by all of the margin.
 std::optional<storage::NewDecision> judge_probation(const LongerLook& look,
                                                     const EquipmentConfig& limits);
+
+/// The equipment's versions that wait for telemetry, ascending; none where an operator decides on
+/// his own.
+std::vector<storage::Version> on_probation(const storage::Registry& registry,
+                                           const std::string& spacecraft,
+                                           const EquipmentConfig& equipment);
 
 /// So long before a version's window its runs and the champion's may begin, at most.
 Duration longest_run_up(const EquipmentConfig& equipment);

@@ -81,37 +81,24 @@ std::vector<ProtectedStretch> telemetry_of_versions(const storage::Archive& arch
   return stretches;
 }
 
-std::vector<ProtectedStretch> telemetry_of_probations(const storage::Archive& archive,
-                                                      const storage::Registry& registry,
-                                                      const Config& config) {
-  std::vector<ProtectedStretch> stretches;
-  for (const SpacecraftConfig& spacecraft : config.spacecraft) {
-    const Descriptors descriptors = archive.parameters(spacecraft.name);
-    for (const EquipmentConfig& equipment : spacecraft.equipment) {
-      if (equipment.approval != ApprovalPolicy::automatic) continue;
-      for (const std::int64_t number : registry.undecided(spacecraft.name, equipment.name,
-                                                          std::string(name(Outcome::on_probation))))
-        if (const auto version = registry.version(spacecraft.name, equipment.name, number))
-          add(stretches, descriptors, *version,
-              {before(version->window.begin, longest_run_up(equipment)),
-               version->window.end + 2 * equipment.confirmation});
-    }
-  }
-  return stretches;
-}
-
-std::vector<ProtectedStretch> telemetry_of_next_windows(const storage::Archive& archive,
-                                                        const Config& config, storage::Time now) {
+std::vector<ProtectedStretch> telemetry_still_needed(const storage::Archive& archive,
+                                                     const storage::Registry& registry,
+                                                     const Config& config, storage::Time now) {
   std::vector<ProtectedStretch> stretches;
   for (const SpacecraftConfig& spacecraft : config.spacecraft) {
     const auto extent = archive.extent(spacecraft.name, storage::Origin::real);
     if (!extent) continue;
     const storage::Time newest = std::min(extent->end, now);
     const Descriptors descriptors = archive.parameters(spacecraft.name);
-    for (const EquipmentConfig& equipment : spacecraft.equipment)
+    for (const EquipmentConfig& equipment : spacecraft.equipment) {
       add(stretches, spacecraft.name, descriptors, parameters_of(equipment),
           {before(newest, equipment.window + equipment.slide + equipment.hold),
            std::numeric_limits<storage::Time>::max()});
+      for (const storage::Version& version : on_probation(registry, spacecraft.name, equipment))
+        add(stretches, descriptors, version,
+            {before(version.window.begin, longest_run_up(equipment)),
+             version.window.end + 2 * equipment.confirmation});
+    }
   }
   return stretches;
 }

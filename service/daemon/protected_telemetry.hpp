@@ -18,17 +18,13 @@ namespace reident {
 std::vector<storage::ProtectedStretch> telemetry_of_versions(const storage::Archive& archive,
                                                              const storage::Registry& registry);
 
-/// What versions on probation are judged by: the same, from where the runs may begin before the
-/// window to the last look.
-std::vector<storage::ProtectedStretch> telemetry_of_probations(const storage::Archive& archive,
-                                                               const storage::Registry& registry,
-                                                               const Config& config);
-
-/// What the next window of each equipment is read from, so that a limit of size that is too low
-/// does not take it away: the last window and slide before where the spacecraft's telemetry, or
-/// the clock, ends.
-std::vector<storage::ProtectedStretch> telemetry_of_next_windows(const storage::Archive& archive,
-                                                                 const Config& config,
-                                                                 storage::Time now);
+/// What the service will still read of each equipment, so that a rule that is too tight does not
+/// take it away: what the next window is read from (the last window and slide before where the
+/// spacecraft's telemetry, or the clock, ends), and what its versions on probation are judged by
+/// (the parameters as above, from where the runs may begin before the window to the last look).
+std::vector<storage::ProtectedStretch> telemetry_still_needed(const storage::Archive& archive,
+                                                              const storage::Registry& registry,
+                                                              const Config& config,
+                                                              storage::Time now);
 
 }  // namespace reident

@@ -26,7 +26,8 @@ std::optional<Evidence::Comparison> against_simulator(const storage::Archive& ar
                                                       const PreparedWindow& prepared,
                                                       double confidence_percent);
 
-/// Absent where there is no champion of the same outputs.
+/// Absent where there is no champion; without a comparison where it is damaged in the registry, or
+/// has other outputs.
 std::optional<Evidence::Champion> against_champion(const storage::Archive& archive,
                                                    const storage::Registry& registry,
                                                    const PreparedWindow& prepared,

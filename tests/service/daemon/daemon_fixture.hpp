@@ -30,10 +30,11 @@ class DaemonTest : public testing::Test {
 
   /// Makes what is in chunks of a parameter undecodable.
   void damage_chunks(std::uint32_t parameter) const {
-    EXPECT_GT(run_sql("UPDATE chunk_data SET bytes = zeroblob(length(bytes)) WHERE id IN (SELECT "
-                      "data FROM chunk "
-                      "JOIN series ON series.id = chunk.series WHERE parameter = " +
-                      std::to_string(parameter) + ")"),
+    const std::string of_parameter =
+        "SELECT data FROM chunk JOIN series ON series.id = chunk.series WHERE parameter = " +
+        std::to_string(parameter);
+    EXPECT_GT(run_sql("UPDATE chunk_data SET bytes = zeroblob(length(bytes)) WHERE id IN (" +
+                      of_parameter + ")"),
               0);
   }
 

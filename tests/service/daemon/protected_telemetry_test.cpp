@@ -81,12 +81,12 @@ TEST_F(ProtectedTelemetry, OfProbationsGoesFromTheFirstRunToTheLastLook) {
   config.spacecraft[0].equipment[0].confirmation = 4 * minute;
   const std::int64_t version = record(day + 10 * minute, DecisionKind::wait, "on_probation");
   record(day + 15 * minute, DecisionKind::wait, "unvouched");
-  const auto found = telemetry_of_probations(archive, registry, config);
-  ASSERT_THAT(found, SizeIs(3));
-  EXPECT_EQ(found[0].range,
+  const auto found = telemetry_still_needed(archive, registry, config, latest);
+  ASSERT_THAT(found, SizeIs(3 + 3)) << "the next window's, and one version's";
+  EXPECT_EQ(found[3].range,
             (storage::TimeRange{day - 30 * minute - plant().hold, day + 18 * minute}));
   registry.decide("SAT", "PLANT", version, {DecisionKind::reject, "gate", "worse"}, day);
-  EXPECT_THAT(telemetry_of_probations(archive, registry, config), IsEmpty());
+  EXPECT_THAT(telemetry_still_needed(archive, registry, config, latest), SizeIs(3));
 }
 
 TEST_F(ProtectedTelemetry, FollowsTheParametersOfAnExpression) {
@@ -134,11 +134,11 @@ TEST_F(ProtectedTelemetry, OfTheNextWindowsReachesBackFromWhereTelemetryOrTheClo
   Config config;
   config.spacecraft = {{"SAT", {plant()}}, {"NONE", {plant()}}};
   const Duration back = plant().window + plant().slide + plant().hold;
-  auto found = telemetry_of_next_windows(archive, config, latest);
+  auto found = telemetry_still_needed(archive, registry, config, latest);
   ASSERT_THAT(found, SizeIs(3));
   EXPECT_EQ(found[2].parameter, 3U);
   EXPECT_EQ(found[2].range, (storage::TimeRange{day + 1800 * second + 1 - back, latest}));
-  found = telemetry_of_next_windows(archive, config, day);
+  found = telemetry_still_needed(archive, registry, config, day);
   EXPECT_EQ(found[0].range.begin, day - back);
 }
 
