@@ -17,7 +17,7 @@
 // were measured with estimated references.
 #pragma once
 
-#include "identification/state_space.hpp"
+#include "identification/matrix.hpp"
 
 namespace reident::identification {
 

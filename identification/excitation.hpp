@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "identification/state_space.hpp"
+#include "identification/matrix.hpp"
 
 namespace reident::identification {
 

@@ -2,7 +2,7 @@
 // blocks of a length that follows the processor's cache.
 #pragma once
 
-#include "identification/state_space.hpp"
+#include "identification/matrix.hpp"
 
 namespace reident::identification {
 

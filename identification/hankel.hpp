@@ -6,7 +6,7 @@
 #include "identification/lag_sums.hpp"
 #include "identification/normalise.hpp"
 #include "identification/record.hpp"
-#include "identification/state_space.hpp"
+#include "identification/matrix.hpp"
 
 namespace reident::identification {
 

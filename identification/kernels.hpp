@@ -3,7 +3,7 @@
 // both give the same bits.
 #pragma once
 
-#include "identification/state_space.hpp"
+#include "identification/matrix.hpp"
 
 namespace reident::identification {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "identification/record.hpp"
-#include "identification/state_space.hpp"
+#include "identification/matrix.hpp"
 
 namespace reident::identification {
 

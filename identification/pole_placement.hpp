@@ -21,7 +21,7 @@
 #include <variant>
 #include <vector>
 
-#include "identification/state_space.hpp"
+#include "identification/matrix.hpp"
 #include "identification/verdict.hpp"
 
 namespace reident::identification {

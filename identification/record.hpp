@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "identification/state_space.hpp"
+#include "identification/matrix.hpp"
 
 namespace reident::identification {
 

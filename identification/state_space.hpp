@@ -16,13 +16,9 @@
 // n, m and p are the order and the numbers of inputs and outputs. The basis of x is arbitrary.
 #pragma once
 
-#include <Eigen/Dense>
+#include "identification/matrix.hpp"
 
 namespace reident::identification {
-
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
-using Index = Eigen::Index;
 
 struct StateSpaceModel {
   Matrix A, B, C, D;
