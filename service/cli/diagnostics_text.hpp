@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/diagnostics.hpp"
+#include "identification/statistics/diagnostics.hpp"
 
 namespace reident::cli {
 

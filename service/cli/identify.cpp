@@ -1,4 +1,4 @@
-#include "identification/identify.hpp"
+#include "identification/search/identify.hpp"
 
 #include <algorithm>
 #include <cstdio>

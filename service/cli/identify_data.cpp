@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "identification/grid.hpp"
+#include "identification/samples/grid.hpp"
 #include "service/support/csv.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "identification/record.hpp"
+#include "identification/samples/record.hpp"
 #include "service/cli/command.hpp"
 #include "service/model/derived_inputs.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/identify.hpp"
+#include "identification/search/identify.hpp"
 #include "service/cli/command.hpp"
 
 namespace reident::cli {

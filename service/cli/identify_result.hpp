@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "identification/continuous.hpp"
-#include "identification/diagnostics.hpp"
-#include "identification/identify.hpp"
+#include "identification/simulation/continuous.hpp"
+#include "identification/statistics/diagnostics.hpp"
+#include "identification/search/identify.hpp"
 #include "service/model/derived_inputs.hpp"
 
 namespace reident::cli {

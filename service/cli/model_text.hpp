@@ -5,8 +5,8 @@
 #include <string_view>
 #include <variant>
 
-#include "identification/continuous.hpp"
-#include "identification/state_space.hpp"
+#include "identification/simulation/continuous.hpp"
+#include "identification/simulation/state_space.hpp"
 
 namespace reident::cli {
 

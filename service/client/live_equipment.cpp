@@ -1,6 +1,6 @@
 #include "service/client/live_equipment.hpp"
 
-#include "identification/simulate.hpp"
+#include "identification/simulation/simulate.hpp"
 #include "service/client/include/reident/client.h"
 
 namespace reident {

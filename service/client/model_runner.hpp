@@ -15,7 +15,7 @@ namespace reident {
 /// and outputs are those of the declaration that its models were prepared for. step(), follow(),
 /// observe() and swap() allocate nothing, lock nothing and make no system call.
 ///
-/// Following. With a tracking gain the integral feedback of identification/tracking.hpp; when the
+/// Following. With a tracking gain the integral feedback of identification/simulation/tracking.hpp; when the
 /// run lets go, its correction fades. Without one the Kalman gain: x[k+1] += K e[k], each error
 /// clamped to the output's identified range.
 ///

@@ -1,7 +1,7 @@
-// Errors of a run that has no end: the scores of identification/simulate.hpp, sample by sample.
+// Errors of a run that has no end: the scores of identification/simulation/simulate.hpp, sample by sample.
 #pragma once
 
-#include "identification/simulate.hpp"
+#include "identification/simulation/simulate.hpp"
 
 namespace reident {
 

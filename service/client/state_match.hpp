@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "identification/state_space.hpp"
+#include "identification/simulation/state_space.hpp"
 #include "service/client/step_kernel.hpp"
 
 namespace reident {

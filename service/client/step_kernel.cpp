@@ -1,6 +1,6 @@
 #include "service/client/step_kernel.hpp"
 
-#include "identification/cpu_clones.hpp"
+#include "identification/numerics/cpu_clones.hpp"
 
 namespace reident {
 namespace {

@@ -1,6 +1,6 @@
 // From live frames to the ticks of a model's grid.
 //
-// The rule is that of identification/grid.hpp: the value of a signal at a tick is its latest usable
+// The rule is that of identification/samples/grid.hpp: the value of a signal at a tick is its latest usable
 // sample at or before it and younger than the hold; a sample that is not usable ends the hold of
 // the one before it. A tick is given out once a frame with a later generation time has come, so
 // that samples of the tick's own time that travel in several frames are all there. Derived inputs

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "identification/adaptation.hpp"
-#include "identification/correction.hpp"
-#include "identification/tracking_search.hpp"
+#include "identification/fit/adaptation.hpp"
+#include "identification/correction/correction.hpp"
+#include "identification/correction/tracking_search.hpp"
 #include "service/daemon/gate.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"

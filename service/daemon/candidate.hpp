@@ -13,7 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/identify.hpp"
+#include "identification/search/identify.hpp"
 #include "service/daemon/config.hpp"
 #include "service/daemon/kept_window.hpp"
 #include "service/model/model_version.hpp"
@@ -66,7 +66,7 @@ void refuse_damaged(PreparedWindow& prepared, const storage::Error& error);
 class Stopped : public std::exception {};
 
 /// `known`, version `number` of the equipment, made to fit the window
-/// (identification/adaptation.hpp). Absent where the window gave no candidate, and where `known`
+/// (identification/fit/adaptation.hpp). Absent where the window gave no candidate, and where `known`
 /// looks at other telemetry, is not stable, or has an order that the configuration does not allow.
 std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
                                            const EquipmentModel& known, std::int64_t number,

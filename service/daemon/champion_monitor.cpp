@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "identification/simulate.hpp"
+#include "identification/simulation/simulate.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/support/log.hpp"

@@ -3,7 +3,7 @@
 //
 // A block is a sixteenth of the stretch that the champion was validated on, and as many rows as its
 // initial state needs at least; that stretch's blocks are the reference
-// (identification/change_detection.hpp). The free run goes on from block to block, as a
+// (identification/statistics/change_detection.hpp). The free run goes on from block to block, as a
 // simulator's does; after a gap its state is the one that agrees with the first telemetry behind.
 // Telemetry that is not believed (plausibility.hpp), judged beside the blocks before and those that
 // came with it, is a gap: a sensor that lies is no drift of the champion.
@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "identification/change_detection.hpp"
+#include "identification/statistics/change_detection.hpp"
 #include "service/daemon/config.hpp"
 #include "service/daemon/kept_window.hpp"
 #include "service/model/model_version.hpp"

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "identification/identify.hpp"
+#include "identification/search/identify.hpp"
 #include "service/daemon/config_document.hpp"
 #include "service/support/sha256.hpp"
 #include "service/support/time_text.hpp"

@@ -15,7 +15,7 @@
 namespace reident {
 
 /// What speaks against an attempt, or for it. A window that gives no model has the code of the
-/// identification's verdict (identification/verdict.hpp) as its outcome instead.
+/// identification's verdict (identification/samples/verdict.hpp) as its outcome instead.
 enum class Outcome {
   approved,
   waiting,            // good enough; the policy leaves the decision to an operator

@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 
-#include "identification/record.hpp"
+#include "identification/samples/record.hpp"
 
 namespace reident {
 

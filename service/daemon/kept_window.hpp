@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <variant>
 
-#include "identification/lag_sums.hpp"
-#include "identification/record.hpp"
-#include "identification/tick_ranges.hpp"
+#include "identification/subspace/lag_sums.hpp"
+#include "identification/samples/record.hpp"
+#include "identification/samples/tick_ranges.hpp"
 #include "service/daemon/kept_chunks.hpp"
 #include "service/daemon/plausibility.hpp"
 #include "service/daemon/window_data.hpp"

@@ -7,8 +7,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "identification/consistency.hpp"
-#include "identification/screening.hpp"
+#include "identification/screening/consistency.hpp"
+#include "identification/screening/screening.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident {

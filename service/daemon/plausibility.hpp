@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "identification/tick_ranges.hpp"
+#include "identification/samples/tick_ranges.hpp"
 #include "service/daemon/config.hpp"
 #include "service/daemon/kept_chunks.hpp"
 #include "service/daemon/window_data.hpp"

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "identification/simulate.hpp"
+#include "identification/simulation/simulate.hpp"
 #include "service/daemon/kept_window.hpp"
 #include "service/daemon/provenance.hpp"
 #include "service/daemon/run_comparison.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "identification/correction.hpp"
-#include "identification/simulate.hpp"
+#include "identification/correction/correction.hpp"
+#include "identification/simulation/simulate.hpp"
 #include "service/daemon/provenance.hpp"
 #include "service/daemon/run_comparison.hpp"
 #include "service/model/model_json.hpp"

@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/correction.hpp"
-#include "identification/simulate.hpp"
+#include "identification/correction/correction.hpp"
+#include "identification/simulation/simulate.hpp"
 #include "service/daemon/kept_window.hpp"
 #include "service/daemon/window_data.hpp"
 

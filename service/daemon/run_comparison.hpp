@@ -7,8 +7,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "identification/comparison.hpp"
-#include "identification/record.hpp"
+#include "identification/statistics/comparison.hpp"
+#include "identification/samples/record.hpp"
 #include "service/daemon/gate.hpp"
 #include "service/daemon/plausibility.hpp"
 #include "service/daemon/window_data.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "identification/grid.hpp"
+#include "identification/samples/grid.hpp"
 #include "service/support/floor_divide.hpp"
 
 namespace reident {

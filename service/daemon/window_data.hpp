@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "identification/record.hpp"
-#include "identification/tick_ranges.hpp"
+#include "identification/samples/record.hpp"
+#include "identification/samples/tick_ranges.hpp"
 #include "service/daemon/config.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/sample_source.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "identification/record.hpp"
+#include "identification/samples/record.hpp"
 #include "service/model/expression.hpp"
 
 namespace reident {

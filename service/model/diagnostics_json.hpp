@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/continuous.hpp"
-#include "identification/diagnostics.hpp"
+#include "identification/simulation/continuous.hpp"
+#include "identification/statistics/diagnostics.hpp"
 
 namespace reident {
 

@@ -6,10 +6,10 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include "identification/hankel.hpp"
-#include "identification/identify.hpp"
-#include "identification/response.hpp"
-#include "identification/subspace.hpp"
+#include "identification/subspace/hankel.hpp"
+#include "identification/search/identify.hpp"
+#include "identification/fit/response.hpp"
+#include "identification/subspace/subspace.hpp"
 #include "tests/properties/any_record.hpp"
 
 namespace reident::identification {

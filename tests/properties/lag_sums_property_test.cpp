@@ -7,9 +7,9 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include "identification/hankel.hpp"
-#include "identification/identify.hpp"
-#include "identification/lag_sums.hpp"
+#include "identification/subspace/hankel.hpp"
+#include "identification/search/identify.hpp"
+#include "identification/subspace/lag_sums.hpp"
 #include "tests/properties/any_record.hpp"
 #include "tests/support/same_bits.hpp"
 

@@ -2,9 +2,9 @@
 // follows the definitions (projections by pseudo-inverses), with no factor shared between steps.
 #pragma once
 
-#include "identification/identify.hpp"
-#include "identification/record.hpp"
-#include "identification/state_space.hpp"
+#include "identification/search/identify.hpp"
+#include "identification/samples/record.hpp"
+#include "identification/simulation/state_space.hpp"
 
 namespace reident::testing {
 

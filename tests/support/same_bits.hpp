@@ -1,8 +1,8 @@
 // Whether two results are the same to the last bit, which == does not tell: it takes -0 for 0.
 #pragma once
 
-#include "identification/identify.hpp"
-#include "identification/lag_sums.hpp"
+#include "identification/search/identify.hpp"
+#include "identification/subspace/lag_sums.hpp"
 
 namespace reident::testing {
 

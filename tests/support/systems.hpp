@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <random>
 
-#include "identification/record.hpp"
-#include "identification/state_space.hpp"
+#include "identification/samples/record.hpp"
+#include "identification/simulation/state_space.hpp"
 
 namespace reident::testing {
 

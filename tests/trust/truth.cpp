@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "identification/identify.hpp"
+#include "identification/search/identify.hpp"
 #include "service/daemon/candidate.hpp"
 #include "service/daemon/window_data.hpp"
 #include "service/satcs/reference_spacecraft.hpp"

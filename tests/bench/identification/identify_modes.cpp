@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/identify.hpp"
+#include "identification/search/identify.hpp"
 #include "service/model/model_json.hpp"
 #include "tests/bench/identification/measure.hpp"
 #include "tests/bench/identification/modes.hpp"

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "identification/record.hpp"
+#include "identification/samples/record.hpp"
 
 namespace reident::bench {
 

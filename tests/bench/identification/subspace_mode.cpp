@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/hankel.hpp"
-#include "identification/normalise.hpp"
-#include "identification/subspace.hpp"
+#include "identification/subspace/hankel.hpp"
+#include "identification/subspace/normalise.hpp"
+#include "identification/subspace/subspace.hpp"
 #include "service/model/model_json.hpp"
 #include "tests/bench/identification/modes.hpp"
 

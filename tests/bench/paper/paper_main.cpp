@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "identification/correction.hpp"
-#include "identification/identify.hpp"
-#include "identification/simulate.hpp"
-#include "identification/tracking_search.hpp"
+#include "identification/correction/correction.hpp"
+#include "identification/search/identify.hpp"
+#include "identification/simulation/simulate.hpp"
+#include "identification/correction/tracking_search.hpp"
 #include "paper_picture.hpp"
 #include "service/cli/identify_data.hpp"
 

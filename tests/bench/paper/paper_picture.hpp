@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/state_space.hpp"
+#include "identification/simulation/state_space.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident::bench {

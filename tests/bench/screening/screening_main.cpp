@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "identification/screening.hpp"
-#include "identification/tick_ranges.hpp"
+#include "identification/screening/screening.hpp"
+#include "identification/samples/tick_ranges.hpp"
 #include "service/cli/identify_data.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 // unrolled.
 #pragma once
 
-#include "identification/state_space.hpp"
+#include "identification/simulation/state_space.hpp"
 
 namespace reident::bench {
 

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "identification/simulate.hpp"
+#include "identification/simulation/simulate.hpp"
 
 namespace reident::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include "identification/tracking_search.hpp"
+#include "identification/correction/tracking_search.hpp"
 #include "service/client/kept_version_file.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/simulate.hpp"
+#include "identification/simulation/simulate.hpp"
 #include "service/client/include/reident/client.h"
 #include "tests/service/client/live_telemetry.hpp"
 

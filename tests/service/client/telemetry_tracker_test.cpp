@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-#include "identification/grid.hpp"
+#include "identification/samples/grid.hpp"
 #include "tests/service/client/live_telemetry.hpp"
 
 namespace reident::test {

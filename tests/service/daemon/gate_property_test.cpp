@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/comparison.hpp"
-#include "identification/simulate.hpp"
+#include "identification/statistics/comparison.hpp"
+#include "identification/simulation/simulate.hpp"
 #include "service/daemon/gate.hpp"
 #include "tests/support/systems.hpp"
 

@@ -1,0 +1,119 @@
+// The regression of the measured output on everything that the simulated output is linear in.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "identification/samples/record.hpp"
+#include "identification/simulation/state_space.hpp"
+
+namespace reident::identification {
+
+/// Columns of the regression, in their order:
+///   x0 (n) | B by columns (n m) | L (n p) | for each output q: D_q (m), y0_q (1), dC_q (n) |
+///   target
+/// D is there with `direct`. L and dC move the dynamics to A + L C and C + dC: they are there with
+/// `moves`, dC with more than one output only, since L reaches every spectrum of a single output.
+struct Columns {
+  Index n = 0, m = 0, p = 0;
+  bool direct = true;
+  bool moves = false;
+
+  Index input_gain() const { return n; }                   // B
+  Index dynamics() const { return input_gain() + n * m; }  // L
+  Index output(Index q) const { return dynamics() + (moves ? n * p : 0) + q * per_output(); }
+  Index offset(Index q) const { return output(q) + direct_inputs(); }
+  Index output_map(Index q) const { return offset(q) + 1; }  // dC_q
+  Index direct_inputs() const { return direct ? m : 0; }
+  Index per_output() const { return direct_inputs() + 1 + (moves && p > 1 ? n : 0); }
+  Index target() const { return output(p); }
+  Index count() const { return target() + 1; }
+};
+
+/// A stretch of the rows that belong to one output: column t of `values` holds, for one time, the
+/// columns before output(0), those of the output, and the target. All others are zero.
+struct RegressionRows {
+  Index output;
+  Eigen::Ref<const Matrix> values;
+};
+
+/// Walks the regression over a segment in stretches, so that memory does not follow its length.
+/// With `columns.moves`, B, D and y0 of the model and the segment's initial state `x0` give the
+/// trajectory about which the dynamics move.
+void walk_regression(const Columns& columns, const StateSpaceModel& model, const Record& record,
+                     const Segment& segment, const Vector& x0,
+                     const std::function<void(const RegressionRows&)>& visit);
+
+/// B, D, y0 and dynamics' moves (all columns between x0 and the target), and the initial states.
+struct RegressionSolution {
+  Vector theta;            // indexed by Columns; the first n entries are zero
+  std::vector<Vector> x0;  // one for each segment
+  double sum_of_squares = 0;
+};
+
+/// Least squares by the normal equations: fast, at the price of squaring the condition. The initial
+/// state of each segment is eliminated as the segment ends.
+class NormalEquations {
+ public:
+  explicit NormalEquations(const Columns& columns);
+  void add(const RegressionRows& rows);
+  void end_segment();
+
+  /// Weights the moves of the dynamics down by `damping` times their own sums of squares. Absent
+  /// when too few digits are left: when the square of `least_pivot` is more than the share that a
+  /// column has for its own, the others known.
+  std::optional<RegressionSolution> solve(double damping, double least_pivot) const;
+
+  /// Without the combinations of columns, each scaled to size 1, that are smaller than
+  /// `least_size`; of least norm in this scale. Absent where these would show: where a thousandth
+  /// of the target or less is left, or they lower its sum of squares by a hundredth.
+  std::optional<RegressionSolution> solve_without_small(double least_size) const;
+
+  /// Of each principal component of the columns, scaled to size 1, the share s / (s + half_at) of
+  /// its coefficient, s being what it explains of the target's sum of squares: none of those that
+  /// are smaller than `least_size`.
+  std::optional<RegressionSolution> solve_shrunk(double half_at, double least_size) const;
+
+ private:
+  struct Elimination {
+    Matrix inverse;  // of the initial state's own sums
+    Matrix coupling;
+  };
+  /// The columns in the directions of their principal components.
+  struct Components {
+    Vector scale;    // of the columns, to size 1
+    Matrix columns;  // a column for each component
+    Vector squares;  // of their sizes
+    Vector target;   // its products with them
+  };
+  std::optional<Components> components() const;
+  RegressionSolution solution_of(const Vector& found) const;
+
+  Columns columns_;
+  std::vector<Matrix> of_output_;  // sums of the open segment, one for each output
+  Matrix sums_;                    // of the closed segments, over the columns after x0
+  std::vector<Elimination> segments_;
+};
+
+/// The same by orthogonal factors, to full accuracy; solutions are of least norm where the rows do
+/// not determine them.
+class OrthogonalFactor {
+ public:
+  explicit OrthogonalFactor(const Columns& columns);
+  void add(const RegressionRows& rows);
+  void end_segment();
+  RegressionSolution solve() const;
+
+ private:
+  void fold();
+
+  Columns columns_;
+  Matrix waiting_;  // rows of the open segment that are not folded in
+  Index waiting_rows_ = 0;
+  Matrix open_;    // triangular factor of the open segment
+  Matrix factor_;  // triangular factor of the closed segments, over the columns after x0
+  std::vector<Matrix> segments_;  // rows of each segment that determine its initial state
+};
+
+}  // namespace reident::identification

@@ -1,0 +1,34 @@
+// From irregular samples of several channels to a Record on a uniform grid of time.
+//
+// Tick k of the grid stands at the time k * period since the epoch, so that two windows of one
+// equipment share their ticks. The value of a channel at a tick is its latest usable sample at or
+// before the tick and not older than `hold` (zero-order hold: what a live consumer would know).
+// A tick where any channel has no such sample is a hole and splits the record.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "identification/samples/record.hpp"
+
+namespace reident::identification {
+
+/// Samples of one channel, ascending in time. `usable[i] == 0` marks a sample that must not be
+/// used (of bad quality); it ends the hold of the sample before it.
+struct ChannelSamples {
+  std::span<const std::int64_t> time_ns;
+  std::span<const double> value;
+  std::span<const std::uint8_t> usable;
+};
+
+struct GridOptions {
+  std::int64_t period_ns = 1'000'000'000;
+  std::int64_t hold_ns = 1'000'000'000;  // a sample serves ticks in [time, time + hold)
+};
+
+/// Ticks in [begin_ns, end_ns). Samples before begin_ns may serve the first ticks. Non-finite
+/// values count as unusable.
+Record make_record(std::span<const ChannelSamples> inputs, std::span<const ChannelSamples> outputs,
+                   std::int64_t begin_ns, std::int64_t end_ns, const GridOptions& options);
+
+}  // namespace reident::identification

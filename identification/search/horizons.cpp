@@ -1,0 +1,48 @@
+#include "identification/search/horizons.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+#include "identification/subspace/hankel.hpp"
+
+namespace reident::identification {
+namespace {
+
+constexpr int preferred_horizons[] = {6, 10, 15, 20, 30};
+
+}  // namespace
+
+Index HankelSupply::columns(RowRange rows, int horizon) const {
+  const Index found = hankel_columns(segments_within(segments, rows), 2 * Index{horizon});
+  return found >= 2 * Index{horizon} * width + 1 ? found : 0;
+}
+
+Index HankelSupply::columns(int horizon) const {
+  Index least = std::numeric_limits<Index>::max();
+  for (const Fold& fold : folds) least = std::min(least, columns(fold.fit, horizon));
+  return least;
+}
+
+int least_horizon(const IdentifyOptions& options) {
+  return std::max(2, options.order.value_or(options.min_order) + 1);
+}
+
+int longest_horizon(const IdentifyOptions& options) {
+  return options.horizon.value_or(
+      std::max(*std::rbegin(preferred_horizons), least_horizon(options)));
+}
+
+std::vector<int> feasible_horizons(const HankelSupply& supply, const IdentifyOptions& options) {
+  const int least = options.horizon.value_or(least_horizon(options));
+  const Index columns = supply.columns(least);
+  if (columns == 0) return {};
+  if (options.horizon) return {least};
+  std::vector<int> horizons;
+  for (const int horizon : preferred_horizons)
+    if (horizon >= least && 2 * supply.columns(horizon) >= columns) horizons.push_back(horizon);
+  if (horizons.empty()) horizons.push_back(least);
+  return horizons;
+}
+
+}  // namespace reident::identification

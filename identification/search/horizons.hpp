@@ -1,0 +1,35 @@
+// Which horizons the rows can feed.
+#pragma once
+
+#include <vector>
+
+#include "identification/search/held_out.hpp"
+#include "identification/search/identify.hpp"
+#include "identification/samples/record.hpp"
+
+namespace reident::identification {
+
+/// What the rows have to feed a Hankel matrix of `width` channels.
+struct HankelSupply {
+  const std::vector<Segment>& segments;
+  Index width;
+  const std::vector<Fold>& folds;
+
+  /// Columns of the Hankel matrix of 2 * horizon block rows over the rows, 0 where they do not
+  /// determine its factor.
+  Index columns(RowRange rows, int horizon) const;
+  /// Of the poorest fold.
+  Index columns(int horizon) const;
+};
+
+/// A smaller horizon than this cannot carry the order asked for.
+int least_horizon(const IdentifyOptions& options);
+
+/// The longest horizon that these options may lead to.
+int longest_horizon(const IdentifyOptions& options);
+
+/// Horizons of {6, 10, 15, 20, 30} that the rows can feed, ascending. A longer one must leave at
+/// least half of the columns that the shortest one has, since gaps cost columns.
+std::vector<int> feasible_horizons(const HankelSupply& supply, const IdentifyOptions& options);
+
+}  // namespace reident::identification

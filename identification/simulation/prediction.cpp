@@ -1,0 +1,39 @@
+#include "identification/simulation/prediction.hpp"
+
+#include <utility>
+
+namespace reident::identification {
+
+Predictor::Predictor(const StateSpaceModel& model, const Record& record, RowRange run,
+                     Matrix y_free)
+    : A_(model.A), C_(model.C), y_free_(std::move(y_free)), d_(model.order(), run.size()) {
+  eigen_assert(model.K.rows() == model.order() && model.K.cols() == model.outputs());
+  eigen_assert(y_free_.rows() == run.size() && y_free_.cols() == model.outputs());
+  const Matrix F = model.A - model.K * model.C;
+  const Matrix Ke = model.K * (record.y.middleRows(run.begin, run.size()) - y_free_).transpose();
+  for (const Segment& segment : segments_within(record, run)) {
+    stretches_.push_back({segment.begin - run.begin, segment.end - run.begin});
+    const auto [begin, end] = stretches_.back();
+    d_.col(begin).setZero();
+    for (Index k = begin; k + 1 < end; ++k) {
+      d_.col(k + 1) = Ke.col(k);
+      d_.col(k + 1).noalias() += F * d_.col(k);
+    }
+  }
+}
+
+Matrix Predictor::outputs(Index steps) const {
+  eigen_assert(steps >= 1);
+  Matrix gain = C_;
+  for (Index step = 1; step < steps; ++step) gain = (gain * A_).eval();
+  Matrix y_hat = y_free_;
+  for (const RowRange& stretch : stretches_) {
+    const Index count = stretch.size() - (steps - 1);
+    if (count > 0)
+      y_hat.middleRows(stretch.end - count, count) +=
+          (gain * d_.middleCols(stretch.begin, count)).transpose();
+  }
+  return y_hat;
+}
+
+}  // namespace reident::identification

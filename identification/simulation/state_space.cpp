@@ -1,0 +1,47 @@
+#include "identification/simulation/state_space.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+
+namespace reident::identification {
+namespace {
+
+double largest_eigenvalue(const Matrix& A) {
+  return A.rows() == 0 ? 0 : A.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+double spectral_radius(const StateSpaceModel& model) {
+  return largest_eigenvalue(model.A);
+}
+
+double slowest_time_constant_s(const StateSpaceModel& model) {
+  return slowest_time_constant_s(model.A, model.period_s);
+}
+
+double slowest_time_constant_s(const Matrix& A, double period_s) {
+  const double radius = largest_eigenvalue(A);
+  if (radius <= 0) return 0;
+  return radius < 1 ? -period_s / std::log(radius) : std::numeric_limits<double>::infinity();
+}
+
+bool is_stable(const Matrix& A) {
+  return A.allFinite() && largest_eigenvalue(A) < 1;
+}
+
+bool is_well_formed(const StateSpaceModel& model) {
+  const Index n = model.order(), m = model.inputs(), p = model.outputs();
+  const bool sizes = model.A.cols() == n && model.B.rows() == n && model.B.cols() == m &&
+                     model.C.rows() == p && model.C.cols() == n && model.u0.size() == m &&
+                     model.y0.size() == p;
+  const bool gain = model.K.size() == 0 || (model.K.rows() == n && model.K.cols() == p);
+  const bool finite = model.A.allFinite() && model.B.allFinite() && model.C.allFinite() &&
+                      model.D.allFinite() && model.K.allFinite() && model.u0.allFinite() &&
+                      model.y0.allFinite();
+  return sizes && gain && finite && std::isfinite(model.period_s) && model.period_s > 0;
+}
+
+}  // namespace reident::identification

@@ -1,0 +1,34 @@
+#include "identification/statistics/change_detection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "identification/statistics/quantiles.hpp"
+
+namespace reident::identification {
+namespace {
+
+constexpr double limit = 8;
+constexpr double most_of_a_block = 3;
+/// Blocks that differ less than this, as a logarithm, differ by rounding.
+constexpr double least_deviation = 1e-3;
+
+}  // namespace
+
+ChangeDetector::ChangeDetector(const Vector& reference) : mean_(reference.mean()) {
+  eigen_assert(reference.size() >= least_blocks);
+  const auto n = double(reference.size());
+  const double squares = (reference.array() - mean_).square().sum();
+  deviation_ = std::max(least_deviation, std::sqrt(squares / chi_squared_quantile(0.1, n - 1)));
+  allowance_ = 0.5 + 1 / std::sqrt(n);
+}
+
+bool ChangeDetector::add(double log_error) {
+  const double z = (log_error - mean_) / deviation_;
+  sum_ = std::max(0.0, sum_ + std::min(z, most_of_a_block) - allowance_);
+  if (!(sum_ > limit)) return false;
+  sum_ = 0;
+  return true;
+}
+
+}  // namespace reident::identification

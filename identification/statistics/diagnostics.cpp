@@ -1,0 +1,96 @@
+#include "identification/statistics/diagnostics.hpp"
+
+#include <algorithm>
+
+#include "identification/simulation/prediction.hpp"
+
+namespace reident::identification {
+namespace {
+
+constexpr Index lags = 25;
+constexpr Index prediction_steps[] = {1, 2, 5, 10, 20, 50, 100};
+
+/// The scored part of the record, rows counted from its first.
+struct Scored {
+  Matrix y;
+  std::vector<Series> inputs;
+  std::vector<RowRange> stretches;
+  Index longest_stretch = 0;
+};
+
+Scored scored_part(const Record& record, RowRange rows) {
+  Scored part;
+  part.y = record.y.middleRows(rows.begin, rows.size());
+  for (const Segment& segment : segments_within(record, rows)) {
+    part.stretches.push_back({segment.begin - rows.begin, segment.end - rows.begin});
+    part.longest_stretch = std::max(part.longest_stretch, segment.size());
+  }
+  for (Index j = 0; j < record.u.cols(); ++j)
+    part.inputs.emplace_back(record.u.col(j).segment(rows.begin, rows.size()), part.stretches);
+  return part;
+}
+
+std::vector<Series> residuals_of(const Scored& part, const Matrix& y_hat) {
+  std::vector<Series> residuals;
+  for (Index q = 0; q < y_hat.cols(); ++q)
+    residuals.emplace_back(part.y.col(q) - y_hat.col(q), part.stretches);
+  return residuals;
+}
+
+std::vector<Whiteness> whiteness_of(std::vector<Series>& residuals) {
+  std::vector<Whiteness> result;
+  for (Series& residual : residuals) {
+    const Correlogram correlogram = autocorrelogram(residual, lags);
+    result.push_back({summary(correlogram), portmanteau(residual, correlogram)});
+  }
+  return result;
+}
+
+std::vector<InputCorrelation> input_correlations(std::vector<Series>& inputs,
+                                                 std::vector<Series>& residuals) {
+  std::vector<InputCorrelation> result;
+  for (std::size_t q = 0; q < residuals.size(); ++q)
+    for (std::size_t j = 0; j < inputs.size(); ++j)
+      result.push_back({static_cast<Index>(j), static_cast<Index>(q),
+                        summary(cross_correlogram(inputs[j], residuals[q], lags))});
+  return result;
+}
+
+}  // namespace
+
+Diagnostics diagnose(const StateSpaceModel& model, const Record& record, RowRange run,
+                     RowRange scored, const std::optional<Vector>& x0) {
+  eigen_assert(scored.size() > 0 && run.begin <= scored.begin && scored.end <= run.end);
+  Scored part = scored_part(record, scored);
+  const auto in_part = [run, scored](const Matrix& y_hat) -> Matrix {
+    return y_hat.middleRows(scored.begin - run.begin, scored.size());
+  };
+  const Matrix y_run = free_run(model, record, run, x0);
+  const Matrix y_free = in_part(y_run);
+
+  Diagnostics result;
+  result.rows = scored.size();
+  result.predicted = model.K.size() > 0;
+  std::vector<Series> free_residuals = residuals_of(part, y_free);
+  result.free_run_inputs = input_correlations(part.inputs, free_residuals);
+  if (result.predicted) {
+    const Predictor predictor(model, record, run, y_run);
+    for (const Index steps : prediction_steps) {
+      if (steps > 1 && steps >= part.longest_stretch) break;
+      const Matrix y_hat = in_part(predictor.outputs(steps));
+      result.predictions.push_back({steps, score(part.y, y_hat)});
+      if (steps > 1) continue;
+      std::vector<Series> residuals = residuals_of(part, y_hat);
+      result.whiteness = whiteness_of(residuals);
+      result.prediction_inputs = input_correlations(part.inputs, residuals);
+    }
+  } else {
+    result.whiteness = whiteness_of(free_residuals);
+  }
+  result.free_run = score(part.y, y_free);
+  result.interval = error_interval(part.y, y_free, part.stretches);
+  result.spread = error_spread(part.y, y_free);
+  return result;
+}
+
+}  // namespace reident::identification

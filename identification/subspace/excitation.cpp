@@ -1,0 +1,48 @@
+#include "identification/subspace/excitation.hpp"
+
+#include <cmath>
+
+namespace reident::identification {
+
+std::vector<RedundantInput> redundant_inputs(const Matrix& u) {
+  constexpr double of_its_own = 1e-6;
+  constexpr double taking_part = 1e-3;
+  std::vector<RedundantInput> found;
+  std::vector<Index> kept;
+  for (Index j = 0; j < u.cols(); ++j) {
+    const Matrix before = u(Eigen::all, kept);
+    const Vector weights = before.householderQr().solve(u.col(j));
+    const double rest = (u.col(j) - before * weights).norm();
+    if (kept.empty() || rest > of_its_own * u.col(j).norm()) {
+      kept.push_back(j);
+      continue;
+    }
+    RedundantInput redundant{j, {}};
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      if (std::abs(weights(static_cast<Index>(i))) > taking_part)
+        redundant.explained_by.push_back(kept[i]);
+    found.push_back(redundant);
+  }
+  return found;
+}
+
+bool are_independent(const Matrix& correlation) {
+  if (correlation.rows() == 0) return true;
+  const Eigen::LLT<Matrix> llt(correlation);
+  // The square of 1e-6 is beyond what a sum of squares tells from rounding.
+  constexpr double clearly = 1e-4;
+  return llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > clearly;
+}
+
+Excitation excitation_of(const Matrix& input_innovations) {
+  constexpr double least_innovation = 1e-7;
+  for (Index k = 0; k < input_innovations.rows(); ++k) {
+    Index weakest = 0;
+    if (input_innovations.cols() > 0 &&
+        input_innovations.row(k).minCoeff(&weakest) < least_innovation)
+      return {k, weakest};
+  }
+  return {input_innovations.rows(), 0};
+}
+
+}  // namespace reident::identification

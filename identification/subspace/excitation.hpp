@@ -1,0 +1,35 @@
+// What the inputs of a window can tell: which of them say nothing of their own, and up to which
+// order they excite the model.
+#pragma once
+
+#include <vector>
+
+#include "identification/numerics/matrix.hpp"
+
+namespace reident::identification {
+
+/// An input that others explain at every row, such as I_BUS = I_SG2 + I_BDROUT.
+struct RedundantInput {
+  Index input;
+  std::vector<Index> explained_by;  // earlier inputs, ascending
+};
+
+/// Inputs (columns of `u`, normalised) of which less than 1e-6 of the deviation is left once the
+/// inputs before them are known, ascending.
+std::vector<RedundantInput> redundant_inputs(const Matrix& u);
+
+/// Whether each input has so much of its own, given those before it, that none is redundant; from
+/// their correlations (m x m).
+bool are_independent(const Matrix& correlation);
+
+/// How many block rows the inputs excite persistently, and the input that ends it.
+struct Excitation {
+  Index order = 0;
+  Index weakest_input = 0;
+};
+
+/// From the deviations of the input innovations (Projection::input_innovations) of normalised
+/// inputs: a block row counts while each of its innovations is above 1e-7.
+Excitation excitation_of(const Matrix& input_innovations);
+
+}  // namespace reident::identification

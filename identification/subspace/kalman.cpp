@@ -1,0 +1,70 @@
+#include "identification/subspace/kalman.hpp"
+
+#include "identification/simulation/state_space.hpp"
+
+namespace reident::identification {
+namespace {
+
+constexpr int doublings = 60;
+constexpr double accepted_residual = 1e-8;
+
+struct Noise {
+  Matrix Q, S, R;
+};
+
+Noise parts(const Matrix& noise, Index n) {
+  const Index p = noise.rows() - n;
+  return {noise.topLeftCorner(n, n), noise.topRightCorner(n, p), noise.bottomRightCorner(p, p)};
+}
+
+Matrix gain_of(const Matrix& A, const Matrix& C, const Noise& noise, const Matrix& P) {
+  const Matrix innovation = C * P * C.transpose() + noise.R;
+  const Matrix cross = A * P * C.transpose() + noise.S;
+  return innovation.ldlt().solve(cross.transpose()).transpose();
+}
+
+double relative_residual(const Matrix& A, const Matrix& C, const Noise& noise, const Matrix& P) {
+  const Matrix K = gain_of(A, C, noise, P);
+  const Matrix cross = A * P * C.transpose() + noise.S;
+  const Matrix residual = A * P * A.transpose() + noise.Q - K * cross.transpose() - P;
+  return residual.norm() / (P.norm() + noise.Q.norm());
+}
+
+}  // namespace
+
+std::optional<Matrix> riccati_solution(const Matrix& A, const Matrix& C, const Matrix& noise) {
+  const Index n = A.rows();
+  eigen_assert(noise.rows() == n + C.rows() && noise.cols() == noise.rows());
+  const Noise parted = parts(noise, n);
+  const Eigen::LLT<Matrix> R(parted.R);
+  if (!noise.allFinite() || R.info() != Eigen::Success || !(R.rcond() > 1e-14)) return std::nullopt;
+
+  // With the cross covariance removed: P = F P F' - F P C' (C P C' + R)^-1 C P F' + Q_s.
+  const Matrix F = A - parted.S * R.solve(C);
+  Matrix H = parted.Q - parted.S * R.solve(parted.S.transpose());
+  Matrix E = F.transpose(), G = C.transpose() * R.solve(C);
+  const Matrix identity = Matrix::Identity(n, n);
+  for (int i = 0; i < doublings; ++i) {
+    const Eigen::PartialPivLU<Matrix> W(identity + G * H);
+    const Matrix WE = W.solve(E), WG = W.solve(G);
+    const Matrix step = E.transpose() * H * WE;
+    G += E * WG * E.transpose();
+    E = (E * WE).eval();
+    H += step;
+    H = ((H + H.transpose()) / 2).eval();
+    if (!H.allFinite()) return std::nullopt;
+    if (step.norm() <= 1e-15 * H.norm()) break;
+  }
+  if (!(relative_residual(A, C, parted, H) < accepted_residual)) return std::nullopt;
+  return H;
+}
+
+std::optional<Matrix> kalman_gain(const Matrix& A, const Matrix& C, const Matrix& noise) {
+  const std::optional<Matrix> P = riccati_solution(A, C, noise);
+  if (!P) return std::nullopt;
+  const Matrix K = gain_of(A, C, parts(noise, A.rows()), *P);
+  if (!is_stable(A - K * C)) return std::nullopt;
+  return K;
+}
+
+}  // namespace reident::identification

@@ -1,0 +1,88 @@
+#include "identification/search/delays.hpp"
+
+#include <gmock/gmock.h>
+
+#include "identification/search/identify.hpp"
+#include "tests/support/systems.hpp"
+
+namespace reident::identification {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+StateSpaceModel delayed_system(testing::Noise& noise, const std::vector<int>& delays) {
+  return with_delay_states(testing::random_system(noise, 2, 2, 1, 0.8), delays);
+}
+
+TEST(Delays, TheModelOfTheInputsAsTheyAreGivesTheSameOutputs) {
+  testing::Noise noise(1);
+  const StateSpaceModel model = testing::random_system(noise, 3, 3, 2);
+  const std::vector<int> delays{0, 4, 1};
+  const Matrix u = noise.normal(60, 3);
+  Matrix shifted = Matrix::Zero(60, 3);
+  for (Index i = 0; i < 3; ++i) {
+    const Index d = delays[static_cast<std::size_t>(i)];
+    shifted.col(i).tail(60 - d) = u.col(i).head(60 - d);
+  }
+  const StateSpaceModel with_states = with_delay_states(model, delays);
+  EXPECT_EQ(with_states.order(), 8);
+  const Matrix expected = testing::simulated(model, shifted, Vector::Zero(3));
+  EXPECT_LT((testing::simulated(with_states, u, Vector::Zero(8)) - expected).norm(), 1e-12);
+}
+
+TEST(Delays, RowsBeforeTheLongestDelayAreLeftOutOfEachSegment) {
+  testing::Noise noise(2);
+  const Record record =
+      testing::with_gap(contiguous_record(1, noise.normal(30, 2), noise.normal(30, 1)), 10, 13);
+  const Record shifted = delayed(record, record.all(), {2, 0}, 3);
+  ASSERT_EQ(shifted.rows(), 27 - 2 * 3);
+  EXPECT_THAT(shifted.segments, ElementsAre(Segment{0, 7, 3}, Segment{7, 21, 16}));
+  EXPECT_EQ(shifted.u(0, 0), record.u(1, 0));
+  EXPECT_EQ(shifted.u(7, 0), record.u(11, 0));
+  EXPECT_EQ(shifted.u.col(1).head(7), record.u.col(1).segment(3, 7));
+  EXPECT_EQ(shifted.y.col(0).head(7), record.y.col(0).segment(3, 7));
+}
+
+TEST(Delays, AreFoundAndBecomeStates) {
+  testing::Noise noise(3);
+  const std::vector<int> delays{7, 0};
+  const Record record = testing::excited(delayed_system(noise, delays), noise, 1500, 0.02);
+  IdentifyOptions options;
+  options.max_input_delay = 10;
+  options.max_order = 4;
+  const IdentifyResult result = identify(record, {0, 1000}, options);
+  ASSERT_TRUE(std::holds_alternative<Identified>(result));
+  const Identified& found = std::get<Identified>(result);
+  EXPECT_THAT(found.input_delays, ElementsAre(7, 0));
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("input 1 acts after 7 samples")));
+  EXPECT_GT(score_free_run(found.model, record, record.all(), {1000, 1500}, found.x0).fit(), 97);
+}
+
+TEST(Delays, ThatAreGivenAreTaken) {
+  testing::Noise noise(4);
+  const std::vector<int> delays{0, 5};
+  const Record record = testing::excited(delayed_system(noise, delays), noise, 800, 0);
+  IdentifyOptions options;
+  options.input_delays = delays;
+  const IdentifyResult result = identify(record, record.all(), options);
+  ASSERT_TRUE(std::holds_alternative<Identified>(result));
+  const Identified& found = std::get<Identified>(result);
+  EXPECT_EQ(found.recipe.order, 2);
+  EXPECT_EQ(found.model.order(), 7);
+  EXPECT_GT(score_free_run(found.model, record, record.all(), record.all(), found.x0).fit(), 99.9);
+}
+
+TEST(Delays, WhereThereIsNoneNoneIsFound) {
+  testing::Noise noise(5);
+  const Record record = testing::excited(testing::random_system(noise, 3, 2, 1), noise, 1000, 0.05);
+  IdentifyOptions options;
+  options.max_input_delay = 4;
+  const IdentifyResult result = identify(record, record.all(), options);
+  ASSERT_TRUE(std::holds_alternative<Identified>(result));
+  EXPECT_TRUE(std::get<Identified>(result).input_delays.empty());
+}
+
+}  // namespace
+}  // namespace reident::identification

@@ -1,0 +1,125 @@
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "identification/search/identify.hpp"
+#include "tests/support/systems.hpp"
+
+namespace reident::identification {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Record driven(Index rows) {
+  testing::Noise noise(1);
+  return testing::excited(testing::random_system(noise, 2, 2, 1), noise, rows, 0.05);
+}
+
+Verdict verdict_of(const Record& record, const IdentifyOptions& options = {}) {
+  const IdentifyResult result = identify(record, record.all(), options);
+  if (const auto* verdict = std::get_if<Verdict>(&result)) return *verdict;
+  ADD_FAILURE() << "gave a model of order " << std::get<Identified>(result).model.order();
+  return {};
+}
+
+TEST(Verdicts, TooFewSamplesNamesTheNumberNeeded) {
+  const Record record = driven(100);
+  for (const Index rows : {0, 1, 3, 12, 22}) {
+    const IdentifyResult result = identify(record, {0, rows}, {});
+    ASSERT_TRUE(std::holds_alternative<Verdict>(result)) << rows;
+    const Verdict& verdict = std::get<Verdict>(result);
+    EXPECT_EQ(verdict.code, VerdictCode::too_few_samples) << rows;
+    EXPECT_THAT(verdict.reason, HasSubstr("at least 26 rows"));
+  }
+  const IdentifyResult result = identify(record, {0, 26}, {});
+  const auto* verdict = std::get_if<Verdict>(&result);
+  EXPECT_TRUE(!verdict || verdict->code != VerdictCode::too_few_samples);
+}
+
+TEST(Verdicts, SegmentsShorterThanTwiceTheHorizonAreTooFewSamples) {
+  Record record = driven(600);
+  record.segments.clear();
+  for (Index k = 0; k < 600; k += 3) record.segments.push_back({k, k + 3, 2 * k});
+  EXPECT_EQ(verdict_of(record).code, VerdictCode::too_few_samples);
+  IdentifyOptions options;
+  options.horizon = 200;
+  EXPECT_EQ(verdict_of(driven(600), options).code, VerdictCode::too_few_samples);
+}
+
+TEST(Verdicts, NonFiniteValuesAreLocated) {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Record record = driven(200);
+    record.u(17, 1) = bad;
+    const Verdict verdict = verdict_of(record);
+    EXPECT_EQ(verdict.code, VerdictCode::non_finite);
+    EXPECT_THAT(verdict.reason, HasSubstr("input 2 is not a finite number in row 17"));
+    record = driven(200);
+    record.y(3, 0) = bad;
+    EXPECT_THAT(verdict_of(record).reason, HasSubstr("output 1"));
+  }
+}
+
+TEST(Verdicts, ConstantChannels) {
+  Record record = driven(300);
+  record.u.setConstant(28.1);
+  EXPECT_EQ(verdict_of(record).code, VerdictCode::constant_inputs);
+  record = driven(300);
+  record.y.setConstant(28.1);
+  EXPECT_EQ(verdict_of(record).code, VerdictCode::constant_outputs);
+}
+
+TEST(Verdicts, ASineExcitesNoHighOrder) {
+  Record record = driven(600);
+  testing::Noise noise(2);
+  record.u.resize(600, 1);
+  for (Index k = 0; k < 600; ++k) record.u(k, 0) = std::sin(0.2 * double(k));
+  record.y = record.u + 0.01 * noise.normal(600, 1);
+  IdentifyOptions options;
+  options.order = 4;
+  const Verdict verdict = verdict_of(record, options);
+  EXPECT_EQ(verdict.code, VerdictCode::insufficient_excitation);
+  EXPECT_THAT(verdict.reason, HasSubstr("input 1"));
+}
+
+TEST(Verdicts, InputsThatDoNotExplainTheOutputAreNoBetterThanTheMean) {
+  Record record = driven(800);
+  testing::Noise noise(3);
+  record.y = noise.normal(800, 1);
+  const Verdict verdict = verdict_of(record);
+  EXPECT_EQ(verdict.code, VerdictCode::no_better_than_mean);
+  EXPECT_THAT(verdict.reason, HasSubstr("do not explain"));
+}
+
+TEST(Verdicts, AnUnstableSystemIsToldAsUnstable) {
+  testing::Noise noise(4);
+  StateSpaceModel truth = testing::random_system(noise, 1, 1, 1);
+  truth.A(0, 0) = 1.02;
+  IdentifyOptions options;
+  options.order = 1;
+  const Record record = testing::excited(truth, noise, 900, 0);
+  EXPECT_EQ(verdict_of(record, options).code, VerdictCode::unstable);
+  options.may_enforce_stability = false;
+  const Verdict verdict = verdict_of(record, options);
+  EXPECT_EQ(verdict.code, VerdictCode::unstable);
+  EXPECT_THAT(verdict.reason, HasSubstr("or let A be made stable"));
+}
+
+TEST(Options, EveryMistakeIsNamed) {
+  EXPECT_THAT(mistakes({}), IsEmpty());
+  IdentifyOptions options;
+  options.order = 0;
+  options.min_order = 0;
+  options.max_order = -1;
+  options.horizon = 1;
+  options.tune_share = std::nan("");
+  EXPECT_THAT(
+      mistakes(options),
+      ElementsAre(HasSubstr("order must be at least 1"), HasSubstr("smallest order"),
+                  HasSubstr("largest order"), HasSubstr("horizon"), HasSubstr("tuning share")));
+}
+
+}  // namespace
+}  // namespace reident::identification
