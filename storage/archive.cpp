@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "storage/append.hpp"
+#include "storage/archive_access.hpp"
 #include "storage/connection.hpp"
 
 namespace reident::storage {
@@ -40,7 +41,7 @@ Archive::Archive(Database& database, const ArchiveOptions& options)
 
 AppendReport Archive::append(std::span<const TelemetryFrame> frames) {
   sqlite::Transaction transaction(connection(database_));
-  return database_.impl().write(options_, [&](Writer& writer) {
+  return archive_access(database_).write(options_, [&](Writer& writer) {
     AppendReport report = Append(connection(database_), writer, frames).run();
     writer.compact_some(report.stored);
     report.damages = writer.take_damages();
@@ -52,7 +53,7 @@ AppendReport Archive::append(std::span<const TelemetryFrame> frames) {
 void Archive::compact() {
   for (bool more = true; more;) {
     sqlite::Transaction transaction(connection(database_));
-    more = database_.impl().write(options_, [&](Writer& writer) {
+    more = archive_access(database_).write(options_, [&](Writer& writer) {
       const bool is_more = writer.compact_all_step();
       transaction.commit();
       return is_more;
@@ -144,7 +145,7 @@ Series Archive::read_with_sources(const std::string& spacecraft, Origin origin,
 
 Series Archive::read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
                      TimeRange range, bool with_sources) const {
-  SeriesReader& reader = database_.impl().reader();
+  SeriesReader& reader = archive_access(database_).reader();
   const auto series = reader.find(spacecraft, origin, parameter);
   if (!series) return {};
   SampleColumns samples = reader.read(*series, range, {.source = with_sources}, as_of_);
@@ -171,14 +172,14 @@ Archive Archive::before(std::int64_t batch) const {
 
 std::optional<Time> Archive::first_at_or_after(const std::string& spacecraft, Origin origin,
                                                std::uint32_t parameter, Time time) const {
-  SeriesReader& reader = database_.impl().reader();
+  SeriesReader& reader = archive_access(database_).reader();
   const auto series = reader.find(spacecraft, origin, parameter);
   return series ? reader.first_at_or_after(*series, time) : std::nullopt;
 }
 
 std::optional<Time> Archive::last_at_or_before(const std::string& spacecraft, Origin origin,
                                                std::uint32_t parameter, Time time) const {
-  SeriesReader& reader = database_.impl().reader();
+  SeriesReader& reader = archive_access(database_).reader();
   const auto series = reader.find(spacecraft, origin, parameter);
   return series ? reader.last_at_or_before(*series, time) : std::nullopt;
 }

@@ -14,6 +14,7 @@
 
 #include "storage/database.hpp"
 #include "storage/sample_source.hpp"
+#include "storage/series.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident::storage {
@@ -47,36 +48,6 @@ struct ArchiveOptions {
   std::size_t recent_samples = 1'000'000;  // that wait for a place in chunks; at most twice as many
   std::size_t recent_batches = 256;        // appends that wait
   std::size_t step_samples = 65536;        // that a transaction moves at least: a few milliseconds
-};
-
-/// Counts of one source since the archive was made. Of its samples,
-/// samples - duplicates - conflicts were stored as new ones.
-struct SourceCounts {
-  std::string spacecraft;
-  std::string source;
-  Origin origin = Origin::real;
-  std::uint64_t frames = 0;
-  std::uint64_t samples = 0;
-  std::uint64_t duplicates = 0;
-  std::uint64_t conflicts = 0;
-  std::uint64_t late = 0;
-  std::uint64_t non_finite = 0;
-  std::uint64_t out_of_order = 0;   // frames whose sequence is not above the highest before them
-  std::uint64_t restarts = 0;       // times that the source began to count again
-  std::uint64_t missing = 0;        // sequence numbers that were skipped and have not come since
-  std::uint64_t last_sequence = 0;  // the highest since the last restart
-};
-
-/// Sequence numbers [first, last] of a source that have not come. The frames on either side of the
-/// gap have the generation times `before` and `after`.
-struct SequenceGap {
-  std::string spacecraft;
-  std::string source;
-  Origin origin = Origin::real;
-  std::uint64_t first = 0;
-  std::uint64_t last = 0;
-  Time before = 0;
-  Time after = 0;
 };
 
 /// A stretch of sealed time (see Archive::seal) in which samples of one series landed or changed.

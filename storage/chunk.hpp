@@ -15,18 +15,11 @@
 #include <vector>
 
 #include "storage/integer_codec.hpp"
+#include "storage/sample_columns.hpp"
 #include "storage/telemetry.hpp"
 #include "storage/value_codec.hpp"
 
 namespace reident::storage {
-
-/// Columns of one length, 1 to most_samples; times strictly ascend.
-struct ChunkSamples {
-  std::span<const Time> time;
-  std::span<const double> value;
-  std::span<const Quality> quality;
-  std::span<const std::int64_t> source;  // id of the source that brought the sample
-};
 
 /// What can be known from the first `bytes` bytes of a chunk.
 struct ChunkSummary {
@@ -48,15 +41,6 @@ struct ChunkError {
   };
   Kind kind = Kind::damaged;
   std::string message;  // what is wrong, to follow "the chunk of V_BUS at 12:00 "
-};
-
-/// Where decoded samples go: appended to each vector that is given; a column without one is left
-/// out and costs nothing.
-struct ChunkTarget {
-  std::vector<Time>* time = nullptr;
-  std::vector<double>* value = nullptr;
-  std::vector<Quality>* quality = nullptr;
-  std::vector<std::int64_t>* source = nullptr;
 };
 
 inline constexpr std::size_t most_samples = 131072;

@@ -1,9 +1,9 @@
 #include "storage/completeness.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "storage/archive_access.hpp"
 #include "storage/connection.hpp"
 #include "storage/damage.hpp"
 #include "storage/sample_gaps.hpp"
@@ -12,10 +12,6 @@ namespace reident::storage {
 namespace {
 
 constexpr std::size_t measured_at_once = 16384;  // samples of one sampling, as in a chunk
-
-std::int64_t floor_divide(Time time, Time length) {
-  return time / length - (time % length < 0 ? 1 : 0);
-}
 
 double distance(Time from, Time to) {
   return static_cast<double>(to) - static_cast<double>(from);
@@ -33,7 +29,11 @@ struct Piece {
 class Counter {
  public:
   Counter(const Database& database, const SeriesInfo& series, const TimeBins& bins)
-      : impl_(database.impl()), series_(series), bins_(bins), counts_(bins.count()) {}
+      : impl_(database.impl()),
+        access_(archive_access(database)),
+        series_(series),
+        bins_(bins),
+        counts_(bins.count()) {}
 
   std::vector<BinCounts> run(Time until);
 
@@ -61,6 +61,7 @@ class Counter {
   void add_gap(const SampleGap& gap, Time step);
 
   Database::Impl& impl_;
+  ArchiveAccess& access_;
   const SeriesInfo& series_;
   const TimeBins& bins_;
   std::vector<BinCounts> counts_;
@@ -162,7 +163,7 @@ void Counter::count_decoded(const Piece& piece) {
   const TimeRange range{
       piece.first, piece.last == std::numeric_limits<Time>::max() ? piece.last : piece.last + 1};
   const std::vector<Time> times =
-      impl_.reader().read(series_.id, range, {false, false, false}).time;
+      access_.reader().read(series_.id, range, {false, false, false}).time;
   count_times(times);
   std::vector<SampleGap> gaps;
   for (std::size_t begin = 0; begin < times.size(); begin += measured_at_once) {
@@ -211,30 +212,6 @@ void Counter::add_gap(const SampleGap& gap, Time step) {
 }
 
 }  // namespace
-
-TimeBins::TimeBins(TimeRange range, Time length)
-    : range_(range), length_(length), first_(floor_divide(range.begin, length)) {
-  assert(range.begin < range.end && length > 0);
-  count_ = static_cast<std::size_t>(floor_divide(range.end - 1, length) - first_) + 1;
-}
-
-std::size_t TimeBins::of(Time time) const {
-  return static_cast<std::size_t>(floor_divide(time, length_) - first_);
-}
-
-TimeRange TimeBins::at(std::size_t bin) const {
-  const std::int64_t multiple = first_ + static_cast<std::int64_t>(bin);
-  return {bin == 0 ? range_.begin : multiple * length_,
-          bin + 1 == count_ ? range_.end : (multiple + 1) * length_};
-}
-
-BinCounts& BinCounts::operator+=(const BinCounts& other) {
-  came += other.came;
-  missing += other.missing;
-  gaps += other.gaps;
-  longest_gap = std::max(longest_gap, other.longest_gap);
-  return *this;
-}
 
 std::vector<BinCounts> completeness(const Database& database, const SeriesInfo& series,
                                     const TimeBins& bins, Time until) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "storage/archive_access.hpp"
 #include "storage/connection.hpp"
 #include "storage/sequence.hpp"
 
@@ -29,7 +30,7 @@ std::vector<SeriesInfo> all_series(const Database& database) {
 
 std::optional<std::int64_t> series_id(const Database& database, const std::string& spacecraft,
                                       Origin origin, std::uint32_t parameter) {
-  return database.impl().reader().find(spacecraft, origin, parameter);
+  return archive_access(database).reader().find(spacecraft, origin, parameter);
 }
 
 void each_sequence_gap(const Database& database, const std::optional<GapKey>& beyond,
@@ -65,18 +66,17 @@ SeriesStretches::SeriesStretches(const Database& database, std::int64_t series, 
     : database_(&database), series_(series), range_(range), chunks_(chunks), wanted_(wanted) {}
 
 bool SeriesStretches::next(SampleColumns& stretch) {
-  Database::Impl& impl = database_->impl();
   stretch = {};
   while (!at_end_ && stretch.empty()) {
     Time end = range_.end;
     {
-      sqlite::Query row = impl.connection->query(
+      sqlite::Query row = database_->impl().connection->query(
           "SELECT first_time FROM chunk WHERE series = ? AND first_time > ? ORDER BY first_time "
           "LIMIT 1 OFFSET ?",
           series_, range_.begin, chunks_ - 1);
       if (row.step()) end = std::min(end, row.integer(0));
     }
-    stretch = impl.reader().read(series_, {range_.begin, end}, wanted_);
+    stretch = archive_access(*database_).reader().read(series_, {range_.begin, end}, wanted_);
     at_end_ = end == range_.end;
     range_.begin = end;
   }

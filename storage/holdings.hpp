@@ -9,21 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "storage/archive.hpp"
+#include "storage/database.hpp"
 #include "storage/sample_columns.hpp"
+#include "storage/series.hpp"
 
 namespace reident::storage {
-
-struct SeriesInfo {
-  std::int64_t id = 0;
-  std::string spacecraft;
-  Origin origin = Origin::real;
-  std::uint32_t parameter = 0;
-  std::string name;  // the descriptor's; else the parameter's number
-  std::uint64_t samples = 0;
-  Time first = 0;
-  Time last = 0;
-};
 
 /// Those with samples, by spacecraft, origin and name.
 std::vector<SeriesInfo> all_series(const Database& database);
@@ -32,12 +22,6 @@ std::vector<SeriesInfo> all_series(const Database& database);
 std::optional<std::int64_t> series_id(const Database& database, const std::string& spacecraft,
                                       Origin origin, std::uint32_t parameter);
 
-/// Which of a source's gaps: ascending.
-struct GapKey {
-  std::int64_t source = 0;
-  std::int64_t run = 0;
-  std::int64_t first = 0;
-};
 /// Calls `visit` with one gap at a time that lies beyond `beyond`, until it answers false.
 void each_sequence_gap(const Database& database, const std::optional<GapKey>& beyond,
                        const std::function<bool(const GapKey&, SequenceGap&&)>& visit);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "storage/append.hpp"
+#include "storage/archive_access.hpp"
 #include "storage/chunk_walk.hpp"
 #include "storage/connection.hpp"
 
@@ -133,7 +134,7 @@ bool Retention::step() {
   sqlite::Connection& db = connection(archive_.database());
   RetentionReport done = report_;
   sqlite::Transaction transaction(db);
-  return archive_.database().impl().write(archive_.options(), [&](Writer& writer) {
+  return archive_access(archive_.database()).write(archive_.options(), [&](Writer& writer) {
     const std::uint64_t in_use = bytes_in_use(db);
     std::size_t chunks = 0;
     std::uint64_t bytes = 0;

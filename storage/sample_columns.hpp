@@ -2,12 +2,29 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "storage/chunk.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident::storage {
+
+/// Columns of one length, 1 to most_samples; times strictly ascend.
+struct ChunkSamples {
+  std::span<const Time> time;
+  std::span<const double> value;
+  std::span<const Quality> quality;
+  std::span<const std::int64_t> source;  // id of the source that brought the sample
+};
+
+/// Where decoded samples go: appended to each vector that is given; a column without one is left
+/// out and costs nothing.
+struct ChunkTarget {
+  std::vector<Time>* time = nullptr;
+  std::vector<double>* value = nullptr;
+  std::vector<Quality>* quality = nullptr;
+  std::vector<std::int64_t>* source = nullptr;
+};
 
 /// Beside the times; what is not wanted is not decoded, and its column stays empty.
 struct WantedColumns {

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "service/model/model_version.hpp"
-#include "storage/registry.hpp"
+#include "storage/records.hpp"
 
 namespace reident {
 

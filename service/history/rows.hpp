@@ -14,10 +14,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "storage/completeness.hpp"
-#include "storage/holdings.hpp"
-#include "storage/registry.hpp"
+#include "storage/records.hpp"
 #include "storage/sample_columns.hpp"
+#include "storage/series.hpp"
+#include "storage/time_bins.hpp"
 
 namespace reident::history {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "storage/completeness.hpp"
-#include "storage/holdings.hpp"
-#include "storage/registry.hpp"
+#include "storage/records.hpp"
 #include "storage/sample_source.hpp"
+#include "storage/series.hpp"
+#include "storage/time_bins.hpp"
 
 namespace reident::history {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "storage/registry.hpp"
+#include "storage/records.hpp"
 #include "storage/telemetry.hpp"
 
 namespace reident {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fixture.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

@@ -13,8 +13,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include "fixture.hpp"
 #include "storage/connection.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

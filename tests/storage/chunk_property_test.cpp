@@ -9,9 +9,9 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include "chunk_fixture.hpp"
 #include "storage/integer_codec.hpp"
 #include "storage/value_steps.hpp"
+#include "tests/storage/chunk_fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

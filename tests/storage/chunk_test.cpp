@@ -13,8 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "chunk_fixture.hpp"
 #include "storage/checksum.hpp"
+#include "tests/storage/chunk_fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

@@ -1,8 +1,8 @@
 // Recent runs become chunks in bounded steps, and nothing changes for a reader.
 #include <limits>
 
-#include "fixture.hpp"
 #include "storage/connection.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

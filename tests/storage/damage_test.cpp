@@ -4,9 +4,9 @@
 #include <random>
 #include <unistd.h>
 
-#include "expected_archive.hpp"
-#include "fixture.hpp"
-#include "writer_session.hpp"
+#include "tests/storage/expected_archive.hpp"
+#include "tests/storage/fixture.hpp"
+#include "tests/storage/writer_session.hpp"
 
 namespace reident::storage::testing {
 namespace {

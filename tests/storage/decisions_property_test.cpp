@@ -7,7 +7,7 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include "fixture.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

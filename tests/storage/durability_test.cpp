@@ -7,8 +7,8 @@
 
 #include <sys/resource.h>
 
-#include "fixture.hpp"
 #include "storage/connection.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

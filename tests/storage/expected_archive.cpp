@@ -1,4 +1,4 @@
-#include "expected_archive.hpp"
+#include "tests/storage/expected_archive.hpp"
 
 #include <bit>
 #include <cmath>

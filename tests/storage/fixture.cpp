@@ -1,4 +1,4 @@
-#include "fixture.hpp"
+#include "tests/storage/fixture.hpp"
 
 #include <fstream>
 #include <iterator>

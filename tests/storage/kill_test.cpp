@@ -8,10 +8,10 @@
 
 #include <sys/wait.h>
 
-#include "expected_archive.hpp"
-#include "fixture.hpp"
-#include "watched_files.hpp"
-#include "writer_session.hpp"
+#include "tests/storage/expected_archive.hpp"
+#include "tests/storage/fixture.hpp"
+#include "tests/storage/watched_files.hpp"
+#include "tests/storage/writer_session.hpp"
 
 namespace reident::storage::testing {
 namespace {

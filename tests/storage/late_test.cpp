@@ -1,9 +1,9 @@
 // What append() marks below a sealed time, and how the marks are taken away.
 #include <limits>
 
-#include "fixture.hpp"
 #include "storage/append.hpp"
 #include "storage/archive.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

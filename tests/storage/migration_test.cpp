@@ -2,10 +2,10 @@
 // is in it.
 #include <cmath>
 
-#include "registry_fixture.hpp"
-#include "schema_1.hpp"
-#include "schema_2.hpp"
-#include "schema_3.hpp"
+#include "tests/storage/registry_fixture.hpp"
+#include "tests/storage/schema_1.hpp"
+#include "tests/storage/schema_2.hpp"
+#include "tests/storage/schema_3.hpp"
 
 namespace reident::storage::testing {
 namespace {

@@ -1,7 +1,7 @@
 // Withdrawal, lineage, holds, decisions whose ground changed, and commands that come twice.
 #include <set>
 
-#include "registry_fixture.hpp"
+#include "tests/storage/registry_fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

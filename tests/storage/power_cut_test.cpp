@@ -1,11 +1,11 @@
 // The power fails: what was not flushed to the disk is there in part, torn, or not at all.
 #include <random>
 
-#include "expected_archive.hpp"
-#include "fixture.hpp"
-#include "unsafe_disk.hpp"
-#include "watched_files.hpp"
-#include "writer_session.hpp"
+#include "tests/storage/expected_archive.hpp"
+#include "tests/storage/fixture.hpp"
+#include "tests/storage/unsafe_disk.hpp"
+#include "tests/storage/watched_files.hpp"
+#include "tests/storage/writer_session.hpp"
 
 namespace reident::storage::testing {
 namespace {

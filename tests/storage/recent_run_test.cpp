@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chunk_fixture.hpp"
+#include "tests/storage/chunk_fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

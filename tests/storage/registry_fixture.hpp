@@ -1,7 +1,7 @@
 // A registry in a folder of its own, and versions and decisions in few words.
 #pragma once
 
-#include "fixture.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 

@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "registry_fixture.hpp"
+#include "tests/storage/registry_fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <random>
 
-#include "fixture.hpp"
 #include "storage/verify.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "fixture.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

@@ -11,9 +11,9 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include "fixture.hpp"
-#include "sql_user.hpp"
 #include "storage/utc_text.hpp"
+#include "tests/storage/fixture.hpp"
+#include "tests/storage/sql_user.hpp"
 
 namespace reident::storage::testing {
 namespace {

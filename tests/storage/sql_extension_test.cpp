@@ -5,8 +5,8 @@
 #include <limits>
 #include <thread>
 
-#include "fixture.hpp"
-#include "sql_user.hpp"
+#include "tests/storage/fixture.hpp"
+#include "tests/storage/sql_user.hpp"
 
 namespace reident::storage::testing {
 namespace {

@@ -1,7 +1,7 @@
 // What a plain sqlite3 user sees: views with names and texts, and answers that need no full scan.
 #include <limits>
 
-#include "fixture.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

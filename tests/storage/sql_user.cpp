@@ -1,4 +1,4 @@
-#include "sql_user.hpp"
+#include "tests/storage/sql_user.hpp"
 
 #include <cstdio>
 #include <stdexcept>

@@ -1,9 +1,9 @@
-#include "unsafe_disk.hpp"
+#include "tests/storage/unsafe_disk.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "fixture.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

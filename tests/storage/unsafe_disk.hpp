@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "watched_files.hpp"
+#include "tests/storage/watched_files.hpp"
 
 namespace reident::storage::testing {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "fixture.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

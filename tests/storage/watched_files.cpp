@@ -1,4 +1,4 @@
-#include "watched_files.hpp"
+#include "tests/storage/watched_files.hpp"
 
 #include <csignal>
 #include <cstring>

@@ -1,11 +1,11 @@
-#include "writer_session.hpp"
+#include "tests/storage/writer_session.hpp"
 
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "fixture.hpp"
 #include "storage/connection.hpp"
+#include "tests/storage/fixture.hpp"
 
 namespace reident::storage::testing {
 namespace {

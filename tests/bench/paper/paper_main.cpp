@@ -14,11 +14,11 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/correction/correction.hpp"
+#include "identification/correction/tracking_search.hpp"
 #include "identification/search/identify.hpp"
 #include "identification/simulation/simulate.hpp"
-#include "identification/correction/tracking_search.hpp"
-#include "paper_picture.hpp"
 #include "service/cli/identify_data.hpp"
+#include "tests/bench/paper/paper_picture.hpp"
 
 namespace {
 

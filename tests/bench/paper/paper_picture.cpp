@@ -1,4 +1,4 @@
-#include "paper_picture.hpp"
+#include "tests/bench/paper/paper_picture.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -15,11 +15,11 @@
 #include <fmt/format.h>
 #include <reident/client.hpp>
 
-#include "handwritten.hpp"
 #include "service/dds/dds.hpp"
 #include "service/model/model_json.hpp"
+#include "tests/bench/simulator/handwritten.hpp"
+#include "tests/bench/simulator/watched_thread.hpp"
 #include "tests/support/systems.hpp"
-#include "watched_thread.hpp"
 
 namespace reident::bench {
 namespace {

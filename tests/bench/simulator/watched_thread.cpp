@@ -1,4 +1,4 @@
-#include "watched_thread.hpp"
+#include "tests/bench/simulator/watched_thread.hpp"
 
 #include <atomic>
 #include <csignal>

@@ -1,8 +1,8 @@
+#include "storage/records.hpp"
+
 #include <algorithm>
 #include <array>
 #include <utility>
-
-#include "storage/registry.hpp"
 
 namespace reident::storage {
 namespace {
