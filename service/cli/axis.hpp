@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::cli {
 

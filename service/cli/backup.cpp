@@ -1,4 +1,4 @@
-#include "storage/backup.hpp"
+#include "storage/care/backup.hpp"
 
 #include <cstdio>
 

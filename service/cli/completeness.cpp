@@ -1,4 +1,4 @@
-#include "storage/completeness.hpp"
+#include "storage/care/completeness.hpp"
 
 #include <algorithm>
 #include <cmath>

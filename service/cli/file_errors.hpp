@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "service/cli/command.hpp"
-#include "storage/database.hpp"
+#include "storage/database/database.hpp"
 
 namespace reident::cli {
 

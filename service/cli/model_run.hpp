@@ -8,7 +8,7 @@
 #include "service/cli/command.hpp"
 #include "service/daemon/window_data.hpp"
 #include "service/model/model_version.hpp"
-#include "storage/sample_source.hpp"
+#include "storage/types/sample_source.hpp"
 
 namespace reident::cli {
 

@@ -7,7 +7,7 @@
 
 #include "service/cli/command.hpp"
 #include "service/cli/stored.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::cli {
 

@@ -10,8 +10,8 @@
 #include "service/history/stored_sources.hpp"
 #include "service/support/parallel.hpp"
 #include "service/support/version.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "service/support/stop_signal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
-#include "storage/retention.hpp"
+#include "storage/care/retention.hpp"
 
 namespace reident::cli {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "service/cli/command.hpp"
 #include "service/history/sources.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::cli {
 

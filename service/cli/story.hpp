@@ -9,7 +9,7 @@
 #include "service/cli/command.hpp"
 #include "service/history/sources.hpp"
 #include "service/model/model_version.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::cli {
 

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "service/cli/command.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::cli {
 

@@ -1,4 +1,4 @@
-#include "storage/verify.hpp"
+#include "storage/care/verify.hpp"
 
 #include <cstdio>
 

@@ -7,7 +7,7 @@
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/config.hpp"
 #include "service/daemon/window_feed.hpp"
-#include "storage/retention.hpp"
+#include "storage/care/retention.hpp"
 
 namespace reident {
 

@@ -12,8 +12,8 @@
 #include "service/daemon/bounded_queue.hpp"
 #include "service/daemon/config.hpp"
 #include "service/support/mutex.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 

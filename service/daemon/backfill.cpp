@@ -9,8 +9,8 @@
 #include "service/daemon/probation.hpp"
 #include "service/daemon/refresh.hpp"
 #include "service/support/floor_divide.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "service/daemon/config.hpp"
 #include "service/support/parallel.hpp"
-#include "storage/database.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/database/database.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident {
 

@@ -17,8 +17,8 @@
 #include "service/daemon/config.hpp"
 #include "service/daemon/kept_window.hpp"
 #include "service/model/model_version.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "service/dds/dds.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 

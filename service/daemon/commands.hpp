@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "service/daemon/config.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 

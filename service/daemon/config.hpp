@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "service/model/derived_inputs.hpp"
-#include "storage/database.hpp"
+#include "storage/database/database.hpp"
 
 namespace reident {
 

@@ -15,7 +15,7 @@
 #include "service/daemon/kept_chunks.hpp"
 #include "service/daemon/plausibility.hpp"
 #include "service/daemon/window_data.hpp"
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 
 namespace reident {
 

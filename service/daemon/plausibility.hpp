@@ -12,7 +12,7 @@
 #include "service/daemon/config.hpp"
 #include "service/daemon/kept_chunks.hpp"
 #include "service/daemon/window_data.hpp"
-#include "storage/sample_source.hpp"
+#include "storage/types/sample_source.hpp"
 
 namespace reident {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "service/daemon/config.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
-#include "storage/retention.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
+#include "storage/care/retention.hpp"
 
 namespace reident {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "service/daemon/candidate.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 

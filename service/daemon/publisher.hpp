@@ -6,7 +6,7 @@
 
 #include "service/dds/dds.hpp"
 #include "service/support/mutex.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "storage/sample_source.hpp"
+#include "storage/types/sample_source.hpp"
 
 namespace reident {
 

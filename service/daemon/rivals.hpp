@@ -7,8 +7,8 @@
 
 #include "service/daemon/candidate.hpp"
 #include "service/daemon/gate.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 

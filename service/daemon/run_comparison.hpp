@@ -13,7 +13,7 @@
 #include "service/daemon/plausibility.hpp"
 #include "service/daemon/window_data.hpp"
 #include "service/model/model_version.hpp"
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 
 namespace reident {
 

@@ -9,7 +9,7 @@
 #include "identification/samples/tick_ranges.hpp"
 #include "service/daemon/config.hpp"
 #include "service/model/model_version.hpp"
-#include "storage/sample_source.hpp"
+#include "storage/types/sample_source.hpp"
 
 namespace reident {
 

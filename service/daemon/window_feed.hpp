@@ -14,8 +14,8 @@
 #include "service/daemon/config.hpp"
 #include "service/daemon/window_scheduler.hpp"
 #include "service/support/mutex.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 

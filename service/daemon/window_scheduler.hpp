@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "service/daemon/config.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident {
 

@@ -15,7 +15,7 @@
 
 #include "service/model/messages.hpp"
 #include "service/model/model_version.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::dds {
 

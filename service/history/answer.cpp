@@ -12,7 +12,7 @@
 #include "service/dds/wire.hpp"
 #include "service/history/subjects.hpp"
 #include "service/support/text.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::history {
 namespace {

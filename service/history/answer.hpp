@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "service/model/messages.hpp"
-#include "storage/database.hpp"
+#include "storage/database/database.hpp"
 
 namespace reident::history {
 

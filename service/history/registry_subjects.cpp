@@ -1,7 +1,7 @@
 #include "service/history/page_maker.hpp"
 #include "service/history/row_values.hpp"
 #include "service/history/subjects.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::history {
 namespace {

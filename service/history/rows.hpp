@@ -14,10 +14,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "storage/records.hpp"
-#include "storage/sample_columns.hpp"
-#include "storage/series.hpp"
-#include "storage/time_bins.hpp"
+#include "storage/types/records.hpp"
+#include "storage/types/sample_columns.hpp"
+#include "storage/types/series.hpp"
+#include "storage/types/time_bins.hpp"
 
 namespace reident::history {
 

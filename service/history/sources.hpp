@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "storage/records.hpp"
-#include "storage/sample_source.hpp"
-#include "storage/series.hpp"
-#include "storage/time_bins.hpp"
+#include "storage/types/records.hpp"
+#include "storage/types/sample_source.hpp"
+#include "storage/types/series.hpp"
+#include "storage/types/time_bins.hpp"
 
 namespace reident::history {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "service/history/sources.hpp"
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 
 namespace reident::history {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "service/model/messages.hpp"
-#include "storage/database.hpp"
+#include "storage/database/database.hpp"
 
 namespace reident::history {
 

@@ -6,7 +6,7 @@
 
 #include "service/history/page_maker.hpp"
 #include "service/history/subjects.hpp"
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 
 namespace reident::history {
 namespace {

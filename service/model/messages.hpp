@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "storage/records.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/records.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident {
 

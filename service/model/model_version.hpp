@@ -11,7 +11,7 @@
 #include "identification/simulation/state_space.hpp"
 #include "identification/simulation/tracking.hpp"
 #include "service/model/derived_inputs.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs {
 

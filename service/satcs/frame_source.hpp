@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs {
 

@@ -21,7 +21,7 @@
 #include "service/satcs/reference_constants.hpp"
 #include "service/satcs/reference_loads.hpp"
 #include "service/satcs/reference_orbit.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs {
 

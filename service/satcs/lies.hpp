@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "service/satcs/reference_life.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs {
 

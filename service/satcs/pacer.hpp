@@ -4,7 +4,7 @@
 #include <chrono>
 #include <optional>
 
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs {
 

@@ -11,7 +11,7 @@
 
 #include "service/dds/dds.hpp"
 #include "service/satcs/frame_source.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs {
 

@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "service/satcs/reference_constants.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs::reference {
 

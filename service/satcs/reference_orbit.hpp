@@ -6,7 +6,7 @@
 #pragma once
 
 #include "service/satcs/reference_constants.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs::reference {
 

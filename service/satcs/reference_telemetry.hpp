@@ -7,7 +7,7 @@
 
 #include "service/satcs/reference_plant.hpp"
 #include "service/satcs/reference_sensor.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::satcs::reference {
 

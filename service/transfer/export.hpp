@@ -9,7 +9,7 @@
 
 #include "service/history/sources.hpp"
 #include "service/support/csv.hpp"
-#include "storage/holdings.hpp"
+#include "storage/archive/holdings.hpp"
 
 namespace reident::transfer {
 

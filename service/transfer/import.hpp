@@ -10,7 +10,7 @@
 
 #include "service/support/csv.hpp"
 #include "service/transfer/import_rows.hpp"
-#include "storage/import_log.hpp"
+#include "storage/archive/import_log.hpp"
 
 namespace reident::transfer {
 

@@ -12,7 +12,7 @@
 #include "service/satcs/replay.hpp"
 #include "service/support/csv.hpp"
 #include "service/transfer/telemetry_csv.hpp"
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 
 namespace reident::transfer {
 

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 
 namespace reident::transfer {
 

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::transfer {
 

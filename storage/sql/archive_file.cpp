@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "storage/overlay.hpp"
-#include "storage/recent_run.hpp"
-#include "storage/schema.hpp"
-#include "storage/utc_text.hpp"
+#include "storage/chunks/overlay.hpp"
+#include "storage/chunks/recent_run.hpp"
+#include "storage/database/schema.hpp"
+#include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
 namespace {

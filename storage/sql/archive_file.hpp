@@ -12,11 +12,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "storage/chunk.hpp"
-#include "storage/sample_columns.hpp"
+#include "storage/chunks/chunk.hpp"
+#include "storage/types/sample_columns.hpp"
 #include "storage/sql/selection.hpp"
 #include "storage/sql/sqlite_api.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::storage::sql {
 

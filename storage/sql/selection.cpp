@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "storage/sql/utc_bounds.hpp"
-#include "storage/utc_text.hpp"
+#include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "storage/sql/sqlite_api.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::storage::sql {
 

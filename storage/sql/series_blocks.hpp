@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "storage/sample_columns.hpp"
+#include "storage/types/sample_columns.hpp"
 #include "storage/sql/archive_file.hpp"
 #include "storage/sql/selection.hpp"
 

@@ -7,7 +7,7 @@
 #include "storage/sql/summary.hpp"
 #include "storage/sql/summary_arguments.hpp"
 #include "storage/sql/table.hpp"
-#include "storage/utc_text.hpp"
+#include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
 namespace {

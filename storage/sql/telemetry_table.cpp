@@ -6,7 +6,7 @@
 #include "storage/sql/ordered_rows.hpp"
 #include "storage/sql/plan.hpp"
 #include "storage/sql/table.hpp"
-#include "storage/utc_text.hpp"
+#include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
 namespace {

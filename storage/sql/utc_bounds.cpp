@@ -3,7 +3,7 @@
 #include <limits>
 #include <numeric>
 
-#include "storage/utc_text.hpp"
+#include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::storage::sql {
 

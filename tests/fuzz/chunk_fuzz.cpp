@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "storage/checksum.hpp"
-#include "storage/chunk.hpp"
+#include "storage/chunks/checksum.hpp"
+#include "storage/chunks/chunk.hpp"
 
 namespace {
 

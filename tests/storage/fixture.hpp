@@ -11,8 +11,8 @@
 #include <sqlite3.h>
 #include <sys/types.h>
 
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace reident::storage::testing {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/storage/sql_user.hpp"
+#include "tests/storage/sql/sql_user.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "storage/sample_source.hpp"
+#include "storage/types/sample_source.hpp"
 
 namespace reident::trust {
 

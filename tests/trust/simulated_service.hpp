@@ -16,8 +16,8 @@
 #include "service/daemon/probation_watch.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::trust {
 

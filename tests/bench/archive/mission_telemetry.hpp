@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::bench {
 

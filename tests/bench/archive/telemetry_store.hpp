@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 #include "tests/bench/archive/mission_telemetry.hpp"
 
 namespace reident::bench {
@@ -38,7 +38,7 @@ enum class Access { read, write };
 inline const std::string mission = "MISSION";
 
 /// Creates the file where it does not exist. Both kinds have the same page size, log, checkpoints,
-/// cache and durability: what storage/database.cpp sets.
+/// cache and durability: what storage/database/database.cpp sets.
 std::unique_ptr<TelemetryStore> open_store(StoreKind kind, const std::filesystem::path& file,
                                            Access access);
 

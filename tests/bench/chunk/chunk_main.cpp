@@ -11,7 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "service/support/csv.hpp"
-#include "storage/chunk.hpp"
+#include "storage/chunks/chunk.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "identification/simulation/state_space.hpp"
-#include "storage/telemetry.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::bench {
 

@@ -1,7 +1,7 @@
 // backup, verify and retain on a real database, as an operator calls them.
 #include <sqlite3.h>
 
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
 namespace reident::cli {

@@ -4,7 +4,7 @@
 
 #include <sys/resource.h>
 
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 

@@ -1,7 +1,7 @@
 // Operators' commands and `at` on a database that no service holds.
 #include <unistd.h>
 
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
 namespace reident::cli {

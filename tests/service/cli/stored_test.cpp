@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "service/model/model_json.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
 namespace reident::cli {

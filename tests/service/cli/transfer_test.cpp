@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
-#include "storage/archive.hpp"
+#include "storage/archive/archive.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
 namespace reident::cli {

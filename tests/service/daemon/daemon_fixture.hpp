@@ -12,8 +12,8 @@
 #include <sqlite3.h>
 
 #include "service/daemon/config.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace reident::test {

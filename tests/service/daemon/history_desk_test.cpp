@@ -9,7 +9,7 @@
 #include "service/history/remote_history.hpp"
 #include "service/history/remote_sources.hpp"
 #include "service/history/stored_sources.hpp"
-#include "storage/registry.hpp"
+#include "storage/registry/registry.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -7,8 +7,8 @@
 #include "service/daemon/provenance.hpp"
 #include "service/daemon/refresh.hpp"
 #include "service/model/model_json.hpp"
-#include "storage/retention.hpp"
-#include "storage/verify.hpp"
+#include "storage/care/retention.hpp"
+#include "storage/care/verify.hpp"
 #include "tests/service/daemon/daemon_fixture.hpp"
 
 namespace reident::test {

@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 
 #include "service/history/rows.hpp"
-#include "storage/archive.hpp"
-#include "storage/registry.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace reident::history {

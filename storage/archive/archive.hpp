@@ -1,0 +1,130 @@
+// Every telemetry sample that was received, once.
+//
+// A sample's identity is (spacecraft, origin, parameter, generation time). The same sample twice is
+// one sample; of two values for one identity the better quality wins, then the first. Values are
+// the same when their bits are, and all NaNs are one value. Where a frame of the satellite brings
+// another good value than the one that is there, by more than rounding, that one stays for ever
+// with the quality `disputed`. A parameter needs no descriptor to be archived.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "storage/database/database.hpp"
+#include "storage/types/sample_source.hpp"
+#include "storage/types/series.hpp"
+#include "storage/types/telemetry.hpp"
+
+namespace reident::storage {
+
+/// What one append did. Samples are counted once each: stored + duplicates + conflicts; `late` and
+/// `non_finite` are counted beside that.
+struct AppendReport {
+  std::uint64_t frames = 0;
+  std::uint64_t stored = 0;
+  std::uint64_t duplicates = 0;  // same identity, same value; the better quality is kept
+  std::uint64_t conflicts = 0;   // same identity, another value
+  std::uint64_t late = 0;        // stored behind a newer sample of its series
+  std::uint64_t non_finite = 0;  // NaN or infinite, repeated ones too; stored as invalid
+
+  /// The stretch of time in which samples of one series landed or changed.
+  struct Touched {
+    std::string spacecraft;
+    Origin origin = Origin::real;
+    std::uint32_t parameter = 0;
+    TimeRange range;
+  };
+  std::vector<Touched> touched;
+
+  /// Samples that were found damaged in the file and set aside (SCHEMA.md), in words.
+  std::vector<std::string> damages;
+};
+
+/// How the writer arranges samples; the defaults suit any archive.
+struct ArchiveOptions {
+  std::size_t chunk_samples = 12288;  // of a chunk that is filled in order of time; 16 to 65536
+  std::size_t recent_samples = 1'000'000;  // that wait for a place in chunks; at most twice as many
+  std::size_t recent_batches = 256;        // appends that wait
+  std::size_t step_samples = 65536;        // that a transaction moves at least: a few milliseconds
+};
+
+/// A stretch of sealed time (see Archive::seal) in which samples of one series landed or changed.
+struct LateRange {
+  std::int64_t id = 0;  // never used again
+  std::string spacecraft;
+  Origin origin = Origin::real;
+  std::uint32_t parameter = 0;
+  TimeRange range;
+};
+
+class Archive : public SampleSource {
+ public:
+  /// The database must outlive the archive. The options are the writer's: those of the archive that
+  /// appends first hold for the database.
+  explicit Archive(Database& database, const ArchiveOptions& options = {});
+
+  Database& database() { return database_; }
+  const ArchiveOptions& options() const { return options_; }
+
+  /// One transaction: all of it is stored, or (Error thrown) none. A bounded share of moving older
+  /// samples into chunks is part of it.
+  AppendReport append(std::span<const TelemetryFrame> frames);
+  /// Moves all samples into chunks, in many bounded transactions. Never needed: it saves room.
+  void compact();
+  /// Adds descriptors, or replaces those of the same spacecraft and id. One transaction.
+  void describe(std::span<const ParameterDescriptor> descriptors);
+
+  /// Says that a window which ends at `end` is about to be read: from now on append() marks what
+  /// lands or changes before `end`, in the transaction that stores it. Call it, then read the
+  /// window, and nothing falls between. The seal only moves forward and outlives a crash.
+  void seal(const std::string& spacecraft, Time end);
+  /// Marks that were not forgotten yet, ascending by id. Near ones of a series are one range.
+  std::vector<LateRange> late_ranges(const std::string& spacecraft) const;
+  /// To be called when the windows were looked at again. A mark that grew since it was read has
+  /// another id and stays.
+  void forget_late(std::span<const LateRange> ranges);
+
+  /// All that have samples or descriptors, in alphabetical order.
+  std::vector<std::string> spacecraft() const;
+  /// Those described, ascending by id.
+  std::vector<ParameterDescriptor> parameters(const std::string& spacecraft) const;
+  std::optional<ParameterDescriptor> parameter(const std::string& spacecraft,
+                                               const std::string& name) const override;
+
+  Series read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
+              TimeRange range) const override;
+  /// The same, with the ids of the sources.
+  Series read_with_sources(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
+                           TimeRange range) const;
+  /// Batches that changed samples of the series in `range` after that time was sealed, the latest
+  /// first.
+  std::vector<std::int64_t> revisions(const std::string& spacecraft, Origin origin,
+                                      std::uint32_t parameter, TimeRange range) const;
+  /// The same archive, whose read() gives sealed time as it was before this batch.
+  Archive before(std::int64_t batch) const;
+  /// Generation time of the series' nearest sample on one side of `time`, itself included.
+  std::optional<Time> first_at_or_after(const std::string& spacecraft, Origin origin,
+                                        std::uint32_t parameter, Time time) const;
+  std::optional<Time> last_at_or_before(const std::string& spacecraft, Origin origin,
+                                        std::uint32_t parameter, Time time) const;
+
+  /// From the first sample to just after the last one of a spacecraft's series of this origin;
+  /// absent when there is none.
+  std::optional<TimeRange> extent(const std::string& spacecraft, Origin origin) const;
+
+  std::uint64_t sample_count() const;
+  std::vector<SourceCounts> sources() const;
+  std::vector<SequenceGap> sequence_gaps() const;
+
+ private:
+  Series read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
+              TimeRange range, bool with_sources) const;
+
+  Database& database_;
+  ArchiveOptions options_;
+  std::optional<std::int64_t> as_of_{};  // the last batch that read() knows of
+};
+
+}  // namespace reident::storage

@@ -1,0 +1,151 @@
+#include "storage/archive/series_reader.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "storage/archive/damage.hpp"
+#include "storage/chunks/overlay.hpp"
+#include "storage/chunks/recent_run.hpp"
+#include "storage/archive/revision.hpp"
+
+namespace reident::storage {
+namespace {
+
+constexpr Time earliest = std::numeric_limits<Time>::min();
+constexpr Time latest = std::numeric_limits<Time>::max();
+
+// Far above what any configuration lets wait: a number beyond it is a damaged one.
+constexpr std::int64_t most_batches = 1 << 24;
+
+// Chunks do not overlap: the one that `begin` may lie in is the last that starts no later.
+constexpr std::string_view chunks_in_range =
+    "SELECT first_time, last_time, samples, bytes FROM chunk "
+    "JOIN chunk_data ON chunk_data.id = chunk.data "
+    "WHERE series = ?1 AND first_time <= ?3 AND last_time >= ?2 AND first_time >= "
+    "coalesce((SELECT max(first_time) FROM chunk WHERE series = ?1 AND first_time <= ?2), ?2) "
+    "ORDER BY first_time";
+
+TimeRange from_to(Time first, Time last) {
+  return {first, last == latest ? latest : last + 1};
+}
+
+Stretch stretch_of(std::int64_t series, const sqlite::Query& row) {
+  return {series, row.integer(0), row.integer(1), row.integer<std::size_t>(2)};
+}
+
+// In [first, last], at the rate of this chunk: so that vectors are made once, not grown by copying.
+std::size_t samples_expected(const Stretch& chunk, Time first, Time last) {
+  constexpr double most = 1 << 22;
+  const double rate = static_cast<double>(chunk.samples) /
+                      (static_cast<double>(chunk.last) - static_cast<double>(chunk.first) + 1);
+  const double expected = rate * (static_cast<double>(last) - static_cast<double>(first));
+  return static_cast<std::size_t>(std::min(expected * 1.01 + 16, most));
+}
+
+}  // namespace
+
+std::optional<std::int64_t> SeriesReader::find(std::string_view spacecraft, Origin origin,
+                                               std::uint32_t parameter) {
+  sqlite::Query row = connection_.query(
+      "SELECT id FROM series WHERE spacecraft = ? AND origin = ? AND parameter = ?", spacecraft,
+      origin, parameter);
+  return row.step() ? std::optional(row.integer(0)) : std::nullopt;
+}
+
+template <typename Use>
+void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const Use& use) {
+  std::int64_t from = 0, to = 0;
+  {
+    sqlite::Query batches = connection_.query(
+        "SELECT max((SELECT moved FROM series WHERE id = ?) + 1, min(batch)), max(batch) "
+        "FROM recent",
+        series);
+    if (!batches.step() || batches.is_null(1)) return;
+    from = batches.integer(0);
+    to = batches.integer(1);
+  }
+  if (to - from > most_batches)
+    throw Error(
+        Error::Kind::corrupt,
+        "database " + connection_.path() + " has recent samples of batches " +
+            std::to_string(from) + " to " + std::to_string(to) +
+            ", more than there can be: restore a backup, or see what 'reident verify' says");
+  sqlite::Query row = connection_.query(
+      "SELECT first_time, last_time, samples, data FROM recent WHERE batch = ? AND series = ?");
+  for (std::int64_t batch = from; batch <= to; ++batch)
+    if (row.bind(batch, series).step() && row.integer(0) <= last && row.integer(1) >= first)
+      use(row);
+}
+
+SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedColumns wanted,
+                                 std::optional<std::int64_t> as_of) {
+  SampleColumns samples;
+  if (range.begin >= range.end && range.end != latest) return samples;
+  const Time last = range.end == latest ? latest : range.end - 1;
+  sqlite::ReadTransaction snapshot(connection_);
+  {
+    sqlite::Query row = connection_.query(chunks_in_range, series, range.begin, last);
+    while (row.step()) {
+      const Stretch chunk = stretch_of(series, row);
+      if (samples.empty()) samples.reserve(samples_expected(chunk, range.begin, last), wanted);
+      if (const auto error = decoder_.decode(row.bytes(3), range, samples.target(wanted)))
+        throw damage(connection_, chunk, *error);
+    }
+  }
+  std::vector<SampleColumns> recent;
+  each_recent(series, range.begin, last, [&](const sqlite::Query& row) {
+    recent.emplace_back();
+    if (const auto error = decode_run(row.bytes(3), range, recent.back().target(wanted)))
+      throw damage(connection_, stretch_of(series, row), *error);
+  });
+  std::vector<const SampleColumns*> newer;
+  for (const SampleColumns& run : recent) newer.push_back(&run);
+  overlay(samples, newer);
+  if (as_of) undo_revisions(connection_, decoder_, series, *as_of, range, wanted, samples);
+  return samples;
+}
+
+std::optional<Time> SeriesReader::first_at_or_after(std::int64_t series, Time time) {
+  sqlite::ReadTransaction snapshot(connection_);
+  std::optional<Time> found;
+  const auto look_into = [&](TimeRange range) {
+    const SampleColumns samples = read(series, range, {false, false, false});
+    if (!samples.empty()) found = samples.time.front();
+  };
+  {
+    sqlite::Query row = connection_.query(
+        "SELECT min(first_time) FROM chunk WHERE series = ? AND first_time >= ?", series, time);
+    if (row.step() && !row.is_null(0)) found = row.integer(0);
+  }
+  each_recent(series, time, latest, [&](const sqlite::Query& row) {
+    if (row.integer(0) >= time) found = std::min(found.value_or(latest), row.integer(0));
+  });
+  // What straddles `time` may hold an earlier one than those that start behind it.
+  look_into(from_to(time, found.value_or(latest)));
+  return found;
+}
+
+std::optional<Time> SeriesReader::last_at_or_before(std::int64_t series, Time time) {
+  sqlite::ReadTransaction snapshot(connection_);
+  std::optional<Time> found;
+  {
+    sqlite::Query row = connection_.query(
+        "SELECT first_time, last_time FROM chunk WHERE series = ? AND first_time <= ? "
+        "ORDER BY first_time DESC LIMIT 1",
+        series, time);
+    if (row.step()) found = row.integer(1) <= time ? row.integer(1) : row.integer(0);
+  }
+  each_recent(series, earliest, time, [&](const sqlite::Query& row) {
+    const Time known = row.integer(1) <= time ? row.integer(1) : row.integer(0);
+    found = std::max(found.value_or(earliest), known);
+  });
+  if (!found) return std::nullopt;
+  const SampleColumns samples = read(series, from_to(*found, time), {false, false, false});
+  if (samples.empty())
+    throw damage(connection_, {series, *found, time, 0},
+                 {ChunkError::Kind::damaged, "holds other samples than its row says"});
+  return samples.time.back();
+}
+
+}  // namespace reident::storage

@@ -1,0 +1,36 @@
+// Samples of a series for readers: chunks, and what is recent over them. Private to storage.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "storage/types/sample_columns.hpp"
+#include "storage/database/sqlite.hpp"
+
+namespace reident::storage {
+
+/// Every call sees one snapshot. Throws Error (corrupt) where samples cannot be decoded.
+class SeriesReader {
+ public:
+  explicit SeriesReader(sqlite::Connection& connection) : connection_(connection) {}
+
+  std::optional<std::int64_t> find(std::string_view spacecraft, Origin origin,
+                                   std::uint32_t parameter);
+
+  /// Samples with a time in `range`; with a batch, as it was after that one.
+  SampleColumns read(std::int64_t series, TimeRange range, WantedColumns wanted = {},
+                     std::optional<std::int64_t> as_of = std::nullopt);
+
+  std::optional<Time> first_at_or_after(std::int64_t series, Time time);
+  std::optional<Time> last_at_or_before(std::int64_t series, Time time);
+
+ private:
+  /// Calls `use(first, last, bytes, row)` for each recent run that meets [first, last].
+  template <typename Use>
+  void each_recent(std::int64_t series, Time first, Time last, const Use& use);
+
+  sqlite::Connection& connection_;
+  ChunkDecoder decoder_;
+};
+
+}  // namespace reident::storage

@@ -1,0 +1,18 @@
+#include "storage/database/migration.hpp"
+
+#include "storage/database/schema.hpp"
+
+namespace reident::storage {
+
+void migrate(sqlite::Connection& connection, std::int64_t version) {
+  if (version < 2) connection.execute(schema::from_1_to_2());
+  if (version < 3) {
+    connection.execute(schema::from_2_to_3());
+    samples_to_chunks(connection);
+    connection.execute(schema::without_samples_of_2());
+  }
+  if (version < 4) connection.execute(schema::from_3_to_4());
+  connection.execute(schema::user_version());
+}
+
+}  // namespace reident::storage

@@ -1,0 +1,380 @@
+#include "storage/database/schema.hpp"
+
+#include <initializer_list>
+#include <string_view>
+
+namespace reident::storage::schema {
+namespace {
+
+// Limits and bounds have no declared type: a column of type REAL would turn -0.0 into 0.
+constexpr std::string_view telemetry_tables = R"sql(
+CREATE TABLE parameter (
+  spacecraft TEXT NOT NULL, id INTEGER NOT NULL, name TEXT NOT NULL, unit TEXT NOT NULL,
+  description TEXT NOT NULL, kind TEXT NOT NULL CHECK (kind IN ('analog', 'digital')),
+  low_limit, high_limit,
+  PRIMARY KEY (spacecraft, id)) WITHOUT ROWID;
+CREATE INDEX parameter_by_name ON parameter (spacecraft, name, id);
+
+CREATE TABLE source (
+  id INTEGER PRIMARY KEY,
+  spacecraft TEXT NOT NULL, name TEXT NOT NULL, origin INTEGER NOT NULL CHECK (origin IN (0, 1)),
+  frames INTEGER NOT NULL DEFAULT 0, samples INTEGER NOT NULL DEFAULT 0,
+  duplicates INTEGER NOT NULL DEFAULT 0, conflicts INTEGER NOT NULL DEFAULT 0,
+  late INTEGER NOT NULL DEFAULT 0, non_finite INTEGER NOT NULL DEFAULT 0,
+  out_of_order INTEGER NOT NULL DEFAULT 0, restarts INTEGER NOT NULL DEFAULT 0,
+  missing INTEGER NOT NULL DEFAULT 0,
+  lowest_sequence INTEGER NOT NULL DEFAULT 0, lowest_time INTEGER NOT NULL DEFAULT 0,
+  highest_sequence INTEGER NOT NULL DEFAULT 0, highest_time INTEGER NOT NULL DEFAULT 0,
+  UNIQUE (spacecraft, name, origin));
+
+CREATE TABLE sequence_gap (
+  source INTEGER NOT NULL REFERENCES source, run INTEGER NOT NULL,
+  first INTEGER NOT NULL, last INTEGER NOT NULL,
+  time_before INTEGER NOT NULL, time_after INTEGER NOT NULL,
+  PRIMARY KEY (source, run, first), CHECK (first <= last)) WITHOUT ROWID;
+
+CREATE TABLE series (
+  id INTEGER PRIMARY KEY,
+  spacecraft TEXT NOT NULL, origin INTEGER NOT NULL CHECK (origin IN (0, 1)),
+  parameter INTEGER NOT NULL,
+  samples INTEGER NOT NULL DEFAULT 0, first_time INTEGER, last_time INTEGER,
+  moved INTEGER NOT NULL DEFAULT 0,
+  UNIQUE (spacecraft, origin, parameter));
+)sql";
+
+constexpr std::string_view sample_tables = R"sql(
+CREATE TABLE recent (
+  batch INTEGER NOT NULL, series INTEGER NOT NULL REFERENCES series,
+  samples INTEGER NOT NULL, first_time INTEGER NOT NULL, last_time INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY (batch, series)) WITHOUT ROWID;
+
+CREATE TABLE chunk_data (id INTEGER PRIMARY KEY, bytes BLOB NOT NULL);
+
+-- Data is the id of a chunk_data. Declared as a reference it would cost a scan of this table for
+-- each chunk that is rewritten.
+CREATE TABLE chunk (
+  series INTEGER NOT NULL REFERENCES series, first_time INTEGER NOT NULL,
+  last_time INTEGER NOT NULL, samples INTEGER NOT NULL,
+  step INTEGER NOT NULL, gap_limit INTEGER NOT NULL, least, greatest,
+  data INTEGER NOT NULL,
+  PRIMARY KEY (series, first_time)) WITHOUT ROWID;
+
+CREATE TABLE sample_gap (
+  series INTEGER NOT NULL REFERENCES series,
+  begin_time INTEGER NOT NULL, end_time INTEGER NOT NULL,
+  PRIMARY KEY (series, begin_time)) WITHOUT ROWID;
+
+CREATE TABLE revision (
+  series INTEGER NOT NULL REFERENCES series, batch INTEGER NOT NULL,
+  first_time INTEGER NOT NULL, last_time INTEGER NOT NULL,
+  landed BLOB, replaced BLOB,
+  PRIMARY KEY (series, batch)) WITHOUT ROWID;
+
+CREATE TABLE removal (
+  id INTEGER PRIMARY KEY,
+  series INTEGER NOT NULL REFERENCES series,
+  begin_time INTEGER NOT NULL, end_time INTEGER NOT NULL, samples INTEGER NOT NULL,
+  cause TEXT NOT NULL, time INTEGER NOT NULL);
+CREATE INDEX removal_by_series ON removal (series, cause);
+
+CREATE TABLE damaged_chunk (
+  id INTEGER PRIMARY KEY,
+  series INTEGER NOT NULL REFERENCES series,
+  first_time INTEGER NOT NULL, last_time INTEGER NOT NULL, samples INTEGER NOT NULL,
+  bytes BLOB NOT NULL, reason TEXT NOT NULL, time INTEGER NOT NULL);
+)sql";
+
+constexpr std::string_view late_tables = R"sql(
+CREATE TABLE seal (spacecraft TEXT PRIMARY KEY, until INTEGER NOT NULL) WITHOUT ROWID;
+
+CREATE TABLE late_range (
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  series INTEGER NOT NULL REFERENCES series,
+  begin_time INTEGER NOT NULL, end_time INTEGER NOT NULL);
+CREATE INDEX late_range_by_time ON late_range (series, begin_time);
+)sql";
+
+constexpr std::string_view import_table = R"sql(
+CREATE TABLE import (
+  id INTEGER PRIMARY KEY,
+  file TEXT NOT NULL, request TEXT NOT NULL, started INTEGER NOT NULL, finished INTEGER,
+  position INTEGER NOT NULL DEFAULT 0, line INTEGER NOT NULL DEFAULT 1,
+  digest TEXT NOT NULL DEFAULT '',
+  rows INTEGER NOT NULL DEFAULT 0, bad_lines INTEGER NOT NULL DEFAULT 0,
+  samples INTEGER NOT NULL DEFAULT 0, stored INTEGER NOT NULL DEFAULT 0,
+  duplicates INTEGER NOT NULL DEFAULT 0, conflicts INTEGER NOT NULL DEFAULT 0);
+CREATE INDEX import_unfinished ON import (request) WHERE finished IS NULL;
+)sql";
+
+constexpr std::string_view registry_tables = R"sql(
+CREATE TABLE attempt (
+  id INTEGER PRIMARY KEY,
+  spacecraft TEXT NOT NULL, equipment TEXT NOT NULL,
+  window_begin INTEGER NOT NULL, window_end INTEGER NOT NULL,
+  cause TEXT NOT NULL, time INTEGER NOT NULL, outcome TEXT NOT NULL, reason TEXT NOT NULL,
+  evidence_json TEXT NOT NULL, configuration_digest TEXT NOT NULL, program_version TEXT NOT NULL);
+CREATE INDEX attempt_by_window ON attempt (spacecraft, equipment, window_end);
+
+CREATE TABLE version (
+  spacecraft TEXT NOT NULL, equipment TEXT NOT NULL, number INTEGER NOT NULL,
+  attempt INTEGER NOT NULL UNIQUE REFERENCES attempt,
+  model_json TEXT NOT NULL, digest TEXT NOT NULL,
+  provenance_json TEXT NOT NULL DEFAULT '', samples_digest TEXT NOT NULL DEFAULT '',
+  PRIMARY KEY (spacecraft, equipment, number));
+)sql";
+
+constexpr std::string_view decision_table = R"sql(
+CREATE TABLE decision (
+  id INTEGER PRIMARY KEY,
+  spacecraft TEXT NOT NULL, equipment TEXT NOT NULL, version INTEGER NOT NULL,
+  kind TEXT NOT NULL CHECK (kind IN ('approve', 'reject', 'wait', 'roll_back', 'withdraw')),
+  actor TEXT NOT NULL, reason TEXT NOT NULL, time INTEGER NOT NULL,
+  FOREIGN KEY (spacecraft, equipment, version) REFERENCES version (spacecraft, equipment, number));
+CREATE INDEX decision_by_version ON decision (spacecraft, equipment, version);
+CREATE INDEX decision_for_champion ON decision (spacecraft, equipment)
+  WHERE kind IN ('approve', 'roll_back');
+)sql";
+
+constexpr std::string_view decision_of_4 = R"sql(
+ALTER TABLE decision ADD COLUMN evidence_json TEXT NOT NULL DEFAULT '';
+CREATE INDEX decision_to_wait ON decision (spacecraft, equipment, version) WHERE kind = 'wait';
+)sql";
+
+constexpr std::string_view operator_tables = R"sql(
+CREATE TABLE hold (
+  id INTEGER PRIMARY KEY,
+  spacecraft TEXT NOT NULL, equipment TEXT NOT NULL,
+  kind TEXT NOT NULL CHECK (kind IN ('hold', 'release')),
+  actor TEXT NOT NULL, reason TEXT NOT NULL, time INTEGER NOT NULL);
+CREATE INDEX hold_by_equipment ON hold (spacecraft, equipment);
+
+CREATE TABLE command (
+  id INTEGER PRIMARY KEY,
+  requester TEXT NOT NULL, request INTEGER NOT NULL,
+  action TEXT NOT NULL, spacecraft TEXT NOT NULL, equipment TEXT NOT NULL,
+  version INTEGER NOT NULL, actor TEXT NOT NULL, reason TEXT NOT NULL, time INTEGER NOT NULL,
+  ok INTEGER NOT NULL CHECK (ok IN (0, 1)), reply TEXT NOT NULL,
+  UNIQUE (requester, request));
+)sql";
+
+constexpr std::string_view telemetry_views = R"sql(
+CREATE VIEW telemetry_series AS
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
+         iif(origin, 'simulated', 'real') AS origin, unit, samples, first_time, last_time
+  FROM series
+  LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
+                      AND parameter.id = series.parameter;
+
+-- Sequence numbers are kept with the highest bit inverted (SCHEMA.md).
+CREATE VIEW telemetry_source AS
+  SELECT spacecraft, name AS source, iif(origin, 'simulated', 'real') AS origin, frames, samples,
+         duplicates, conflicts, late, non_finite, out_of_order, restarts,
+         iif(missing >= 0, missing, printf('%llu', missing)) AS missing,
+         iif(highest_sequence < 0, highest_sequence + 9223372036854775807 + 1,
+             printf('%llu', highest_sequence - 9223372036854775807 - 1)) AS last_sequence
+  FROM source;
+
+CREATE VIEW telemetry_gap AS
+  SELECT spacecraft, name AS source, iif(origin, 'simulated', 'real') AS origin, run,
+         iif(first < 0, first + 9223372036854775807 + 1,
+             printf('%llu', first - 9223372036854775807 - 1)) AS first,
+         iif(last < 0, last + 9223372036854775807 + 1,
+             printf('%llu', last - 9223372036854775807 - 1)) AS last,
+         time_before, time_after
+  FROM sequence_gap JOIN source ON source.id = sequence_gap.source;
+
+CREATE VIEW telemetry_late AS
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
+         iif(origin, 'simulated', 'real') AS origin, begin_time, end_time
+  FROM late_range JOIN series ON series.id = late_range.series
+  LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
+                      AND parameter.id = series.parameter;
+)sql";
+
+constexpr std::string_view hole_view = R"sql(
+CREATE VIEW telemetry_hole AS
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
+         iif(origin, 'simulated', 'real') AS origin, begin_time, end_time,
+         strftime('%Y-%m-%dT%H:%M:%S',
+                  begin_time / 1000000000 - (begin_time % 1000000000 < 0), 'unixepoch')
+           || printf('.%09dZ', (begin_time % 1000000000 + 1000000000) % 1000000000) AS begin_utc,
+         strftime('%Y-%m-%dT%H:%M:%S',
+                  end_time / 1000000000 - (end_time % 1000000000 < 0), 'unixepoch')
+           || printf('.%09dZ', (end_time % 1000000000 + 1000000000) % 1000000000) AS end_utc
+  FROM sample_gap JOIN series ON series.id = sample_gap.series
+  LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
+                      AND parameter.id = series.parameter;
+)sql";
+
+constexpr std::string_view removal_view = R"sql(
+CREATE VIEW telemetry_removed AS
+  SELECT series.spacecraft,
+         coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
+         iif(origin, 'simulated', 'real') AS origin, begin_time, end_time, removal.samples, cause,
+         time
+  FROM removal JOIN series ON series.id = removal.series
+  LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
+                      AND parameter.id = series.parameter;
+)sql";
+
+constexpr std::string_view lineage_view = R"sql(
+-- Each version with the champion that it was judged against: the one before its approval, or else
+-- before its first decision.
+CREATE VIEW lineage AS
+  SELECT spacecraft, equipment, version,
+         (SELECT before.version FROM decision AS before
+          WHERE before.id = (SELECT max(id) FROM decision AS earlier
+                             WHERE earlier.spacecraft = own.spacecraft
+                               AND earlier.equipment = own.equipment
+                               AND earlier.kind IN ('approve', 'roll_back')
+                               AND earlier.id < own.id)
+            AND NOT EXISTS (SELECT 1 FROM decision AS withdrawal
+                            WHERE withdrawal.spacecraft = own.spacecraft
+                              AND withdrawal.equipment = own.equipment
+                              AND withdrawal.version = before.version
+                              AND withdrawal.kind = 'withdraw'
+                              AND withdrawal.id < own.id)) AS parent
+  FROM decision AS own
+  WHERE id = (SELECT coalesce(min(iif(kind = 'approve', id, NULL)), min(id)) FROM decision AS any
+              WHERE any.spacecraft = own.spacecraft AND any.equipment = own.equipment
+                AND any.version = own.version);
+)sql";
+
+constexpr std::string_view registry_views = R"sql(
+CREATE VIEW model_version AS
+  SELECT version.spacecraft, version.equipment, number AS version, attempt, window_begin,
+         window_end, attempt.time AS created,
+         CASE WHEN EXISTS (SELECT 1 FROM decision AS other
+                           WHERE other.spacecraft = version.spacecraft
+                             AND other.equipment = version.equipment AND other.version = number
+                             AND kind = 'withdraw') THEN 'withdrawn'
+              WHEN number = (SELECT other.version FROM decision AS other
+                             WHERE other.spacecraft = version.spacecraft
+                               AND other.equipment = version.equipment
+                               AND kind IN ('approve', 'roll_back')
+                             ORDER BY id DESC LIMIT 1) THEN 'approved'
+              ELSE (SELECT CASE kind WHEN 'reject' THEN 'rejected' WHEN 'wait' THEN 'waiting'
+                                     ELSE 'superseded' END
+                    FROM decision AS other
+                    WHERE other.spacecraft = version.spacecraft
+                      AND other.equipment = version.equipment AND other.version = number
+                    ORDER BY id DESC LIMIT 1) END AS status,
+         (SELECT parent FROM lineage
+          WHERE lineage.spacecraft = version.spacecraft AND lineage.equipment = version.equipment
+            AND lineage.version = number) AS parent,
+         digest, model_json, samples_digest, provenance_json
+  FROM version JOIN attempt ON attempt.id = version.attempt;
+
+CREATE VIEW champion AS
+  SELECT spacecraft, equipment, version,
+         (SELECT time FROM decision
+          WHERE decision.spacecraft = model_version.spacecraft
+            AND decision.equipment = model_version.equipment
+            AND decision.version = model_version.version
+            AND kind IN ('approve', 'roll_back')
+          ORDER BY id DESC LIMIT 1) AS since,
+         window_begin, window_end, digest, model_json
+  FROM model_version WHERE status = 'approved';
+
+CREATE VIEW history AS
+  SELECT attempt.id AS attempt, attempt.spacecraft, attempt.equipment, window_begin, window_end,
+         cause, attempt.time, outcome, attempt.reason, version.number AS version,
+         (SELECT kind || ' by ' || actor FROM decision
+          WHERE decision.spacecraft = attempt.spacecraft
+            AND decision.equipment = attempt.equipment AND decision.version = version.number
+          ORDER BY id DESC LIMIT 1) AS last_decision
+  FROM attempt LEFT JOIN version ON version.attempt = attempt.id;
+
+CREATE VIEW hold_now AS
+  SELECT spacecraft, equipment, actor, reason, time AS since
+  FROM hold AS last
+  WHERE kind = 'hold'
+    AND id = (SELECT max(id) FROM hold AS other WHERE other.spacecraft = last.spacecraft
+                                                  AND other.equipment = last.equipment);
+)sql";
+
+// The insert trigger stops INSERT OR REPLACE, which deletes without asking the delete trigger.
+std::string append_only(const std::string& table, const std::string& same_row) {
+  const auto trigger = [&](const std::string& event, const std::string& condition) {
+    return "CREATE TRIGGER " + table + "_" + event + " BEFORE " + event + " ON " + table + " " +
+           condition + " BEGIN SELECT RAISE(ABORT, 'rows of the table " + table +
+           " are never changed or removed: add a new one'); END;\n";
+  };
+  return trigger("update", "") + trigger("delete", "") +
+         trigger("insert", "WHEN EXISTS (SELECT 1 FROM " + table + " WHERE " + same_row + ")");
+}
+
+std::string append_only_decisions() {
+  return append_only("decision", "id = NEW.id") + append_only("hold", "id = NEW.id") +
+         append_only("command",
+                     "id = NEW.id OR (requester = NEW.requester AND request = NEW.request)");
+}
+
+std::string joined(std::initializer_list<std::string_view> parts) {
+  std::string sql;
+  for (const std::string_view part : parts) sql += part;
+  return sql;
+}
+
+}  // namespace
+
+std::string creation() {
+  return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
+                 decision_table, decision_of_4, operator_tables, telemetry_views, hole_view,
+                 removal_view, lineage_view, registry_views}) +
+         append_only("attempt", "id = NEW.id") +
+         append_only("version",
+                     "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
+                     "equipment = NEW.equipment AND number = NEW.number)") +
+         append_only_decisions() + "PRAGMA application_id = " + std::to_string(application_id) +
+         ";" + user_version();
+}
+
+// A CHECK cannot be altered, so the decisions move to a new table. Dropping the old one drops its
+// triggers; indexes go first because their names are taken again.
+std::string from_1_to_2() {
+  constexpr std::string_view before = R"sql(
+DROP VIEW model_version;
+DROP VIEW champion;
+DROP VIEW history;
+ALTER TABLE version ADD COLUMN provenance_json TEXT NOT NULL DEFAULT '';
+ALTER TABLE version ADD COLUMN samples_digest TEXT NOT NULL DEFAULT '';
+DROP INDEX decision_by_version;
+DROP INDEX decision_for_champion;
+ALTER TABLE decision RENAME TO decision_of_1;
+)sql";
+  constexpr std::string_view move = R"sql(
+INSERT INTO decision (id, spacecraft, equipment, version, kind, actor, reason, time)
+  SELECT id, spacecraft, equipment, version, kind, actor, reason, time FROM decision_of_1
+  ORDER BY id;
+DROP TABLE decision_of_1;
+)sql";
+  return joined({before, decision_table, move, operator_tables, lineage_view, registry_views}) +
+         append_only_decisions();
+}
+
+std::string from_2_to_3() {
+  constexpr std::string_view before = R"sql(
+DROP VIEW telemetry;
+ALTER TABLE series ADD COLUMN moved INTEGER NOT NULL DEFAULT 0;
+)sql";
+  return joined({before, sample_tables, import_table, hole_view, removal_view});
+}
+
+std::string without_samples_of_2() {
+  return "DROP TABLE sample;";
+}
+
+std::string from_3_to_4() {
+  return joined({"DROP VIEW lineage;", lineage_view, decision_of_4});
+}
+
+std::string user_version() {
+  return "PRAGMA user_version = " + std::to_string(version) + ";";
+}
+
+}  // namespace reident::storage::schema

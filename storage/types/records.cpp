@@ -1,0 +1,30 @@
+#include "storage/types/records.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace reident::storage {
+namespace {
+
+constexpr std::array kinds{
+    std::pair{DecisionKind::approve, std::string_view("approve")},
+    std::pair{DecisionKind::reject, std::string_view("reject")},
+    std::pair{DecisionKind::wait, std::string_view("wait")},
+    std::pair{DecisionKind::roll_back, std::string_view("roll_back")},
+    std::pair{DecisionKind::withdraw, std::string_view("withdraw")},
+};
+
+}  // namespace
+
+std::string_view name(DecisionKind kind) {
+  return kinds[static_cast<std::size_t>(kind)].second;
+}
+
+std::optional<DecisionKind> decision_kind(std::string_view name) {
+  const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                  [&](const auto& kind) { return kind.second == name; });
+  return found == kinds.end() ? std::nullopt : std::optional(found->first);
+}
+
+}  // namespace reident::storage
