@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "identification/fit/adaptation.hpp"
 #include "identification/correction/correction.hpp"
 #include "identification/correction/tracking_search.hpp"
-#include "service/daemon/gate.hpp"
+#include "identification/fit/adaptation.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
+#include "service/model/outcome.hpp"
 #include "service/support/version.hpp"
 
 namespace reident {
