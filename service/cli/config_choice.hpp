@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "service/cli/command.hpp"
-#include "service/daemon/config.hpp"
+#include "service/config/config.hpp"
 #include "service/dds/dds.hpp"
 
 namespace reident::cli {

@@ -6,8 +6,8 @@
 #include <variant>
 
 #include "service/cli/command.hpp"
-#include "service/daemon/window_data.hpp"
 #include "service/model/model_version.hpp"
+#include "service/windows/window_data.hpp"
 #include "storage/types/sample_source.hpp"
 
 namespace reident::cli {

@@ -13,7 +13,7 @@
 
 #include "service/cli/command_sender.hpp"
 #include "service/cli/config_choice.hpp"
-#include "service/daemon/commands.hpp"
+#include "service/operations/commands.hpp"
 #include "service/support/program_identity.hpp"
 #include "service/support/utc_clock.hpp"
 

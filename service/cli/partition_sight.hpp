@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "service/cli/simulator_list.hpp"
+#include "service/cli/output/simulator_list.hpp"
 #include "service/dds/dds.hpp"
 
 namespace reident::cli {

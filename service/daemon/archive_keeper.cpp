@@ -1,6 +1,6 @@
 #include "service/daemon/archive_keeper.hpp"
 
-#include "service/daemon/protected_telemetry.hpp"
+#include "service/operations/protected_telemetry.hpp"
 #include "service/support/log.hpp"
 #include "service/support/time_text.hpp"
 

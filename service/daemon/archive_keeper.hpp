@@ -4,8 +4,8 @@
 #include <atomic>
 #include <optional>
 
+#include "service/config/config.hpp"
 #include "service/daemon/archive_writer.hpp"
-#include "service/daemon/config.hpp"
 #include "service/daemon/window_feed.hpp"
 #include "storage/care/retention.hpp"
 

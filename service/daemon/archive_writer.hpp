@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "service/config/config.hpp"
 #include "service/daemon/bounded_queue.hpp"
-#include "service/daemon/config.hpp"
 #include "service/support/mutex.hpp"
 #include "storage/archive/archive.hpp"
 #include "storage/registry/registry.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "service/daemon/champion_monitor.hpp"
 #include "service/daemon/window_feed.hpp"
+#include "service/judgement/champion_monitor.hpp"
 
 namespace reident {
 

@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-#include "service/daemon/commands.hpp"
+#include "service/operations/commands.hpp"
 #include "service/support/log.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/version.hpp"

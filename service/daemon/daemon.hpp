@@ -16,12 +16,12 @@
 #include <thread>
 #include <vector>
 
+#include "service/config/config.hpp"
 #include "service/daemon/archive_keeper.hpp"
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
 #include "service/daemon/champion_watch.hpp"
 #include "service/daemon/command_desk.hpp"
-#include "service/daemon/config.hpp"
 #include "service/daemon/history_desk.hpp"
 #include "service/daemon/ingest.hpp"
 #include "service/daemon/probation_watch.hpp"

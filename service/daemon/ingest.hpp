@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
+#include "service/config/config.hpp"
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
-#include "service/daemon/config.hpp"
 #include "service/dds/dds.hpp"
 
 namespace reident {

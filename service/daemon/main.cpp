@@ -11,7 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "service/daemon/config.hpp"
+#include "service/config/config.hpp"
 #include "service/daemon/daemon.hpp"
 #include "service/daemon/service_manager.hpp"
 #include "service/support/allocator.hpp"

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "service/daemon/probation.hpp"
-#include "service/daemon/refresh.hpp"
 #include "service/daemon/window_feed.hpp"
+#include "service/judgement/probation.hpp"
+#include "service/operations/refresh.hpp"
 
 namespace reident {
 

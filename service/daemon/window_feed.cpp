@@ -5,9 +5,9 @@
 #include <set>
 #include <utility>
 
-#include "service/daemon/window_data.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/support/log.hpp"
+#include "service/windows/window_data.hpp"
 
 namespace reident {
 namespace {

@@ -10,8 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "service/config/config.hpp"
 #include "service/daemon/archive_writer.hpp"
-#include "service/daemon/config.hpp"
 #include "service/daemon/window_scheduler.hpp"
 #include "service/support/mutex.hpp"
 #include "storage/archive/archive.hpp"

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "service/daemon/config.hpp"
+#include "service/config/config.hpp"
 #include "storage/types/telemetry.hpp"
 
 namespace reident {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "service/satcs/replay_columns.hpp"
+#include "service/satcs/replay/replay_columns.hpp"
 #include "service/support/text.hpp"
 #include "service/transfer/parameter_book.hpp"
 

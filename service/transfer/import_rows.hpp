@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "service/satcs/replay.hpp"
+#include "service/satcs/replay/replay.hpp"
 #include "service/support/csv.hpp"
 #include "service/transfer/telemetry_csv.hpp"
 #include "storage/archive/archive.hpp"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "service/daemon/config.hpp"
+#include "service/config/config.hpp"
 
 namespace {
 

@@ -6,10 +6,10 @@
 #include <set>
 #include <string>
 
-#include "service/daemon/window_data.hpp"
-#include "service/satcs/handwritten_eps.hpp"
 #include "service/satcs/parameter_id.hpp"
-#include "service/satcs/reference_spacecraft.hpp"
+#include "service/satcs/reference/handwritten_eps.hpp"
+#include "service/satcs/reference/reference_spacecraft.hpp"
+#include "service/windows/window_data.hpp"
 #include "tests/trust/score.hpp"
 
 namespace reident::trust {

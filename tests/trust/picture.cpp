@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/axis.hpp"
-#include "service/cli/svg.hpp"
+#include "service/cli/output/axis.hpp"
+#include "service/cli/output/svg.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::trust {

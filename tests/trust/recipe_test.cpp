@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "service/satcs/life_text.hpp"
+#include "service/satcs/reference/life_text.hpp"
 #include "service/support/time_text.hpp"
 #include "tests/trust/suite_config.hpp"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "service/model/derived_inputs.hpp"
-#include "service/satcs/reference_telemetry.hpp"
+#include "service/satcs/reference/reference_telemetry.hpp"
 
 namespace reident::trust {
 namespace {

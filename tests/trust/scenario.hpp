@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "service/daemon/config.hpp"
-#include "service/satcs/lies.hpp"
-#include "service/satcs/reference_life.hpp"
+#include "service/config/config.hpp"
+#include "service/satcs/faults/lies.hpp"
+#include "service/satcs/reference/reference_life.hpp"
 
 namespace reident::trust {
 

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "service/satcs/reference_telemetry.hpp"
+#include "service/satcs/reference/reference_telemetry.hpp"
 #include "tests/trust/suite_config.hpp"
 
 namespace reident::trust {

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "service/satcs/reference_life.hpp"
+#include "service/satcs/reference/reference_life.hpp"
 #include "tests/trust/truth.hpp"
 
 namespace reident::trust {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "service/satcs/parameter_id.hpp"
-#include "service/satcs/reference_telemetry.hpp"
+#include "service/satcs/reference/reference_telemetry.hpp"
 
 namespace reident::trust {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "service/config/config.hpp"
 #include "service/daemon/champion_watch.hpp"
-#include "service/daemon/config.hpp"
 #include "service/daemon/probation_watch.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"

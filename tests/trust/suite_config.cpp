@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "service/daemon/config_document.hpp"
+#include "service/config/config_document.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::trust {

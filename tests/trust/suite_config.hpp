@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "service/daemon/config.hpp"
+#include "service/config/config.hpp"
 
 namespace reident::trust {
 

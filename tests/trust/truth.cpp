@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "identification/search/identify.hpp"
-#include "service/daemon/candidate.hpp"
-#include "service/daemon/window_data.hpp"
-#include "service/satcs/reference_spacecraft.hpp"
+#include "service/satcs/reference/reference_spacecraft.hpp"
 #include "service/support/floor_divide.hpp"
+#include "service/windows/candidate.hpp"
+#include "service/windows/window_data.hpp"
 
 namespace reident::trust {
 namespace {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "service/daemon/config.hpp"
-#include "service/daemon/window_data.hpp"
+#include "service/config/config.hpp"
 #include "service/model/model_version.hpp"
+#include "service/windows/window_data.hpp"
 #include "tests/trust/known_series.hpp"
 
 namespace reident::trust {

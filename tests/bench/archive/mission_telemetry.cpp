@@ -3,7 +3,7 @@
 #include <unordered_map>
 
 #include "service/satcs/parameter_id.hpp"
-#include "service/satcs/reference_spacecraft.hpp"
+#include "service/satcs/reference/reference_spacecraft.hpp"
 
 namespace reident::bench {
 namespace {

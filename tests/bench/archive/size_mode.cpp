@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <variant>
 
-#include "service/satcs/reference_source.hpp"
-#include "service/satcs/replay.hpp"
+#include "service/satcs/reference/reference_source.hpp"
+#include "service/satcs/replay/replay.hpp"
 #include "tests/bench/archive/modes.hpp"
 
 namespace reident::bench {

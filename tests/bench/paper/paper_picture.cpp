@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/axis.hpp"
-#include "service/cli/svg.hpp"
-#include "service/cli/trace.hpp"
+#include "service/cli/output/axis.hpp"
+#include "service/cli/output/svg.hpp"
+#include "service/cli/output/trace.hpp"
 
 namespace reident::bench {
 namespace {

@@ -13,9 +13,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "identification/screening/screening.hpp"
 #include "identification/samples/tick_ranges.hpp"
-#include "service/cli/identify_data.hpp"
+#include "identification/screening/screening.hpp"
+#include "service/cli/verbs/identify_data.hpp"
 
 namespace {
 

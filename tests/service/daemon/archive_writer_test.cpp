@@ -6,7 +6,7 @@
 
 #include <sys/resource.h>
 
-#include "tests/service/daemon/daemon_fixture.hpp"
+#include "tests/service/daemon_fixture.hpp"
 
 namespace reident::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/service/daemon/daemon_fixture.hpp"
+#include "tests/service/daemon_fixture.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/service/daemon/daemon_fixture.hpp"
+#include "tests/service/daemon_fixture.hpp"
 
 namespace reident::test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "tests/service/daemon/daemon_fixture.hpp"
+#include "tests/service/daemon_fixture.hpp"
 
 namespace reident::test {
 namespace {

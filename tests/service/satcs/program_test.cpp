@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/satcs/parameter_id.hpp"
-#include "service/satcs/reference_telemetry.hpp"
+#include "service/satcs/reference/reference_telemetry.hpp"
 #include "tests/service/dds/child.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 

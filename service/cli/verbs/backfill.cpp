@@ -1,0 +1,112 @@
+#include "service/operations/backfill.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/command.hpp"
+#include "service/cli/config_choice.hpp"
+#include "service/cli/file_errors.hpp"
+#include "service/cli/output/story.hpp"
+#include "service/cli/time_choice.hpp"
+#include "service/operations/commands.hpp"
+#include "service/support/progress.hpp"
+#include "service/support/stop_signal.hpp"
+#include "service/support/text.hpp"
+#include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
+
+namespace reident::cli {
+namespace {
+
+struct Arguments {
+  std::optional<std::string> config;
+  std::string subject;
+  TimeChoice time;
+  bool json = false;
+};
+
+std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
+                                                  const Config& config) {
+  BackfillRequest request;
+  const auto range = chosen_range(arguments.time, {0, utc_now()});
+  if (const auto* refusal = std::get_if<Refusal>(&range)) return *refusal;
+  request.range = std::get<storage::TimeRange>(range);
+  if (arguments.subject.empty()) return request;
+  const auto subject = parse_subject(arguments.subject);
+  if (const auto* refusal = std::get_if<Refusal>(&subject)) return *refusal;
+  request.spacecraft = std::get<Subject>(subject).spacecraft;
+  request.equipment = std::get<Subject>(subject).equipment;
+  std::vector<std::string> names;
+  for (const storage::EquipmentName& one : equipment_of(config)) {
+    if (one.equipment == request.equipment &&
+        (request.spacecraft.empty() || request.spacecraft == one.spacecraft))
+      return request;
+    names.push_back(full_name(one));
+  }
+  return Refusal{fmt::format("the configuration has no equipment {}; it has {}", arguments.subject,
+                             joined(names))};
+}
+
+void print(const BackfillProgress& progress, bool json) {
+  if (json) {
+    const nlohmann::ordered_json object = {
+        {"windows", progress.windows}, {"done", progress.done}, {"approved", progress.approved}};
+    fmt::print("{}\n", object.dump());
+    return;
+  }
+  fmt::print("{} of {} windows tried, {} versions approved\n", progress.done, progress.windows,
+             progress.approved);
+  if (progress.done < progress.windows)
+    fmt::print("stopped; the same command goes on where it ended\n");
+}
+
+int run(const Arguments& arguments) {
+  auto chosen = chosen_config(arguments.config);
+  if (const auto* refusal = std::get_if<Refusal>(&chosen)) return refuse(*refusal);
+  const auto& config = std::get<std::optional<Config>>(chosen);
+  if (!config)
+    return refuse({fmt::format("no configuration: there is no {} here; name one with --config FILE",
+                               default_config_file)});
+  const auto request = request_of(arguments, *config);
+  if (const auto* refusal = std::get_if<Refusal>(&request)) return refuse(*refusal);
+  const StopSignal stop;
+  return refusing_what_cannot_be([&] {
+    storage::Database database(config->database, storage::Database::Mode::read_write);
+    WorkerPool workers(usable_cores());
+    Progress bar;
+    const BackfillProgress progress =
+        backfill(database, *config, std::get<BackfillRequest>(request), workers, utc_now,
+                 [&](const BackfillProgress& at) {
+                   bar.update(static_cast<double>(at.done) / static_cast<double>(at.windows),
+                              fmt::format("{}/{} {} {} approved {}", at.done, at.windows,
+                                          at.equipment, time_text(at.window_end), at.approved));
+                   return !stop.token().stop_requested();
+                 });
+    bar.clear();
+    print(progress, arguments.json);
+    return progress.done == progress.windows ? exit_done : exit_failed;
+  });
+}
+
+}  // namespace
+
+void add_backfill(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "backfill", "Try the windows of telemetry that is archived already, on all cores");
+  command->add_option("subject", arguments->subject,
+                      "SPACECRAFT/EQUIPMENT; without it every equipment of the configuration");
+  command->add_option("--config", arguments->config,
+                      fmt::format("configuration of the service ({})", default_config_file));
+  add_time_options(*command, arguments->time, "windows that end");
+  command->add_flag("--json", arguments->json, "one JSON object with the counts");
+  command->footer(
+      "Works on the file, so reidentd must not run; it publishes the champions when it starts.\n"
+      "Windows that were tried are left out: stopped with Ctrl-C, the same command goes on.\n"
+      "Example:\n  reident backfill CBERS-4/BDR --from 2025-01-01 --to 2026-01-01");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

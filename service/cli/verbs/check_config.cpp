@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/config_choice.hpp"
+#include "service/cli/output/table.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Arguments {
+  std::string file;
+  bool json = false;
+};
+
+void print_json(const ordered_json& object) {
+  fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+int print_mistakes(const Arguments& arguments, const std::vector<ConfigMistake>& mistakes) {
+  if (arguments.json) {
+    ordered_json list = ordered_json::array();
+    for (const ConfigMistake& mistake : mistakes)
+      list.push_back({{"line", mistake.line}, {"message", mistake.message}});
+    print_json({{"valid", false}, {"mistakes", list}});
+  } else {
+    for (const ConfigMistake& mistake : mistakes)
+      fmt::print(stderr, "{}\n", mistake_text(arguments.file, mistake));
+    fmt::print(stderr, "reident: {} has {} mistake{}\n", arguments.file, mistakes.size(),
+               mistakes.size() == 1 ? "" : "s");
+  }
+  return exit_impossible;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string order_text(const EquipmentConfig& equipment) {
+  return equipment.min_order == equipment.max_order
+             ? fmt::format("{}", equipment.max_order)
+             : fmt::format("{} to {}", equipment.min_order, equipment.max_order);
+}
+
+std::string signals_text(const EquipmentConfig& equipment) {
+  std::string text = joined(equipment.inputs) + " -> " + joined(equipment.outputs);
+  for (const DerivedInput& input : equipment.derived)
+    text += fmt::format("; {} = {}", input.name, input.expression);
+  return text;
+}
+
+/// Names of the equipment that a relation is a check of.
+std::vector<std::string> checked_by(const Relation& relation, const SpacecraftConfig& spacecraft) {
+  std::vector<std::string> names;
+  for (const EquipmentConfig& equipment : spacecraft.equipment)
+    if (std::find(equipment.relations.begin(), equipment.relations.end(), relation) !=
+        equipment.relations.end())
+      names.push_back(equipment.name);
+  return names;
+}
+
+void print_relations(const Config& config) {
+  Table table({{"relation"}, {"tolerance", Table::Align::right}, {"checks"}, {"is about 0"}});
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const Relation& relation : spacecraft.relations) {
+      const auto names = checked_by(relation, spacecraft);
+      table.add({spacecraft.name + "/" + relation.name, fmt::format("{:g}", relation.tolerance),
+                 names.empty() ? "no equipment" : joined(names), relation.expression});
+    }
+  if (!table.empty()) fmt::print("\n{}", table.text(terminal_width()));
+}
+
+void print_summary(const Config& config) {
+  fmt::print("service {} on domain {}, partition {}; database {}\n", config.service_name,
+             config.domain, config.partition, config.database.string());
+  Table table(
+      {{"equipment"}, {"every"}, {"window"}, {"slide"}, {"order"}, {"approval"}, {"signals"}});
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      table.add({spacecraft.name + "/" + equipment.name, duration_text(equipment.sample_period),
+                 duration_text(equipment.window), duration_text(equipment.slide),
+                 order_text(equipment),
+                 equipment.approval == ApprovalPolicy::automatic ? "automatic" : "by hand",
+                 signals_text(equipment)});
+  fmt::print("{}", table.text(terminal_width()));
+  print_relations(config);
+}
+
+ordered_json derived_json(const std::vector<DerivedInput>& inputs) {
+  ordered_json list = ordered_json::array();
+  for (const DerivedInput& input : inputs)
+    list.push_back({{"name", input.name}, {"expression", input.expression}, {"unit", input.unit}});
+  return list;
+}
+
+ordered_json relations_json(const Config& config) {
+  ordered_json list = ordered_json::array();
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const Relation& relation : spacecraft.relations)
+      list.push_back({{"spacecraft", spacecraft.name},
+                      {"relation", relation.name},
+                      {"expression", relation.expression},
+                      {"tolerance", relation.tolerance},
+                      {"equipment", checked_by(relation, spacecraft)}});
+  return list;
+}
+
+void print_summary_json(const Config& config) {
+  ordered_json list = ordered_json::array();
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      list.push_back({{"spacecraft", spacecraft.name},
+                      {"equipment", equipment.name},
+                      {"inputs", equipment.inputs},
+                      {"derived", derived_json(equipment.derived)},
+                      {"outputs", equipment.outputs},
+                      {"sample_period", duration_text(equipment.sample_period)},
+                      {"window", duration_text(equipment.window)},
+                      {"slide", duration_text(equipment.slide)}});
+  print_json({{"valid", true},
+              {"mistakes", ordered_json::array()},
+              {"service", config.service_name},
+              {"domain", config.domain},
+              {"partition", config.partition},
+              {"database", config.database.string()},
+              {"digest", config.digest},
+              {"equipment", list},
+              {"relations", relations_json(config)}});
+}
+
+int run(const Arguments& arguments) {
+  const auto loaded = load_config(arguments.file);
+  if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&loaded))
+    return print_mistakes(arguments, *mistakes);
+  if (arguments.json)
+    print_summary_json(std::get<Config>(loaded));
+  else
+    print_summary(std::get<Config>(loaded));
+  return exit_done;
+}
+
+}  // namespace
+
+void add_check_config(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "check-config", "Check a configuration: every mistake at once, each with its line");
+  command->add_option("file", arguments->file, "configuration of reidentd")->required();
+  command->add_flag("--json", arguments->json, "one JSON object");
+  command->footer(
+      "Example:\n  reident check-config reident.toml\nExit status: 2 when there is a mistake.");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

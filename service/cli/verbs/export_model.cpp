@@ -1,0 +1,143 @@
+#include <csignal>
+#include <filesystem>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "service/cli/output/story.hpp"
+#include "service/cli/source_choice.hpp"
+#include "service/model_export/model_export.hpp"
+#include "service/operations/commands.hpp"
+#include "service/support/output_file.hpp"
+
+namespace reident::cli {
+namespace {
+
+using model_export::ExportedVersion;
+
+constexpr const char* standard_output = "-";
+
+struct Arguments {
+  SourceOptions source;
+  std::string subject;
+  std::optional<std::string> fmu, mat, json;
+  bool force = false;
+};
+
+/// A file to be written.
+struct Target {
+  std::string path;
+  std::string_view what;
+  std::function<std::string(const ExportedVersion&)> content;
+};
+
+std::vector<Target> targets_of(const Arguments& arguments) {
+  std::vector<Target> targets;
+  if (arguments.fmu)
+    targets.push_back({*arguments.fmu, "FMU", [](const ExportedVersion& exported) {
+                         return model_export::fmu_file(exported, model_export::fmu_parts());
+                       }});
+  if (arguments.mat) targets.push_back({*arguments.mat, "MATLAB file", model_export::mat_file});
+  if (arguments.json) targets.push_back({*arguments.json, "JSON", model_export::json_file});
+  return targets;
+}
+
+/// What is wrong with the files that are asked for.
+std::optional<Refusal> mistake_in(const std::vector<Target>& targets, bool force) {
+  if (targets.empty()) return Refusal{"nothing to write; name a file with --fmu, --mat or --json"};
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const Target& target = targets[i];
+    if (target.path == standard_output) {
+      if (target.what == "JSON") continue;
+      return Refusal{fmt::format("the {} cannot go to standard output; name a file", target.what)};
+    }
+    for (std::size_t k = 0; k < i; ++k)
+      if (targets[k].path == target.path)
+        return Refusal{fmt::format("{} is named twice; each kind needs a file", target.path)};
+    std::error_code failed;
+    if (!force && std::filesystem::exists(target.path, failed))
+      return Refusal{
+          fmt::format("{} exists; name another file, or replace it with --force", target.path)};
+  }
+  return std::nullopt;
+}
+
+std::variant<ExportedVersion, Refusal> exported_version(Story story) {
+  ExportedVersion exported;
+  exported.status = story.version.status;
+  ModelVersion& version = exported.version;
+  version.model = std::move(story.model);
+  version.number = story.version.number;
+  version.digest = story.version.digest;
+  version.program_version = story.attempt.program_version;
+  if (!story.decisions.empty()) {
+    version.decided = story.decisions.back().time;
+    version.decided_by = story.decisions.back().actor;
+  }
+  if (const auto reason = model_export::obstacle(version))
+    return Refusal{fmt::format("{} version {} cannot be exported: {}",
+                               full_name({version.model.spacecraft, version.model.equipment}),
+                               version.number, *reason)};
+  return exported;
+}
+
+OutputFile output_to(const std::string& path, bool force) {
+  if (path == standard_output) return OutputFile::standard_output();
+  return OutputFile(path, force ? OutputFile::Existing::replaced : OutputFile::Existing::kept);
+}
+
+/// No file takes its name before all of them are written.
+void write(const ExportedVersion& exported, const std::vector<Target>& targets, bool force) {
+  std::vector<OutputFile> files;
+  for (const Target& target : targets) {
+    const std::string content = target.content(exported);
+    files.push_back(output_to(target.path, force));
+    files.back().write(content);
+  }
+  for (OutputFile& file : files) file.finish();
+}
+
+int run(const Arguments& arguments) {
+  std::signal(SIGPIPE, SIG_IGN);
+  const auto subject = parse_subject(arguments.subject);
+  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
+  const std::vector<Target> targets = targets_of(arguments);
+  if (const auto refusal = mistake_in(targets, arguments.force)) return refuse(*refusal);
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    auto story = find_story(sources.history, std::get<Subject>(subject));
+    if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
+    const auto exported = exported_version(std::get<Story>(std::move(story)));
+    if (const auto* refusal = std::get_if<Refusal>(&exported)) return refuse(*refusal);
+    const auto& version = std::get<ExportedVersion>(exported).version;
+    write(std::get<ExportedVersion>(exported), targets, arguments.force);
+    for (const Target& target : targets)
+      if (arguments.json != standard_output)
+        fmt::print("{}: {} of {} version {}\n", target.path, target.what,
+                   full_name({version.model.spacecraft, version.model.equipment}), version.number);
+    return static_cast<int>(exit_done);
+  });
+}
+
+}  // namespace
+
+void add_export_model(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("export-model", "Write a version as FMU, MATLAB file or JSON");
+  command
+      ->add_option("subject", arguments->subject,
+                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      ->required();
+  command->add_option("--fmu", arguments->fmu, "FMU for co-simulation, FMI 2.0");
+  command->add_option("--mat", arguments->mat, "MATLAB file, version 5");
+  command->add_option("--json", arguments->json, "JSON; - is standard output");
+  command->add_flag("--force", arguments->force, "replace files that exist");
+  add_source_options(*command, arguments->source);
+  command->footer(
+      "Of several no file takes its name before all of them are written.\n"
+      "Example:\n"
+      "  reident export-model CBERS-4/BDR@3 --fmu bdr.fmu --mat bdr.mat --config reident.toml");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "service/cli/output/table.hpp"
+#include "service/cli/source_choice.hpp"
+#include "service/cli/stored.hpp"
+#include "service/operations/commands.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+using history::HistorySource;
+using nlohmann::ordered_json;
+using storage::Attempt;
+using storage::Decision;
+using storage::EquipmentName;
+using storage::HistoryFilter;
+using storage::Hold;
+using storage::VersionSummary;
+
+struct Arguments {
+  SourceOptions source;
+  std::string spacecraft;
+  std::string equipment;
+  std::optional<std::size_t> last;
+  bool versions_only = false;
+  bool json = false;
+};
+
+bool is_selected(const EquipmentName& equipment, const Arguments& arguments) {
+  return (arguments.spacecraft.empty() || arguments.spacecraft == equipment.spacecraft) &&
+         (arguments.equipment.empty() || arguments.equipment == equipment.equipment);
+}
+
+/// What the registry says about the versions of the chosen equipment, and about holds.
+class Decided {
+ public:
+  Decided(const HistorySource& history, const Arguments& arguments) {
+    for (const EquipmentName& equipment : history.equipment()) {
+      if (!is_selected(equipment, arguments)) continue;
+      for (VersionSummary& version : history.summaries(equipment))
+        versions_[{equipment, version.number}].summary = std::move(version);
+      for (Decision& decision : history.decisions(equipment))
+        versions_[{equipment, decision.version}].decisions.push_back(std::move(decision));
+      if (auto hold = history.hold(equipment)) holds_.emplace(equipment, *std::move(hold));
+    }
+  }
+  struct Version {
+    VersionSummary summary;
+    std::vector<Decision> decisions;
+  };
+  /// Of an attempt that gave one.
+  const Version& version(const Attempt& attempt) const {
+    return versions_.at({{attempt.spacecraft, attempt.equipment}, *attempt.version});
+  }
+  bool is_champion(const Attempt& attempt) const {
+    return attempt.version && version(attempt).summary.status == "approved";
+  }
+  const std::map<EquipmentName, Hold>& holds() const { return holds_; }
+
+ private:
+  std::map<std::pair<EquipmentName, std::int64_t>, Version> versions_;
+  std::map<EquipmentName, Hold> holds_;
+};
+
+std::string version_text(const Attempt& attempt, const Decided& decided) {
+  if (!attempt.version) return "-";
+  const std::string& status = decided.version(attempt).summary.status;
+  return fmt::format("{}{}", *attempt.version,
+                     status == "approved"    ? "*"
+                     : status == "withdrawn" ? "x"
+                                             : "");
+}
+
+/// The outcome at first, and what was decided since.
+std::string outcome_text(const Attempt& attempt, const Decided& decided) {
+  std::string text = fmt::format("{}: {}", attempt.outcome, attempt.reason);
+  if (!attempt.version) return text;
+  const std::vector<Decision>& decisions = decided.version(attempt).decisions;
+  for (std::size_t i = 1; i < decisions.size(); ++i)
+    text += fmt::format(" Then {} by {} at {}{}.", name(decisions[i].kind), decisions[i].actor,
+                        time_text(decisions[i].time), reason_text(decisions[i].reason));
+  return text;
+}
+
+void print_table(const std::vector<Attempt>& attempts, const Decided& decided) {
+  Table table({{"equipment"},
+               {"window (UTC)"},
+               {"length"},
+               {"version", Table::Align::right},
+               {"order", Table::Align::right},
+               {"MRSE %", Table::Align::right},
+               {"fit %", Table::Align::right},
+               {"outcome and reason"}});
+  for (const Attempt& attempt : attempts) {
+    const ordered_json evidence = evidence_of(attempt);
+    table.add({full_name({attempt.spacecraft, attempt.equipment}), time_text(attempt.window.begin),
+               duration_text(attempt.window.end - attempt.window.begin),
+               version_text(attempt, decided), evidence_number(evidence, "order"),
+               evidence_number(evidence, "mrse_percent"), evidence_number(evidence, "fit_percent"),
+               outcome_text(attempt, decided)});
+  }
+  fmt::print("{}", table.text(terminal_width()));
+  fmt::print("* champion: what simulators run now; x withdrawn\n");
+  for (const auto& [equipment, hold] : decided.holds())
+    fmt::print("{}\n", hold_text(equipment, hold));
+}
+
+ordered_json attempt_json(const Attempt& attempt, const Decided& decided) {
+  const ordered_json evidence = evidence_of(attempt);
+  const auto number = [&](const char* key) { return evidence.value(key, ordered_json()); };
+  ordered_json json = {
+      {"attempt", attempt.id},
+      {"spacecraft", attempt.spacecraft},
+      {"equipment", attempt.equipment},
+      {"window",
+       {{"begin", time_text(attempt.window.begin)}, {"end", time_text(attempt.window.end)}}},
+      {"trigger", attempt.trigger},
+      {"time", time_text(attempt.time)},
+      {"outcome", attempt.outcome},
+      {"reason", attempt.reason},
+      {"version", attempt.version ? ordered_json(*attempt.version) : ordered_json()},
+      {"champion", decided.is_champion(attempt)},
+      {"order", number("order")},
+      {"mrse_percent", number("mrse_percent")},
+      {"fit_percent", number("fit_percent")},
+      {"evidence", evidence},
+      {"configuration_digest", attempt.configuration_digest},
+      {"program_version", attempt.program_version}};
+  if (!attempt.version) return json;
+  const Decided::Version& version = decided.version(attempt);
+  json["status"] = version.summary.status;
+  json["parent"] = version.summary.parent ? ordered_json(*version.summary.parent) : ordered_json();
+  json["decisions"] = decisions_json(version.decisions);
+  return json;
+}
+
+void print_json(const std::vector<Attempt>& attempts, const Decided& decided) {
+  ordered_json list = ordered_json::array();
+  for (const Attempt& attempt : attempts) list.push_back(attempt_json(attempt, decided));
+  ordered_json holds = ordered_json::array();
+  for (const auto& [equipment, hold] : decided.holds())
+    holds.push_back({{"spacecraft", equipment.spacecraft},
+                     {"equipment", equipment.equipment},
+                     {"hold", hold_json(hold)}});
+  const ordered_json object = {{"attempts", list}, {"holds", holds}};
+  fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+/// Why a filter selects nothing.
+Refusal nothing_selected(const Arguments& arguments, const HistorySource& history) {
+  HistoryFilter newest;
+  newest.last = 1;
+  if (history.attempts(newest).empty())
+    return {"no window has been tried yet; reident status shows what the service does"};
+  const auto or_any = [](const std::string& name) { return name.empty() ? "(any)" : name; };
+  return {fmt::format("no {} of {}; the database has {}",
+                      arguments.versions_only ? "version" : "attempt",
+                      full_name({or_any(arguments.spacecraft), or_any(arguments.equipment)}),
+                      equipment_in(history))};
+}
+
+int run(Arguments arguments) {
+  if (const auto slash = arguments.equipment.find('/');
+      arguments.spacecraft.empty() && slash != std::string::npos) {
+    arguments.spacecraft = arguments.equipment.substr(0, slash);
+    arguments.equipment.erase(0, slash + 1);
+  }
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const HistorySource& history = sources.history;
+    const std::vector<EquipmentName> known = history.equipment();
+    const bool filtered = !arguments.spacecraft.empty() || !arguments.equipment.empty();
+    if (filtered && std::none_of(known.begin(), known.end(), [&](const EquipmentName& one) {
+          return is_selected(one, arguments);
+        }))
+      return refuse(nothing_selected(arguments, history));
+    HistoryFilter filter;
+    filter.spacecraft = arguments.spacecraft;
+    filter.equipment = arguments.equipment;
+    filter.versions_only = arguments.versions_only;
+    filter.last = arguments.last;
+    const std::vector<Attempt> attempts = history.attempts(filter);
+    if (attempts.empty() && (filtered || !arguments.json))
+      return refuse(nothing_selected(arguments, history));
+    const Decided decided(history, arguments);
+    if (arguments.json)
+      print_json(attempts, decided);
+    else
+      print_table(attempts, decided);
+    return static_cast<int>(exit_done);
+  });
+}
+
+}  // namespace
+
+void add_history(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "history", "List every window that was tried, what came out and why, the latest last");
+  add_source_options(*command, arguments->source);
+  command->add_option("--spacecraft", arguments->spacecraft, "of this spacecraft alone");
+  command->add_option("--equipment", arguments->equipment,
+                      "of this EQUIPMENT or SPACECRAFT/EQUIPMENT alone");
+  command->add_option("--last", arguments->last, "the newest so many")->check(CLI::PositiveNumber);
+  command->add_flag("--versions-only", arguments->versions_only,
+                    "leave out windows that gave no model");
+  command->add_flag("--json", arguments->json, "one JSON object with all evidence");
+  command->footer("Example:\n  reident history --config reident.toml --equipment BDR --last 20");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,189 @@
+#include "identification/search/identify.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/command.hpp"
+#include "service/cli/verbs/identify_data.hpp"
+#include "service/cli/verbs/identify_options.hpp"
+#include "service/cli/verbs/identify_result.hpp"
+#include "service/support/parallel.hpp"
+#include "service/support/phase_timer.hpp"
+
+namespace reident::cli {
+namespace {
+
+using identification::Identified;
+using identification::IdentifyOptions;
+using identification::Index;
+using identification::RowRange;
+using identification::Verdict;
+
+constexpr std::size_t max_threads = 256;
+
+struct Arguments {
+  DataRequest data;
+  ModelRequest model;
+  std::optional<std::string> threads;
+  bool json = false;
+};
+
+/// Absent where the request is impossible.
+std::optional<std::size_t> threads_of(const Arguments& arguments) {
+  if (!arguments.threads) return std::min(usable_cores(), max_threads);
+  const auto asked = whole_number(*arguments.threads);
+  if (!asked || *asked < 1) return std::nullopt;
+  const auto threads = static_cast<std::size_t>(*asked);
+  return threads <= max_threads ? std::optional(threads) : std::nullopt;
+}
+
+/// What can be said before the file is read.
+std::optional<Refusal> refuse_arguments(const Arguments& arguments) {
+  // --input and --output take all words that follow them.
+  if (arguments.data.file.empty())
+    return Refusal{"no file; name the CSV file before the flags: identify FILE.csv --input ..."};
+  const auto& period = arguments.data.period_s;
+  if (period && !(*period >= 1e-9 && *period <= 1e9))
+    return Refusal{fmt::format("--period {} must be seconds from 1e-9 to 1e9", *period)};
+  if (!threads_of(arguments))
+    return Refusal{fmt::format("--threads {} is no whole number from 1 to {}", *arguments.threads,
+                               max_threads)};
+  return std::nullopt;
+}
+
+/// A model may explain the rows that it was chosen on and not the ones behind them.
+void warn_of_useless_outputs(IdentifyOutcome& outcome) {
+  for (std::size_t q = 0; q < outcome.outputs.size(); ++q)
+    if (outcome.diagnostics.free_run.fit_percent(static_cast<Index>(q)) < 0)
+      outcome.warnings.push_back(fmt::format(
+          "on the validation rows the model is worse than the mean of {}: do not use it as it is",
+          outcome.outputs[q]));
+}
+
+/// What happens to the state in a simulation of `rows`.
+void warn_of_states(const IdentifyData& data, RowRange rows, bool from_x0,
+                    std::vector<std::string>& warnings) {
+  const std::size_t stretches = segments_within(data.record, rows).size();
+  if (!from_x0)
+    warnings.push_back(fmt::format(
+        "the validation rows begin before the identification rows: their initial state is the "
+        "least-squares estimate from their first {} rows",
+        identification::state_rows));
+  if (stretches > 1)
+    warnings.push_back(fmt::format(
+        "gaps split the simulated rows into {} stretches: the state goes through short gaps with "
+        "interpolated inputs, and behind long ones it is the least-squares estimate from the first "
+        "{} rows",
+        stretches, identification::state_rows));
+}
+
+/// One simulation from x0 at the first identification row to the last row of both ranges; rows
+/// before the identification need another.
+void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
+  const Identified& identified = outcome.identified;
+  const bool before = data.validate.begin < data.identify.begin;
+  const RowRange run{data.identify.begin,
+                     before ? data.identify.end : std::max(data.identify.end, data.validate.end)};
+  warn_of_states(data, run, true, outcome.warnings);
+  outcome.identify =
+      score_free_run(identified.model, data.record, run, data.identify, identified.x0);
+  if (before) warn_of_states(data, data.validate, false, outcome.warnings);
+  outcome.diagnostics =
+      before ? diagnose(identified.model, data.record, data.validate, data.validate)
+             : diagnose(identified.model, data.record, run, data.validate, identified.x0);
+}
+
+int print_rejection(const Verdict& verdict, bool json) {
+  if (json) {
+    const nlohmann::ordered_json object = {{"rejected", name(verdict.code)},
+                                           {"reason", verdict.reason}};
+    fmt::print("{}\n", object.dump());
+  } else {
+    fmt::print(stderr, "reident: no model ({}): {}\n", name(verdict.code), verdict.reason);
+  }
+  return exit_no_model;
+}
+
+int run(const Arguments& arguments) {
+  if (const auto refusal = refuse_arguments(arguments)) return refuse(*refusal);
+  PhaseTimer timer;
+  timer.begin("read");
+  auto read = read_data(arguments.data);
+  if (const auto* refusal = std::get_if<Refusal>(&read)) return refuse(*refusal);
+  auto& data = std::get<IdentifyData>(read);
+  timer.end();
+  IdentifyOptions options;
+  if (const auto refusal = parse_model_request(arguments.model, data.inputs, data.outputs, options))
+    return refuse(*refusal);
+
+  WorkerPool workers(*threads_of(arguments));
+  options.for_each = [&workers](std::size_t count, const std::function<void(std::size_t)>& task) {
+    workers.for_each(count, task);
+  };
+  options.on_phase = [&timer](std::string_view phase) { timer.begin(phase); };
+  options.input_names = data.inputs;
+  options.output_names = data.outputs;
+  auto result = identification::identify(data.record, data.identify, options);
+  if (const auto* verdict = std::get_if<Verdict>(&result))
+    return print_rejection(*verdict, arguments.json);
+
+  timer.begin("score");
+  IdentifyOutcome outcome;
+  outcome.identified = std::get<Identified>(std::move(result));
+  outcome.inputs = data.inputs;
+  outcome.outputs = data.outputs;
+  outcome.derived = data.derived;
+  outcome.warnings = data.warnings;
+  const auto& own = outcome.identified.warnings;
+  outcome.warnings.insert(outcome.warnings.end(), own.begin(), own.end());
+  score_outcome(data, outcome);
+  warn_of_useless_outputs(outcome);
+  outcome.continuous = to_continuous(outcome.identified.model);
+  timer.end();
+  outcome.timing_ms = timer.phases();
+  fmt::print("{}", arguments.json ? to_json_text(outcome) : to_report(outcome));
+  return exit_done;
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "identify", "Identify a state-space model from a CSV file and score it on other rows");
+  command->add_option("file", arguments->data.file, "CSV file with a header row; opened read-only");
+  command->add_option("--input", arguments->data.inputs, "columns that drive the model")
+      ->required();
+  command->add_option("--output", arguments->data.outputs, "columns that the model computes")
+      ->required();
+  command
+      ->add_option("--derive", arguments->data.derive,
+                   "NAME=EXPRESSION: an input for --input that follows from columns, such as "
+                   "\"P=u*i\"; + - * / ^ ( ), comparisons, a ? b : c, abs, min, max")
+      ->allow_extra_args(false);
+  command->add_option("--time", arguments->data.time,
+                      "column of times: seconds or ISO 8601; gaps split the rows");
+  command->add_option("--period", arguments->data.period_s,
+                      "seconds between rows, or of the grid with --time (the median step)");
+  command->add_option("--identify", arguments->data.identify,
+                      "rows A:B of the file, 0-based and half-open (the first two thirds)");
+  command->add_option("--validate", arguments->data.validate,
+                      "rows C:D to score on (those after the identification rows)");
+  add_model_options(*command, arguments->model);
+  command->add_option("--threads", arguments->threads,
+                      "threads of the search, which finds the same with any number of them (one "
+                      "for each core)");
+  command->add_flag("--json", arguments->json, "one JSON object with matrices, x0 and errors");
+  command->footer(
+      "Example:\n"
+      "  reident identify dryer.csv --input u1 --output y1 --identify 0:500 --validate 500:1000\n"
+      "Exit status: 2 for an impossible request, 3 when the data give no model.");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

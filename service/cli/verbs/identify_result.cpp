@@ -1,0 +1,133 @@
+#include "service/cli/verbs/identify_result.hpp"
+
+#include <fmt/format.h>
+
+#include "service/cli/output/diagnostics_text.hpp"
+#include "service/cli/output/model_text.hpp"
+#include "service/cli/output/table.hpp"
+#include "service/model/diagnostics_json.hpp"
+#include "service/model/model_json.hpp"
+
+namespace reident::cli {
+namespace {
+
+using identification::Score;
+using identification::StateSpaceModel;
+using nlohmann::ordered_json;
+
+std::string dumped(const ordered_json& value) {
+  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+bool all_finite(const Score& score) {
+  return score.mrse_percent.allFinite() && score.fit_percent.allFinite();
+}
+
+Table error_table(const IdentifyOutcome& outcome) {
+  Table table({{"output"},
+               {"MRSE identify %", Table::Align::right},
+               {"MRSE validate %", Table::Align::right},
+               {"fit identify %", Table::Align::right},
+               {"fit validate %", Table::Align::right}});
+  for (std::size_t q = 0; q < outcome.outputs.size(); ++q) {
+    const auto at = static_cast<Eigen::Index>(q);
+    table.add({outcome.outputs[q], fmt::format("{:.4g}", outcome.identify.mrse_percent(at)),
+               fmt::format("{:.4g}", outcome.diagnostics.free_run.mrse_percent(at)),
+               fmt::format("{:.4g}", outcome.identify.fit_percent(at)),
+               fmt::format("{:.4g}", outcome.diagnostics.free_run.fit_percent(at))});
+  }
+  return table;
+}
+
+/// What was chosen besides order, horizon and weighting, and on what grounds.
+ordered_json recipe_json(const identification::Identified& identified) {
+  const identification::Recipe& recipe = identified.recipe;
+  const bool of_subspace = recipe.fit == identification::ResponseFit::subspace;
+  const bool enforced = recipe.stability == identification::Stability::enforced;
+  const bool recent = recipe.operating_point == identification::OperatingPoint::recent;
+  ordered_json json = {{"response", of_subspace ? "subspace" : "simulation"},
+                       {"direct", recipe.direct},
+                       {"operating_point", recent ? "recent" : "whole"},
+                       {"refinement_steps", recipe.refinement_steps},
+                       {"stability", enforced ? "enforced" : "as_found"},
+                       {"input_delays", identified.input_delays},
+                       {"held_out_error", nullptr},
+                       {"singular_values", to_json(identified.singular_values)},
+                       {"hankel_condition", identified.hankel_condition}};
+  if (identified.held_out_error) json["held_out_error"] = *identified.held_out_error;
+  return json;
+}
+
+ordered_json derived_json(const std::vector<DerivedInput>& derived) {
+  ordered_json list = ordered_json::array();
+  for (const DerivedInput& input : derived)
+    list.push_back({{"name", input.name}, {"expression", input.expression}});
+  return list;
+}
+
+}  // namespace
+
+std::string to_json_text(const IdentifyOutcome& outcome) {
+  const StateSpaceModel& model = outcome.identified.model;
+  ordered_json warnings = outcome.warnings;
+  if (!all_finite(outcome.identify) || !all_finite(outcome.diagnostics.free_run))
+    warnings.push_back(
+        "an error or a fit is not finite, since an output is zero or does not move; it is null");
+  ordered_json timing = ordered_json::object();
+  for (const auto& [phase, milliseconds] : outcome.timing_ms) timing[phase] = milliseconds;
+
+  const std::pair<const char*, ordered_json> entries[] = {
+      {"order", model.order()},
+      {"horizon", outcome.identified.recipe.horizon},
+      {"weighting", name(outcome.identified.recipe.weighting)},
+      {"recipe", recipe_json(outcome.identified)},
+      {"sample_period_s", model.period_s},
+      {"inputs", outcome.inputs},
+      {"outputs", outcome.outputs},
+      {"derived", derived_json(outcome.derived)},
+      {"A", to_json(model.A)},
+      {"B", to_json(model.B)},
+      {"C", to_json(model.C)},
+      {"D", to_json(model.D)},
+      {"K", to_json(model.K)},
+      {"x0", to_json(outcome.identified.x0)},
+      {"input_offset", to_json(model.u0)},
+      {"output_offset", to_json(model.y0)},
+      {"stable", outcome.identified.spectral_radius < 1},
+      {"spectral_radius", outcome.identified.spectral_radius},
+      {"mrse_percent",
+       {{"identify", to_json(outcome.identify.mrse_percent)},
+        {"validate", to_json(outcome.diagnostics.free_run.mrse_percent)}}},
+      {"fit_percent",
+       {{"identify", to_json(outcome.identify.fit_percent)},
+        {"validate", to_json(outcome.diagnostics.free_run.fit_percent)}}},
+      {"diagnostics", to_json(outcome.diagnostics, outcome.inputs, outcome.outputs)},
+      {"continuous", to_json(outcome.continuous)},
+      {"search_work", outcome.identified.search_work},
+      {"timing_ms", timing},
+      {"warnings", warnings}};
+  std::string text;
+  for (const auto& [key, value] : entries)
+    text += fmt::format("{}\n  \"{}\": {}", text.empty() ? "{" : ",", key, dumped(value));
+  return text + "\n}\n";
+}
+
+std::string to_report(const IdentifyOutcome& outcome) {
+  const identification::Identified& identified = outcome.identified;
+  double total = 0;
+  for (const auto& [phase, milliseconds] : outcome.timing_ms) total += milliseconds;
+  std::string text = fmt::format(
+      "order {}, horizon {}, weighting {}, sample period {:g} s\n"
+      "poles {} (spectral radius {:.6g}, {})\n"
+      "free run over {} identification and {} validation rows:\n{}",
+      identified.model.order(), identified.recipe.horizon, name(identified.recipe.weighting),
+      identified.model.period_s, poles_text(identified.model), identified.spectral_radius,
+      identified.spectral_radius < 1 ? "stable" : "unstable", outcome.identify.rows,
+      outcome.diagnostics.free_run.rows, error_table(outcome).text(0));
+  text += diagnostics_text(outcome.diagnostics, outcome.inputs, outcome.outputs);
+  text += continuous_text(outcome.continuous);
+  for (const std::string& warning : outcome.warnings) text += fmt::format("warning: {}\n", warning);
+  return text + fmt::format("{:.0f} ms; --json prints the matrices\n", total);
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,160 @@
+#include "service/transfer/import.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/output/pace.hpp"
+#include "service/cli/stored.hpp"
+#include "service/support/progress.hpp"
+#include "service/support/stop_signal.hpp"
+#include "service/support/utc_clock.hpp"
+
+namespace reident::cli {
+namespace {
+
+using transfer::ImportOptions;
+using transfer::ImportProgress;
+using transfer::ImportReport;
+
+struct Arguments {
+  DatabaseOptions database;
+  ImportOptions import;
+  std::vector<std::string> mappings;
+  std::optional<std::string> origin, time_unit;
+  bool json = false;
+};
+
+std::optional<Refusal> complete(Arguments& arguments) {
+  for (const std::string& text : arguments.mappings) {
+    const auto mapping = satcs::parse_mapping(text);
+    if (!mapping) return Refusal{fmt::format("--map {} is not COLUMN=PARAMETER[:UNIT]", text)};
+    arguments.import.mappings.push_back(*mapping);
+  }
+  if (arguments.origin) arguments.import.origin = transfer::parse_origin(*arguments.origin);
+  if (arguments.time_unit)
+    arguments.import.time_unit = *transfer::parse_time_unit(*arguments.time_unit);
+  return std::nullopt;
+}
+
+std::string outcome(const ImportReport& report) {
+  const auto& total = report.total;
+  if (!report.complete) return "stopped; the same command goes on where it ended";
+  if (total.stored == 0 && total.conflicts == 0)
+    return total.samples == 0 ? "there was no sample in it"
+                              : "all of it was in the archive already";
+  return "done";
+}
+
+void print_json(const ImportReport& report, double seconds) {
+  const auto& total = report.total;
+  const nlohmann::ordered_json object = {{"complete", report.complete},
+                                         {"resumed_at_line", report.resumed_at},
+                                         {"rows", total.rows},
+                                         {"samples", total.samples},
+                                         {"stored", total.stored},
+                                         {"duplicates", total.duplicates},
+                                         {"conflicts", total.conflicts},
+                                         {"bad_lines", total.bad_lines},
+                                         {"new_parameters", report.new_parameters},
+                                         {"samples_this_run", report.samples},
+                                         {"seconds", seconds}};
+  fmt::print("{}\n", object.dump());
+}
+
+void print_text(const ImportReport& report, double seconds) {
+  const auto& total = report.total;
+  if (report.resumed_at != 0)
+    fmt::print("went on at line {}, where the last run ended\n", report.resumed_at);
+  fmt::print("{} samples in {} rows: {} stored, {} there already, {} in conflict with others\n",
+             total.samples, total.rows, total.stored, total.duplicates, total.conflicts);
+  if (report.new_parameters > 0) fmt::print("{} new parameters\n", report.new_parameters);
+  if (total.bad_lines > 0) fmt::print("{} bad lines left out\n", total.bad_lines);
+  fmt::print("{} ({} samples in {:.1f} s, {}/s)\n", outcome(report), report.samples, seconds,
+             short_count(static_cast<double>(report.samples) / seconds));
+}
+
+int run(Arguments& arguments) {
+  if (const auto refusal = complete(arguments)) return refuse(*refusal);
+  // Before a database is made for nothing.
+  const auto readable = csv::Reader::open(arguments.import.file);
+  if (const auto* error = std::get_if<csv::Error>(&readable)) return refuse({error->message});
+  const StopSignal stop;
+  return with_writable_database(arguments.database, [&](storage::Database& database) {
+    Progress bar;
+    Pace pace;
+    const auto imported =
+        transfer::import_file(database, arguments.import, utc_now, [&](const ImportProgress& at) {
+          if (bar.due()) bar.update(at.fraction, pace.text(at.fraction, at.samples));
+          return !stop.token().stop_requested();
+        });
+    bar.clear();
+    if (const auto* error = std::get_if<csv::Error>(&imported)) return refuse({error->message});
+    const auto& report = std::get<ImportReport>(imported);
+    for (const std::string& message : report.first_bad_lines)
+      fmt::print(stderr, "reident: left out: {}\n", message);
+    if (arguments.json)
+      print_json(report, pace.seconds());
+    else
+      print_text(report, pace.seconds());
+    return static_cast<int>(report.complete ? exit_done : exit_failed);
+  });
+}
+
+void add_column_options(CLI::App& command, Arguments& arguments) {
+  command
+      .add_option("--time", arguments.import.time_column,
+                  "column of the time (the first that looks like one)")
+      ->type_name("COLUMN");
+  command
+      .add_option("--time-unit", arguments.time_unit,
+                  "what numbers of the time are (seconds since 1970 UTC; by the column's name, as "
+                  "in time_ms; whole numbers of 17 digits and more are nanoseconds)")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
+  command
+      .add_option("--map", arguments.mappings, "import a column as a parameter; may be given again")
+      ->type_name("COLUMN=PARAMETER[:UNIT]")
+      ->allow_extra_args(false);
+  command.add_option("--only", arguments.import.only, "columns to import, separated by commas")
+      ->delimiter(',')
+      ->type_name("COLUMNS");
+  command
+      .add_option("--leave-out", arguments.import.leave_out,
+                  "columns not to import, separated by commas")
+      ->delimiter(',')
+      ->type_name("COLUMNS");
+  command.add_flag("--keep-names", arguments.import.keep_names,
+                   "do not take units from names (bus_u_mv is bus_u in mV)");
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("import", "Bring telemetry from a CSV file in");
+  command->add_option("file", arguments->import.file, "CSV file with a header row")->required();
+  add_database_options(*command, arguments->database);
+  command->add_option("--spacecraft", arguments->import.spacecraft,
+                      "spacecraft that the samples are of");
+  command->add_option("--source", arguments->import.source,
+                      "what they came from (the file's column source, or import:FILE)");
+  command->add_option("--origin", arguments->origin, "real or simulated (real)")
+      ->check(CLI::IsMember({"real", "simulated"}));
+  add_column_options(*command, *arguments);
+  command->add_flag("--skip-bad-lines", arguments->import.skip_bad_lines,
+                    "leave out lines that cannot be read, and count them");
+  command->add_flag("--json", arguments->json, "one JSON object with the counts");
+  command->footer(
+      "A file has a column with the time and one for each parameter, or one sample a row in the\n"
+      "columns parameter, time and value, and spacecraft, origin, source, quality and unit where\n"
+      "there are any. An empty cell is no sample.\n"
+      "Stopped or killed, the same command goes on where it ended. A second import stores nothing\n"
+      "twice. Works on the file, so reidentd must not run.\n"
+      "Example:\n"
+      "  reident import telemetry.csv --db reident.db --spacecraft SAT-1\n"
+      "Exit status: 2 for a file that cannot be imported, 1 when stopped or the disk is full.");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,124 @@
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/output/model_picture.hpp"
+#include "service/cli/output/story.hpp"
+#include "service/cli/source_choice.hpp"
+#include "service/cli/stored.hpp"
+#include "service/operations/commands.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Arguments {
+  SourceOptions source;
+  std::string subject;
+  std::optional<std::string> output;
+  RangeOptions range;
+};
+
+/// Those of which something is in the picture.
+std::vector<PicturePart> parts_of(const Story& story, storage::TimeRange shown) {
+  std::vector<PicturePart> parts = {{"identify", story.model.identified_from}};
+  if (const auto tune = tuned_on(story.version)) parts.push_back({"tune", *tune});
+  parts.push_back({"validate", story.model.validated_on});
+  std::erase_if(parts, [shown](const PicturePart& part) {
+    return part.range.end <= shown.begin || part.range.begin >= shown.end ||
+           part.range.end <= part.range.begin;
+  });
+  return parts;
+}
+
+std::vector<double> singular_values_of(const storage::Attempt& attempt) {
+  std::vector<double> values;
+  const ordered_json evidence = evidence_of(attempt);
+  const auto found = evidence.find("singular_values");
+  if (found == evidence.end() || !found->is_array()) return values;
+  for (const ordered_json& value : *found)
+    if (value.is_number()) values.push_back(value.get<double>());
+  return values;
+}
+
+std::variant<std::string, Refusal> picture_of(const storage::SampleSource& archive,
+                                              const Story& story, const RangeOptions& options) {
+  const auto range = range_of(options, story.version.window);
+  if (const auto* refusal = std::get_if<Refusal>(&range)) return *refusal;
+  const auto& shown = std::get<storage::TimeRange>(range);
+  const auto run = run_model(archive, story.model, shown, shown.begin);
+  if (const auto* reason = std::get_if<std::string>(&run)) return Refusal{*reason};
+  const storage::Version& version = story.version;
+  const PictureData data{
+      .title = fmt::format("{} version {}", full_name({version.spacecraft, version.equipment}),
+                           version.number),
+      .subtitle = fmt::format("{}; {}; {} to {}", version.status, story.model.method,
+                              time_text(shown.begin), time_text(shown.end)),
+      .model = story.model,
+      .run = std::get<ModelRun>(run),
+      .range = shown,
+      .parts = parts_of(story, shown),
+      .singular_values = singular_values_of(story.attempt)};
+  return model_picture(data);
+}
+
+int write_picture(const std::string& picture, const std::string& path) {
+  if (path == "-") {
+    fmt::print("{}", picture);
+    return exit_done;
+  }
+  errno = 0;
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << picture;
+  file.close();
+  if (!file) {
+    fmt::print(stderr, "reident: {} cannot be written: {}\n", path,
+               std::generic_category().message(errno));
+    return exit_failed;
+  }
+  fmt::print("{}\n", path);
+  return exit_done;
+}
+
+int run(const Arguments& arguments) {
+  const auto subject = parse_subject(arguments.subject);
+  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const auto found = find_story(sources.history, std::get<Subject>(subject));
+    if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
+    const Story& story = std::get<Story>(found);
+    const auto picture = picture_of(sources.telemetry, story, arguments.range);
+    if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
+    return write_picture(std::get<std::string>(picture),
+                         arguments.output.value_or(fmt::format(
+                             "{}-v{}.svg", story.version.equipment, story.version.number)));
+  });
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "plot",
+      "Draw a version: measured and simulated outputs, error, singular values, poles (SVG)");
+  command
+      ->add_option("subject", arguments->subject,
+                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      ->required();
+  command->add_option("-o,--output", arguments->output,
+                      "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
+  add_range_options(*command, arguments->range, "the window of the version");
+  add_source_options(*command, arguments->source);
+  command->footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,165 @@
+#include <chrono>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/command.hpp"
+#include "service/cli/config_choice.hpp"
+#include "service/cli/output/table.hpp"
+#include "service/dds/dds.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double default_timeout_s = 10;
+constexpr double max_timeout_s = 1e6;
+
+struct Arguments {
+  std::optional<std::string> config;
+  std::optional<std::uint32_t> domain;
+  std::optional<std::string> partition;
+  std::string service;
+  std::string wait;
+  double timeout_s = default_timeout_s;
+  bool json = false;
+};
+
+bool is_idle(const ServiceStatus& status) {
+  return status.queue_length == 0 && status.windows_pending == 0;
+}
+
+/// Idle in two heartbeats, and nothing came in between them.
+bool stayed_idle(const ServiceStatus& before, const ServiceStatus& now) {
+  return is_idle(before) && is_idle(now) && before.time != now.time &&
+         before.started == now.started && before.frames_received == now.frames_received &&
+         before.samples_stored == now.samples_stored && before.attempts == now.attempts;
+}
+
+/// Listens until the wish is met. Empty when the time ran out; `heard` is then the last heartbeat,
+/// if there was one.
+std::optional<ServiceStatus> listen(const dds::Endpoint& endpoint, const Arguments& arguments,
+                                    std::optional<ServiceStatus>& heard) {
+  dds::Participant participant(endpoint);
+  dds::Reader<ServiceStatus> reader(participant);
+  dds::WaitSet waits(participant);
+  waits.attach(reader);
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(arguments.timeout_s));
+  std::optional<ServiceStatus> met;
+  const auto look = [&](ServiceStatus&& status) {
+    if (!arguments.service.empty() && status.service != arguments.service) return;
+    // Of several services the first that is heard is followed.
+    if (heard && heard->service != status.service) return;
+    if (!met && (arguments.wait.empty() || (heard && stayed_idle(*heard, status)))) met = status;
+    heard = std::move(status);
+  };
+  while (!met) {
+    const auto left = deadline - Clock::now();
+    if (left <= Clock::duration::zero()) break;
+    if (waits.wait(left)) reader.take(64, look);
+  }
+  return met;
+}
+
+std::vector<std::pair<const char*, std::uint64_t>> counts(const ServiceStatus& status) {
+  return {{"frames_received", status.frames_received},
+          {"frames_rejected", status.frames_rejected},
+          {"samples_stored", status.samples_stored},
+          {"duplicates", status.duplicates},
+          {"conflicts", status.conflicts},
+          {"late", status.late},
+          {"sequence_missing", status.sequence_missing},
+          {"clock_jumps", status.clock_jumps},
+          {"queue_length", status.queue_length},
+          {"queue_waits", status.queue_waits},
+          {"windows_pending", status.windows_pending},
+          {"attempts", status.attempts},
+          {"approvals", status.approvals}};
+}
+
+std::string newest_text(const ServiceStatus& status) {
+  return status.newest_telemetry == 0 ? "none" : time_text(status.newest_telemetry);
+}
+
+void print_json(const ServiceStatus& status) {
+  nlohmann::ordered_json object = {{"service", status.service},
+                                   {"program_version", status.program_version},
+                                   {"started", time_text(status.started)},
+                                   {"time", time_text(status.time)},
+                                   {"idle", is_idle(status)}};
+  for (const auto& [name, count] : counts(status)) object[name] = count;
+  object["newest_telemetry"] = status.newest_telemetry == 0
+                                   ? nlohmann::ordered_json()
+                                   : nlohmann::ordered_json(time_text(status.newest_telemetry));
+  object["last_error"] = status.last_error;
+  fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void print_text(const ServiceStatus& status) {
+  fmt::print("service {} ({}), up since {}, {}\n", status.service, status.program_version,
+             time_text(status.started), is_idle(status) ? "idle" : "at work");
+  fmt::print("newest telemetry {}\n", newest_text(status));
+  Table table({{"count"}, {"", Table::Align::right}});
+  for (const auto& [name, count] : counts(status)) table.add({name, fmt::format("{}", count)});
+  fmt::print("{}", table.text(0));
+  if (!status.last_error.empty()) fmt::print("last error: {}\n", status.last_error);
+}
+
+int report_timeout(const dds::Endpoint& endpoint, const Arguments& arguments,
+                   const std::optional<ServiceStatus>& heard) {
+  if (heard)
+    fmt::print(stderr,
+               "reident: {} was not idle within {:g} s: {} frames queued, {} windows pending, {} "
+               "attempts; give it more --timeout\n",
+               heard->service, arguments.timeout_s, heard->queue_length, heard->windows_pending,
+               heard->attempts);
+  else
+    fmt::print(stderr,
+               "reident: no {} was heard on domain {}, partition {} within {:g} s; check that "
+               "reidentd runs and the domain and partition are its own\n",
+               arguments.service.empty() ? "service" : "service " + arguments.service,
+               endpoint.domain, endpoint.partition, arguments.timeout_s);
+  return exit_timed_out;
+}
+
+int run(const Arguments& arguments) {
+  const auto endpoint = chosen_endpoint(arguments.config, arguments.domain, arguments.partition);
+  if (const auto* refusal = std::get_if<Refusal>(&endpoint)) return refuse(*refusal);
+  std::optional<ServiceStatus> heard;
+  const auto status = listen(std::get<dds::Endpoint>(endpoint), arguments, heard);
+  if (!status) return report_timeout(std::get<dds::Endpoint>(endpoint), arguments, heard);
+  if (arguments.json)
+    print_json(*status);
+  else
+    print_text(*status);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("status", "Ask over DDS what the running service does");
+  command->add_option(
+      "--config", arguments->config,
+      fmt::format("configuration with domain and partition ({})", default_config_file));
+  command->add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, 230));
+  command->add_option("--partition", arguments->partition, "DDS partition");
+  command->add_option("--service", arguments->service, "this service alone, by its name");
+  command->add_option("--wait", arguments->wait, "idle: until all that came in is dealt with")
+      ->check(CLI::IsMember({"idle"}));
+  command->add_option("--timeout", arguments->timeout_s, "seconds to listen")
+      ->check(CLI::Range(0.0, max_timeout_s))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "one JSON object");
+  command->footer(
+      "Example:\n  reident status --config reident.toml --wait idle --timeout 60\n"
+      "Exit status: 4 when nothing was heard in time, or the service was not idle.");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

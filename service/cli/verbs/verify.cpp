@@ -1,0 +1,124 @@
+#include "storage/care/verify.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/command.hpp"
+#include "service/cli/file_errors.hpp"
+#include "service/support/progress.hpp"
+#include "service/support/stop_signal.hpp"
+#include "service/support/time_text.hpp"
+#include "service/windows/provenance.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using storage::Finding;
+using storage::VerifyReport;
+
+struct Arguments {
+  std::string file;
+  bool quick = false;
+  bool json = false;
+};
+
+/// "V_BUS of CB4 (real), 2026-03-01T12:00:00Z to 2026-03-01T14:16:31Z"; empty for the whole file.
+std::string where(const Finding& finding) {
+  std::string text = finding.spacecraft.empty()
+                         ? std::string()
+                         : fmt::format("{} of {}", finding.name, finding.spacecraft);
+  if (finding.origin) text += fmt::format(" ({})", storage::name(*finding.origin));
+  if (finding.first && finding.last)
+    text += fmt::format(", {} to {}", time_text(*finding.first), time_text(*finding.last));
+  return text;
+}
+
+ordered_json to_json(const Finding& finding) {
+  ordered_json object = {{"check", finding.check}};
+  const auto text = [&](const char* key, const std::string& value) {
+    object[key] = value.empty() ? ordered_json() : ordered_json(value);
+  };
+  const auto time = [&](const char* key, const std::optional<storage::Time>& value) {
+    object[key] = value ? ordered_json(time_text(*value)) : ordered_json();
+  };
+  text("spacecraft", finding.spacecraft);
+  text("name", finding.name);
+  object["origin"] = finding.origin ? ordered_json(storage::name(*finding.origin)) : ordered_json();
+  time("first", finding.first);
+  time("last", finding.last);
+  object["what"] = finding.what;
+  object["remedy"] = finding.remedy;
+  return object;
+}
+
+void print_json(const Arguments& arguments, const VerifyReport& report) {
+  ordered_json findings = ordered_json::array();
+  for (const Finding& finding : report.findings) findings.push_back(to_json(finding));
+  const ordered_json object = {
+      {"file", arguments.file},      {"sound", report.complete && report.found == 0},
+      {"complete", report.complete}, {"quick", arguments.quick},
+      {"series", report.series},     {"chunks", report.chunks},
+      {"samples", report.samples},   {"versions", report.versions},
+      {"found", report.found},       {"findings", findings}};
+  fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+void print(const Arguments& arguments, const VerifyReport& report) {
+  for (const Finding& finding : report.findings) {
+    const std::string at = where(finding);
+    fmt::print("{}: {}{}{}\n  remedy: {}\n", finding.check, at, at.empty() ? "" : ": ",
+               finding.what, finding.remedy);
+  }
+  if (report.found > report.findings.size())
+    fmt::print("and {} more\n", report.found - report.findings.size());
+  const std::string result = report.found == 0   ? "sound"
+                             : report.found == 1 ? "1 finding"
+                                                 : fmt::format("{} findings", report.found);
+  const std::string samples =
+      arguments.quick ? "" : fmt::format(" with {} samples", report.samples);
+  fmt::print("{}: {}; looked at {} series, {} chunks{} and {} versions{}\n", arguments.file,
+             report.complete ? result : result + " so far, stopped", report.series, report.chunks,
+             samples, report.versions, arguments.quick ? " quickly" : "");
+}
+
+int run(const Arguments& arguments) {
+  const StopSignal stop;
+  return refusing_what_cannot_be([&] {
+    storage::Database database(arguments.file, storage::Database::Mode::read_only);
+    Progress bar;
+    const VerifyReport report =
+        verify(database, {.quick = arguments.quick, .mistake_in = mistake_in},
+               [&](const storage::VerifyProgress& progress) {
+                 bar.update(progress.share, progress.at);
+                 return !stop.token().stop_requested();
+               });
+    bar.clear();
+    if (arguments.json)
+      print_json(arguments, report);
+    else
+      print(arguments, report);
+    return report.complete && report.found == 0 ? exit_done : exit_failed;
+  });
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "verify", "Check every checksum and every invariant of a database, also while it is written");
+  command->add_option("file", arguments->file, "database of the service, or a backup")->required();
+  command->add_flag("--quick", arguments->quick,
+                    "look at the summaries of chunks, and do not decode them");
+  command->add_flag("--json", arguments->json, "one JSON object with the findings");
+  command->footer(
+      "Example:\n  reident verify reident.db\n"
+      "Exit status: 0 for a sound file, 1 where something was found or it was stopped, 2 where "
+      "there is no such database.");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,234 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "service/cli/output/model_text.hpp"
+#include "service/cli/output/story.hpp"
+#include "service/cli/output/table.hpp"
+#include "service/cli/source_choice.hpp"
+#include "service/cli/stored.hpp"
+#include "service/operations/commands.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using Sentences = std::vector<std::string>;
+
+struct Arguments {
+  SourceOptions source;
+  std::string subject;
+  bool json = false;
+};
+
+const ordered_json* member(const ordered_json& object, const char* key) {
+  const auto found = object.find(key);
+  return found == object.end() || found->is_null() ? nullptr : &*found;
+}
+
+std::optional<double> number(const ordered_json& object, const char* key) {
+  const ordered_json* value = member(object, key);
+  return value && value->is_number() ? std::optional(value->get<double>()) : std::nullopt;
+}
+
+std::string figure(const ordered_json& object, const char* key) {
+  return evidence_number(object, key);
+}
+
+void window_sentences(const Story& story, const ordered_json& evidence, Sentences& sentences) {
+  const storage::TimeRange window = story.version.window;
+  sentences.push_back(fmt::format("The window from {} to {} ({}) was tried because of: {}.",
+                                  time_text(window.begin), time_text(window.end),
+                                  duration_text(window.end - window.begin), story.attempt.trigger));
+  if (member(evidence, "rows_tuned"))
+    sentences.push_back(fmt::format(
+        "{} rows identified a model, the next {} chose its order and poles, both fitted its B, D "
+        "and offset, and {} that neither had seen judged it.",
+        figure(evidence, "rows_identified"), figure(evidence, "rows_tuned"),
+        figure(evidence, "rows_validated")));
+  if (const ordered_json* adapted = member(evidence, "adapted"))
+    sentences.push_back(fmt::format(
+        "The model identified anew errs by {} % there, and version {} adapted to the window (A and "
+        "C stay) by {} %: the better one went to the gate, with a confidence for two.",
+        figure(*adapted, "identified_mrse_percent"), figure(*adapted, "version"),
+        figure(*adapted, "mrse_percent")));
+  sentences.push_back(fmt::format("It is of order {} ({}); its poles are {}.",
+                                  story.model.dynamics.order(), story.model.method,
+                                  poles_text(story.model.dynamics)));
+}
+
+/// One of the stretches that was left out (service/windows/plausibility.hpp).
+std::string implausible_text(const ordered_json& stretch) {
+  const auto parameters = stretch.value("parameters", std::vector<std::string>());
+  const std::string when = fmt::format("from {} to {}", time_text(stretch.value("begin_ns", 0LL)),
+                                       time_text(stretch.value("end_ns", 0LL)));
+  const ordered_json* relation = member(stretch, "relation");
+  if (!relation)
+    return fmt::format("{} ({}) {}", fmt::join(parameters, ", "), stretch.value("check", ""), when);
+  return fmt::format("{} {}, where relation {} is {} with a tolerance of {}",
+                     fmt::join(parameters, ", "), when, relation->get<std::string>(),
+                     figure(stretch, "residual"), figure(stretch, "tolerance"));
+}
+
+void implausible_sentences(const ordered_json& evidence, Sentences& sentences) {
+  constexpr std::size_t most_told = 3;
+  const ordered_json* implausible = member(evidence, "implausible");
+  if (!implausible) return;
+  if (const ordered_json* longest = member(*implausible, "longest"))
+    for (std::size_t i = 0; i < std::min(most_told, longest->size()); ++i)
+      sentences.push_back(
+          fmt::format("Not believed, and left out: {}.", implausible_text((*longest)[i])));
+  if (const auto stretches = implausible->value("stretches", std::size_t{0}); stretches > most_told)
+    sentences.push_back(
+        fmt::format("Shorter stretches that were left out too: {}.", stretches - most_told));
+  if (const ordered_json* not_applied = member(*implausible, "not_applied"))
+    for (const ordered_json& relation : *not_applied)
+      sentences.push_back(
+          fmt::format("A relation was not applied: {}.", relation.get<std::string>()));
+}
+
+void score_sentences(const Story& story, const ordered_json& evidence, Sentences& sentences) {
+  std::string free_run =
+      fmt::format("Its free run errs by {} % (MRSE) and explains {} % (fit)",
+                  figure(evidence, "mrse_percent"), figure(evidence, "fit_percent"));
+  if (const ordered_json* diagnostics = member(evidence, "diagnostics"))
+    if (const ordered_json* interval = member(*diagnostics, "mrse_interval_percent"))
+      free_run += fmt::format("; the 95 % interval of the error is {} to {} %",
+                              figure(*interval, "mean_low"), figure(*interval, "mean_high"));
+  sentences.push_back(free_run + ".");
+  if (story.model.tracking)
+    sentences.push_back(
+        fmt::format("Corrected by the integral feedback of live telemetry it errs by {:.4g} %: "
+                    "what a simulator that follows the satellite sees.",
+                    story.model.tracking->validation.mrse()));
+}
+
+std::string comparison_text(const ordered_json& comparison) {
+  std::string text =
+      fmt::format("{} % against {} % on the same {} rows", figure(comparison, "mrse_percent"),
+                  figure(comparison, "rival_mrse_percent"), figure(comparison, "rows"));
+  if (const auto sure = number(comparison, "sure_reduction_percent"))
+    text += fmt::format(", a reduction of {} %, and {:.4g} % with the required confidence",
+                        figure(comparison, "reduction_percent"), *sure);
+  else
+    text += ", which is too little to be sure of anything";
+  return text;
+}
+
+void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
+  if (const ordered_json* mean = member(evidence, "mean"))
+    sentences.push_back(fmt::format("Beside a constant at the mean: {}.", comparison_text(*mean)));
+  if (const ordered_json* baseline = member(evidence, "baseline"))
+    sentences.push_back(
+        fmt::format("Beside the simulator's own telemetry: {}.", comparison_text(*baseline)));
+  if (member(evidence, "baseline_mrse_percent"))
+    sentences.push_back(
+        fmt::format("The simulator's own model errs by {} %, as the configuration says.",
+                    figure(evidence, "baseline_mrse_percent")));
+  const ordered_json* champion = member(evidence, "champion");
+  if (!champion) {
+    sentences.push_back("There was no champion with these outputs.");
+    return;
+  }
+  const std::string version = figure(*champion, "version");
+  if (const ordered_json* comparison = member(*champion, "comparison"))
+    sentences.push_back(
+        fmt::format("Beside champion {}: {}.", version, comparison_text(*comparison)));
+  else if (member(*champion, "mrse_percent"))  // of a program before comparisons were kept
+    sentences.push_back(fmt::format("Champion {} errs by {} % on the same rows.", version,
+                                    figure(*champion, "mrse_percent")));
+  else
+    sentences.push_back(fmt::format("Champion {} cannot run on these samples.", version));
+  if (const ordered_json* comparison = member(*champion, "where_validated"))
+    sentences.push_back(fmt::format("Where champion {} was validated, before this window: {}.",
+                                    version, comparison_text(*comparison)));
+  if (const ordered_json* elsewhere = member(*champion, "elsewhere")) {
+    std::string apart = figure(*elsewhere, "disagreement_percent") + " % of the output's range";
+    if (member(*elsewhere, "without_offset_percent"))
+      apart += fmt::format(" ({} % but for the champion's mean error here)",
+                           figure(*elsewhere, "without_offset_percent"));
+    sentences.push_back(fmt::format(
+        "On {} rows of the window of champion {}, with inputs that this one was not validated "
+        "with, the two differ by {}; there they err by {} % and the champion by {} %.",
+        figure(*elsewhere, "rows"), version, apart, figure(*elsewhere, "mrse_percent"),
+        figure(*elsewhere, "champion_mrse_percent")));
+  }
+}
+
+void hold_and_warning_sentences(const ordered_json& evidence, Sentences& sentences) {
+  if (const ordered_json* hold = member(evidence, "hold"))
+    sentences.push_back(fmt::format("The equipment was held by {}: {}.", hold->value("actor", ""),
+                                    hold->value("reason", "")));
+  if (const ordered_json* warnings = member(evidence, "warnings"))
+    for (const ordered_json& warning : *warnings)
+      if (warning.is_string()) sentences.push_back("Warning: " + warning.get<std::string>() + ".");
+}
+
+Sentences sentences_of(const Story& story) {
+  const ordered_json evidence = evidence_of(story.attempt);
+  Sentences sentences;
+  window_sentences(story, evidence, sentences);
+  implausible_sentences(evidence, sentences);
+  score_sentences(story, evidence, sentences);
+  rival_sentences(evidence, sentences);
+  hold_and_warning_sentences(evidence, sentences);
+  sentences.push_back(
+      fmt::format("The gate's outcome: {}. {}", story.attempt.outcome, story.attempt.reason));
+  for (const storage::Decision& decision : story.decisions)
+    sentences.push_back(fmt::format("{} {} by {}: {}", time_text(decision.time),
+                                    name(decision.kind), decision.actor, decision.reason));
+  return sentences;
+}
+
+int print(const Story& story, bool json) {
+  const Sentences sentences = sentences_of(story);
+  if (json) {
+    const ordered_json object = {{"spacecraft", story.version.spacecraft},
+                                 {"equipment", story.version.equipment},
+                                 {"version", story.version.number},
+                                 {"status", story.version.status},
+                                 {"outcome", story.attempt.outcome},
+                                 {"reason", story.attempt.reason},
+                                 {"sentences", sentences},
+                                 {"evidence", evidence_of(story.attempt)}};
+    fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+    return exit_done;
+  }
+  fmt::print("{} version {}: {}\n", full_name({story.version.spacecraft, story.version.equipment}),
+             story.version.number, story.version.status);
+  for (const std::string& sentence : sentences)
+    fmt::print("{}\n", fmt::join(wrapped(sentence, terminal_width()), "\n  "));
+  return exit_done;
+}
+
+int run(const Arguments& arguments) {
+  const auto subject = parse_subject(arguments.subject);
+  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
+  return with_sources(arguments.source, [&](const Sources& sources) {
+    const auto story = find_story(sources.history, std::get<Subject>(subject));
+    if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
+    return print(std::get<Story>(story), arguments.json);
+  });
+}
+
+}  // namespace
+
+void add_why(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("why", "Say in words why a version was approved, refused or waits");
+  command
+      ->add_option("subject", arguments->subject,
+                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      ->required();
+  add_source_options(*command, arguments->source);
+  command->add_flag("--json", arguments->json, "one JSON object with the evidence itself");
+  command->footer("Example:\n  reident why CBERS-4/BDR@3 --config reident.toml");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace reident::cli

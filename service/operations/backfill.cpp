@@ -1,0 +1,174 @@
+#include "service/operations/backfill.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "service/judgement/probation.hpp"
+#include "service/operations/refresh.hpp"
+#include "service/support/floor_divide.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
+
+namespace reident {
+namespace {
+
+/// Windows that one thread works on in a row: what it keeps of one serves the next.
+constexpr std::size_t run_length = 4;
+
+struct Plan {
+  const std::string* spacecraft;
+  const EquipmentConfig* equipment;
+  std::vector<storage::Time> ends;  // ascending
+};
+
+/// Ends of the windows whose last slide holds a sample of the equipment and which were not tried.
+std::vector<storage::Time> untried(const storage::Archive& archive,
+                                   const storage::Registry& registry, const std::string& spacecraft,
+                                   const EquipmentConfig& equipment, storage::TimeRange range) {
+  std::set<storage::Time> ends;
+  for (const std::string& name : parameters_of(equipment)) {
+    const auto descriptor = archive.parameter(spacecraft, name);
+    if (!descriptor) continue;
+    const auto sample_at_or_after = [&](storage::Time time) {
+      return archive.first_at_or_after(spacecraft, storage::Origin::real, descriptor->id, time);
+    };
+    const auto last =
+        archive.last_at_or_before(spacecraft, storage::Origin::real, descriptor->id, range.end);
+    for (auto sample = sample_at_or_after(range.begin - equipment.slide); sample && last;) {
+      const storage::Time end = (floor_divide(*sample, equipment.slide) + 1) * equipment.slide;
+      // Telemetry has to reach the end, as it does for the daemon.
+      if (end > range.end || end > *last) break;
+      if (end >= range.begin) ends.insert(end);
+      sample = sample_at_or_after(end);
+    }
+  }
+  storage::HistoryFilter filter;
+  filter.spacecraft = spacecraft;
+  filter.equipment = equipment.name;
+  for (const storage::Attempt& attempt : registry.attempts(filter)) ends.erase(attempt.window.end);
+  return {ends.begin(), ends.end()};
+}
+
+class Backfill {
+ public:
+  Backfill(storage::Database& database, const Config& config, WorkerPool& workers,
+           const std::function<storage::Time()>& clock,
+           const std::function<bool(const BackfillProgress&)>& report)
+      : config_(config),
+        workers_(workers),
+        clock_(clock),
+        report_(report),
+        archive_(database),
+        registry_(database) {}
+
+  BackfillProgress run(const BackfillRequest& request) {
+    std::vector<Plan> plans;
+    for (const SpacecraftConfig& spacecraft : config_.spacecraft)
+      for (const EquipmentConfig& equipment : spacecraft.equipment) {
+        if (!request.spacecraft.empty() && spacecraft.name != request.spacecraft) continue;
+        if (!request.equipment.empty() && equipment.name != request.equipment) continue;
+        plans.push_back({&spacecraft.name, &equipment,
+                         untried(archive_, registry_, spacecraft.name, equipment, request.range)});
+        progress_.windows += plans.back().ends.size();
+      }
+    for (const Plan& plan : plans)
+      if (!run(plan)) break;
+    return progress_;
+  }
+
+ private:
+  /// False when it was stopped.
+  bool run(const Plan& plan) {
+    progress_.equipment = *plan.spacecraft + "/" + plan.equipment->name;
+    const std::size_t batch = run_length * usable_cores();
+    for (std::size_t begin = 0; begin < plan.ends.size(); begin += batch) {
+      const std::size_t end = std::min(plan.ends.size(), begin + batch);
+      archive_.seal(*plan.spacecraft, plan.ends[end - 1]);
+      std::vector<std::optional<PreparedWindow>> prepared(end - begin);
+      workers_.for_each((end - begin + run_length - 1) / run_length,
+                        [&](std::size_t run) { prepare(plan, begin, run * run_length, prepared); });
+      for (std::size_t i = 0; i < prepared.size(); ++i)
+        if (!record(request_of_window(plan, plan.ends[begin + i]), std::move(*prepared[i])))
+          return false;
+    }
+    return true;
+  }
+
+  RefreshRequest request_of_window(const Plan& plan, storage::Time end) const {
+    return {*plan.spacecraft,
+            *plan.equipment,
+            {end - plan.equipment->window, end},
+            "backfill",
+            config_.digest};
+  }
+
+  identification::ForEach on_all_cores() {
+    return [this](std::size_t count, const std::function<void(std::size_t)>& task) {
+      workers_.for_each(count, task);
+    };
+  }
+
+  void prepare(const Plan& plan, std::size_t begin, std::size_t first,
+               std::vector<std::optional<PreparedWindow>>& prepared) {
+    storage::Database database(config_.database, storage::Database::Mode::read_only);
+    const storage::Archive archive(database);
+    KeptWindow kept = kept_window_of(*plan.spacecraft, *plan.equipment);
+    for (std::size_t i = first; i < std::min(first + run_length, prepared.size()); ++i)
+      prepared[i] = prepare_window(archive, request_of_window(plan, plan.ends[begin + i]), kept,
+                                   on_all_cores(), [] { return false; });
+  }
+
+  bool record(RefreshRequest request, PreparedWindow&& prepared) {
+    look_at_probation(archive_, registry_, request.spacecraft, request.equipment, INT64_MIN,
+                      request.window.end,
+                      [this](const storage::Standing& standing, const ProbationDecision& found) {
+                        return record(standing, found);
+                      });
+    const storage::TimeRange window =
+        behind_champion(registry_, request.spacecraft, request.equipment.name, request.window);
+    if (window.begin > request.window.begin) {  // it was prepared before the champion was known
+      request.window = window;
+      KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
+      prepared = prepare_window(archive_, request, kept, on_all_cores(), [] { return false; });
+    }
+    RefreshResult result = judge(archive_, registry_, request, std::move(prepared));
+    result.attempt.time = clock_();
+    if (result.candidate)
+      registry_.record(result.attempt, result.version, *result.decision);
+    else
+      registry_.record(result.attempt);
+    ++progress_.done;
+    if (result.decision && result.decision->kind == storage::DecisionKind::approve)
+      ++progress_.approved;
+    progress_.window_end = request.window.end;
+    return report_(progress_);
+  }
+
+  bool record(const storage::Standing& standing, const ProbationDecision& found) {
+    const bool recorded = reident::record(registry_, standing, found, clock_());
+    if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
+    return recorded;
+  }
+
+  const Config& config_;
+  WorkerPool& workers_;
+  const std::function<storage::Time()>& clock_;
+  const std::function<bool(const BackfillProgress&)>& report_;
+  storage::Archive archive_;
+  storage::Registry registry_;
+  BackfillProgress progress_;
+};
+
+}  // namespace
+
+BackfillProgress backfill(storage::Database& database, const Config& config,
+                          const BackfillRequest& request, WorkerPool& workers,
+                          const std::function<storage::Time()>& clock,
+                          const std::function<bool(const BackfillProgress&)>& report) {
+  return Backfill(database, config, workers, clock, report).run(request);
+}
+
+}  // namespace reident

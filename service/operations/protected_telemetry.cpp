@@ -1,0 +1,106 @@
+#include "service/operations/protected_telemetry.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "service/judgement/probation.hpp"
+#include "service/model/model_json.hpp"
+#include "service/windows/provenance.hpp"
+#include "service/windows/window_data.hpp"
+
+namespace reident {
+namespace {
+
+using storage::ProtectedStretch;
+using storage::TimeRange;
+using Descriptors = std::vector<storage::ParameterDescriptor>;
+
+storage::Time before(storage::Time time, Duration by) {
+  constexpr storage::Time earliest = std::numeric_limits<storage::Time>::min();
+  return time < earliest + by ? earliest : time - by;
+}
+
+void add(std::vector<ProtectedStretch>& stretches, const std::string& spacecraft,
+         const Descriptors& descriptors, const std::vector<std::string>& names, TimeRange range) {
+  for (const std::string& name : names) {
+    bool is_known = false;
+    for (const storage::ParameterDescriptor& descriptor : descriptors) {
+      if (descriptor.name != name) continue;
+      stretches.push_back({spacecraft, descriptor.id, range});
+      is_known = true;
+    }
+    if (!is_known) stretches.push_back({spacecraft, std::nullopt, range});
+  }
+}
+
+std::vector<std::string> parameters_of(const EquipmentModel& model) {
+  std::vector<std::string> names =
+      InputExpressions(signal_names(model.inputs), derived_inputs(model.inputs)).parameters();
+  for (const Signal& output : model.outputs) names.push_back(output.name);
+  return names;
+}
+
+/// What the version was made from, and all of `range`.
+void add(std::vector<ProtectedStretch>& stretches, const Descriptors& descriptors,
+         const storage::Version& version, TimeRange range) {
+  try {
+    const EquipmentModel model = equipment_model_from_json(version.model_json);
+    for (const TimeRange& part : {version.window, model.identified_from, model.validated_on}) {
+      range.begin = std::min(range.begin, part.begin);
+      range.end = std::max(range.end, part.end);
+    }
+    range.begin = before(range.begin, model.hold_ns);
+    std::vector<std::string> names = parameters_of(model);
+    for (const Relation& relation : relations_of(version))
+      for (std::string& name : parameters_of(relation)) names.push_back(std::move(name));
+    add(stretches, version.spacecraft, descriptors, names, range);
+  } catch (const std::invalid_argument&) {
+    stretches.push_back({version.spacecraft, std::nullopt, range});
+  }
+}
+
+}  // namespace
+
+std::vector<ProtectedStretch> telemetry_of_versions(const storage::Archive& archive,
+                                                    const storage::Registry& registry) {
+  std::vector<ProtectedStretch> stretches;
+  for (const storage::EquipmentName& equipment : registry.equipment()) {
+    std::set<std::int64_t> published;
+    for (const storage::Decision& decision :
+         registry.decisions(equipment.spacecraft, equipment.equipment))
+      if (decision.kind == storage::DecisionKind::approve ||
+          decision.kind == storage::DecisionKind::roll_back)
+        published.insert(decision.version);
+    const Descriptors descriptors = archive.parameters(equipment.spacecraft);
+    for (const std::int64_t number : published)
+      if (const auto version = registry.version(equipment.spacecraft, equipment.equipment, number))
+        add(stretches, descriptors, *version, version->window);
+  }
+  return stretches;
+}
+
+std::vector<ProtectedStretch> telemetry_still_needed(const storage::Archive& archive,
+                                                     const storage::Registry& registry,
+                                                     const Config& config, storage::Time now) {
+  std::vector<ProtectedStretch> stretches;
+  for (const SpacecraftConfig& spacecraft : config.spacecraft) {
+    const auto extent = archive.extent(spacecraft.name, storage::Origin::real);
+    if (!extent) continue;
+    const storage::Time newest = std::min(extent->end, now);
+    const Descriptors descriptors = archive.parameters(spacecraft.name);
+    for (const EquipmentConfig& equipment : spacecraft.equipment) {
+      add(stretches, spacecraft.name, descriptors, parameters_of(equipment),
+          {before(newest, equipment.window + equipment.slide + equipment.hold),
+           std::numeric_limits<storage::Time>::max()});
+      for (const storage::Version& version : on_probation(registry, spacecraft.name, equipment))
+        add(stretches, descriptors, version,
+            {before(version.window.begin, longest_run_up(equipment)),
+             version.window.end + 2 * equipment.confirmation});
+    }
+  }
+  return stretches;
+}
+
+}  // namespace reident

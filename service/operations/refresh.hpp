@@ -1,0 +1,39 @@
+// One attempt at a window: prepare a candidate, measure it against its rivals, decide.
+//
+// Reads the archive and the registry; writes nothing.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "service/judgement/gate.hpp"
+#include "service/windows/candidate.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
+
+namespace reident {
+
+struct RefreshResult {
+  storage::NewAttempt attempt;                   // its time is left to whoever records it
+  std::optional<EquipmentModel> candidate;       // absent where the window gave no model
+  storage::NewVersion version;                   // of the candidate
+  std::optional<storage::NewDecision> decision;  // present with a candidate
+  Evidence evidence;                             // meaningful with a candidate
+};
+
+/// The window without what lies before the champion's. That one begins later where it was asked for
+/// because an older champion drifted: telemetry of before is of what the equipment was then.
+storage::TimeRange behind_champion(const storage::Registry& registry, const std::string& spacecraft,
+                                   const std::string& equipment, storage::TimeRange window);
+
+/// The champion is that of the registry now.
+RefreshResult judge(const storage::Archive& archive, const storage::Registry& registry,
+                    const RefreshRequest& request, PreparedWindow&& prepared);
+
+/// prepare_window, then judge.
+RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,
+                      const RefreshRequest& request, KeptWindow& kept,
+                      const identification::ForEach& for_each, const std::function<bool()>& stop);
+
+}  // namespace reident

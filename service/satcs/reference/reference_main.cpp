@@ -1,0 +1,134 @@
+// satcs-reference: the reference spacecraft, publishing its telemetry.
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "service/satcs/csv_export.hpp"
+#include "service/satcs/faults/lying_source.hpp"
+#include "service/satcs/program.hpp"
+#include "service/satcs/reference/life_text.hpp"
+#include "service/satcs/reference/reference_source.hpp"
+#include "service/support/time_text.hpp"
+
+namespace {
+
+using namespace reident::satcs;
+
+constexpr const char* about =
+    "Simulates the electrical power subsystem of a CBERS-4-class spacecraft and publishes its\n"
+    "telemetry at 1 Hz. The same start and seed give the same telemetry.\n\n"
+    "Examples:\n"
+    "  satcs-reference --duration 12h --speed 600\n"
+    "  satcs-reference --start 2017-07-01T06:00:00Z --duration 3d --speed max --seed 7 --json\n"
+    "  satcs-reference --duration 6h --csv reference.csv\n"
+    "  satcs-reference --duration 12h --speed 600 --simulated\n"
+    "  satcs-reference --duration 30d --speed max --life capacity_fade@+5d/+25d*0.2#1 \\\n"
+    "      --life lost_string@2017-07-11#4\n"
+    "  satcs-reference --duration 2d --speed max --lie stuck@+6h/+8h:V_BUS \\\n"
+    "      --lie bias_step@+1d/+30h:I_BUS*0.5 --lie passes_lost@+12h/+36h\n\n"
+    "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
+    "missing\n"
+    "or did not take everything; 128 + N stopped by signal N.\n";
+
+std::optional<std::int64_t> parse_positive_duration(std::string_view text) {
+  const auto duration = reident::parse_duration(text);
+  return duration && *duration > 0 ? duration : std::nullopt;
+}
+
+void add_reference_options(CLI::App& app, ReferenceOptions& options) {
+  add_parsed(app, "--start", options.start, reident::parse_time, "Time of the first frame",
+             "a time such as 2017-07-01T00:00:00Z")
+      ->type_name("TIME")
+      ->default_str(reident::time_text(options.start));
+  add_parsed(app, "--duration", options.duration_ns, parse_positive_duration,
+             "How much telemetry to publish", "a duration above 0 such as 12h")
+      ->type_name("DURATION")
+      ->default_str(reident::duration_text(options.duration_ns));
+  app.add_option("--seed", options.seed, "Seed of noise and operations")->capture_default_str();
+}
+
+std::unique_ptr<FrameSource> source_of(const ReferenceOptions& options, const Sender& sender,
+                                       bool simulated) {
+  if (simulated) return std::make_unique<HandwrittenSource>(options, sender);
+  return std::make_unique<ReferenceSource>(options, sender);
+}
+
+/// Throws BadRequest.
+std::vector<reference::LifeEvent> parse_life(const std::vector<std::string>& texts,
+                                             reident::storage::Time start) {
+  std::vector<reference::LifeEvent> life;
+  for (const std::string& text : texts) {
+    const auto parsed = parse_life_event(text, start);
+    if (const auto* error = std::get_if<LifeError>(&parsed)) {
+      throw BadRequest("--life: " + error->message);
+    }
+    life.push_back(std::get<reference::LifeEvent>(parsed));
+  }
+  return life;
+}
+
+/// What the ground receives of `truth`. Throws BadRequest.
+std::unique_ptr<FrameSource> with_lies(std::unique_ptr<FrameSource> truth,
+                                       const std::vector<std::string>& texts,
+                                       const ReferenceOptions& options) {
+  const auto parameters = truth->parameters();
+  std::vector<Lie> lies;
+  for (const std::string& text : texts) {
+    auto parsed = parse_lie(text, options.start, mix(options.seed + lies.size()));
+    if (const auto* error = std::get_if<LieError>(&parsed)) {
+      throw BadRequest("--lie: " + error->message);
+    }
+    auto& lie = std::get<Lie>(parsed);
+    if (const auto error = obstacle(lie, parameters)) throw BadRequest("--lie: " + error->message);
+    lies.push_back(std::move(lie));
+  }
+  return std::make_unique<LyingSource>(std::move(truth), lies,
+                                       LiarOptions{options.constants, options.life, options.seed});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(about, "satcs-reference");
+  ReferenceOptions options;
+  Sender sender{.source = "reference"};
+  PublisherOptions publisher;
+  publisher.spacecraft = "REFERENCE";
+  bool json = false;
+  bool simulated = false;
+  std::string csv;
+  std::vector<std::string> life, lies;
+  add_reference_options(app, options);
+  app.add_option("--csv", csv, "Write the telemetry to this file and publish nothing")
+      ->type_name("FILE");
+  app.add_flag("--simulated", simulated,
+               "The telemetry of a simplified, hand-written simulation of the same spacecraft and\n"
+               "operations instead, from source 'simulator' with origin 'simulated'");
+  app.add_option("--life", life,
+                 "What happens to the spacecraft at a time, or between two, or as many durations\n"
+                 "after the start; may be given again. Kinds: " +
+                     life_kind_names())
+      ->type_name("KIND@TIME[/TIME][*MAGNITUDE][#UNIT]")
+      ->allow_extra_args(false);
+  app.add_option("--lie", lies,
+                 "What befalls the telemetry between two times, or two durations after the start;\n"
+                 "may be given again. Kinds: " +
+                     lie_kind_names())
+      ->type_name("KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE][#SEED]")
+      ->allow_extra_args(false);
+  add_publisher_options(app, sender, publisher, json);
+  return run_program(app, argc, argv, [&]() -> int {
+    if (simulated) {
+      sender.origin = reident::storage::Origin::simulated;
+      if (app.count("--source") == 0) sender.source = "simulator";
+    }
+    options.life = parse_life(life, options.start);
+    auto source = source_of(options, sender, simulated);
+    if (!lies.empty()) source = with_lies(std::move(source), lies, options);
+    if (csv.empty()) return publish_and_report(*source, sender, publisher, json);
+    write_csv(*source, csv);
+    return exit_complete;
+  });
+}

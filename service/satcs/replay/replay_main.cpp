@@ -1,0 +1,93 @@
+// satcs-replay: publishes recorded telemetry as a control centre would.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "service/satcs/program.hpp"
+#include "service/satcs/replay/replay.hpp"
+#include "service/support/log.hpp"
+
+namespace {
+
+using namespace reident::satcs;
+
+constexpr const char* about =
+    "Publishes the rows of a CSV file as SATCS telemetry frames, one frame a row.\n\n"
+    "Examples:\n"
+    "  satcs-replay telemetry.csv --spacecraft SAT-1 --speed max\n"
+    "  satcs-replay telemetry.csv --spacecraft SAT-1 --time unix_s --speed 60 --start 2h \\\n"
+    "      --map bus_u_mv=V_BUS:mV --only bus_u_mv,bus_i_ma --wait-timeout 30s\n\n"
+    "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
+    "missing\n"
+    "or did not take everything; 128 + N stopped by signal N.\n";
+
+void add_replay_options(CLI::App& app, ReplayOptions& options) {
+  app.add_option("file", options.file, "CSV file with a header row and a time column")
+      ->required()
+      ->type_name("FILE");
+  app.add_option_function<std::string>(
+         "--time", [&options](const std::string& column) { options.time_column = column; },
+         "Column of the time: seconds since 1970 UTC, or a date and time (the first that looks "
+         "like one)")
+      ->type_name("COLUMN");
+  app.add_option_function<std::vector<std::string>>(
+         "--map",
+         [&options](const std::vector<std::string>& texts) {
+           for (const auto& text : texts) {
+             auto mapping = parse_mapping(text);
+             if (!mapping) {
+               throw CLI::ValidationError("--map", "'" + text + "' is not COLUMN=PARAMETER[:UNIT]");
+             }
+             options.mappings.push_back(*std::move(mapping));
+           }
+         },
+         "Publish a column as a parameter; may be given again")
+      ->type_name("COLUMN=PARAMETER[:UNIT]")
+      ->allow_extra_args(false);
+  app.add_flag("--keep-names", options.keep_names,
+               "Do not take units from names (bus_u_mv is bus_u in mV)");
+  app.add_flag("--skip-blanks", options.skip_blanks,
+               "A blank cell is no sample, as of a parameter that comes more seldom than others,\n"
+               "instead of an invalid one");
+  app.add_option("--only", options.only, "Columns to publish, separated by commas")
+      ->delimiter(',')
+      ->type_name("COLUMNS");
+  const std::string bound = "a time, or an offset such as +90 or 2h";
+  add_parsed(app, "--start", options.start, parse_bound,
+             "Leave out rows before this time, or this long after the earliest row", bound)
+      ->type_name("TIME|OFFSET");
+  add_parsed(app, "--end", options.end, parse_bound, "Leave out rows from this time on", bound)
+      ->type_name("TIME|OFFSET");
+}
+
+ReplaySource open_replay(const ReplayOptions& options, const Sender& sender) {
+  auto planned = plan_replay(options);
+  if (const auto* error = std::get_if<reident::csv::Error>(&planned)) {
+    throw BadRequest(error->message);
+  }
+  auto& plan = std::get<ReplayPlan>(planned);
+  for (const auto& column : plan.left_out) {
+    reident::log::info("satcs", "column left out, there is no number in it", {{"column", column}});
+  }
+  return ReplaySource(std::move(plan), sender);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(about, "satcs-replay");
+  ReplayOptions replay;
+  Sender sender{.source = "replay"};
+  PublisherOptions publisher;
+  bool json = false;
+  add_replay_options(app, replay);
+  add_publisher_options(app, sender, publisher, json);
+  app.get_option("--spacecraft")->required();
+  return run_program(app, argc, argv, [&] {
+    ReplaySource source = open_replay(replay, sender);
+    return publish_and_report(source, sender, publisher, json);
+  });
+}

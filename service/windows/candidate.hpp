@@ -1,0 +1,96 @@
+// From a window to a candidate: load, identify, correct, fit, score. The registry is not looked at,
+// so that windows can be worked on in any order and side by side.
+//
+// The same archive, configuration and window give the same candidate to the last bit, timings
+// aside, whatever was kept of earlier windows. A known model that is adapted to the window gives
+// another one, the same of the same model.
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "identification/search/identify.hpp"
+#include "service/config/config.hpp"
+#include "service/model/model_version.hpp"
+#include "service/support/phase_timer.hpp"
+#include "service/windows/kept_window.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
+
+namespace reident {
+
+struct RefreshRequest {
+  std::string spacecraft;
+  EquipmentConfig equipment;
+  storage::TimeRange window;
+  std::string trigger;  // why now, as the attempt records it
+  std::string configuration_digest;
+};
+
+/// The rows of a window, in the order of time: identified from, chosen by, judged by.
+struct WindowParts {
+  identification::RowRange identify, tune, validate;
+  identification::RowRange fitted() const { return {identify.begin, tune.end}; }
+};
+
+WindowParts parts_of(identification::Index rows, const EquipmentConfig& equipment);
+
+struct Candidate {
+  EquipmentModel model;
+  WindowParts parts;
+  identification::Vector x0;     // at the window's first row
+  identification::Matrix y_hat;  // free run over all rows of the window
+  storage::TimeRange tuned_on;
+  std::optional<std::int64_t> adapted_from;  // the version whose poles it has
+};
+
+struct PreparedWindow {
+  storage::NewAttempt attempt;  // outcome and reason are there where there is no candidate
+  WindowRequest loaded;
+  Checks checks;
+  WindowData data;
+  std::optional<Candidate> candidate;
+  nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
+  nlohmann::ordered_json search;  // how the model that was identified was found
+  PhaseTimer timer;
+};
+
+/// Gives the attempt the verdict that telemetry which it needs is damaged, and no candidate.
+void refuse_damaged(PreparedWindow& prepared, const storage::Error& error);
+
+/// Thrown when `stop` answered true; nothing was decided.
+class Stopped : public std::exception {};
+
+/// `known`, version `number` of the equipment, made to fit the window
+/// (identification/fit/adaptation.hpp). Absent where the window gave no candidate, and where
+/// `known` looks at other telemetry, is not stable, or has an order that the configuration does not
+/// allow.
+std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
+                                           const EquipmentModel& known, std::int64_t number,
+                                           const PreparedWindow& prepared);
+
+/// Adds what is to be said of the window's candidate to its evidence.
+void describe_candidate(PreparedWindow& prepared);
+
+/// Searches the gain with which the candidate follows telemetry, by integral feedback, and scores
+/// it. Apart from prepare_window: most candidates are turned away, and this would take a quarter of
+/// their time.
+void let_follow(PreparedWindow& prepared);
+
+/// The options that an equipment's configuration stands for.
+identification::IdentifyOptions options_of(const EquipmentConfig& equipment);
+
+/// What is kept of the equipment's windows.
+KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment);
+
+/// `kept` is of the same spacecraft and equipment. The search runs on `for_each`, or on the calling
+/// thread where it is empty.
+PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
+                              KeptWindow& kept, const identification::ForEach& for_each,
+                              const std::function<bool()>& stop);
+
+}  // namespace reident

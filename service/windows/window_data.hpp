@@ -1,0 +1,103 @@
+// The samples of a window, straight from the archive onto the grid of identification.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "identification/samples/record.hpp"
+#include "identification/samples/tick_ranges.hpp"
+#include "service/config/config.hpp"
+#include "service/model/model_version.hpp"
+#include "storage/types/sample_source.hpp"
+
+namespace reident {
+
+/// What is read and how it is put on the grid; an equipment's configuration and a published model
+/// both say it.
+struct WindowRequest {
+  std::string spacecraft;
+  std::vector<std::string> inputs;    // names of parameters or of derived inputs
+  std::vector<DerivedInput> derived;  // of the inputs
+  std::vector<std::string> outputs;   // names of parameters
+  Duration period = 0;
+  Duration hold = 0;
+  storage::Origin origin = storage::Origin::real;
+  bool operator==(const WindowRequest&) const = default;
+};
+
+WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment);
+WindowRequest request_of(const EquipmentModel& model);
+
+/// The parameters that the equipment's signals are, or are computed from, and those that are bound
+/// to them by relations.
+std::vector<std::string> parameters_of(const EquipmentConfig& equipment);
+/// Those that a relation binds.
+std::vector<std::string> parameters_of(const Relation& relation);
+
+/// A parameter as telemetry describes it.
+struct Channel {
+  std::string name;
+  std::uint32_t id = 0;
+  bool is_analog = true;
+  bool operator==(const Channel&) const = default;
+};
+
+/// A stretch that is not believed.
+struct Implausible {
+  std::string check;                    // "relation", "shift", "stuck", "spike" or "noise"
+  Relation relation;                    // of the first two
+  std::vector<std::string> parameters;  // one of which is wrong
+  identification::TickRange ticks;
+  double residual = 0;  // the relation's median there
+};
+
+struct Plausibility {
+  std::vector<Implausible> found;
+  std::vector<std::string> not_applied;  // relations, each with the reason
+  std::vector<std::string> bound;        // parameters of relations that applied, each once
+  identification::TickSet holes;         // all that was found
+};
+
+struct WindowData {
+  identification::Record record;
+  std::vector<Signal> inputs, outputs;  // as they are described; their ranges are not set
+  std::vector<Channel> input_channels;  // that the inputs are computed from
+  std::vector<Channel> output_channels;
+  Plausibility plausibility;  // of a KeptWindow with checks: its holes are not in the record
+  double coverage = 0;        // share of the window's ticks that have a row
+  double read_coverage = 0;   // the same before holes were made of what is not believed
+};
+
+/// A parameter that telemetry has not described yet, so that nobody knows its samples.
+struct UnknownParameter {
+  std::string name;
+};
+
+/// What the request's signals and parameters are, and no rows.
+std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleSource& archive,
+                                                           const WindowRequest& request);
+
+/// The rows at which every channel of the request is valid; u holds the input channels.
+identification::Record load_samples(const storage::SampleSource& archive,
+                                    const WindowRequest& request, const WindowData& described,
+                                    storage::TimeRange window);
+
+/// Share of the window's ticks that are rows of the record.
+double coverage_of(const identification::Record& record, storage::TimeRange window,
+                   Duration period);
+
+/// Samples of quality good or out of limits count; all others are holes, and so are ticks at which
+/// a derived input has no finite value.
+std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,
+                                                       const WindowRequest& request,
+                                                       storage::TimeRange window);
+
+/// The ticks of this period in `range`.
+identification::TickRange ticks_of(storage::TimeRange range, Duration period);
+
+/// Time of a row of a record with this period.
+storage::Time time_of_row(const identification::Record& record, identification::Index row,
+                          Duration period);
+
+}  // namespace reident

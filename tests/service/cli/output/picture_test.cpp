@@ -1,0 +1,182 @@
+// Axes, traces and SVG of `reident plot`.
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "service/cli/output/axis.hpp"
+#include "service/cli/output/model_picture.hpp"
+#include "service/cli/output/svg.hpp"
+#include "service/cli/output/trace.hpp"
+
+namespace reident::cli {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+constexpr std::int64_t second = 1'000'000'000;
+constexpr std::int64_t hour = 3600 * second;
+constexpr std::int64_t start = 1'700'000'000 * second;  // 2023-11-14T22:13:20Z
+
+std::vector<std::string> labels(const std::vector<Tick>& ticks) {
+  std::vector<std::string> result;
+  for (const Tick& tick : ticks) result.push_back(tick.label);
+  return result;
+}
+
+TEST(Ticks, are_round_and_not_too_many) {
+  EXPECT_THAT(labels(ticks_of({0, 10, 0, 1}, 6)), ElementsAre("0", "2", "4", "6", "8", "10"));
+  EXPECT_THAT(labels(ticks_of({-0.03, 0.06, 0, 1}, 5)),
+              ElementsAre("-0.02", "0.00", "0.02", "0.04", "0.06"));
+  for (const double width : {1e-9, 0.003, 0.7, 1.0, 31.0, 8e5, 3e12}) {
+    const auto ticks = ticks_of({5, 5 + width, 0, 1}, 6);
+    EXPECT_GE(ticks.size(), 2U) << width;
+    EXPECT_LE(ticks.size(), 7U) << width;
+  }
+}
+
+TEST(Scale, around_one_value_has_room) {
+  const Scale scale = scale_around(28, 28, 100, 0);
+  EXPECT_LT(scale.low, 28);
+  EXPECT_NEAR(scale(28), 50, 1e-9);
+  EXPECT_TRUE(std::isfinite(scale_around(0, 0, 0, 1)(0)));
+}
+
+TEST(TimeTicks, are_round_times_of_utc_with_the_day_where_it_changes) {
+  EXPECT_THAT(labels(time_ticks({start, start + 4 * hour}, 8)),
+              ElementsAre("2023-11-14 22:30", "23:00", "23:30", "2023-11-15 00:00", "00:30",
+                          "01:00", "01:30", "02:00"));
+  const auto ticks = time_ticks({start, start + 20 * second}, 8);
+  EXPECT_EQ(ticks[0].label, "2023-11-14 22:13:20");
+  EXPECT_EQ(ticks[1].value, 5);
+  EXPECT_THAT(labels(time_ticks({start, start + 100 * 24 * hour}, 8)), Not(SizeIs(0)));
+}
+
+TEST(Trace, keeps_the_extremes_of_each_column_in_their_order) {
+  // Two columns of ten values; a peak, then a trough in the first.
+  Stretch stretch;
+  for (int k = 0; k < 20; ++k) {
+    stretch.x.push_back(k / 10.0);
+    stretch.y.push_back(k == 3 ? 9 : k == 7 ? -9 : 0);
+  }
+  const auto lines = trace({stretch}, {0, 2, 0, 2}, {-10, 10, 20, 0}, 1);
+  ASSERT_THAT(lines, SizeIs(1));
+  std::vector<double> y;
+  for (const Point& point : lines[0]) y.push_back(point.y);
+  EXPECT_THAT(y, ElementsAre(1, 19, 10));
+}
+
+TEST(Trace, breaks_at_gaps_that_can_be_seen_and_shows_a_lonely_value) {
+  const std::vector<Stretch> stretches = {{{0, 1}, {0, 0}}, {{1.5}, {0}}, {{50}, {0}}};
+  const auto lines = trace(stretches, {0, 100, 0, 100}, {-1, 1, 1, 0}, 1);
+  ASSERT_THAT(lines, SizeIs(2));
+  EXPECT_THAT(lines[1], SizeIs(2));
+}
+
+TEST(Trace, stays_within_the_scale) {
+  const auto lines = trace({{{0, 1}, {-1e9, 1e9}}}, {0, 1, 0, 10}, {-1, 1, 100, 0}, 1);
+  EXPECT_EQ(lines[0][0].y, 100);
+  EXPECT_EQ(lines[0][1].y, 0);
+}
+
+TEST(Svg, escapes_what_a_name_may_hold) {
+  EXPECT_EQ(xml_escaped("a<b> & \"c\"'\n"), "a&lt;b&gt; &amp; &quot;c&quot;&#39;");
+  Svg svg(10, 10, "<&>", "");
+  svg.text({1, 2}, "<x>", "small");
+  const std::string text = std::move(svg).finish();
+  EXPECT_THAT(text, HasSubstr("<title>&lt;&amp;&gt;</title>"));
+  EXPECT_THAT(text, HasSubstr(">&lt;x&gt;</text>"));
+}
+
+/// A model of `outputs` outputs that misses each by a slow oscillation, over `rows` rows.
+struct Example {
+  EquipmentModel model;
+  ModelRun run;
+  storage::TimeRange range;
+
+  Example(int outputs, Eigen::Index rows) {
+    auto& dynamics = model.dynamics;
+    dynamics.A = Eigen::Matrix2d{{0.9, 0.2}, {-0.2, 0.9}};
+    dynamics.B = Eigen::MatrixXd::Zero(2, 1);
+    dynamics.C = Eigen::MatrixXd::Ones(outputs, 2);
+    dynamics.D = Eigen::MatrixXd::Zero(outputs, 1);
+    dynamics.u0 = Eigen::VectorXd::Zero(1);
+    dynamics.y0 = Eigen::VectorXd::Zero(outputs);
+    dynamics.period_s = 1;
+    model.validation = {Eigen::VectorXd::Constant(outputs, 2.5),
+                        Eigen::VectorXd::Constant(outputs, 91.25), 100};
+    Eigen::MatrixXd y(rows, outputs);
+    for (int q = 0; q < outputs; ++q) {
+      model.outputs.push_back({"V<" + std::to_string(q) + ">", "V", 0, 1});
+      for (Eigen::Index k = 0; k < rows; ++k) y(k, q) = std::sin(double(k * k % 9973) + q);
+    }
+    run.data.record =
+        identification::contiguous_record(1, Eigen::MatrixXd::Zero(rows, 1), std::move(y));
+    run.data.record.segments[0].first_tick = start / second;
+    run.y_hat = run.data.record.y * 0.9;
+    range = {start, start + rows * second};
+  }
+  std::string picture() const {
+    const storage::Time third = (range.end - range.begin) / 3;
+    return model_picture({"SAT/EQ version 3",
+                          "approved",
+                          model,
+                          run,
+                          range,
+                          {{"identify", {range.begin, range.begin + third}},
+                           {"validate", {range.end - third, range.end}}},
+                          {100, 10, 1, 0.1, 0}});
+  }
+};
+
+TEST(Picture, shows_each_series_the_parts_the_singular_values_and_the_poles) {
+  const std::string picture = Example(2, 600).picture();
+  for (const char* id : {"output-1-real", "output-1-simulated", "output-1-error", "output-2-real",
+                         "output-2-simulated", "output-2-error", "singular-values", "poles"})
+    EXPECT_THAT(picture, HasSubstr(std::string("<g id=\"") + id + "\">")) << id;
+  for (const char* words :
+       {"V&lt;0&gt; [V]", "measured", "free run of the model", "UTC", "identify", "validate",
+        "2023-11-14 22:14", "MRSE 2.5 %, fit 91.2 %", "order 2", "Hz"})
+    EXPECT_THAT(picture, HasSubstr(words));
+  EXPECT_THAT(picture, Not(HasSubstr("nan")));
+  EXPECT_THAT(picture, Not(HasSubstr("inf")));
+}
+
+TEST(Picture, of_a_model_that_can_follow_telemetry_shows_that_error_too) {
+  Example example(1, 600);
+  EXPECT_THAT(example.picture(), Not(HasSubstr("output-1-following")));
+  example.run.tracked = ModelRun::Tracked{example.run.data.record.y * 0.99, {}};
+  example.model.tracking = EquipmentModel::Tracking{{}, example.model.validation};
+  EXPECT_THAT(example.picture(), HasSubstr("<g id=\"output-1-following\">"));
+  EXPECT_THAT(example.picture(), HasSubstr("following telemetry: MRSE 2.5 %"));
+}
+
+TEST(Picture, of_many_rows_and_outputs_stays_small) {
+  EXPECT_LT(Example(1, 200'000).picture().size(), 100'000U);
+  EXPECT_LT(Example(12, 20'000).picture().size(), 500'000U);
+}
+
+TEST(Picture, of_a_run_that_goes_far_away_still_shows_what_was_measured) {
+  Example example(1, 600);
+  example.run.y_hat *= 1e12;
+  const std::string picture = example.picture();
+  EXPECT_THAT(picture, HasSubstr(">-1</text>"));
+  EXPECT_THAT(picture, Not(HasSubstr("e+1")));
+}
+
+TEST(Picture, of_outputs_that_do_not_move_and_a_static_model_is_whole) {
+  Example example(1, 600);
+  example.run.data.record.y.setConstant(28);
+  example.run.y_hat.setConstant(28);
+  example.model.dynamics.A.resize(0, 0);
+  example.model.dynamics.B.resize(0, 1);
+  example.model.dynamics.C.resize(1, 0);
+  const std::string picture = example.picture();
+  EXPECT_THAT(picture, Not(HasSubstr("nan")));
+  EXPECT_THAT(picture, HasSubstr("order 0"));
+}
+
+}  // namespace
+}  // namespace reident::cli

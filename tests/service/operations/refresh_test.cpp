@@ -1,0 +1,321 @@
+#include "service/operations/refresh.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "service/model/model_json.hpp"
+#include "tests/service/daemon_fixture.hpp"
+#include "tests/service/judgement/evidence_page.hpp"
+
+namespace reident::test {
+namespace {
+
+const auto never = [] { return false; };
+
+class Refresh : public DaemonTest {
+ protected:
+  Refresh() { archive.describe(descriptors()); }
+
+  RefreshResult run(storage::Time end, const EquipmentConfig& equipment = plant()) {
+    KeptWindow nothing = kept_window_of("SAT", equipment);
+    return run(end, nothing, equipment);
+  }
+  RefreshResult run(storage::Time end, KeptWindow& kept,
+                    const EquipmentConfig& equipment = plant()) {
+    return refresh(archive, registry,
+                   {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, kept, {},
+                   never);
+  }
+  void record(const RefreshResult& result) {
+    registry.record(result.attempt, result.version, *result.decision);
+  }
+
+  storage::Database database = open();
+  storage::Archive archive{database};
+  storage::Registry registry{database};
+};
+
+TEST_F(Refresh, ApprovesAGoodFirstVersionAndExplainsIt) {
+  archive.append(telemetry(day, 601));
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  ASSERT_TRUE(result.candidate);
+  EXPECT_EQ(result.candidate->inputs[0].name, "u");
+  EXPECT_EQ(result.candidate->inputs[0].unit, "V");
+  EXPECT_EQ(result.candidate->inputs[0].low, -1);
+  EXPECT_EQ(result.candidate->inputs[0].high, 1);
+  EXPECT_EQ(result.candidate->identified_from, (storage::TimeRange{day, day + 5 * minute}));
+  EXPECT_EQ(result.candidate->validated_on,
+            (storage::TimeRange{day + 7 * minute, day + 10 * minute}));
+  EXPECT_GT(result.evidence.fit_percent, 90);
+  const auto evidence = nlohmann::json::parse(result.attempt.evidence_json);
+  EXPECT_EQ(evidence["rows_identified"], 300);
+  EXPECT_EQ(evidence["rows_tuned"], 120);
+  EXPECT_EQ(evidence["rows_validated"], 180);
+  EXPECT_EQ(evidence["coverage"], 1.0);
+  EXPECT_TRUE(evidence["timing_ms"].contains("load"));
+}
+
+TEST_F(Refresh, LooksForATrackingGainOnlyOfACandidateThatMayRun) {
+  archive.append(telemetry(day, 1201));
+  const RefreshResult first = run(day + 10 * minute);
+  EXPECT_TRUE(nlohmann::json::parse(first.attempt.evidence_json).contains("integral_feedback"));
+  record(first);
+  const RefreshResult turned_away = run(day + 15 * minute);
+  ASSERT_EQ(turned_away.attempt.outcome, "not_better_than_champion");
+  EXPECT_FALSE(
+      nlohmann::json::parse(turned_away.attempt.evidence_json).contains("integral_feedback"));
+}
+
+TEST_F(Refresh, SaysThatTelemetryIsDamagedAndWhich) {
+  archive.append(telemetry(day, 601));
+  archive.compact();
+  damage_chunks(2);
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "telemetry_damaged");
+  EXPECT_THAT(result.attempt.reason, testing::HasSubstr("601 samples of v of SAT"));
+  EXPECT_FALSE(result.candidate);
+  EXPECT_FALSE(result.decision);
+}
+
+TEST_F(Refresh, KeepsTheConfiguredBaselineThatTheGateSaw) {
+  archive.append(telemetry(day, 601));
+  EquipmentConfig equipment = plant();
+  equipment.baseline_mrse_percent = 16.4;
+  const RefreshResult result = run(day + 10 * minute, equipment);
+  EXPECT_EQ(nlohmann::json::parse(result.attempt.evidence_json)["baseline_mrse_percent"], 16.4);
+}
+
+TEST_F(Refresh, ScoresTheChampionOnTheSameSamples) {
+  archive.append(telemetry(day, 1201));
+  record(run(day + 10 * minute));
+  const RefreshResult result = run(day + 15 * minute);
+  ASSERT_TRUE(result.evidence.champion);
+  EXPECT_EQ(result.evidence.champion->version, 1);
+  ASSERT_TRUE(result.evidence.champion->comparison);
+  EXPECT_NEAR(result.evidence.champion->comparison->rival_mrse_percent,
+              result.evidence.mrse_percent, 0.05);
+  EXPECT_EQ(result.evidence.champion->comparison->mrse_percent, result.evidence.mrse_percent);
+  EXPECT_EQ(result.evidence.champion->comparison->rows, 180);
+  EXPECT_EQ(result.attempt.outcome, "not_better_than_champion") << result.attempt.reason;
+}
+
+TEST_F(Refresh, ReplacesAChampionThatThePlantHasLeftBehind) {
+  archive.append(telemetry(day, 601));
+  record(run(day + 10 * minute));
+  archive.append(telemetry(day + 20 * minute, 601, 2.0));
+  const RefreshResult result = run(day + 30 * minute);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  EXPECT_GT(result.evidence.champion->comparison->rival_mrse_percent,
+            3 * result.evidence.mrse_percent);
+}
+
+TEST_F(Refresh, AdaptsTheChampionTooAndTakesTheBetterOfTwo) {
+  archive.append(telemetry(day, 1201, 1, 0.3));
+  const RefreshResult first = run(day + 10 * minute);
+  EXPECT_FALSE(nlohmann::json::parse(first.attempt.evidence_json).contains("adapted"));
+  record(first);
+  for (const storage::Time end : {day + 15 * minute, day + 20 * minute}) {
+    const RefreshResult result = run(end);
+    const auto adapted = nlohmann::json::parse(result.attempt.evidence_json).at("adapted");
+    const double of_champion = adapted.at("mrse_percent"),
+                 of_search = adapted.at("identified_mrse_percent");
+    EXPECT_EQ(adapted.at("version"), 1);
+    EXPECT_EQ(adapted.at("is_candidate"), of_champion < of_search);
+    EXPECT_EQ(result.evidence.mrse_percent, std::min(of_champion, of_search));
+    EXPECT_EQ(result.candidate->method.starts_with("A and C of version 1"),
+              of_champion < of_search);
+  }
+}
+
+TEST_F(Refresh, MeasuresAChampionThatAShortWindowAdaptsByTheConfiguredWindow) {
+  archive.append(telemetry(day, 600, 1, 0.3));
+  record(run(day + 10 * minute));
+  archive.append(telemetry(day + 10 * minute, 301, 1.5, 0.3));
+  KeptWindow kept = kept_window_of("SAT", plant());
+  const RefreshResult result = refresh(
+      archive, registry,
+      {"SAT", plant(), {day + 10 * minute, day + 15 * minute}, "drift", "digest"}, kept, {}, never);
+  const auto evidence = nlohmann::json::parse(result.attempt.evidence_json);
+  ASSERT_TRUE(evidence.at("adapted").at("is_candidate"));
+  EXPECT_DOUBLE_EQ(result.evidence.slowest_over_window,
+                   slowest_time_constant_s(result.candidate->dynamics) / 600);
+}
+
+TEST_F(Refresh, KeepsNoEvidenceThatItsPageDoesNotName) {
+  auto frames = telemetry(day, 1201, 1, 0.3);
+  frames[200].samples[1].value = 500;  // is not believed
+  archive.append(frames);
+  const auto expect_all_named = [this](storage::Time end) {
+    const RefreshResult result = run(end);
+    const auto evidence = nlohmann::json::parse(result.attempt.evidence_json);
+    EXPECT_THAT(not_on_the_page(evidence), testing::IsEmpty());
+    record(result);
+    return evidence;
+  };
+  EXPECT_TRUE(expect_all_named(day + 10 * minute).contains("implausible"));
+  registry.put_on_hold("SAT", "PLANT", {"ana", "rehearsal", 1});
+  const auto second = expect_all_named(day + 15 * minute);
+  EXPECT_TRUE(second.contains("champion") && second.contains("hold"));
+}
+
+TEST_F(Refresh, ScoresAChampionOfOtherInputsOnItsOwnInputs) {
+  archive.append(telemetry(day, 1201));
+  EquipmentConfig narrower = plant();
+  narrower.inputs = {"u"};
+  narrower.max_order = 1;  // more would be an oscillator in the place of v
+  record(run(day + 10 * minute, narrower));
+  const RefreshResult result = run(day + 15 * minute);
+  ASSERT_TRUE(result.evidence.champion);
+  EXPECT_GT(result.evidence.champion->comparison->rival_mrse_percent, result.evidence.mrse_percent);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+}
+
+TEST_F(Refresh, LetsAnyGoodCandidateReplaceAChampionThatIsDamagedInTheRegistry) {
+  archive.append(telemetry(day, 1201));
+  const RefreshResult first = run(day + 10 * minute);
+  registry.record(first.attempt, {"{ not a model", "0"}, *first.decision);
+  EXPECT_EQ(run(day + 15 * minute).attempt.outcome, "approved");
+}
+
+TEST_F(Refresh, GivesTheSameBitsForTheSameSamples) {
+  archive.append(telemetry(day, 601));
+  EXPECT_EQ(to_json(*run(day + 10 * minute).candidate).dump(),
+            to_json(*run(day + 10 * minute).candidate).dump());
+}
+
+TEST_F(Refresh, IdentifiesFromWhatLiesBeforeTheValidationAlone) {
+  archive.append(telemetry(day, 420));
+  archive.append(telemetry(day + 420 * second, 181, 1.0, 0.01));
+  const auto one = run(day + 10 * minute);
+  storage::Database other_database(path().string() + "-other", storage::Database::Mode::read_write);
+  storage::Archive other(other_database);
+  storage::Registry other_registry(other_database);
+  other.describe(descriptors());
+  other.append(telemetry(day, 420));
+  other.append(telemetry(day + 420 * second, 181, 5.0, 0.5));
+  EquipmentConfig believing = plant();  // noise that is left out would move the parts
+  believing.screening = false;
+  KeptWindow kept = kept_window_of("SAT", believing);
+  const auto two =
+      refresh(other, other_registry,
+              {"SAT", believing, {day, day + 10 * minute}, "slide", "digest"}, kept, {}, never);
+  ASSERT_TRUE(one.candidate && two.candidate);
+  EXPECT_EQ(one.candidate->dynamics.A, two.candidate->dynamics.A);
+  EXPECT_EQ(one.candidate->dynamics.B, two.candidate->dynamics.B);
+  EXPECT_EQ(one.candidate->dynamics.y0, two.candidate->dynamics.y0);
+  EXPECT_NE(one.evidence.mrse_percent, two.evidence.mrse_percent);
+}
+
+TEST_F(Refresh, NamesAParameterThatTelemetryHasNotDescribed) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs = {"u", "w"};
+  const RefreshResult result = run(day + 10 * minute, equipment);
+  EXPECT_EQ(result.attempt.outcome, "unknown_parameter");
+  EXPECT_THAT(result.attempt.reason, testing::HasSubstr("w"));
+  EXPECT_FALSE(result.candidate);
+}
+
+TEST_F(Refresh, RefusesAWindowFullOfHoles) {
+  archive.append(telemetry(day, 250));
+  EXPECT_EQ(run(day + 10 * minute).attempt.outcome, "low_coverage");
+  EXPECT_EQ(run(day + 60 * minute).attempt.outcome, "low_coverage") << "no sample at all";
+}
+
+TEST_F(Refresh, PassesTheVerdictOfTheIdentificationOn) {
+  auto frames = telemetry(day, 601);
+  for (auto& frame : frames) frame.samples[2].value = 7;
+  archive.append(frames);
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "constant_outputs");
+  EXPECT_THAT(result.attempt.reason, testing::Not(testing::IsEmpty()));
+}
+
+TEST_F(Refresh, SaysThatAQuietValidationPartDecidesNothing) {
+  auto frames = telemetry(day, 601);
+  for (std::size_t k = 420; k < frames.size(); ++k) frames[k].samples[2].value = 7;
+  archive.append(frames);
+  EXPECT_EQ(run(day + 10 * minute).attempt.outcome, "validation_says_nothing");
+}
+
+TEST_F(Refresh, LeavesSamplesOfBadQualityOut) {
+  auto frames = telemetry(day, 601);
+  for (std::size_t k = 100; k < 160; ++k) {
+    frames[k].samples[2].quality = storage::Quality::invalid;
+    frames[k].samples[2].value = 1e6;
+  }
+  archive.append(frames);
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  EXPECT_LT(result.candidate->outputs[0].high, 20);
+}
+
+TEST_F(Refresh, LeavesOutWhatTwoFramesOfOneTimeDisagreeAbout) {
+  const auto frames = telemetry(day, 601);
+  std::vector<storage::TelemetryFrame> restamped(frames.begin() + 100, frames.begin() + 160);
+  for (auto& frame : restamped)
+    for (storage::Sample& sample : frame.samples) sample.value += 1e6;
+  archive.append(restamped);
+  archive.append(frames);
+  const RefreshResult result = run(day + 10 * minute);
+  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  EXPECT_LT(result.candidate->outputs[0].high, 20);
+}
+
+TEST_F(Refresh, GivesTheSameBitsWhateverWasKeptOfEarlierWindows) {
+  EquipmentConfig equipment = plant();
+  equipment.window = 40 * minute;
+  archive.append(telemetry(day, 3601));
+  KeptWindow kept = kept_window_of("SAT", equipment);
+  const auto same_as_from_scratch = [&](storage::Time end) {
+    const auto slid = run(end, kept, equipment), fresh = run(end, equipment);
+    ASSERT_TRUE(slid.candidate && fresh.candidate) << slid.attempt.reason;
+    EXPECT_EQ(slid.candidate->dynamics.A, fresh.candidate->dynamics.A);
+    EXPECT_EQ(slid.candidate->dynamics.B, fresh.candidate->dynamics.B);
+    EXPECT_EQ(slid.candidate->dynamics.y0, fresh.candidate->dynamics.y0);
+    EXPECT_EQ(slid.evidence.mrse_percent, fresh.evidence.mrse_percent);
+  };
+  for (int minutes = 40; minutes <= 58; minutes += 9) same_as_from_scratch(day + minutes * minute);
+  // A stretch that was played back late with other values than those it had without it.
+  archive.append(telemetry(day + 25 * minute + second / 2, 120, 1.5));
+  kept.forget({day + 25 * minute, day + 27 * minute});
+  same_as_from_scratch(day + 59 * minute);
+}
+
+TEST_F(Refresh, OfASlidWindowReadsOnlyWhatIsNew) {
+  EquipmentConfig equipment = plant();
+  equipment.window = 40 * minute;
+  archive.append(telemetry(day, 3601));
+  KeptWindow kept = kept_window_of("SAT", equipment);
+  run(day + 40 * minute, kept, equipment);
+  EXPECT_EQ(kept.ticks_read(), 2400);
+  run(day + 50 * minute, kept, equipment);
+  EXPECT_LE(kept.ticks_read(), 2400 + 600 + 2 * 512) << "the new minutes and a chunk at each end";
+}
+
+TEST_F(Refresh, IdentifiesFromADerivedInputAndPutsItsExpressionInTheModel) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs = {"w"};
+  equipment.derived = {{"w", "u + v / 2", "V"}};
+  archive.append(telemetry(day, 601));
+  const RefreshResult result = run(day + 10 * minute, equipment);
+  ASSERT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  const Signal& input = result.candidate->inputs.at(0);
+  EXPECT_EQ(input.expression, "u + v / 2");
+  EXPECT_EQ(input.unit, "V");
+  EXPECT_NEAR(input.low, -1.5, 0.01);
+  EXPECT_NEAR(input.high, 1.5, 0.01);
+  EXPECT_EQ(request_of(*result.candidate), request_of("SAT", equipment));
+}
+
+TEST_F(Refresh, StopsWhenItIsAskedTo) {
+  archive.append(telemetry(day, 601));
+  KeptWindow kept = kept_window_of("SAT", plant());
+  EXPECT_THROW(
+      refresh(archive, registry, {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"},
+              kept, {}, [] { return true; }),
+      Stopped);
+}
+
+}  // namespace
+}  // namespace reident::test
