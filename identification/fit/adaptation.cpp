@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "identification/fit/output_error_fit.hpp"
 #include "identification/numerics/gram.hpp"
-#include "identification/fit/response.hpp"
 #include "identification/simulation/simulate.hpp"
 
 namespace reident::identification {

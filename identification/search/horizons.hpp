@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "identification/search/held_out.hpp"
-#include "identification/search/identify.hpp"
 #include "identification/samples/record.hpp"
+#include "identification/search/folds.hpp"
+#include "identification/search/identify.hpp"
 
 namespace reident::identification {
 

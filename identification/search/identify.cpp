@@ -4,10 +4,10 @@
 #include <limits>
 
 #include "identification/search/delays.hpp"
-#include "identification/search/finite.hpp"
+#include "identification/search/finite_check.hpp"
 #include "identification/search/horizons.hpp"
+#include "identification/search/pipeline.hpp"
 #include "identification/simulation/simulate.hpp"
-#include "identification/search/undelayed.hpp"
 
 namespace reident::identification {
 
@@ -47,7 +47,7 @@ std::vector<int> chosen_delays(const Record& record, RowRange rows,
   IdentifyOptions fixed = options;
   const auto error_with = [&](const std::vector<int>& tried) {
     const Record shifted = delayed(record, rows, tried, most);
-    const IdentifyResult result = identify_undelayed(shifted, shifted.all(), fixed, nullptr);
+    const IdentifyResult result = run_pipeline(shifted, shifted.all(), fixed, nullptr);
     const auto* found = std::get_if<Identified>(&result);
     if (found && !fixed.weighting) {
       fixed.order = found->recipe.order;
@@ -79,7 +79,7 @@ IdentifyResult identify_delayed(const Record& record, RowRange rows,
       options.input_delays.empty() ? chosen_delays(record, rows, options) : options.input_delays;
   const int longest = *std::max_element(delays.begin(), delays.end());
   const Record shifted = delayed(record, rows, delays, longest);
-  IdentifyResult result = identify_undelayed(shifted, shifted.all(), options, nullptr);
+  IdentifyResult result = run_pipeline(shifted, shifted.all(), options, nullptr);
   auto* found = std::get_if<Identified>(&result);
   if (!found || longest == 0) return result;
   found->model = with_delay_states(found->model, delays);
@@ -102,7 +102,7 @@ IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptio
   eigen_assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
   const bool may_delay = options.max_input_delay > 0 || !options.input_delays.empty();
   if (may_delay && record.u.cols() > 0) return identify_delayed(record, rows, options);
-  return identify_undelayed(record, rows, options, kept);
+  return run_pipeline(record, rows, options, kept);
 }
 
 }  // namespace reident::identification

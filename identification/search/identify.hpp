@@ -14,13 +14,13 @@
 #include <variant>
 #include <vector>
 
-#include "identification/search/choice.hpp"
-#include "identification/subspace/lag_sums.hpp"
 #include "identification/samples/record.hpp"
+#include "identification/samples/verdict.hpp"
+#include "identification/search/model_search.hpp"
 #include "identification/simulation/simulate.hpp"
 #include "identification/simulation/state_space.hpp"
+#include "identification/subspace/lag_sums.hpp"
 #include "identification/subspace/subspace.hpp"
-#include "identification/samples/verdict.hpp"
 
 namespace reident::identification {
 

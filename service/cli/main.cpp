@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/command.hpp"
-#include "service/cli/source_choice.hpp"
+#include "service/cli/history_access.hpp"
 
 namespace reident::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/command_sender.hpp"
-#include "service/cli/config_choice.hpp"
+#include "service/cli/config_options.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/program_identity.hpp"
 #include "service/support/utc_clock.hpp"

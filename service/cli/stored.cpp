@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/config_choice.hpp"
+#include "service/cli/config_options.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"

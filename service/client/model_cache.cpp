@@ -13,7 +13,7 @@
 
 #include <sys/file.h>
 
-#include "service/client/kept_version_file.hpp"
+#include "service/client/cached_version_file.hpp"
 #include "service/client/version_check.hpp"
 #include "service/support/output_file.hpp"
 #include "service/support/sha256.hpp"
@@ -130,8 +130,8 @@ fs::path ModelCache::file_of(const storage::EquipmentName& equipment) const {
                     ".json");
 }
 
-std::vector<KeptVersion> ModelCache::load(const Report& report) {
-  std::vector<KeptVersion> versions;
+std::vector<CachedVersion> ModelCache::load(const Report& report) {
+  std::vector<CachedVersion> versions;
   std::error_code error;
   if (!fs::exists(folder_, error) && !error) return versions;
   // Files change by renaming alone: they can be read without the lock, but not set aside.
@@ -148,7 +148,7 @@ std::vector<KeptVersion> ModelCache::load(const Report& report) {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     auto read = read_kept_version(file, partition_);
-    if (auto* kept = std::get_if<KeptVersion>(&read)) {
+    if (auto* kept = std::get_if<CachedVersion>(&read)) {
       const EquipmentModel& model = kept->version.model;
       if (file_of({model.spacecraft, model.equipment}) == file) {
         versions.push_back(std::move(*kept));
@@ -162,7 +162,7 @@ std::vector<KeptVersion> ModelCache::load(const Report& report) {
   return versions;
 }
 
-void ModelCache::store(const KeptVersion& kept, const Report& report) {
+void ModelCache::store(const CachedVersion& kept, const Report& report) {
   const EquipmentModel& model = kept.version.model;
   const storage::EquipmentName equipment{model.spacecraft, model.equipment};
   std::string fault = try_to_store(kept);
@@ -172,7 +172,7 @@ void ModelCache::store(const KeptVersion& kept, const Report& report) {
   before = std::move(fault);
 }
 
-std::string ModelCache::try_to_store(const KeptVersion& kept) const {
+std::string ModelCache::try_to_store(const CachedVersion& kept) const {
   const EquipmentModel& model = kept.version.model;
   const fs::path file = file_of({model.spacecraft, model.equipment});
   std::error_code error;
@@ -183,7 +183,7 @@ std::string ModelCache::try_to_store(const KeptVersion& kept) const {
   const FolderLock lock(folder_);
   if (lock.error() != 0) return lock_fault(folder_, lock.error());
   const auto there = read_kept_version(file, partition_);
-  if (const auto* other = std::get_if<KeptVersion>(&there)) {
+  if (const auto* other = std::get_if<CachedVersion>(&there)) {
     if (is_as_new(other->version, kept.version)) return {};
   } else if (const auto& unusable = std::get<Unusable>(there);
              unusable.kind == Unusable::Kind::foreign) {

@@ -27,7 +27,7 @@
 namespace reident {
 
 /// A version and where it comes from.
-struct KeptVersion {
+struct CachedVersion {
   ModelVersion version;
   storage::Time published = 0;  // when the service sent it, by its clock; 0 where not known
   storage::Time received = 0;   // by the clock of the simulator that received it
@@ -54,18 +54,18 @@ class ModelCache {
   /// The versions of the partition that are sound (version_check.hpp). What is damaged, or is of
   /// another equipment than its name says, is renamed to <name>.damaged and reported; what a newer
   /// program wrote, or cannot be read, is left and reported.
-  std::vector<KeptVersion> load(const Report& report);
+  std::vector<CachedVersion> load(const Report& report);
 
   /// Keeps a version that was verified, unless what is kept is as new. A fault is reported once,
   /// and again only when it changes or came back after a success.
-  void store(const KeptVersion& kept, const Report& report);
+  void store(const CachedVersion& kept, const Report& report);
 
   /// Where the version of an equipment is kept.
   std::filesystem::path file_of(const storage::EquipmentName& equipment) const;
 
  private:
   /// Empty when it was kept, or what is there is as new.
-  std::string try_to_store(const KeptVersion& kept) const;
+  std::string try_to_store(const CachedVersion& kept) const;
 
   std::filesystem::path folder_;  // of the partition
   std::string partition_;

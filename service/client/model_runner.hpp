@@ -15,9 +15,10 @@ namespace reident {
 /// and outputs are those of the declaration that its models were prepared for. step(), follow(),
 /// observe() and swap() allocate nothing, lock nothing and make no system call.
 ///
-/// Following. With a tracking gain the integral feedback of identification/simulation/tracking.hpp; when the
-/// run lets go, its correction fades. Without one the Kalman gain: x[k+1] += K e[k], each error
-/// clamped to the output's identified range.
+/// Following. With a tracking gain the integral feedback of
+/// identification/simulation/integral_feedback.hpp; when the run lets go, its correction fades.
+/// Without one the Kalman gain: x[k+1] += K e[k], each error clamped to the output's identified
+/// range.
 ///
 /// Swap. The new model's state is the one that agrees best with the recent inputs and outputs. What
 /// its output still differs by at the last step comes in linearly over so many steps that it adds

@@ -70,7 +70,7 @@ std::size_t ModelSubscriber::poll(const Listener& listener) {
 
 void ModelSubscriber::hand_out_kept(const Listener& listener) {
   if (!cache_) return;
-  for (KeptVersion& kept : cache_->load(report_to(listener))) {
+  for (CachedVersion& kept : cache_->load(report_to(listener))) {
     const storage::EquipmentName name = name_of(kept.version.model);
     if (!subscription_.includes(name)) continue;
     const Verified& verified =

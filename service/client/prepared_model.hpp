@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "identification/simulation/tracking.hpp"
+#include "identification/simulation/integral_feedback.hpp"
 #include "service/client/input_binding.hpp"
 #include "service/client/state_match.hpp"
 #include "service/client/step_kernel.hpp"

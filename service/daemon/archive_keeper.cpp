@@ -27,9 +27,9 @@ void ArchiveKeeper::post_step() {
       [this](storage::Registry& registry, storage::Archive& archive) { step(registry, archive); });
 }
 
-std::vector<storage::ProtectedStretch> ArchiveKeeper::protection(
+std::vector<storage::ProtectedRange> ArchiveKeeper::protection(
     const storage::Registry& registry, const storage::Archive& archive) const {
-  std::vector<storage::ProtectedStretch> all = telemetry_of_versions(archive, registry);
+  std::vector<storage::ProtectedRange> all = telemetry_of_versions(archive, registry);
   const auto needed = telemetry_still_needed(archive, registry, config_, clock_());
   all.insert(all.end(), needed.begin(), needed.end());
   return all;

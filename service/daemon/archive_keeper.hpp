@@ -25,8 +25,8 @@ class ArchiveKeeper {
  private:
   void post_step();
   void step(const storage::Registry& registry, storage::Archive& archive);
-  std::vector<storage::ProtectedStretch> protection(const storage::Registry& registry,
-                                                    const storage::Archive& archive) const;
+  std::vector<storage::ProtectedRange> protection(const storage::Registry& registry,
+                                                  const storage::Archive& archive) const;
   void conclude(const storage::RetentionReport& report);
 
   const Config& config_;

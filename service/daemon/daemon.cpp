@@ -82,7 +82,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       ingest_(std::in_place, participant_, config, queue_) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      kept_.push_back(kept_window_of(spacecraft.name, equipment));
+      kept_.push_back(window_cache_of(spacecraft.name, equipment));
   storage::Database database(config.database, storage::Database::Mode::read_only);
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
@@ -236,7 +236,7 @@ void Daemon::watch_champions() {
   const storage::Archive archive(database);
   const storage::Registry registry(database);
   ChampionWatch champions(config_);
-  ProbationWatch probations(config_);
+  ConfirmationWatch probations(config_);
   const AttemptContext context = attempt_context(registry);
   std::uint64_t seen = 0;
   try {

@@ -22,9 +22,9 @@
 #include "service/daemon/bounded_queue.hpp"
 #include "service/daemon/champion_watch.hpp"
 #include "service/daemon/command_desk.hpp"
+#include "service/daemon/confirmation_watch.hpp"
 #include "service/daemon/history_desk.hpp"
 #include "service/daemon/ingest.hpp"
-#include "service/daemon/probation_watch.hpp"
 #include "service/daemon/publisher.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"
@@ -81,7 +81,7 @@ class Daemon {
   HistoryDesk history_desk_;
   std::optional<Ingest> ingest_;  // ends before the middleware hears again
   /// By equipment, which has one job at a time: the job's thread owns its entry.
-  std::vector<KeptWindow> kept_;
+  std::vector<WindowCache> kept_;
 
   std::thread ingest_thread_, writer_thread_, desk_thread_, history_thread_, monitor_thread_;
   std::vector<std::thread> identification_threads_;

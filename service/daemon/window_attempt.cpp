@@ -47,7 +47,7 @@ void decide_probation(const storage::Archive& archive, const storage::Registry& 
 
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
                                               const storage::Archive& archive,
-                                              const storage::Registry& registry, KeptWindow& kept,
+                                              const storage::Registry& registry, WindowCache& kept,
                                               const AttemptContext& context) {
   for (const storage::TimeRange& changed : job.changed) kept.forget(changed);
   const storage::Time end = job.window.window.end;

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "service/daemon/window_feed.hpp"
-#include "service/judgement/probation.hpp"
+#include "service/judgement/confirmation.hpp"
 #include "service/operations/refresh.hpp"
 
 namespace reident {
@@ -44,7 +44,7 @@ void decide_probation(const storage::Archive& archive, const storage::Registry& 
 /// Stopped where `stop` answered true.
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
                                               const storage::Archive& archive,
-                                              const storage::Registry& registry, KeptWindow& kept,
+                                              const storage::Registry& registry, WindowCache& kept,
                                               const AttemptContext& context);
 
 }  // namespace reident

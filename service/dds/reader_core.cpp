@@ -39,11 +39,11 @@ ReaderCore::ReaderCore(Participant& participant, const Profile& profile,
       topic_(dds_create_topic(participant.impl().participant.get(), &descriptor, profile.topic,
                               nullptr, nullptr),
              "dds_create_topic", profile.topic),
-      first_(make_ear(!is_volatile())) {}
+      first_(make_endpoint(!is_volatile())) {}
 
-ReaderCore::Ear ReaderCore::make_ear(bool transient_local) const {
+ReaderCore::Endpoint ReaderCore::make_endpoint(bool transient_local) const {
   const Qos qos = reader_qos(profile_, options_, transient_local);
-  Ear ear;
+  Endpoint ear;
   ear.reader = {
       dds_create_reader(participant_.impl().subscriber.get(), topic_.get(), qos.get(), nullptr),
       "dds_create_reader", profile_.topic};
@@ -61,7 +61,7 @@ void ReaderCore::meet_writers() {
     warned_of_best_effort_ = true;
   }
   if (!unmatched.reliable_volatile || second_.reader || is_volatile()) return;
-  second_ = make_ear(false);
+  second_ = make_endpoint(false);
   for (const dds_entity_t wait_set : wait_sets_) attach(wait_set, second_);
 }
 
@@ -69,10 +69,10 @@ void ReaderCore::attach_to(dds_entity_t wait_set) {
   wait_sets_.push_back(wait_set);
   check(dds_waitset_attach(wait_set, publications_.has_publications(), 0), "dds_waitset_attach",
         profile_.topic);
-  for (const Ear* ear : {&first_, &second_}) attach(wait_set, *ear);
+  for (const Endpoint* ear : {&first_, &second_}) attach(wait_set, *ear);
 }
 
-void ReaderCore::attach(dds_entity_t wait_set, const Ear& ear) const {
+void ReaderCore::attach(dds_entity_t wait_set, const Endpoint& ear) const {
   if (!ear.reader) return;
   check(dds_waitset_attach(wait_set, ear.has_samples.get(), 0), "dds_waitset_attach",
         profile_.topic);
@@ -91,7 +91,7 @@ bool ReaderCore::is_heard_by_first(dds_instance_handle_t writer) {
   return keeps_history_[writer] = durability != DDS_DURABILITY_VOLATILE;
 }
 
-std::size_t ReaderCore::take_some(const Ear& ear, std::size_t max, const Visit& visit) {
+std::size_t ReaderCore::take_some(const Endpoint& ear, std::size_t max, const Visit& visit) {
   const Loan loan(ear.reader.get(), max, profile_.topic);
   const bool is_second = &ear == &second_;
   for (std::size_t i = 0; i < loan.count; ++i) {
@@ -106,7 +106,7 @@ std::size_t ReaderCore::take_some(const Ear& ear, std::size_t max, const Visit& 
 std::size_t ReaderCore::take(std::size_t max, const Visit& visit) {
   meet_writers();
   std::size_t taken = 0;
-  for (const Ear* ear : {&first_, &second_}) {
+  for (const Endpoint* ear : {&first_, &second_}) {
     while (ear->reader && taken < max) {
       const std::size_t count = take_some(*ear, max - taken, visit);
       taken += count;
@@ -120,7 +120,7 @@ std::size_t ReaderCore::take_until_quiet(dds_duration_t quiet, dds_duration_t li
                                          const Visit& visit) {
   const Entity wait_set(dds_create_waitset(participant_.impl().participant.get()),
                         "dds_create_waitset", profile_.topic);
-  for (const Ear* ear : {&first_, &second_}) attach(wait_set.get(), *ear);
+  for (const Endpoint* ear : {&first_, &second_}) attach(wait_set.get(), *ear);
   const dds_time_t deadline = dds_time() + limit;
   std::size_t visited = 0;
   do {
@@ -152,7 +152,7 @@ ReaderCore::~ReaderCore() {
 std::uint32_t ReaderCore::matched_writers() {
   meet_writers();
   std::set<dds_instance_handle_t> writers;
-  for (const Ear* ear : {&first_, &second_}) {
+  for (const Endpoint* ear : {&first_, &second_}) {
     if (!ear->reader) continue;
     const auto heard = matched(ear->reader.get(), profile_.topic);
     writers.insert(heard.begin(), heard.end());

@@ -39,14 +39,14 @@ class ReaderCore {
   void meet_writers();
 
  private:
-  struct Ear {
+  struct Endpoint {
     Entity reader;
     Entity has_samples;  // read condition
   };
 
-  Ear make_ear(bool transient_local) const;
-  void attach(dds_entity_t wait_set, const Ear& ear) const;
-  std::size_t take_some(const Ear& ear, std::size_t max, const Visit& visit);
+  Endpoint make_endpoint(bool transient_local) const;
+  void attach(dds_entity_t wait_set, const Endpoint& ear) const;
+  std::size_t take_some(const Endpoint& ear, std::size_t max, const Visit& visit);
   bool is_heard_by_first(dds_instance_handle_t writer);
   /// Takes until nothing came for `quiet`, or until `limit` has passed.
   std::size_t take_until_quiet(dds_duration_t quiet, dds_duration_t limit, const Visit& visit);
@@ -61,8 +61,8 @@ class ReaderCore {
   PublicationWatch publications_;
   bool warned_of_best_effort_ = false;
   Entity topic_;
-  Ear first_;
-  Ear second_;
+  Endpoint first_;
+  Endpoint second_;
   std::map<dds_instance_handle_t, bool> keeps_history_;  // writers that the second reader met
   std::vector<dds_entity_t> wait_sets_;
 };

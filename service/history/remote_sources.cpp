@@ -29,7 +29,7 @@ HistoryQuery samples_of(const std::string& spacecraft, storage::Origin origin,
 }
 
 /// Samples page by page.
-class Pages final : public Stretches {
+class Pages final : public SampleBatches {
  public:
   Pages(const RemoteRows& rows, HistoryQuery query) : rows_(rows), query_(std::move(query)) {}
 
@@ -170,7 +170,7 @@ std::map<std::int64_t, std::string> RemoteTelemetrySource::source_names() const 
   return names;
 }
 
-std::unique_ptr<Stretches> RemoteTelemetrySource::stretches(
+std::unique_ptr<SampleBatches> RemoteTelemetrySource::stretches(
     const storage::SeriesInfo& series, storage::TimeRange range, std::size_t /*chunks*/,
     storage::WantedColumns /*wanted*/) const {
   return std::make_unique<Pages>(

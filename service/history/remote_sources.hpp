@@ -102,9 +102,9 @@ class RemoteTelemetrySource final : public TelemetrySource {
   std::vector<storage::SeriesInfo> series() const override;
   std::map<std::int64_t, std::string> source_names() const override;
   /// A stretch is a page, whatever `chunks` says.
-  std::unique_ptr<Stretches> stretches(const storage::SeriesInfo& series, storage::TimeRange range,
-                                       std::size_t chunks,
-                                       storage::WantedColumns wanted) const override;
+  std::unique_ptr<SampleBatches> stretches(const storage::SeriesInfo& series,
+                                           storage::TimeRange range, std::size_t chunks,
+                                           storage::WantedColumns wanted) const override;
   std::vector<storage::BinCounts> completeness(const storage::SeriesInfo& series,
                                                const storage::TimeBins& bins,
                                                storage::Time until) const override;

@@ -58,10 +58,10 @@ class HistorySource {
       std::optional<storage::Time> time = std::nullopt) const = 0;
 };
 
-/// One series read forward, see storage::SeriesStretches.
-class Stretches {
+/// One series read forward, see storage::SeriesBatches.
+class SampleBatches {
  public:
-  virtual ~Stretches() = default;
+  virtual ~SampleBatches() = default;
   /// The next samples in place of those that `stretch` held; false, and none, at the end.
   virtual bool next(storage::SampleColumns& stretch) = 0;
 };
@@ -73,10 +73,10 @@ class TelemetrySource : public storage::SampleSource {
   virtual std::vector<storage::SeriesInfo> series() const = 0;
   /// By their ids.
   virtual std::map<std::int64_t, std::string> source_names() const = 0;
-  /// `chunks` bounds the memory, as for storage::SeriesStretches.
-  virtual std::unique_ptr<Stretches> stretches(const storage::SeriesInfo& series,
-                                               storage::TimeRange range, std::size_t chunks,
-                                               storage::WantedColumns wanted) const = 0;
+  /// `chunks` bounds the memory, as for storage::SeriesBatches.
+  virtual std::unique_ptr<SampleBatches> stretches(const storage::SeriesInfo& series,
+                                                   storage::TimeRange range, std::size_t chunks,
+                                                   storage::WantedColumns wanted) const = 0;
   /// As storage::completeness.
   virtual std::vector<storage::BinCounts> completeness(const storage::SeriesInfo& series,
                                                        const storage::TimeBins& bins,

@@ -70,16 +70,17 @@ std::map<std::int64_t, std::string> StoredTelemetry::source_names() const {
   return storage::source_names(database_);
 }
 
-std::unique_ptr<Stretches> StoredTelemetry::stretches(const storage::SeriesInfo& series,
-                                                      storage::TimeRange range, std::size_t chunks,
-                                                      storage::WantedColumns wanted) const {
-  struct OfFile final : Stretches {
-    explicit OfFile(storage::SeriesStretches&& stretches) : reader(std::move(stretches)) {}
+std::unique_ptr<SampleBatches> StoredTelemetry::stretches(const storage::SeriesInfo& series,
+                                                          storage::TimeRange range,
+                                                          std::size_t chunks,
+                                                          storage::WantedColumns wanted) const {
+  struct OfFile final : SampleBatches {
+    explicit OfFile(storage::SeriesBatches&& stretches) : reader(std::move(stretches)) {}
     bool next(storage::SampleColumns& stretch) override { return reader.next(stretch); }
-    storage::SeriesStretches reader;
+    storage::SeriesBatches reader;
   };
   return std::make_unique<OfFile>(
-      storage::SeriesStretches(database_, series.id, range, chunks, wanted));
+      storage::SeriesBatches(database_, series.id, range, chunks, wanted));
 }
 
 std::vector<storage::BinCounts> StoredTelemetry::completeness(const storage::SeriesInfo& series,

@@ -114,7 +114,7 @@ HistoryPage samples_page(storage::Database& database, const HistoryQuery& query)
     range.begin = last + 1;
   }
   if (!series || range.begin >= range.end) return maker.page();
-  storage::SeriesStretches stretches(database, series->id, range, 1, {});
+  storage::SeriesBatches stretches(database, series->id, range, 1, {});
   storage::SampleColumns samples;
   while (stretches.next(samples))
     for (std::size_t first = 0; first < samples.size(); first += samples_of_row) {

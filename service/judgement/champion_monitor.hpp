@@ -16,7 +16,7 @@
 #include "identification/statistics/change_detection.hpp"
 #include "service/config/config.hpp"
 #include "service/model/model_version.hpp"
-#include "service/windows/kept_window.hpp"
+#include "service/windows/window_cache.hpp"
 #include "storage/archive/archive.hpp"
 #include "storage/registry/registry.hpp"
 
@@ -63,7 +63,7 @@ class ChampionMonitor {
   const Checks checks_;
   std::int64_t version_ = 0;  // that is watched; 0 before the first
   EquipmentModel model_;
-  std::optional<KeptWindow> telemetry_;  // of the newest blocks and of as many as the reference
+  std::optional<WindowCache> telemetry_;  // of the newest blocks and of as many as the reference
   Duration block_ = 0;
   storage::Time next_ = 0;        // begin of the next block
   storage::Time since_ = 0;       // end of the last block that spoke against a drift

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "identification/correction/correction.hpp"
+#include "identification/correction/pole_placement_search.hpp"
 #include "identification/simulation/simulate.hpp"
 #include "service/judgement/run_comparison.hpp"
 #include "service/model/model_json.hpp"

@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/correction/correction.hpp"
+#include "identification/correction/pole_placement_search.hpp"
 #include "identification/simulation/simulate.hpp"
-#include "service/windows/kept_window.hpp"
+#include "service/windows/window_cache.hpp"
 #include "service/windows/window_data.hpp"
 
 namespace reident {
@@ -82,7 +82,7 @@ std::optional<RunsOfBoth> run_both(const storage::Archive& archive, const Equipm
                                    const Checks& checks, storage::TimeRange range,
                                    Duration run_up) {
   const storage::TimeRange longer{range.begin - run_up, range.end};
-  auto loaded = KeptWindow(request, 1, checks).load(archive, longer);
+  auto loaded = WindowCache(request, 1, checks).load(archive, longer);
   auto* data = std::get_if<WindowData>(&loaded);
   if (!data) return std::nullopt;
   Record& record = data->record;

@@ -11,7 +11,7 @@
 #include "identification/statistics/comparison.hpp"
 #include "service/judgement/gate.hpp"
 #include "service/model/model_version.hpp"
-#include "service/windows/plausibility.hpp"
+#include "service/windows/telemetry_checks.hpp"
 #include "service/windows/window_data.hpp"
 #include "storage/archive/archive.hpp"
 

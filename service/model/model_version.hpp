@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "identification/simulation/integral_feedback.hpp"
 #include "identification/simulation/simulate.hpp"
 #include "identification/simulation/state_space.hpp"
-#include "identification/simulation/tracking.hpp"
 #include "service/model/derived_inputs.hpp"
 #include "storage/types/telemetry.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "service/judgement/probation.hpp"
+#include "service/judgement/confirmation.hpp"
 #include "service/operations/refresh.hpp"
 #include "service/support/floor_divide.hpp"
 #include "storage/archive/archive.hpp"
@@ -115,7 +115,7 @@ class Backfill {
                std::vector<std::optional<PreparedWindow>>& prepared) {
     storage::Database database(config_.database, storage::Database::Mode::read_only);
     const storage::Archive archive(database);
-    KeptWindow kept = kept_window_of(*plan.spacecraft, *plan.equipment);
+    WindowCache kept = window_cache_of(*plan.spacecraft, *plan.equipment);
     for (std::size_t i = first; i < std::min(first + run_length, prepared.size()); ++i)
       prepared[i] = prepare_window(archive, request_of_window(plan, plan.ends[begin + i]), kept,
                                    on_all_cores(), [] { return false; });
@@ -131,7 +131,7 @@ class Backfill {
         behind_champion(registry_, request.spacecraft, request.equipment.name, request.window);
     if (window.begin > request.window.begin) {  // it was prepared before the champion was known
       request.window = window;
-      KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
+      WindowCache kept = window_cache_of(request.spacecraft, request.equipment);
       prepared = prepare_window(archive_, request, kept, on_all_cores(), [] { return false; });
     }
     RefreshResult result = judge(archive_, registry_, request, std::move(prepared));

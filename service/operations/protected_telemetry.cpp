@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "service/judgement/probation.hpp"
+#include "service/judgement/confirmation.hpp"
 #include "service/model/model_json.hpp"
 #include "service/windows/provenance.hpp"
 #include "service/windows/window_data.hpp"
@@ -13,7 +13,7 @@
 namespace reident {
 namespace {
 
-using storage::ProtectedStretch;
+using storage::ProtectedRange;
 using storage::TimeRange;
 using Descriptors = std::vector<storage::ParameterDescriptor>;
 
@@ -22,7 +22,7 @@ storage::Time before(storage::Time time, Duration by) {
   return time < earliest + by ? earliest : time - by;
 }
 
-void add(std::vector<ProtectedStretch>& stretches, const std::string& spacecraft,
+void add(std::vector<ProtectedRange>& stretches, const std::string& spacecraft,
          const Descriptors& descriptors, const std::vector<std::string>& names, TimeRange range) {
   for (const std::string& name : names) {
     bool is_known = false;
@@ -43,7 +43,7 @@ std::vector<std::string> parameters_of(const EquipmentModel& model) {
 }
 
 /// What the version was made from, and all of `range`.
-void add(std::vector<ProtectedStretch>& stretches, const Descriptors& descriptors,
+void add(std::vector<ProtectedRange>& stretches, const Descriptors& descriptors,
          const storage::Version& version, TimeRange range) {
   try {
     const EquipmentModel model = equipment_model_from_json(version.model_json);
@@ -63,9 +63,9 @@ void add(std::vector<ProtectedStretch>& stretches, const Descriptors& descriptor
 
 }  // namespace
 
-std::vector<ProtectedStretch> telemetry_of_versions(const storage::Archive& archive,
-                                                    const storage::Registry& registry) {
-  std::vector<ProtectedStretch> stretches;
+std::vector<ProtectedRange> telemetry_of_versions(const storage::Archive& archive,
+                                                  const storage::Registry& registry) {
+  std::vector<ProtectedRange> stretches;
   for (const storage::EquipmentName& equipment : registry.equipment()) {
     std::set<std::int64_t> published;
     for (const storage::Decision& decision :
@@ -81,10 +81,10 @@ std::vector<ProtectedStretch> telemetry_of_versions(const storage::Archive& arch
   return stretches;
 }
 
-std::vector<ProtectedStretch> telemetry_still_needed(const storage::Archive& archive,
-                                                     const storage::Registry& registry,
-                                                     const Config& config, storage::Time now) {
-  std::vector<ProtectedStretch> stretches;
+std::vector<ProtectedRange> telemetry_still_needed(const storage::Archive& archive,
+                                                   const storage::Registry& registry,
+                                                   const Config& config, storage::Time now) {
+  std::vector<ProtectedRange> stretches;
   for (const SpacecraftConfig& spacecraft : config.spacecraft) {
     const auto extent = archive.extent(spacecraft.name, storage::Origin::real);
     if (!extent) continue;

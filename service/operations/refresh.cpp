@@ -223,7 +223,7 @@ storage::TimeRange behind_champion(const storage::Registry& registry, const std:
 }
 
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,
-                      const RefreshRequest& request, KeptWindow& kept,
+                      const RefreshRequest& request, WindowCache& kept,
                       const identification::ForEach& for_each, const std::function<bool()>& stop) {
   return judge(archive, registry, request, prepare_window(archive, request, kept, for_each, stop));
 }

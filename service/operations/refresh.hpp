@@ -33,7 +33,7 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
 
 /// prepare_window, then judge.
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,
-                      const RefreshRequest& request, KeptWindow& kept,
+                      const RefreshRequest& request, WindowCache& kept,
                       const identification::ForEach& for_each, const std::function<bool()>& stop);
 
 }  // namespace reident

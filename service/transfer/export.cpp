@@ -124,7 +124,7 @@ class Export {
 
   /// A series on its way into the columns of a wide file.
   struct Column {
-    std::unique_ptr<history::Stretches> reader;
+    std::unique_ptr<history::SampleBatches> reader;
     SampleColumns stretch;
     std::size_t at = 0;
     bool at_end = false;

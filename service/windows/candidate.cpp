@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "identification/correction/correction.hpp"
-#include "identification/correction/tracking_search.hpp"
+#include "identification/correction/integral_feedback_search.hpp"
+#include "identification/correction/pole_placement_search.hpp"
 #include "identification/fit/adaptation.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
@@ -123,7 +123,7 @@ void refuse_implausible(const RefreshRequest& request, PreparedWindow& prepared)
                      100 * data.coverage, 100 * request.equipment.min_coverage));
 }
 
-void identify_window(const RefreshRequest& request, KeptWindow& kept,
+void identify_window(const RefreshRequest& request, WindowCache& kept,
                      const identification::ForEach& for_each, const std::function<bool()>& stop,
                      PreparedWindow& prepared) {
   const WindowData& data = prepared.data;
@@ -254,7 +254,7 @@ identification::IdentifyOptions options_of(const EquipmentConfig& equipment) {
   return options;
 }
 
-KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
+WindowCache window_cache_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
   return {request_of(spacecraft, equipment), block_rows_needed(options_of(equipment)),
           checks_of(equipment)};
 }
@@ -265,7 +265,7 @@ void refuse_damaged(PreparedWindow& prepared, const storage::Error& error) {
 }
 
 PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
-                              KeptWindow& kept, const identification::ForEach& for_each,
+                              WindowCache& kept, const identification::ForEach& for_each,
                               const std::function<bool()>& stop) {
   PreparedWindow prepared;
   prepared.attempt.spacecraft = request.spacecraft;

@@ -17,7 +17,7 @@
 #include "service/config/config.hpp"
 #include "service/model/model_version.hpp"
 #include "service/support/phase_timer.hpp"
-#include "service/windows/kept_window.hpp"
+#include "service/windows/window_cache.hpp"
 #include "storage/archive/archive.hpp"
 #include "storage/registry/registry.hpp"
 
@@ -85,12 +85,12 @@ void let_follow(PreparedWindow& prepared);
 identification::IdentifyOptions options_of(const EquipmentConfig& equipment);
 
 /// What is kept of the equipment's windows.
-KeptWindow kept_window_of(const std::string& spacecraft, const EquipmentConfig& equipment);
+WindowCache window_cache_of(const std::string& spacecraft, const EquipmentConfig& equipment);
 
 /// `kept` is of the same spacecraft and equipment. The search runs on `for_each`, or on the calling
 /// thread where it is empty.
 PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
-                              KeptWindow& kept, const identification::ForEach& for_each,
+                              WindowCache& kept, const identification::ForEach& for_each,
                               const std::function<bool()>& stop);
 
 }  // namespace reident

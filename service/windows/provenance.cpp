@@ -116,7 +116,7 @@ RefreshRequest request_from(const ordered_json& provenance) {
 }
 
 std::string digest_of_window(const storage::Archive& archive, const RefreshRequest& request) {
-  KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
+  WindowCache kept = window_cache_of(request.spacecraft, request.equipment);
   const auto loaded = kept.load(archive, request.window);
   const auto* data = std::get_if<WindowData>(&loaded);
   return data ? digest_of_samples(data->record, kept.request()) : "";
@@ -252,7 +252,7 @@ Reproduction reproduce(const storage::Archive& archive, const storage::Registry&
     throw std::invalid_argument(std::string("the version does not say where it comes from: ") +
                                 error.what());
   }
-  KeptWindow kept = kept_window_of(request.spacecraft, request.equipment);
+  WindowCache kept = window_cache_of(request.spacecraft, request.equipment);
   const storage::Archive then =
       as_it_was(archive, request, version.samples_digest, result.revisions);
   PreparedWindow prepared = prepare_window(then, request, kept, for_each, [] { return false; });

@@ -64,7 +64,7 @@ struct WindowData {
   std::vector<Signal> inputs, outputs;  // as they are described; their ranges are not set
   std::vector<Channel> input_channels;  // that the inputs are computed from
   std::vector<Channel> output_channels;
-  Plausibility plausibility;  // of a KeptWindow with checks: its holes are not in the record
+  Plausibility plausibility;  // of a WindowCache with checks: its holes are not in the record
   double coverage = 0;        // share of the window's ticks that have a row
   double read_coverage = 0;   // the same before holes were made of what is not believed
 };

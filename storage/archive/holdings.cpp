@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "storage/archive/archive_access.hpp"
-#include "storage/database/connection.hpp"
 #include "storage/archive/sequence.hpp"
+#include "storage/database/connection.hpp"
 
 namespace reident::storage {
 
@@ -61,11 +61,11 @@ std::map<std::int64_t, std::string> source_names(const Database& database) {
   return names;
 }
 
-SeriesStretches::SeriesStretches(const Database& database, std::int64_t series, TimeRange range,
-                                 std::size_t chunks, WantedColumns wanted)
+SeriesBatches::SeriesBatches(const Database& database, std::int64_t series, TimeRange range,
+                             std::size_t chunks, WantedColumns wanted)
     : database_(&database), series_(series), range_(range), chunks_(chunks), wanted_(wanted) {}
 
-bool SeriesStretches::next(SampleColumns& stretch) {
+bool SeriesBatches::next(SampleColumns& stretch) {
   stretch = {};
   while (!at_end_ && stretch.empty()) {
     Time end = range_.end;

@@ -30,12 +30,12 @@ void each_sequence_gap(const Database& database, const std::optional<GapKey>& be
 std::map<std::int64_t, std::string> source_names(const Database& database);
 
 /// Reads one series forward. Each stretch is a snapshot of its own.
-class SeriesStretches {
+class SeriesBatches {
  public:
   /// `chunks` bounds the memory: a stretch has the samples of so many chunks, and what is recent.
   /// The database must outlive this object.
-  SeriesStretches(const Database& database, std::int64_t series, TimeRange range,
-                  std::size_t chunks, WantedColumns wanted);
+  SeriesBatches(const Database& database, std::int64_t series, TimeRange range, std::size_t chunks,
+                WantedColumns wanted);
 
   /// The next samples in place of those that `stretch` held; false, and none, at the end. Throws
   /// Error (corrupt) where they cannot be decoded.

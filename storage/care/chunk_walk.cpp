@@ -41,7 +41,7 @@ void add(std::vector<TimeRange>& ranges, TimeRange range) {
 }  // namespace
 
 ChunkWalk::ChunkWalk(sqlite::Connection& connection, const RetentionRule& rule,
-                     const std::vector<ProtectedStretch>& protection, Time now)
+                     const std::vector<ProtectedRange>& protection, Time now)
     : connection_(connection) {
   std::map<std::string, Time> old;
   if (rule.keep) old = cutoffs(connection, *rule.keep, now);
@@ -58,9 +58,9 @@ ChunkWalk::ChunkWalk(sqlite::Connection& connection, const RetentionRule& rule,
   protect(protection);
 }
 
-void ChunkWalk::protect(const std::vector<ProtectedStretch>& protection) {
+void ChunkWalk::protect(const std::vector<ProtectedRange>& protection) {
   for (Place& place : places_)
-    for (const ProtectedStretch& stretch : protection)
+    for (const ProtectedRange& stretch : protection)
       if (stretch.spacecraft == place.spacecraft &&
           (!stretch.parameter || *stretch.parameter == place.parameter))
         add(place.kept, stretch.range);

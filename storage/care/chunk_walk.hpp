@@ -24,9 +24,9 @@ class ChunkWalk {
   };
 
   ChunkWalk(sqlite::Connection& connection, const RetentionRule& rule,
-            const std::vector<ProtectedStretch>& protection, Time now);
+            const std::vector<ProtectedRange>& protection, Time now);
 
-  void protect(const std::vector<ProtectedStretch>& protection);
+  void protect(const std::vector<ProtectedRange>& protection);
 
   /// Offers `visit` one chunk after the other: first what is too old, then, while `excess` says so,
   /// what is oldest. `excess` is asked before each of these. Where `visit` says no, the walk ends

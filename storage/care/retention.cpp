@@ -98,7 +98,7 @@ void record(sqlite::Connection& connection, ChunkStore& chunks, const ChunkWalk:
 }  // namespace
 
 RetentionReport plan_retention(Database& database, const RetentionRule& rule,
-                               const std::vector<ProtectedStretch>& protection, Time now) {
+                               const std::vector<ProtectedRange>& protection, Time now) {
   sqlite::Connection& db = connection(database);
   const sqlite::ReadTransaction snapshot(db);
   RetentionReport report;
@@ -118,7 +118,7 @@ RetentionReport plan_retention(Database& database, const RetentionRule& rule,
 }
 
 Retention::Retention(Archive& archive, const RetentionRule& rule,
-                     const std::vector<ProtectedStretch>& protection, Time now)
+                     const std::vector<ProtectedRange>& protection, Time now)
     : archive_(archive),
       rule_(rule),
       now_(now),
@@ -126,7 +126,7 @@ Retention::Retention(Archive& archive, const RetentionRule& rule,
 
 Retention::~Retention() = default;
 
-void Retention::protect(const std::vector<ProtectedStretch>& protection) {
+void Retention::protect(const std::vector<ProtectedRange>& protection) {
   walk_->protect(protection);
 }
 

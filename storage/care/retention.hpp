@@ -28,7 +28,7 @@ struct RetentionRule {
 };
 
 /// Telemetry that stays, of both origins.
-struct ProtectedStretch {
+struct ProtectedRange {
   std::string spacecraft;
   std::optional<std::uint32_t> parameter;  // absent: of every parameter
   TimeRange range;
@@ -47,7 +47,7 @@ struct RetentionReport {
 /// What a rule would remove now; works on a database opened for reading. Samples that are not in
 /// chunks yet are left out, and the room that would be left is an estimate.
 RetentionReport plan_retention(Database& database, const RetentionRule& rule,
-                               const std::vector<ProtectedStretch>& protection, Time now);
+                               const std::vector<ProtectedRange>& protection, Time now);
 
 class ChunkWalk;
 
@@ -57,13 +57,13 @@ class Retention {
  public:
   /// Looks at the series that there are; those that come later have nothing old.
   Retention(Archive& archive, const RetentionRule& rule,
-            const std::vector<ProtectedStretch>& protection, Time now);
+            const std::vector<ProtectedRange>& protection, Time now);
   ~Retention();
 
   /// One transaction, of at most `chunks_of_step` chunks. False when nothing is left to remove.
   bool step();
   /// More is protected from now on.
-  void protect(const std::vector<ProtectedStretch>& protection);
+  void protect(const std::vector<ProtectedRange>& protection);
   const RetentionReport& report() const { return report_; }
 
   static constexpr std::size_t chunks_of_step = 256;

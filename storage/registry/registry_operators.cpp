@@ -20,26 +20,26 @@ void add_hold(sqlite::Connection& connection, const std::string& spacecraft,
 }
 
 // The table keeps a request's number with the same bits as a signed one.
-struct KeptCommand {
+struct StoredCommand {
   Command command;
   CommandOutcome outcome;
 };
 
-std::optional<KeptCommand> kept_command(sqlite::Connection& connection, const Command& asked) {
+std::optional<StoredCommand> kept_command(sqlite::Connection& connection, const Command& asked) {
   sqlite::Query row = connection.query(
       "SELECT action, spacecraft, equipment, version, actor, reason, ok, reply FROM command "
       "WHERE requester = ? AND request = ?",
       asked.requester, asked.request);
   if (!row.step()) return std::nullopt;
-  return KeptCommand{{.requester = asked.requester,
-                      .request = asked.request,
-                      .action = row.text(0),
-                      .spacecraft = row.text(1),
-                      .equipment = row.text(2),
-                      .version = row.integer(3),
-                      .actor = row.text(4),
-                      .reason = row.text(5)},
-                     {.ok = row.integer(6) != 0, .reply = row.text(7)}};
+  return StoredCommand{{.requester = asked.requester,
+                        .request = asked.request,
+                        .action = row.text(0),
+                        .spacecraft = row.text(1),
+                        .equipment = row.text(2),
+                        .version = row.integer(3),
+                        .actor = row.text(4),
+                        .reason = row.text(5)},
+                       {.ok = row.integer(6) != 0, .reply = row.text(7)}};
 }
 
 void keep_command(sqlite::Connection& connection, const Command& command,

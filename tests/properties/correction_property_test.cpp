@@ -7,8 +7,8 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include "identification/correction/integral_feedback_search.hpp"
 #include "identification/correction/pole_placement.hpp"
-#include "identification/correction/tracking_search.hpp"
 #include "tests/properties/any_record.hpp"
 
 namespace reident::identification {

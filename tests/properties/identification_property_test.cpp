@@ -6,9 +6,9 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include "identification/subspace/hankel.hpp"
+#include "identification/fit/output_error_fit.hpp"
 #include "identification/search/identify.hpp"
-#include "identification/fit/response.hpp"
+#include "identification/subspace/hankel.hpp"
 #include "identification/subspace/subspace.hpp"
 #include "tests/properties/any_record.hpp"
 

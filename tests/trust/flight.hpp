@@ -21,7 +21,7 @@ std::vector<storage::ParameterDescriptor> telemetry_of(const SpacecraftConfig& s
 /// What is known of a life beside what the services hear.
 struct Known {
   KnownSeries truth;      // of perfect sensors
-  KnownSeries clean;      // without lies
+  KnownSeries clean;      // without faults
   KnownSeries simulated;  // of the hand-written simulator
 };
 

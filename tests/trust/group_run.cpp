@@ -12,7 +12,7 @@
 namespace reident::trust {
 namespace {
 
-using satcs::LieKind;
+using satcs::FaultKind;
 
 /// With the group's equipment alone.
 Config config_of(const LifeGroup& group, Config config) {
@@ -23,7 +23,7 @@ Config config_of(const LifeGroup& group, Config config) {
   return config;
 }
 
-/// One scenario on its way: its lies and its service.
+/// One scenario on its way: its faults and its service.
 class Telling {
  public:
   Telling(const Scenario& scenario, const LifeGroup& group, const Config& config,
@@ -33,9 +33,9 @@ class Telling {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     config_.database = folder_ / "reident.db";
-    satcs::LiarOptions options;
+    satcs::FaultInjectorOptions options;
     options.seed = group.seed;
-    liar_.emplace(scenario.lies, descriptors, options);
+    injector_.emplace(scenario.faults, descriptors, options);
     service_.emplace(config_);
     service_->describe(descriptors);
   }
@@ -47,7 +47,7 @@ class Telling {
   /// A frame of the spacecraft.
   void take(const storage::TelemetryFrame& frame) {
     storage::TelemetryFrame copy = frame;
-    liar_->take(std::move(copy), received_);
+    injector_->take(std::move(copy), received_);
     hand_over();
   }
   void take_simulated(const storage::TelemetryFrame& frame) {
@@ -55,7 +55,7 @@ class Telling {
     service_->receive(std::move(copy));
   }
   void finish() {
-    liar_->flush(received_);
+    injector_->flush(received_);
     hand_over();
     service_->finish();
   }
@@ -73,30 +73,30 @@ class Telling {
   std::filesystem::path folder_;
   Databases databases_;
   Config config_;
-  std::optional<satcs::Liar> liar_;
+  std::optional<satcs::FaultInjector> injector_;
   std::optional<SimulatedService> service_;
   std::vector<storage::TelemetryFrame> received_;
 };
 
-/// Whether the lie keeps an equipment of these parameters from hearing the truth while it lasts.
-bool misleads(const satcs::Lie& lie, const std::vector<std::string>& parameters) {
+/// Whether the fault keeps an equipment of these parameters from hearing the truth while it lasts.
+bool misleads(const satcs::Fault& fault, const std::vector<std::string>& parameters) {
   const auto is_one = [&parameters](const std::string& name) {
     return std::find(parameters.begin(), parameters.end(), name) != parameters.end();
   };
-  switch (lie.kind) {
-    case LieKind::frames_lost:
-    case LieKind::two_stations:
-    case LieKind::two_stamping_stations:
-    case LieKind::duplicated_day:
-    case LieKind::repeated_day:
+  switch (fault.kind) {
+    case FaultKind::frames_lost:
+    case FaultKind::two_stations:
+    case FaultKind::two_stamping_stations:
+    case FaultKind::duplicated_day:
+    case FaultKind::repeated_day:
       return false;
-    case LieKind::passes_lost:
-    case LieKind::backwards_playback:
-    case LieKind::time_jump:
-    case LieKind::simulated_as_real:
+    case FaultKind::passes_lost:
+    case FaultKind::backwards_playback:
+    case FaultKind::time_jump:
+    case FaultKind::simulated_as_real:
       return true;
     default:
-      return lie.parameter.empty() || is_one(lie.parameter) || is_one(lie.other);
+      return fault.parameter.empty() || is_one(fault.parameter) || is_one(fault.other);
   }
 }
 
@@ -161,11 +161,11 @@ class Judge {
                             group_.seed,
                             group_.half(),
                             group_.life,
-                            scenario.lie,
+                            scenario.fault,
                             {group_.start, group_.start + group_.duration},
                             {},
                             group_.events,
-                            scenario.lies};
+                            scenario.faults};
     for (const EquipmentConfig& equipment : spacecraft_.equipment)
       outcome.equipment.push_back(score(scenario, made, equipment));
     return outcome;
@@ -179,10 +179,11 @@ class Judge {
     auto parameters = InputExpressions(equipment.inputs, equipment.derived).parameters();
     parameters.insert(parameters.end(), equipment.outputs.begin(), equipment.outputs.end());
     const auto honest = [&](storage::TimeRange range) {
-      return std::none_of(scenario.lies.begin(), scenario.lies.end(), [&](const satcs::Lie& lie) {
-        return lie.when.begin < range.end && range.begin < lie.when.end &&
-               misleads(lie, parameters);
-      });
+      return std::none_of(scenario.faults.begin(), scenario.faults.end(),
+                          [&](const satcs::Fault& fault) {
+                            return fault.when.begin < range.end && range.begin < fault.when.end &&
+                                   misleads(fault, parameters);
+                          });
     };
     EquipmentOutcome outcome{
         equipment.name,

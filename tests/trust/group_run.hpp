@@ -1,4 +1,4 @@
-// Runs a group of scenarios: the plant once, each scenario's lies and service beside it, then the
+// Runs a group of scenarios: the plant once, each scenario's faults and service beside it, then the
 // score of each.
 #pragma once
 
@@ -28,11 +28,11 @@ struct ScenarioOutcome {
   int number = 0;
   std::uint64_t seed = 0;
   Half half = Half::tuned;
-  std::string life, lie;
+  std::string life, fault;
   storage::TimeRange extent;  // of the telemetry
   std::vector<EquipmentOutcome> equipment;
   std::vector<satcs::reference::LifeEvent> events;
-  std::vector<satcs::Lie> lies;
+  std::vector<satcs::Fault> faults;
 };
 
 /// What becomes of the databases of the scenarios once these are scored.

@@ -1,5 +1,5 @@
 """Scenarios of the trust suite through the real processes: satcs-reference, first as the hand-written
-simulator and then as the spacecraft with its life and its lies, over DDS to reidentd, until no window
+simulator and then as the spacecraft with its life and its faults, over DDS to reidentd, until no window
 is pending. The suite's own score then reads the database; the service never sees the truth.
 
     over_dds.py BUILD [--scenario N...]

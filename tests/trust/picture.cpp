@@ -27,7 +27,7 @@ constexpr std::string_view style = R"(text{font:12px sans-serif;fill:#333}
 .frame{fill:none;stroke:#999}
 .grid{stroke:#000;stroke-opacity:.1}
 .life{fill:#2456b8;fill-opacity:.13}
-.lie{fill:#d1480a;fill-opacity:.16}
+.fault{fill:#d1480a;fill-opacity:.16}
 .truth{fill:none;stroke:#222;stroke-width:1}
 .champion{fill:none;stroke:#d1480a;stroke-width:1.4}
 .oracle{fill:none;stroke:#1c8a4a;stroke-width:1.4}
@@ -53,7 +53,8 @@ struct Panel {
     };
     for (const auto& event : outcome.events)
       band(event.begin, event.end > event.begin ? event.end : outcome.extent.end, "life");
-    for (const satcs::Lie& lie : outcome.lies) band(lie.when.begin, lie.when.end, "lie");
+    for (const satcs::Fault& fault : outcome.faults)
+      band(fault.when.begin, fault.when.end, "fault");
   }
 
   void frame(const Scale& values, double height, std::string_view heading) const {
@@ -128,19 +129,22 @@ std::string picture(const ScenarioOutcome& outcome) {
   const double height = head + panel_height * static_cast<double>(outcome.equipment.size());
   Svg svg(width, height, fmt::format("Scenario {}", outcome.number), style);
   svg.rectangle({0, 0, width, height}, "page");
-  svg.text({20, 28},
-           fmt::format("Scenario {}: life {}, lie {}", outcome.number, outcome.life, outcome.lie),
-           "title");
-  std::string lies;
-  for (const satcs::Lie& lie : outcome.lies)
-    lies += fmt::format("{} {} {} ", name(lie.kind), lie.parameter, lie.other);
-  svg.text({20, 48},
-           fmt::format("From {}, seed {}. {}", time_text(outcome.extent.begin), outcome.seed, lies),
-           "small");
-  svg.text({20, 64},
-           "Blue: life. Orange bands: lies. Green lines: publications, red ones wrong. Dots: drift "
-           "requests. Curves: orange what simulators ran, green the oracle.",
-           "small");
+  svg.text(
+      {20, 28},
+      fmt::format("Scenario {}: life {}, fault {}", outcome.number, outcome.life, outcome.fault),
+      "title");
+  std::string faults;
+  for (const satcs::Fault& fault : outcome.faults)
+    faults += fmt::format("{} {} {} ", name(fault.kind), fault.parameter, fault.other);
+  svg.text(
+      {20, 48},
+      fmt::format("From {}, seed {}. {}", time_text(outcome.extent.begin), outcome.seed, faults),
+      "small");
+  svg.text(
+      {20, 64},
+      "Blue: life. Orange bands: faults. Green lines: publications, red ones wrong. Dots: drift "
+      "requests. Curves: orange what simulators ran, green the oracle.",
+      "small");
   const double days = static_cast<double>(outcome.extent.end - outcome.extent.begin) / day_ns;
   double top = head;
   for (const EquipmentOutcome& equipment : outcome.equipment) {

@@ -1,5 +1,5 @@
 // A scenario as one picture: for each equipment the output's truth and the error of what simulators
-// ran, with publications, drift requests, life and lies.
+// ran, with publications, drift requests, life and faults.
 #pragma once
 
 #include <string>

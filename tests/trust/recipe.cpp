@@ -14,13 +14,13 @@ std::string text_of(const satcs::reference::LifeEvent& event) {
                      time_text(event.end), event.magnitude, event.unit);
 }
 
-std::string text_of(const satcs::Lie& lie) {
-  std::string text =
-      fmt::format("{}@{}/{}", name(lie.kind), time_text(lie.when.begin), time_text(lie.when.end));
-  if (!lie.parameter.empty()) text += ':' + lie.parameter;
-  if (!lie.other.empty()) text += ',' + lie.other;
-  if (lie.magnitude) text += fmt::format("*{}", *lie.magnitude);
-  return text + fmt::format("#{}", lie.seed);
+std::string text_of(const satcs::Fault& fault) {
+  std::string text = fmt::format("{}@{}/{}", name(fault.kind), time_text(fault.when.begin),
+                                 time_text(fault.when.end));
+  if (!fault.parameter.empty()) text += ':' + fault.parameter;
+  if (!fault.other.empty()) text += ',' + fault.other;
+  if (fault.magnitude) text += fmt::format("*{}", *fault.magnitude);
+  return text + fmt::format("#{}", fault.seed);
 }
 
 std::vector<std::string> arguments_of(const LifeGroup& group, Duration duration) {
@@ -40,9 +40,9 @@ Recipe recipe_of(const LifeGroup& group, const Scenario& scenario) {
   Recipe recipe{arguments_of(group, std::min(group.duration, simulator_sends)),
                 arguments_of(group, group.duration)};
   recipe.simulator.emplace_back("--simulated");
-  for (const satcs::Lie& lie : scenario.lies) {
-    recipe.spacecraft.emplace_back("--lie");
-    recipe.spacecraft.push_back(text_of(lie));
+  for (const satcs::Fault& fault : scenario.faults) {
+    recipe.spacecraft.emplace_back("--fault");
+    recipe.spacecraft.push_back(text_of(fault));
   }
   return recipe;
 }

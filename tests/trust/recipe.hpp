@@ -12,7 +12,7 @@ namespace reident::trust {
 /// how fast. It comes each second; every eighth frame is one of the suite's.
 struct Recipe {
   std::vector<std::string> simulator;   // the hand-written one's, which is sent first
-  std::vector<std::string> spacecraft;  // with the lies
+  std::vector<std::string> spacecraft;  // with the faults
 };
 Recipe recipe_of(const LifeGroup& group, const Scenario& scenario);
 

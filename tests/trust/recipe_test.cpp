@@ -11,7 +11,7 @@
 namespace reident::trust {
 namespace {
 
-using satcs::Lie;
+using satcs::Fault;
 using satcs::reference::LifeEvent;
 
 bool same(const LifeEvent& a, const LifeEvent& b) {
@@ -19,7 +19,7 @@ bool same(const LifeEvent& a, const LifeEvent& b) {
          a.unit == b.unit;
 }
 
-bool same(const Lie& a, const Lie& b) {
+bool same(const Fault& a, const Fault& b) {
   return a.kind == b.kind && a.when == b.when && a.parameter == b.parameter && a.other == b.other &&
          a.magnitude == b.magnitude && a.seed == b.seed;
 }
@@ -49,11 +49,12 @@ TEST(Recipe, GivesEveryScenarioBackToTheLastBit) {
               << life[i];
       }
       EXPECT_EQ(parse_duration(values_of("--duration", recipe.spacecraft).at(0)), group.duration);
-      EXPECT_TRUE(values_of("--lie", recipe.simulator).empty());
-      const auto lies = values_of("--lie", recipe.spacecraft);
-      ASSERT_EQ(lies.size(), scenario.lies.size());
-      for (std::size_t i = 0; i < lies.size(); ++i)
-        EXPECT_TRUE(same(std::get<Lie>(satcs::parse_lie(lies[i], 0)), scenario.lies[i])) << lies[i];
+      EXPECT_TRUE(values_of("--fault", recipe.simulator).empty());
+      const auto faults = values_of("--fault", recipe.spacecraft);
+      ASSERT_EQ(faults.size(), scenario.faults.size());
+      for (std::size_t i = 0; i < faults.size(); ++i)
+        EXPECT_TRUE(same(std::get<Fault>(satcs::parse_fault(faults[i], 0)), scenario.faults[i]))
+            << faults[i];
     }
 }
 
@@ -68,20 +69,20 @@ TEST(Recipe, HasAConfigurationOfTheGroupsEquipmentAlone) {
   EXPECT_EQ(spacecraft.relations, whole.spacecraft.front().relations);
 }
 
-TEST(Handful, IsOfBothHalvesAndOfDifferentLivesAndLies) {
-  std::set<std::string> lives, lies;
+TEST(Handful, IsOfBothHalvesAndOfDifferentLivesAndFaults) {
+  std::set<std::string> lives, faults;
   std::multiset<Half> halves;
   for (const LifeGroup& group : all_groups(suite_config().spacecraft.front()))
     for (const Scenario& scenario : group.scenarios) {
       if (!is_of_the_handful(scenario)) continue;
       lives.insert(group.life);
-      lies.insert(scenario.lie);
+      faults.insert(scenario.fault);
       halves.insert(group.half());
     }
   EXPECT_EQ(halves.count(Half::tuned), 2U);
   EXPECT_EQ(halves.count(Half::held_out), 3U);
   EXPECT_EQ(lives.size(), halves.size());
-  EXPECT_GE(lies.size(), 4U);
+  EXPECT_GE(faults.size(), 4U);
 }
 
 }  // namespace

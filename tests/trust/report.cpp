@@ -149,15 +149,15 @@ nlohmann::ordered_json to_json(const Figures& figures) {
 }
 
 std::string table(const Outcomes& outcomes, bool details, Outcomes* worst) {
-  std::map<std::string, Outcomes> by_life, by_lie;
+  std::map<std::string, Outcomes> by_life, by_fault;
   for (const ScenarioOutcome* outcome : outcomes) {
     by_life[outcome->life].push_back(outcome);
-    by_lie[outcome->lie].push_back(outcome);
+    by_fault[outcome->fault].push_back(outcome);
   }
   std::string text;
   add_rows(text, "life", by_life, details, worst);
   text += '\n';
-  add_rows(text, "lie", by_lie, details, worst);
+  add_rows(text, "fault", by_fault, details, worst);
   return text;
 }
 
@@ -198,17 +198,18 @@ void write_report(const std::vector<ScenarioOutcome>& outcomes,
 
 std::string story(const ScenarioOutcome& outcome) {
   std::string text =
-      fmt::format("scenario {}: life {}, lie {}, seed {}, from {}\n", outcome.number, outcome.life,
-                  outcome.lie, outcome.seed, time_text(outcome.extent.begin));
+      fmt::format("scenario {}: life {}, fault {}, seed {}, from {}\n", outcome.number,
+                  outcome.life, outcome.fault, outcome.seed, time_text(outcome.extent.begin));
   const storage::Time start = outcome.extent.begin;
   for (const auto& event : outcome.events)
     text +=
         fmt::format("  day {:.2f} to {:.2f}: {} {:g} of unit {}\n", days_after(start, event.begin),
                     days_after(start, event.end), name(event.kind), event.magnitude, event.unit);
-  for (const satcs::Lie& lie : outcome.lies)
-    text += fmt::format("  day {:.2f} to {:.2f}: {} {} {} {}\n", days_after(start, lie.when.begin),
-                        days_after(start, lie.when.end), name(lie.kind), lie.parameter, lie.other,
-                        lie.magnitude ? fmt::format("{:.3g}", *lie.magnitude) : "");
+  for (const satcs::Fault& fault : outcome.faults)
+    text +=
+        fmt::format("  day {:.2f} to {:.2f}: {} {} {} {}\n", days_after(start, fault.when.begin),
+                    days_after(start, fault.when.end), name(fault.kind), fault.parameter,
+                    fault.other, fault.magnitude ? fmt::format("{:.3g}", *fault.magnitude) : "");
   for (const EquipmentOutcome& equipment : outcome.equipment) {
     std::map<std::string, int> outcomes;
     for (const Attempted& attempt : equipment.attempts) ++outcomes[attempt.outcome];

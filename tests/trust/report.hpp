@@ -38,8 +38,8 @@ struct Figures {
 Figures figures_of(const Outcomes& outcomes);
 nlohmann::ordered_json to_json(const Figures& figures);
 
-/// Rows by life, and rows by lie, in Markdown. With `details`, the worst case of each row is named
-/// and linked to its picture (picture_name), and collected in `worst`.
+/// Rows by life, and rows by fault, in Markdown. With `details`, the worst case of each row is
+/// named and linked to its picture (picture_name), and collected in `worst`.
 std::string table(const Outcomes& outcomes, bool details, Outcomes* worst = nullptr);
 
 std::string picture_name(int scenario);

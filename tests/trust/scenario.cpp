@@ -11,8 +11,8 @@
 namespace reident::trust {
 namespace {
 
-using satcs::Lie;
-using satcs::LieKind;
+using satcs::Fault;
+using satcs::FaultKind;
 using satcs::reference::LifeEvent;
 using satcs::reference::LifeKind;
 
@@ -20,7 +20,7 @@ constexpr storage::Time first_start = 1'498'867'200'000'000'000;  // 2017-07-01T
 constexpr Duration hour = 3'600'000'000'000;
 constexpr Duration day = 24 * hour;
 constexpr Duration telemetry_days = 31;
-constexpr int lies_of_a_life = 4;
+constexpr int faults_of_a_life = 4;
 
 /// A life without its times.
 struct LifePlan {
@@ -95,30 +95,30 @@ std::vector<LifePlan> life_plans() {
   };
 }
 
-/// Which of an equipment's parameters a lie is about.
+/// Which of an equipment's parameters a fault is about.
 enum class Role { none, output, first_input, last_input };
 
-/// A lie without its time.
-struct LiePlan {
-  LieKind kind;
+/// A fault without its time.
+struct FaultPlan {
+  FaultKind kind;
   Role role = Role::none;
   std::optional<double> magnitude = {};  // of a sensor's: in shares of the usual one
 };
 
-std::vector<LiePlan> lie_plans() {
-  using enum LieKind;
-  std::vector<LiePlan> plans;
+std::vector<FaultPlan> fault_plans() {
+  using enum FaultKind;
+  std::vector<FaultPlan> plans;
   constexpr std::array roles{Role::output, Role::first_input, Role::last_input};
-  for (const LieKind kind : {bias_step, drifting_bias, noise_burst, spikes})
+  for (const FaultKind kind : {bias_step, drifting_bias, noise_burst, spikes})
     for (const Role role : roles)
       for (const double share : {0.5, 2.0}) plans.push_back({kind, role, share});
-  for (const LieKind kind : {stuck, stops, wrong_calibration, swapped})
+  for (const FaultKind kind : {stuck, stops, wrong_calibration, swapped})
     for (const Role role : roles) plans.push_back({kind, role});
   for (const double share : {0.05, 0.2, 0.5}) plans.push_back({wrong_validity, Role::none, share});
   for (const double share : {0.1, 0.5}) plans.push_back({frames_lost, Role::none, share});
   for (const double share : {0.3, 0.8}) plans.push_back({passes_lost, Role::none, share});
-  for (const LieKind kind : {backwards_playback, two_stations, two_stamping_stations, time_jump,
-                             duplicated_day, repeated_day, simulated_as_real})
+  for (const FaultKind kind : {backwards_playback, two_stations, two_stamping_stations, time_jump,
+                               duplicated_day, repeated_day, simulated_as_real})
     plans.push_back({kind});
   return plans;
 }
@@ -150,12 +150,12 @@ std::vector<LifeEvent> events_of(const LifePlan& plan, storage::Time change) {
   return events;
 }
 
-/// Usual magnitude of a sensor's lie, in shares of the span between the parameter's limits.
-double usual_share(LieKind kind) {
+/// Usual magnitude of a sensor's fault, in shares of the span between the parameter's limits.
+double usual_share(FaultKind kind) {
   switch (kind) {
-    case LieKind::drifting_bias:
+    case FaultKind::drifting_bias:
       return 0.05;
-    case LieKind::spikes:
+    case FaultKind::spikes:
       return 0.20;
     default:
       return 0.02;
@@ -183,27 +183,27 @@ std::string parameter_of(Role role, const EquipmentConfig& equipment) {
   return role == Role::first_input ? inputs.front() : inputs.back();
 }
 
-/// Half of the lies fall on the change, the others lie apart from it, before or after.
-satcs::Lie lie_of(const LiePlan& plan, const EquipmentConfig& equipment, storage::Time start,
-                  storage::Time change, bool on_the_change, Dice& dice) {
+/// Half of the faults fall on the change, the others fault apart from it, before or after.
+satcs::Fault fault_of(const FaultPlan& plan, const EquipmentConfig& equipment, storage::Time start,
+                      storage::Time change, bool on_the_change, Dice& dice) {
   constexpr std::array days{0.15, 1.0, 3.0, 6.0};
   const double lasts = days[dice.below(days.size())];
   storage::Time begin = after(change, dice.between(-1.0, 1.0));
   if (!on_the_change)
     begin =
         dice.below(2) == 0 ? after(start, dice.between(2, 6)) : after(change, dice.between(6, 9));
-  Lie lie{plan.kind, {begin, after(begin, lasts)}, {}, {}, plan.magnitude, dice.below(1 << 20)};
-  if (plan.role == Role::none) return lie;
-  lie.parameter = parameter_of(plan.role, equipment);
-  if (plan.kind == LieKind::swapped)
-    lie.other =
+  Fault fault{plan.kind, {begin, after(begin, lasts)}, {}, {}, plan.magnitude, dice.below(1 << 20)};
+  if (plan.role == Role::none) return fault;
+  fault.parameter = parameter_of(plan.role, equipment);
+  if (plan.kind == FaultKind::swapped)
+    fault.other =
         parameter_of(plan.role == Role::output ? Role::first_input : Role::output, equipment);
-  // A switch has no analog sensor to lie.
-  else if (plan.kind != LieKind::stops && is_digital(lie.parameter))
-    lie.parameter = parameter_of(Role::output, equipment);
+  // A switch has no analog sensor to fault.
+  else if (plan.kind != FaultKind::stops && is_digital(fault.parameter))
+    fault.parameter = parameter_of(Role::output, equipment);
   if (plan.magnitude)
-    lie.magnitude = *plan.magnitude * usual_share(plan.kind) * span_of(lie.parameter);
-  return lie;
+    fault.magnitude = *plan.magnitude * usual_share(plan.kind) * span_of(fault.parameter);
+  return fault;
 }
 
 const EquipmentConfig& named(const SpacecraftConfig& spacecraft, const std::string& name) {
@@ -217,13 +217,13 @@ const EquipmentConfig& named(const SpacecraftConfig& spacecraft, const std::stri
 std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw) {
   constexpr std::uint64_t seeds_of_a_draw = 10'000;  // even: no seed of a draw is held out
   const std::vector<LifePlan> lives = life_plans();
-  const std::vector<LiePlan> lies = lie_plans();
+  const std::vector<FaultPlan> faults = fault_plans();
   std::vector<LifeGroup> groups;
   int number = 0;
   for (std::uint64_t half = 0; half < (draw == 0 ? 2 : 1); ++half) {
-    // Walks through all lies, far apart from one to the next.
+    // Walks through all faults, far apart from one to the next.
     constexpr std::size_t stride = 31;
-    std::size_t next_lie = 5 * half;
+    std::size_t next_fault = 5 * half;
     for (std::size_t i = 0; i < lives.size(); ++i) {
       const LifePlan& life = lives[i];
       LifeGroup group;
@@ -236,14 +236,14 @@ std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint6
       const storage::Time change = after(group.start, dice.between(12, 15));
       group.events = events_of(life, change);
       group.scenarios.push_back({++number, "none", {}});
-      for (int k = 0; k < lies_of_a_life; ++k, next_lie += stride) {
-        const LiePlan& plan = lies[next_lie % lies.size()];
+      for (int k = 0; k < faults_of_a_life; ++k, next_fault += stride) {
+        const FaultPlan& plan = faults[next_fault % faults.size()];
         const EquipmentConfig& equipment =
             named(spacecraft, life.equipment[dice.below(life.equipment.size())]);
         group.scenarios.push_back(
             {++number,
              std::string(name(plan.kind)),
-             {lie_of(plan, equipment, group.start, change, k % 2 == 0, dice)}});
+             {fault_of(plan, equipment, group.start, change, k % 2 == 0, dice)}});
       }
       groups.push_back(std::move(group));
     }
@@ -266,7 +266,7 @@ LifeGroup short_group() {
   group.events = {{LifeKind::failed_cell, change, change, 2, 1}};
   group.scenarios = {{0,
                       "bias_step",
-                      {{LieKind::bias_step,
+                      {{FaultKind::bias_step,
                         {group.start + 24 * hour, group.start + 30 * hour},
                         "V_BAT1",
                         {},

@@ -1,14 +1,14 @@
 // What happens to a spacecraft and to its telemetry while the service looks on.
 //
 // Scenarios come in groups of one life: the plant runs once for a group, and each scenario of it is
-// told other lies. Numbers, seeds and times are a function of this file alone.
+// told other faults. Numbers, seeds and times are a function of this file alone.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "service/config/config.hpp"
-#include "service/satcs/faults/lies.hpp"
+#include "service/satcs/faults/fault_injector.hpp"
 #include "service/satcs/reference/reference_life.hpp"
 
 namespace reident::trust {
@@ -18,8 +18,8 @@ enum class Half { tuned, held_out };
 
 struct Scenario {
   int number = 0;
-  std::string lie = "none";  // kind of lie, as the table names it
-  std::vector<satcs::Lie> lies;
+  std::string fault = "none";  // kind of fault, as the table names it
+  std::vector<satcs::Fault> faults;
 };
 
 struct LifeGroup {
@@ -43,11 +43,11 @@ inline constexpr Duration simulator_sends = 12 * 86'400'000'000'000;
 /// lives fit these, and others tell.
 std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw = 0);
 
-/// Those that go over real DDS too: every 71st, so that lives and lies are different ones and two
+/// Those that go over real DDS too: every 71st, so that lives and faults are different ones and two
 /// are tuned and three held out.
 bool is_of_the_handful(const Scenario& scenario);
 
-/// Number 0, for tests, and no part of the suite: five days in which a sensor lies and, later, a
+/// Number 0, for tests, and no part of the suite: five days in which a sensor faults and, later, a
 /// battery's cells fail.
 LifeGroup short_group();
 

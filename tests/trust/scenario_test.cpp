@@ -23,16 +23,16 @@ TEST(Scenarios, AreManyAndNumberedOnce) {
   EXPECT_EQ(numbers.size(), scenarios);
 }
 
-TEST(Scenarios, HaveEveryLifeAndEveryLieInBothHalves) {
+TEST(Scenarios, HaveEveryLifeAndEveryFaultInBothHalves) {
   std::map<Half, std::set<satcs::reference::LifeKind>> lives;
-  std::map<Half, std::set<std::string>> lies;
+  std::map<Half, std::set<std::string>> faults;
   for (const LifeGroup& group : all_groups(suite_config().spacecraft.front())) {
     for (const auto& event : group.events) lives[group.half()].insert(event.kind);
-    for (const Scenario& scenario : group.scenarios) lies[group.half()].insert(scenario.lie);
+    for (const Scenario& scenario : group.scenarios) faults[group.half()].insert(scenario.fault);
   }
   for (const Half half : {Half::tuned, Half::held_out}) {
     EXPECT_EQ(lives[half].size(), satcs::reference::life_kinds().size());
-    EXPECT_EQ(lies[half].size(), satcs::lie_kinds + 1);  // and none
+    EXPECT_EQ(faults[half].size(), satcs::fault_kinds + 1);  // and none
   }
 }
 
@@ -58,8 +58,8 @@ TEST(Scenarios, CanHappen) {
   for (const LifeGroup& group : all_groups(suite_config().spacecraft.front())) {
     for (const auto& event : group.events) EXPECT_EQ(life_mistake(event), "") << group.life;
     for (const Scenario& scenario : group.scenarios)
-      for (const satcs::Lie& lie : scenario.lies) {
-        const auto why = obstacle(lie, descriptors);
+      for (const satcs::Fault& fault : scenario.faults) {
+        const auto why = obstacle(fault, descriptors);
         EXPECT_FALSE(why) << scenario.number << ": " << why->message;
       }
   }
@@ -72,8 +72,8 @@ TEST(Scenarios, AreTheSameEachTime) {
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].start, two[i].start);
     for (std::size_t k = 0; k < one[i].scenarios.size(); ++k)
-      for (std::size_t l = 0; l < one[i].scenarios[k].lies.size(); ++l)
-        EXPECT_EQ(one[i].scenarios[k].lies[l].when, two[i].scenarios[k].lies[l].when);
+      for (std::size_t l = 0; l < one[i].scenarios[k].faults.size(); ++l)
+        EXPECT_EQ(one[i].scenarios[k].faults[l].when, two[i].scenarios[k].faults[l].when);
   }
 }
 

@@ -186,7 +186,7 @@ TEST_F(ScoreOfAChange, FindsAChangeThatIsLostAgain) {
   EXPECT_TRUE(score(tenures, 4).missed());
 }
 
-TEST_F(ScoreOfAChange, DoesNotCountOrbitsWhoseTelemetryLies) {
+TEST_F(ScoreOfAChange, DoesNotCountOrbitsWhoseTelemetryFaults) {
   const auto honest = [](storage::TimeRange range) { return range.begin >= at(change_orbit + 30); };
   const auto oracle = [](auto) { return model_of(4); };
   const ChangeScore change =

@@ -12,7 +12,7 @@
 namespace reident::trust {
 namespace {
 
-using satcs::LieKind;
+using satcs::FaultKind;
 using satcs::reference::LifeKind;
 
 constexpr Duration hour = 3'600'000'000'000;
@@ -51,7 +51,7 @@ TEST(Trust, ABiasedSensorIsNotFollowed) {
   group.scenarios = {
       {1,
        "bias_step",
-       {{LieKind::bias_step, {start + 30 * hour, start + 60 * hour}, "I_BDROUT", {}, 0.8, 1}}}};
+       {{FaultKind::bias_step, {start + 30 * hour, start + 60 * hour}, "I_BDROUT", {}, 0.8, 1}}}};
   const ScenarioOutcome outcome = run(group).front();
   const auto& attempts = outcome.equipment.front().attempts;
   EXPECT_TRUE(std::any_of(attempts.begin(), attempts.end(), [](const Attempted& attempt) {

@@ -25,7 +25,7 @@ SimulatedService::SimulatedService(const Config& config)
                [] { return false; }} {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      kept_.push_back(kept_window_of(spacecraft.name, equipment));
+      kept_.push_back(window_cache_of(spacecraft.name, equipment));
 }
 
 void SimulatedService::describe(const std::vector<storage::ParameterDescriptor>& descriptors) {

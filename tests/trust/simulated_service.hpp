@@ -13,7 +13,7 @@
 
 #include "service/config/config.hpp"
 #include "service/daemon/champion_watch.hpp"
-#include "service/daemon/probation_watch.hpp"
+#include "service/daemon/confirmation_watch.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"
 #include "storage/archive/archive.hpp"
@@ -63,8 +63,8 @@ class SimulatedService {
   storage::Registry registry_;
   WindowFeed feed_;
   ChampionWatch watch_;
-  ProbationWatch probation_watch_;
-  std::vector<KeptWindow> kept_;  // by equipment
+  ConfirmationWatch probation_watch_;
+  std::vector<WindowCache> kept_;  // by equipment
   AttemptContext context_;
   std::vector<storage::TelemetryFrame> batch_;
   storage::Time batch_began_ = 0;

@@ -1,4 +1,4 @@
-// The trust suite: scenarios of life and lies through the real service on a simulated clock.
+// The trust suite: scenarios of life and faults through the real service on a simulated clock.
 
 #include <algorithm>
 #include <atomic>
@@ -29,7 +29,7 @@ struct Options {
   bool list = false, quick = false, handful = false, recipe = false;
   std::vector<int> scenarios;
   std::string half;
-  std::string life, lie;
+  std::string life, fault;
   std::string plot;       // a file, of one scenario
   std::string report;     // a folder
   std::string month;      // a file
@@ -52,7 +52,7 @@ bool is_wanted(const LifeGroup& group, int first_number, const Scenario& scenari
   if (options.half == "tuned" && group.half() != Half::tuned) return false;
   if (options.half == "held-out" && group.half() != Half::held_out) return false;
   if (!options.life.empty() && group.life != options.life) return false;
-  return options.lie.empty() || scenario.lie == options.lie;
+  return options.fault.empty() || scenario.fault == options.fault;
 }
 
 std::vector<LifeGroup> wanted_groups(const Config& config, const Options& options) {
@@ -74,7 +74,7 @@ void list(const std::vector<LifeGroup>& groups) {
   for (const LifeGroup& group : groups)
     for (const Scenario& scenario : group.scenarios)
       fmt::print("{:4} {} {} with {}\n", scenario.number,
-                 group.half() == Half::tuned ? "tuned   " : "held out", group.life, scenario.lie);
+                 group.half() == Half::tuned ? "tuned   " : "held out", group.life, scenario.fault);
 }
 
 /// A line of JSON each: what runs the scenario with the real processes.
@@ -133,7 +133,7 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("The trust suite: life and lies through the real service", "reident_trust");
+  CLI::App app("The trust suite: life and faults through the real service", "reident_trust");
   Options options;
   app.add_flag("--list", options.list, "list the scenarios that are chosen, and run none");
   app.add_flag("--quick", options.quick, "run two scenarios of every sixth life of the tuned half");
@@ -146,7 +146,7 @@ int main(int argc, char** argv) {
   app.add_option("--half", options.half, "run the tuned or the held-out half alone")
       ->check(CLI::IsMember({"tuned", "held-out"}));
   app.add_option("--life", options.life, "run the scenarios of this life alone");
-  app.add_option("--lie", options.lie, "run the scenarios of this lie alone");
+  app.add_option("--fault", options.fault, "run the scenarios of this fault alone");
   app.add_option("--plot", options.plot, "write an SVG picture of the one scenario that is run");
   app.add_option("--report", options.report,
                  "write report.md and pictures of the worst cases into this folder");

@@ -83,7 +83,7 @@ class Truth {
   Duration block_;
 };
 
-/// Identified as the service does, but from telemetry without a lie, its corrections left out;
+/// Identified as the service does, but from telemetry without a fault, its corrections left out;
 /// absent where the window gives no model.
 std::optional<EquipmentModel> oracle(const KnownSeries& clean, const SpacecraftConfig& spacecraft,
                                      const EquipmentConfig& equipment, storage::TimeRange window);

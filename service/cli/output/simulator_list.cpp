@@ -95,7 +95,7 @@ std::string SimulatorRow::text() const {
   return text;
 }
 
-std::vector<SimulatorRow> list_simulators(const PartitionSight& sight,
+std::vector<SimulatorRow> list_simulators(const PartitionSurvey& sight,
                                           const storage::EquipmentName& wanted) {
   std::vector<SimulatorRow> rows;
   for (const ModelAcknowledgement& said : sight.simulators) {

@@ -19,7 +19,7 @@ struct PublishedVersion {
 };
 
 /// What was heard in a partition.
-struct PartitionSight {
+struct PartitionSurvey {
   std::vector<ModelAcknowledgement> simulators;
   std::map<storage::EquipmentName, PublishedVersion> champions;
   std::size_t services = 0;  // that publish versions; 0: the champions are not known
@@ -51,7 +51,7 @@ struct SimulatorRow {
 };
 
 /// Sorted by simulator, spacecraft and equipment. An empty name selects every one.
-std::vector<SimulatorRow> list_simulators(const PartitionSight& sight,
+std::vector<SimulatorRow> list_simulators(const PartitionSurvey& sight,
                                           const storage::EquipmentName& wanted);
 
 }  // namespace reident::cli

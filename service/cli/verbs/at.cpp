@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/output/story.hpp"
+#include "service/cli/history_access.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
-#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
@@ -18,7 +18,7 @@ using storage::Decision;
 using storage::EquipmentName;
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   std::string time;
   std::string subject;
   bool json = false;

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/command.hpp"
-#include "service/cli/config_choice.hpp"
+#include "service/cli/config_options.hpp"
 #include "service/cli/file_errors.hpp"
-#include "service/cli/output/story.hpp"
-#include "service/cli/time_choice.hpp"
+#include "service/cli/output/stored_version.hpp"
+#include "service/cli/time_options.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
@@ -23,7 +23,7 @@ namespace {
 struct Arguments {
   std::optional<std::string> config;
   std::string subject;
-  TimeChoice time;
+  TimeOptions time;
   bool json = false;
 };
 

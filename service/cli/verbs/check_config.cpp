@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/config_choice.hpp"
+#include "service/cli/config_options.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/support/time_text.hpp"
 

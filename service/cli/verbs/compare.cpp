@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "service/cli/history_access.hpp"
 #include "service/cli/model_comparison.hpp"
 #include "service/cli/model_run.hpp"
-#include "service/cli/output/story.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
-#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/model/model_json.hpp"
 #include "service/operations/commands.hpp"
@@ -21,7 +21,7 @@ using nlohmann::ordered_json;
 using RunResult = std::variant<ModelRun, std::string>;
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   std::string equipment;
   std::string first, second;
   RangeOptions range;
@@ -30,20 +30,20 @@ struct Arguments {
 
 /// All that is printed.
 struct Outcome {
-  Story a, b;
+  StoredVersion a, b;
   ModelComparison models;
   storage::TimeRange range;  // of the errors
   storage::Time run_from = 0;
   RunResult run_a, run_b;
 };
 
-std::variant<Story, Refusal> story_of(const history::HistorySource& history, Subject subject,
-                                      const std::string& number) {
+std::variant<StoredVersion, Refusal> story_of(const history::HistorySource& history,
+                                              Subject subject, const std::string& number) {
   subject.version = whole_number(number);
   if (!subject.version)
     return Refusal{fmt::format("{} is no version; give the numbers of two, such as 3 5", number)};
-  auto story = find_story(history, subject);
-  if (const auto* found = std::get_if<Story>(&story);
+  auto story = find_stored_version(history, subject);
+  if (const auto* found = std::get_if<StoredVersion>(&story);
       found != nullptr && !is_well_formed(found->model.dynamics))
     return Refusal{fmt::format("the stored model of version {} is damaged", number)};
   return story;
@@ -56,7 +56,13 @@ std::variant<Outcome, Refusal> compare(const Sources& sources, const Arguments& 
   if (const auto* refusal = std::get_if<Refusal>(&a)) return *refusal;
   auto b = story_of(sources.history, std::get<Subject>(subject), arguments.second);
   if (const auto* refusal = std::get_if<Refusal>(&b)) return *refusal;
-  Outcome outcome{std::get<Story>(std::move(a)), std::get<Story>(std::move(b)), {}, {}, 0, "", ""};
+  Outcome outcome{std::get<StoredVersion>(std::move(a)),
+                  std::get<StoredVersion>(std::move(b)),
+                  {},
+                  {},
+                  0,
+                  "",
+                  ""};
   const EquipmentModel &model_a = outcome.a.model, &model_b = outcome.b.model;
   if (signal_names(model_a.outputs) != signal_names(model_b.outputs))
     return Refusal{"the two versions have other outputs and cannot be compared"};
@@ -84,7 +90,7 @@ ordered_json poles_json(const std::vector<Pole>& poles) {
   return array;
 }
 
-ordered_json version_json(const Story& story, const std::vector<Pole>& poles,
+ordered_json version_json(const StoredVersion& story, const std::vector<Pole>& poles,
                           const RunResult& run) {
   ordered_json inputs = ordered_json::array();
   for (const Signal& input : story.model.inputs)
@@ -133,7 +139,7 @@ void print_json(const Outcome& outcome) {
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
-std::string heading(const Story& story) {
+std::string heading(const StoredVersion& story) {
   return fmt::format("version {}", story.version.number);
 }
 
@@ -214,7 +220,7 @@ void print_errors(const Outcome& outcome) {
 }
 
 void print_text(const Outcome& outcome) {
-  for (const Story* story : {&outcome.a, &outcome.b})
+  for (const StoredVersion* story : {&outcome.a, &outcome.b})
     fmt::print("{} {} ({}): {}, sample period {:g} s\n",
                full_name({story->version.spacecraft, story->version.equipment}), heading(*story),
                story->version.status, story->model.method, story->model.dynamics.period_s);

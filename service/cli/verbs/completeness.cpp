@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/config_choice.hpp"
-#include "service/cli/output/pace.hpp"
-#include "service/cli/output/story.hpp"
+#include "service/cli/config_options.hpp"
+#include "service/cli/history_access.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
-#include "service/cli/source_choice.hpp"
-#include "service/cli/time_choice.hpp"
+#include "service/cli/output/throughput.hpp"
+#include "service/cli/time_options.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
@@ -35,10 +35,10 @@ constexpr std::size_t most_bins = 100'000;
 constexpr int bar_width = 20;
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   std::optional<std::string> spacecraft, equipment;
   std::vector<std::string> parameters;
-  TimeChoice time;
+  TimeOptions time;
   std::string by = "day";
   bool detail = false;
   bool json = false;

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/output/pace.hpp"
-#include "service/cli/source_choice.hpp"
-#include "service/cli/time_choice.hpp"
+#include "service/cli/history_access.hpp"
+#include "service/cli/output/throughput.hpp"
+#include "service/cli/time_options.hpp"
 #include "service/support/output_file.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
@@ -24,10 +24,10 @@ using transfer::ExportReport;
 constexpr const char* standard_output = "-";
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   ExportOptions options;
   std::optional<std::string> origin;
-  TimeChoice time;
+  TimeOptions time;
   std::string output = standard_output;
 };
 
@@ -37,7 +37,7 @@ int write(const history::TelemetrySource& telemetry, const std::vector<storage::
   const bool to_file = arguments.output != standard_output;
   OutputFile file = to_file ? OutputFile(arguments.output) : OutputFile::standard_output();
   Progress bar(stderr, to_file && isatty(STDERR_FILENO) == 1);
-  Pace pace;
+  Throughput pace;
   const ExportReport report = transfer::export_series(
       telemetry, series, arguments.options, [&](std::string_view text) { file.write(text); },
       [&](const ExportProgress& at) {

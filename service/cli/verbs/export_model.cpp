@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/output/story.hpp"
-#include "service/cli/source_choice.hpp"
+#include "service/cli/history_access.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/model_export/model_export.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/output_file.hpp"
@@ -18,7 +18,7 @@ using model_export::ExportedVersion;
 constexpr const char* standard_output = "-";
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   std::string subject;
   std::optional<std::string> fmu, mat, json;
   bool force = false;
@@ -62,7 +62,7 @@ std::optional<Refusal> mistake_in(const std::vector<Target>& targets, bool force
   return std::nullopt;
 }
 
-std::variant<ExportedVersion, Refusal> exported_version(Story story) {
+std::variant<ExportedVersion, Refusal> exported_version(StoredVersion story) {
   ExportedVersion exported;
   exported.status = story.version.status;
   ModelVersion& version = exported.version;
@@ -104,9 +104,9 @@ int run(const Arguments& arguments) {
   const std::vector<Target> targets = targets_of(arguments);
   if (const auto refusal = mistake_in(targets, arguments.force)) return refuse(*refusal);
   return with_sources(arguments.source, [&](const Sources& sources) {
-    auto story = find_story(sources.history, std::get<Subject>(subject));
+    auto story = find_stored_version(sources.history, std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
-    const auto exported = exported_version(std::get<Story>(std::move(story)));
+    const auto exported = exported_version(std::get<StoredVersion>(std::move(story)));
     if (const auto* refusal = std::get_if<Refusal>(&exported)) return refuse(*refusal);
     const auto& version = std::get<ExportedVersion>(exported).version;
     write(std::get<ExportedVersion>(exported), targets, arguments.force);

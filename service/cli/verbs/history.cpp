@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
-#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
@@ -23,7 +23,7 @@ using storage::Hold;
 using storage::VersionSummary;
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   std::string spacecraft;
   std::string equipment;
   std::optional<std::size_t> last;

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/output/pace.hpp"
+#include "service/cli/output/throughput.hpp"
 #include "service/cli/stored.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
@@ -83,7 +83,7 @@ int run(Arguments& arguments) {
   const StopSignal stop;
   return with_writable_database(arguments.database, [&](storage::Database& database) {
     Progress bar;
-    Pace pace;
+    Throughput pace;
     const auto imported =
         transfer::import_file(database, arguments.import, utc_now, [&](const ImportProgress& at) {
           if (bar.due()) bar.update(at.fraction, pace.text(at.fraction, at.samples));

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "service/cli/config_choice.hpp"
+#include "service/cli/config_options.hpp"
 #include "service/cli/operate.hpp"
-#include "service/cli/output/story.hpp"
+#include "service/cli/output/stored_version.hpp"
 
 namespace reident::cli {
 namespace {

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "service/cli/history_access.hpp"
 #include "service/cli/output/model_picture.hpp"
-#include "service/cli/output/story.hpp"
-#include "service/cli/source_choice.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/cli/stored.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
@@ -20,14 +20,14 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   std::string subject;
   std::optional<std::string> output;
   RangeOptions range;
 };
 
 /// Those of which something is in the picture.
-std::vector<PicturePart> parts_of(const Story& story, storage::TimeRange shown) {
+std::vector<PicturePart> parts_of(const StoredVersion& story, storage::TimeRange shown) {
   std::vector<PicturePart> parts = {{"identify", story.model.identified_from}};
   if (const auto tune = tuned_on(story.version)) parts.push_back({"tune", *tune});
   parts.push_back({"validate", story.model.validated_on});
@@ -49,7 +49,8 @@ std::vector<double> singular_values_of(const storage::Attempt& attempt) {
 }
 
 std::variant<std::string, Refusal> picture_of(const storage::SampleSource& archive,
-                                              const Story& story, const RangeOptions& options) {
+                                              const StoredVersion& story,
+                                              const RangeOptions& options) {
   const auto range = range_of(options, story.version.window);
   if (const auto* refusal = std::get_if<Refusal>(&range)) return *refusal;
   const auto& shown = std::get<storage::TimeRange>(range);
@@ -91,9 +92,9 @@ int run(const Arguments& arguments) {
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
   return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto found = find_story(sources.history, std::get<Subject>(subject));
+    const auto found = find_stored_version(sources.history, std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
-    const Story& story = std::get<Story>(found);
+    const StoredVersion& story = std::get<StoredVersion>(found);
     const auto picture = picture_of(sources.telemetry, story, arguments.range);
     if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
     return write_picture(std::get<std::string>(picture),

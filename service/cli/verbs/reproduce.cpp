@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/output/story.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/cli/stored.hpp"
 #include "service/history/stored_sources.hpp"
 #include "service/operations/commands.hpp"
@@ -49,7 +49,7 @@ std::string explanation(const Reproduction& again) {
   return text;
 }
 
-void print(const Story& story, const Reproduction& again, bool json) {
+void print(const StoredVersion& story, const Reproduction& again, bool json) {
   const storage::Version& version = story.version;
   if (json) {
     const ordered_json object = {{"spacecraft", version.spacecraft},
@@ -77,9 +77,10 @@ int run(const Arguments& arguments) {
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
   return with_database(arguments.database, [&](storage::Database& database) {
-    const auto found = find_story(history::StoredHistory(database), std::get<Subject>(subject));
+    const auto found =
+        find_stored_version(history::StoredHistory(database), std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
-    const Story& story = std::get<Story>(found);
+    const StoredVersion& story = std::get<StoredVersion>(found);
     WorkerPool workers(usable_cores());
     const auto on_all_cores = [&workers](std::size_t count,
                                          const std::function<void(std::size_t)>& task) {

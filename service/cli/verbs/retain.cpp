@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/command.hpp"
-#include "service/cli/config_choice.hpp"
+#include "service/cli/config_options.hpp"
 #include "service/cli/file_errors.hpp"
 #include "service/operations/protected_telemetry.hpp"
 #include "service/support/progress.hpp"
@@ -18,7 +18,7 @@
 namespace reident::cli {
 namespace {
 
-using storage::ProtectedStretch;
+using storage::ProtectedRange;
 using storage::RetentionReport;
 using storage::RetentionRule;
 
@@ -64,9 +64,9 @@ std::variant<Request, Refusal> request_of(const Arguments& arguments) {
   return request;
 }
 
-std::vector<ProtectedStretch> protection(const Arguments& arguments, const Request& request,
-                                         storage::Database& database, storage::Time now) {
-  std::vector<ProtectedStretch> all;
+std::vector<ProtectedRange> protection(const Arguments& arguments, const Request& request,
+                                       storage::Database& database, storage::Time now) {
+  std::vector<ProtectedRange> all;
   const storage::Archive archive(database);
   const storage::Registry registry(database);
   if (!arguments.including_versions) all = telemetry_of_versions(archive, registry);

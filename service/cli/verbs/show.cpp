@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "service/cli/history_access.hpp"
 #include "service/cli/output/model_text.hpp"
-#include "service/cli/output/story.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
-#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
@@ -20,7 +20,7 @@ using nlohmann::ordered_json;
 using storage::Decision;
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   std::string subject;
   bool json = false;
 };
@@ -41,7 +41,7 @@ ordered_json provenance_json(const storage::Version& version) {
   return ordered_json::parse(version.provenance_json, nullptr, false);
 }
 
-void print_json(const Story& story) {
+void print_json(const StoredVersion& story) {
   const ordered_json object = {
       {"spacecraft", story.version.spacecraft},
       {"equipment", story.version.equipment},
@@ -128,7 +128,7 @@ void print_continuous(
                matrix_text("A", model->A), matrix_text("B", model->B));
 }
 
-void print_story(const Story& story) {
+void print_story(const StoredVersion& story) {
   const EquipmentModel& model = story.model;
   const identification::StateSpaceModel& dynamics = model.dynamics;
   fmt::print("{} version {}: {}\n", full_name({model.spacecraft, model.equipment}),
@@ -169,12 +169,12 @@ int run(const Arguments& arguments) {
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
   return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto story = find_story(sources.history, std::get<Subject>(subject));
+    const auto story = find_stored_version(sources.history, std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
     if (arguments.json)
-      print_json(std::get<Story>(story));
+      print_json(std::get<StoredVersion>(story));
     else
-      print_story(std::get<Story>(story));
+      print_story(std::get<StoredVersion>(story));
     return static_cast<int>(exit_done);
   });
 }

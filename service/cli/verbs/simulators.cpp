@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/command.hpp"
-#include "service/cli/config_choice.hpp"
-#include "service/cli/output/story.hpp"
+#include "service/cli/config_options.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
-#include "service/cli/partition_sight.hpp"
+#include "service/cli/partition_survey.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {
@@ -100,7 +100,7 @@ bool fits(std::string_view text, std::size_t width) {
 }
 
 void print_text(const Arguments& arguments, const dds::Endpoint& endpoint,
-                const PartitionSight& sight, const std::vector<SimulatorRow>& rows) {
+                const PartitionSurvey& sight, const std::vector<SimulatorRow>& rows) {
   const std::string place =
       fmt::format("domain {}, partition {}", endpoint.domain, endpoint.partition);
   const bool has_service = sight.services > 0;
@@ -164,7 +164,7 @@ ordered_json row_json(const SimulatorRow& row) {
   return json;
 }
 
-void print_json(const dds::Endpoint& endpoint, const PartitionSight& sight,
+void print_json(const dds::Endpoint& endpoint, const PartitionSurvey& sight,
                 const std::vector<SimulatorRow>& rows) {
   ordered_json list = ordered_json::array();
   for (const SimulatorRow& row : rows) list.push_back(row_json(row));
@@ -181,7 +181,7 @@ int run(const Arguments& arguments) {
   const auto wanted = wanted_of(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&wanted)) return refuse(*refusal);
   const dds::Endpoint& endpoint = std::get<dds::Endpoint>(found);
-  const PartitionSight sight =
+  const PartitionSurvey sight =
       look_into(endpoint, std::chrono::duration_cast<std::chrono::nanoseconds>(
                               std::chrono::duration<double>(arguments.wait_s)));
   auto rows = list_simulators(sight, std::get<storage::EquipmentName>(wanted));

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/command.hpp"
-#include "service/cli/config_choice.hpp"
+#include "service/cli/config_options.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/dds/dds.hpp"
 #include "service/support/time_text.hpp"

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "service/cli/history_access.hpp"
 #include "service/cli/output/model_text.hpp"
-#include "service/cli/output/story.hpp"
+#include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
-#include "service/cli/source_choice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
@@ -20,7 +20,7 @@ using nlohmann::ordered_json;
 using Sentences = std::vector<std::string>;
 
 struct Arguments {
-  SourceOptions source;
+  HistoryAccessOptions source;
   std::string subject;
   bool json = false;
 };
@@ -39,7 +39,8 @@ std::string figure(const ordered_json& object, const char* key) {
   return evidence_number(object, key);
 }
 
-void window_sentences(const Story& story, const ordered_json& evidence, Sentences& sentences) {
+void window_sentences(const StoredVersion& story, const ordered_json& evidence,
+                      Sentences& sentences) {
   const storage::TimeRange window = story.version.window;
   sentences.push_back(fmt::format("The window from {} to {} ({}) was tried because of: {}.",
                                   time_text(window.begin), time_text(window.end),
@@ -61,7 +62,7 @@ void window_sentences(const Story& story, const ordered_json& evidence, Sentence
                                   poles_text(story.model.dynamics)));
 }
 
-/// One of the stretches that was left out (service/windows/plausibility.hpp).
+/// One of the stretches that was left out (service/windows/telemetry_checks.hpp).
 std::string implausible_text(const ordered_json& stretch) {
   const auto parameters = stretch.value("parameters", std::vector<std::string>());
   const std::string when = fmt::format("from {} to {}", time_text(stretch.value("begin_ns", 0LL)),
@@ -91,7 +92,8 @@ void implausible_sentences(const ordered_json& evidence, Sentences& sentences) {
           fmt::format("A relation was not applied: {}.", relation.get<std::string>()));
 }
 
-void score_sentences(const Story& story, const ordered_json& evidence, Sentences& sentences) {
+void score_sentences(const StoredVersion& story, const ordered_json& evidence,
+                     Sentences& sentences) {
   std::string free_run =
       fmt::format("Its free run errs by {} % (MRSE) and explains {} % (fit)",
                   figure(evidence, "mrse_percent"), figure(evidence, "fit_percent"));
@@ -168,7 +170,7 @@ void hold_and_warning_sentences(const ordered_json& evidence, Sentences& sentenc
       if (warning.is_string()) sentences.push_back("Warning: " + warning.get<std::string>() + ".");
 }
 
-Sentences sentences_of(const Story& story) {
+Sentences sentences_of(const StoredVersion& story) {
   const ordered_json evidence = evidence_of(story.attempt);
   Sentences sentences;
   window_sentences(story, evidence, sentences);
@@ -184,7 +186,7 @@ Sentences sentences_of(const Story& story) {
   return sentences;
 }
 
-int print(const Story& story, bool json) {
+int print(const StoredVersion& story, bool json) {
   const Sentences sentences = sentences_of(story);
   if (json) {
     const ordered_json object = {{"spacecraft", story.version.spacecraft},
@@ -209,9 +211,9 @@ int run(const Arguments& arguments) {
   const auto subject = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
   return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto story = find_story(sources.history, std::get<Subject>(subject));
+    const auto story = find_stored_version(sources.history, std::get<Subject>(subject));
     if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
-    return print(std::get<Story>(story), arguments.json);
+    return print(std::get<StoredVersion>(story), arguments.json);
   });
 }
 

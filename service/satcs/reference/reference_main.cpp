@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "service/satcs/csv_export.hpp"
-#include "service/satcs/faults/lying_source.hpp"
+#include "service/satcs/faults/faulty_source.hpp"
 #include "service/satcs/program.hpp"
 #include "service/satcs/reference/life_text.hpp"
 #include "service/satcs/reference/reference_source.hpp"
@@ -26,8 +26,8 @@ constexpr const char* about =
     "  satcs-reference --duration 12h --speed 600 --simulated\n"
     "  satcs-reference --duration 30d --speed max --life capacity_fade@+5d/+25d*0.2#1 \\\n"
     "      --life lost_string@2017-07-11#4\n"
-    "  satcs-reference --duration 2d --speed max --lie stuck@+6h/+8h:V_BUS \\\n"
-    "      --lie bias_step@+1d/+30h:I_BUS*0.5 --lie passes_lost@+12h/+36h\n\n"
+    "  satcs-reference --duration 2d --speed max --fault stuck@+6h/+8h:V_BUS \\\n"
+    "      --fault bias_step@+1d/+30h:I_BUS*0.5 --fault passes_lost@+12h/+36h\n\n"
     "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
     "missing\n"
     "or did not take everything; 128 + N stopped by signal N.\n";
@@ -70,22 +70,24 @@ std::vector<reference::LifeEvent> parse_life(const std::vector<std::string>& tex
 }
 
 /// What the ground receives of `truth`. Throws BadRequest.
-std::unique_ptr<FrameSource> with_lies(std::unique_ptr<FrameSource> truth,
-                                       const std::vector<std::string>& texts,
-                                       const ReferenceOptions& options) {
+std::unique_ptr<FrameSource> with_faults(std::unique_ptr<FrameSource> truth,
+                                         const std::vector<std::string>& texts,
+                                         const ReferenceOptions& options) {
   const auto parameters = truth->parameters();
-  std::vector<Lie> lies;
+  std::vector<Fault> faults;
   for (const std::string& text : texts) {
-    auto parsed = parse_lie(text, options.start, mix(options.seed + lies.size()));
-    if (const auto* error = std::get_if<LieError>(&parsed)) {
-      throw BadRequest("--lie: " + error->message);
+    auto parsed = parse_fault(text, options.start, mix(options.seed + faults.size()));
+    if (const auto* error = std::get_if<FaultError>(&parsed)) {
+      throw BadRequest("--fault: " + error->message);
     }
-    auto& lie = std::get<Lie>(parsed);
-    if (const auto error = obstacle(lie, parameters)) throw BadRequest("--lie: " + error->message);
-    lies.push_back(std::move(lie));
+    auto& fault = std::get<Fault>(parsed);
+    if (const auto error = obstacle(fault, parameters))
+      throw BadRequest("--fault: " + error->message);
+    faults.push_back(std::move(fault));
   }
-  return std::make_unique<LyingSource>(std::move(truth), lies,
-                                       LiarOptions{options.constants, options.life, options.seed});
+  return std::make_unique<FaultySource>(
+      std::move(truth), faults,
+      FaultInjectorOptions{options.constants, options.life, options.seed});
 }
 
 }  // namespace
@@ -99,7 +101,7 @@ int main(int argc, char** argv) {
   bool json = false;
   bool simulated = false;
   std::string csv;
-  std::vector<std::string> life, lies;
+  std::vector<std::string> life, faults;
   add_reference_options(app, options);
   app.add_option("--csv", csv, "Write the telemetry to this file and publish nothing")
       ->type_name("FILE");
@@ -112,10 +114,10 @@ int main(int argc, char** argv) {
                      life_kind_names())
       ->type_name("KIND@TIME[/TIME][*MAGNITUDE][#UNIT]")
       ->allow_extra_args(false);
-  app.add_option("--lie", lies,
+  app.add_option("--fault,--lie", faults,
                  "What befalls the telemetry between two times, or two durations after the start;\n"
                  "may be given again. Kinds: " +
-                     lie_kind_names())
+                     fault_kind_names())
       ->type_name("KIND@FROM/TO[:PARAMETER[,OTHER]][*MAGNITUDE][#SEED]")
       ->allow_extra_args(false);
   add_publisher_options(app, sender, publisher, json);
@@ -126,7 +128,7 @@ int main(int argc, char** argv) {
     }
     options.life = parse_life(life, options.start);
     auto source = source_of(options, sender, simulated);
-    if (!lies.empty()) source = with_lies(std::move(source), lies, options);
+    if (!faults.empty()) source = with_faults(std::move(source), faults, options);
     if (csv.empty()) return publish_and_report(*source, sender, publisher, json);
     write_csv(*source, csv);
     return exit_complete;

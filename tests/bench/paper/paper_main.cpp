@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "identification/correction/correction.hpp"
-#include "identification/correction/tracking_search.hpp"
+#include "identification/correction/integral_feedback_search.hpp"
+#include "identification/correction/pole_placement_search.hpp"
 #include "identification/search/identify.hpp"
 #include "identification/simulation/simulate.hpp"
 #include "service/cli/verbs/identify_data.hpp"

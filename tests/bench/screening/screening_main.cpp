@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/samples/tick_ranges.hpp"
-#include "identification/screening/screening.hpp"
+#include "identification/screening/sensor_screening.hpp"
 #include "service/cli/verbs/identify_data.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/search/choice.hpp"
+#include "identification/search/model_search.hpp"
 #include "identification/subspace/kalman.hpp"
 #include "tests/support/naive_n4sid.hpp"
 #include "tests/support/systems.hpp"

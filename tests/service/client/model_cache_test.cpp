@@ -14,8 +14,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include "identification/correction/tracking_search.hpp"
-#include "service/client/kept_version_file.hpp"
+#include "identification/correction/integral_feedback_search.hpp"
+#include "service/client/cached_version_file.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
@@ -24,9 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-KeptVersion kept(std::int64_t number, const std::string& spacecraft = "CBERS4",
-                 const std::string& equipment = "BDR") {
-  KeptVersion one{example_version(number), 100, 200};
+CachedVersion kept(std::int64_t number, const std::string& spacecraft = "CBERS4",
+                   const std::string& equipment = "BDR") {
+  CachedVersion one{example_version(number), 100, 200};
   one.version.model.spacecraft = spacecraft;
   one.version.model.equipment = equipment;
   one.version.digest = model_digest(one.version.model);
@@ -44,10 +44,10 @@ class Cache : public testing::Test {
   ModelCache cache(const std::string& partition = "operations") const {
     return {folder_, partition};
   }
-  void store(const KeptVersion& one) {
+  void store(const CachedVersion& one) {
     cache_.store(one, [this](const CacheFault& fault) { faults_.push_back(fault.reason); });
   }
-  std::vector<KeptVersion> load() {
+  std::vector<CachedVersion> load() {
     return cache().load([this](const CacheFault& fault) { faults_.push_back(fault.reason); });
   }
   std::int64_t loaded() {
@@ -70,7 +70,7 @@ class Cache : public testing::Test {
 };
 
 TEST_F(Cache, gives_back_the_same_bits_and_all_that_goes_with_them) {
-  KeptVersion one = kept(3);
+  CachedVersion one = kept(3);
   one.version.model = full_example_model();
   const identification::Poles poles = {0.5, 0.6, 0.7, 0.8};
   one.version.model.tracking->gain =
@@ -114,7 +114,7 @@ TEST_F(Cache, keeps_every_legal_name_apart_and_inside_the_folder) {
   for (const auto& [spacecraft, equipment] : names) store(kept(1, spacecraft, equipment));
   EXPECT_THAT(faults_, testing::IsEmpty());
   std::vector<storage::EquipmentName> back;
-  for (const KeptVersion& one : load())
+  for (const CachedVersion& one : load())
     back.push_back({one.version.model.spacecraft, one.version.model.equipment});
   EXPECT_THAT(back, testing::UnorderedElementsAreArray(names));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
@@ -130,7 +130,7 @@ TEST_F(Cache, replaces_an_older_version_and_keeps_a_newer_one) {
   store(kept(5));
   store(kept(4));
   EXPECT_EQ(loaded(), 5);
-  KeptVersion back = kept(4);
+  CachedVersion back = kept(4);
   back.version.rollback = true;
   store(back);
   EXPECT_EQ(loaded(), 4);
@@ -156,7 +156,7 @@ TEST_F(Cache, sets_aside_a_file_that_is_damaged_and_starts_without_it) {
   const std::string good = text();
   std::string flipped = good;
   flipped[flipped.find("\"number\":5") + 9] = '7';
-  KeptVersion unstable = kept(5);
+  CachedVersion unstable = kept(5);
   unstable.version.model.dynamics.A(0, 0) = 1.5;
   unstable.version.digest = model_digest(unstable.version.model);
   struct Damage {
@@ -270,7 +270,7 @@ TEST_F(Cache, is_whole_after_a_kill_at_any_moment) {
       cache_.store(kept(number), [](const CacheFault&) {});
     const bool has_begun = eventually([&] {  // without the lock, which the writer needs
       const auto there = read_kept_version(file(), "operations");
-      return std::get<KeptVersion>(there).version.number > last + round;
+      return std::get<CachedVersion>(there).version.number > last + round;
     });
     ::kill(writer, SIGKILL);
     ::waitpid(writer, nullptr, 0);

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "identification/correction/tracking_search.hpp"
+#include "identification/correction/integral_feedback_search.hpp"
 #include "tests/service/model/example_model.hpp"
 
 namespace reident::test {

@@ -20,7 +20,7 @@ class WindowAttempt : public DaemonTest {
   std::optional<RecordedAttempt> try_window(
       storage::TimeRange window, const std::function<void()>& before = [] {}) {
     const WindowFeed::Job job{{0, window, "slide"}, &spacecraft, &equipment, {}};
-    KeptWindow kept = kept_window_of(spacecraft, equipment);
+    WindowCache kept = window_cache_of(spacecraft, equipment);
     return attempt_window(job, archive, registry, kept,
                           {"digest",
                            [&](const auto& task) {

@@ -24,7 +24,7 @@ class Monitor : public DaemonTest {
     return equipment;
   }
   void approve(storage::Time end) {
-    KeptWindow kept = kept_window_of("SAT", equipment());
+    WindowCache kept = window_cache_of("SAT", equipment());
     const RefreshResult result = refresh(
         archive, registry, {"SAT", equipment(), {end - equipment().window, end}, "slide", "digest"},
         kept, {}, [] { return false; });

@@ -16,7 +16,7 @@ class Rivals : public DaemonTest {
   Rivals() { archive.describe(descriptors()); }
 
   RefreshResult run(storage::Time end, const EquipmentConfig& equipment = plant()) {
-    KeptWindow kept = kept_window_of("SAT", equipment);
+    WindowCache kept = window_cache_of("SAT", equipment);
     return refresh(archive, registry,
                    {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, kept, {},
                    [] { return false; });

@@ -16,7 +16,7 @@ TEST_F(DaemonTest, BackfillReachesBackOverNoChampionsBegin) {
   storage::Registry registry(database);
   archive.describe(descriptors());
   archive.append(telemetry(day, 1801));
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   const RefreshResult drift =
       refresh(archive, registry,
               {"SAT", plant(), {day + 12 * minute, day + 19 * minute}, "drift", "digest"}, kept, {},

@@ -15,7 +15,7 @@ namespace reident::test {
 namespace {
 
 using storage::DecisionKind;
-using storage::ProtectedStretch;
+using storage::ProtectedRange;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -31,17 +31,15 @@ class ProtectedTelemetry : public DaemonTest {
   /// The version of the window that ends at `end`, with a decision of that kind.
   std::int64_t record(storage::Time end, DecisionKind kind = DecisionKind::approve,
                       const std::string& outcome = "approved") {
-    KeptWindow kept = kept_window_of("SAT", plant());
+    WindowCache kept = window_cache_of("SAT", plant());
     RefreshResult result =
         refresh(archive, registry, {"SAT", plant(), {end - plant().window, end}, "slide", "digest"},
                 kept, {}, [] { return false; });
     result.attempt.outcome = outcome;
     return registry.record(result.attempt, result.version, {kind, "gate", "test"});
   }
-  std::vector<ProtectedStretch> stretches() const {
-    return telemetry_of_versions(archive, registry);
-  }
-  void remove_all_but(const std::vector<ProtectedStretch>& protection) {
+  std::vector<ProtectedRange> stretches() const { return telemetry_of_versions(archive, registry); }
+  void remove_all_but(const std::vector<ProtectedRange>& protection) {
     archive.compact();
     storage::Retention retention(archive, {.keep = minute}, protection, latest);
     while (retention.step()) {

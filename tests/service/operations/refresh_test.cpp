@@ -17,10 +17,10 @@ class Refresh : public DaemonTest {
   Refresh() { archive.describe(descriptors()); }
 
   RefreshResult run(storage::Time end, const EquipmentConfig& equipment = plant()) {
-    KeptWindow nothing = kept_window_of("SAT", equipment);
+    WindowCache nothing = window_cache_of("SAT", equipment);
     return run(end, nothing, equipment);
   }
-  RefreshResult run(storage::Time end, KeptWindow& kept,
+  RefreshResult run(storage::Time end, WindowCache& kept,
                     const EquipmentConfig& equipment = plant()) {
     return refresh(archive, registry,
                    {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, kept, {},
@@ -132,7 +132,7 @@ TEST_F(Refresh, MeasuresAChampionThatAShortWindowAdaptsByTheConfiguredWindow) {
   archive.append(telemetry(day, 600, 1, 0.3));
   record(run(day + 10 * minute));
   archive.append(telemetry(day + 10 * minute, 301, 1.5, 0.3));
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   const RefreshResult result = refresh(
       archive, registry,
       {"SAT", plant(), {day + 10 * minute, day + 15 * minute}, "drift", "digest"}, kept, {}, never);
@@ -196,7 +196,7 @@ TEST_F(Refresh, IdentifiesFromWhatLiesBeforeTheValidationAlone) {
   other.append(telemetry(day + 420 * second, 181, 5.0, 0.5));
   EquipmentConfig believing = plant();  // noise that is left out would move the parts
   believing.screening = false;
-  KeptWindow kept = kept_window_of("SAT", believing);
+  WindowCache kept = window_cache_of("SAT", believing);
   const auto two =
       refresh(other, other_registry,
               {"SAT", believing, {day, day + 10 * minute}, "slide", "digest"}, kept, {}, never);
@@ -266,7 +266,7 @@ TEST_F(Refresh, GivesTheSameBitsWhateverWasKeptOfEarlierWindows) {
   EquipmentConfig equipment = plant();
   equipment.window = 40 * minute;
   archive.append(telemetry(day, 3601));
-  KeptWindow kept = kept_window_of("SAT", equipment);
+  WindowCache kept = window_cache_of("SAT", equipment);
   const auto same_as_from_scratch = [&](storage::Time end) {
     const auto slid = run(end, kept, equipment), fresh = run(end, equipment);
     ASSERT_TRUE(slid.candidate && fresh.candidate) << slid.attempt.reason;
@@ -286,7 +286,7 @@ TEST_F(Refresh, OfASlidWindowReadsOnlyWhatIsNew) {
   EquipmentConfig equipment = plant();
   equipment.window = 40 * minute;
   archive.append(telemetry(day, 3601));
-  KeptWindow kept = kept_window_of("SAT", equipment);
+  WindowCache kept = window_cache_of("SAT", equipment);
   run(day + 40 * minute, kept, equipment);
   EXPECT_EQ(kept.ticks_read(), 2400);
   run(day + 50 * minute, kept, equipment);
@@ -310,7 +310,7 @@ TEST_F(Refresh, IdentifiesFromADerivedInputAndPutsItsExpressionInTheModel) {
 
 TEST_F(Refresh, StopsWhenItIsAskedTo) {
   archive.append(telemetry(day, 601));
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   EXPECT_THROW(
       refresh(archive, registry, {"SAT", plant(), {day, day + 10 * minute}, "slide", "digest"},
               kept, {}, [] { return true; }),

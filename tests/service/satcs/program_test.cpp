@@ -270,11 +270,13 @@ TEST_F(Programs, refuse_impossible_requests_in_one_line) {
   }
   EXPECT_EQ(Child(command(SATCS_REPLAY, "none.csv --spacecraft S")).wait(), 2);
   EXPECT_EQ(errors(), "satcs-replay: none.csv: there is no such file; check the path\n");
-  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--lie stuk@+1h/+2h:V_BUS")).wait(), 2);
-  EXPECT_THAT(errors(), HasSubstr("satcs-reference: --lie: 'stuk@+1h/+2h:V_BUS': there is no lie "
-                                  "'stuk'; the lies are: stuck, bias_step, "));
-  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--lie stuck@+1h/+2h")).wait(), 2);
-  EXPECT_EQ(errors(), "satcs-reference: --lie: the lie stuck needs a parameter, such as :V_BUS\n");
+  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--fault stuk@+1h/+2h:V_BUS")).wait(), 2);
+  EXPECT_THAT(errors(),
+              HasSubstr("satcs-reference: --fault: 'stuk@+1h/+2h:V_BUS': there is no fault "
+                        "'stuk'; the faults are: stuck, bias_step, "));
+  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--fault stuck@+1h/+2h")).wait(), 2);
+  EXPECT_EQ(errors(),
+            "satcs-reference: --fault: the fault stuck needs a parameter, such as :V_BUS\n");
   EXPECT_EQ(Child(command(SATCS_REFERENCE, "--duration 0s")).wait(), 2);
   EXPECT_EQ(errors(),
             "satcs-reference: --duration: '0s' is not a duration above 0 such as 12h; see "

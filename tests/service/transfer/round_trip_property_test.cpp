@@ -73,7 +73,7 @@ RC_GTEST_PROP(RoundTrip, AnImportedExportHoldsTheSameSamples, ()) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     const auto read = [](const storage::Database& database, const storage::SeriesInfo& one) {
       storage::SampleColumns all;
-      storage::SeriesStretches stretches(database, one.id, testing::everything().range, 1, {});
+      storage::SeriesBatches stretches(database, one.id, testing::everything().range, 1, {});
       for (storage::SampleColumns some; stretches.next(some);) all.append(some, 0, some.size());
       return all;
     };

@@ -19,7 +19,7 @@ class Provenance : public DaemonTest {
     archive.append(frames);
   }
 
-  storage::Version record(storage::Time end, KeptWindow& kept) {
+  storage::Version record(storage::Time end, WindowCache& kept) {
     const RefreshResult result =
         refresh(archive, registry, {"SAT", plant(), {end - plant().window, end}, "slide", "digest"},
                 kept, {}, [] { return false; });
@@ -34,7 +34,7 @@ class Provenance : public DaemonTest {
 };
 
 TEST_F(Provenance, NamesItsThreeParts) {
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   const auto json = nlohmann::json::parse(record(day + 10 * minute, kept).provenance_json);
   const auto& parts = json["parts"];
   EXPECT_EQ(parts["identify"]["rows"], (std::vector{0, 291}));
@@ -45,7 +45,7 @@ TEST_F(Provenance, NamesItsThreeParts) {
 }
 
 TEST_F(Provenance, IsEnoughToIdentifyTheVersionAgainToTheLastBit) {
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   record(day + 10 * minute, kept);
   const Reproduction again = reproduce(archive, registry, *registry.version("SAT", "PLANT", 1), {});
   EXPECT_TRUE(again.same_samples);
@@ -53,7 +53,7 @@ TEST_F(Provenance, IsEnoughToIdentifyTheVersionAgainToTheLastBit) {
 }
 
 TEST_F(Provenance, IsEnoughForAVersionThatTheGateTurnedAway) {
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   record(day + 10 * minute, kept);
   const storage::Version turned_away = record(day + 15 * minute, kept);
   ASSERT_EQ(registry.champion("SAT", "PLANT")->number, 1);
@@ -63,7 +63,7 @@ TEST_F(Provenance, IsEnoughForAVersionThatTheGateTurnedAway) {
 }
 
 TEST_F(Provenance, IsEnoughForAVersionThatTheChampionWasAdaptedTo) {
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   record(day + 10 * minute, kept);
   archive.append(telemetry(day + 901 * second, 600, 1.5));
   const storage::Version version = record(day + 25 * minute, kept);
@@ -79,7 +79,7 @@ TEST_F(Provenance, IsEnoughForAVersionThatTheChampionWasAdaptedTo) {
 }
 
 TEST_F(Provenance, ReadsTheWindowAsItWasWhenTelemetryCameLate) {
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   archive.seal("SAT", day + 10 * minute);
   const storage::Version version = record(day + 10 * minute, kept);
   const std::span<const storage::TelemetryFrame> frames(late);
@@ -97,7 +97,7 @@ TEST_F(Provenance, ReadsTheWindowAsItWasWhenTelemetryCameLate) {
 }
 
 TEST_F(Provenance, TellsThatTheTelemetryOfTheWindowHasChangedSince) {
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   const storage::Version version = record(day + 10 * minute, kept);
   archive.append(late);
   const Reproduction again = reproduce(archive, registry, version, {});
@@ -107,7 +107,7 @@ TEST_F(Provenance, TellsThatTheTelemetryOfTheWindowHasChangedSince) {
 }
 
 TEST_F(Provenance, OfAVersionWithoutOneIsRefused) {
-  KeptWindow kept = kept_window_of("SAT", plant());
+  WindowCache kept = window_cache_of("SAT", plant());
   storage::Version version = record(day + 10 * minute, kept);
   version.provenance_json.clear();
   EXPECT_THROW(reproduce(archive, registry, version, {}), std::invalid_argument);

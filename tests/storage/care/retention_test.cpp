@@ -40,7 +40,7 @@ class RetentionTest : public ::testing::Test {
     archive.append(frames);
   }
   RetentionReport remove(const RetentionRule& rule,
-                         const std::vector<ProtectedStretch>& protection = {}, Time now = latest) {
+                         const std::vector<ProtectedRange>& protection = {}, Time now = latest) {
     const RetentionReport plan = plan_retention(database, rule, protection, now);
     Retention retention(archive, rule, protection, now);
     while (retention.step()) {
@@ -126,7 +126,7 @@ TEST_F(RetentionTest, WorksInBoundedSteps) {
 TEST_F(RetentionTest, NeverTakesAChunkThatHoldsProtectedTime) {
   append(0, 1600, Origin::simulated);
   archive.compact();
-  const std::vector<ProtectedStretch> protection{
+  const std::vector<ProtectedRange> protection{
       {"CB4", 1, {100 * second, 130 * second}},  // chunks from 64 and from 128
       {"CB4", 1, {255 * second, 256 * second}},  // the last sample of the chunk from 192
       {"CB4", 2, {64 * second, 64 * second}},    // nothing

@@ -22,7 +22,7 @@ ModelAcknowledgement running(const std::string& simulator, std::int64_t version)
 
 SimulatorRow row(const ModelAcknowledgement& said, std::optional<PublishedVersion> champion,
                  std::size_t services = 1) {
-  PartitionSight sight{{said}, {}, services};
+  PartitionSurvey sight{{said}, {}, services};
   if (champion) sight.champions[{"SAT", "BDR"}] = *champion;
   return list_simulators(sight, {}).at(0);
 }
@@ -82,7 +82,7 @@ TEST(SimulatorState, takes_the_digest_of_a_refused_version_for_no_others) {
 }
 
 TEST(SimulatorList, is_sorted_and_selected_by_equipment) {
-  PartitionSight sight;
+  PartitionSurvey sight;
   for (const char* simulator : {"b", "a"})
     for (const char* equipment : {"MEA", "BDR"})
       for (const char* spacecraft : {"SAT", "OLD"}) {

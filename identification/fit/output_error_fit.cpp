@@ -1,0 +1,171 @@
+#include "identification/fit/output_error_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "identification/fit/regression.hpp"
+#include "identification/simulation/simulate.hpp"
+#include "identification/statistics/correlation.hpp"
+
+namespace reident::identification {
+namespace {
+
+/// A response with what the refinement needs besides.
+struct Fitted {
+  StateSpaceModel model;
+  std::vector<Vector> x0;
+  double sum_of_squares = 0;
+};
+
+Fitted from(const RegressionSolution& solution, const Columns& columns, StateSpaceModel model) {
+  const Index n = columns.n, m = columns.m, p = columns.p;
+  const double* theta = solution.theta.data();
+  model.B = Eigen::Map<const Matrix>(theta + columns.input_gain(), n, m);
+  for (Index q = 0; q < p; ++q) {
+    if (columns.direct) model.D.row(q) = solution.theta.segment(columns.output(q), m).transpose();
+    model.y0(q) = solution.theta(columns.offset(q));
+  }
+  return {std::move(model), solution.x0, solution.sum_of_squares};
+}
+
+template <typename Accumulator>
+Accumulator accumulate(const Columns& columns, const StateSpaceModel& model, const Record& record,
+                       const std::vector<Segment>& segments, const std::vector<Vector>& x0) {
+  Accumulator accumulator(columns);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    walk_regression(columns, model, record, segments[i], x0.empty() ? Vector() : x0[i],
+                    [&accumulator](const RegressionRows& rows) { accumulator.add(rows); });
+    accumulator.end_segment();
+  }
+  return accumulator;
+}
+
+/// An error of 1e-16 in the sums moves the solution by that over the pivot's square.
+double least_pivot(Accuracy accuracy) {
+  return accuracy == Accuracy::fast ? 1e-5 : 1e-3;
+}
+
+Columns columns_of(const StateSpaceModel& dynamics, bool direct) {
+  return {dynamics.order(), dynamics.inputs(), dynamics.outputs(), direct, false};
+}
+
+Fitted fit(const NormalEquations& sums, const StateSpaceModel& dynamics, bool direct,
+           const Record& record, const std::vector<Segment>& segments, Accuracy accuracy) {
+  const Columns columns = columns_of(dynamics, direct);
+  if (const auto solution = sums.solve(0, least_pivot(accuracy)))
+    return from(*solution, columns, dynamics);
+  if (accuracy == Accuracy::fast)
+    if (const auto solution = sums.solve_without_small(least_pivot(accuracy)))
+      return from(*solution, columns, dynamics);
+  const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, record, segments, {});
+  return from(factor.solve(), columns, dynamics);
+}
+
+Fitted fit(const StateSpaceModel& dynamics, bool direct, const Record& record,
+           const std::vector<Segment>& segments, Accuracy accuracy) {
+  const auto sums =
+      accumulate<NormalEquations>(columns_of(dynamics, direct), dynamics, record, segments, {});
+  return fit(sums, dynamics, direct, record, segments, accuracy);
+}
+
+/// Rows that count as one in the errors of the output whose errors last longest.
+double correlated_rows_of_errors(const Fitted& fitted, const Record& record,
+                                 const std::vector<Segment>& segments) {
+  std::vector<RowRange> stretches;
+  Index rows = 0;
+  for (const Segment& segment : segments) {
+    stretches.push_back({rows, rows + segment.size()});
+    rows += segment.size();
+  }
+  Matrix errors(rows, record.y.cols());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const RowRange of_segment{segments[i].begin, segments[i].end};
+    errors.middleRows(stretches[i].begin, stretches[i].size()) =
+        record.y.middleRows(of_segment.begin, of_segment.size()) -
+        free_run(fitted.model, record, of_segment, fitted.x0[i]);
+  }
+  double most = 1;
+  for (Index q = 0; q < errors.cols(); ++q) {
+    Series series(errors.col(q), stretches);
+    most = std::max(most, correlated_rows(series));
+  }
+  return most;
+}
+
+Response response_of(const Fitted& fitted, Index rows) {
+  return {fitted.model, fitted.x0.empty() ? Vector::Zero(fitted.model.order()) : fitted.x0.front(),
+          std::sqrt(fitted.sum_of_squares / double(rows))};
+}
+
+StateSpaceModel with_dynamics(const Matrix& A, const Matrix& C, const Record& record) {
+  const Index n = A.rows(), m = record.u.cols(), p = C.rows();
+  return {A,
+          Matrix::Zero(n, m),
+          C,
+          Matrix::Zero(p, m),
+          {},
+          Vector::Zero(m),
+          Vector::Zero(p),
+          record.period_s};
+}
+
+}  // namespace
+
+Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
+                      RowRange rows, Accuracy accuracy) {
+  const std::vector<Segment> segments = segments_within(record, rows);
+  return response_of(fit(with_dynamics(A, C, record), direct, record, segments, accuracy),
+                     rows.size());
+}
+
+Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows) {
+  constexpr double squared_deviations = 4;  // of a coefficient that is halved
+  const std::vector<Segment> segments = segments_within(record, rows);
+  const StateSpaceModel dynamics = with_dynamics(A, C, record);
+  const Columns columns = columns_of(dynamics, true);
+  const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
+  const Fitted full = fit(sums, dynamics, true, record, segments, Accuracy::fast);
+  const Index told = rows.size() * columns.p - (columns.target() - columns.n) -
+                     columns.n * static_cast<Index>(segments.size());
+  if (told < 1) return response_of({dynamics, {}, 0}, rows.size());
+  const double variance = full.sum_of_squares / static_cast<double>(told) *
+                          correlated_rows_of_errors(full, record, segments);
+  const auto shrunk = sums.solve_shrunk(squared_deviations * variance, least_pivot(Accuracy::fast));
+  return response_of(shrunk ? from(*shrunk, columns, dynamics) : full, rows.size());
+}
+
+Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
+                         RowRange rows, int steps) {
+  const std::vector<Segment> segments = segments_within(record, rows);
+  const Columns columns{A.rows(), record.u.cols(), C.rows(), direct, true};
+  Fitted best = fit(with_dynamics(A, C, record), direct, record, segments, Accuracy::fast);
+  double damping = 1e-3;
+  for (int step = 0; step < steps; ++step) {
+    const auto sums = accumulate<NormalEquations>(columns, best.model, record, segments, best.x0);
+    bool lowered = false;
+    double before = best.sum_of_squares;
+    for (int attempt = 0; attempt < 5 && !lowered; ++attempt, damping *= 10) {
+      const auto solution = sums.solve(damping, least_pivot(Accuracy::fast));
+      if (!solution) continue;
+      const Matrix L = Eigen::Map<const Matrix>(solution->theta.data() + columns.dynamics(),
+                                                columns.n, columns.p);
+      Matrix moved_C = best.model.C;
+      for (Index q = 0; columns.p > 1 && q < columns.p; ++q)
+        moved_C.row(q) += solution->theta.segment(columns.output_map(q), columns.n).transpose();
+      const Matrix moved_A = best.model.A + L * best.model.C;
+      const StateSpaceModel moved = with_dynamics(moved_A, moved_C, record);
+      if (!is_well_formed(moved) || !(spectral_radius(moved) < 1)) continue;
+      Fitted trial = fit(moved, direct, record, segments, Accuracy::fast);
+      if (!(trial.sum_of_squares < best.sum_of_squares)) continue;
+      best = std::move(trial);
+      lowered = true;
+      damping /= 100;
+    }
+    damping = std::max(damping, 1e-9);
+    if (!lowered || best.sum_of_squares > before * (1 - 1e-4)) break;
+  }
+  return response_of(best, rows.size());
+}
+
+}  // namespace reident::identification

@@ -1,0 +1,90 @@
+#include "identification/search/folds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identification/simulation/simulate.hpp"
+
+namespace reident::identification {
+namespace {
+
+/// Mean over outputs of the root mean square over rows.
+double rms(const Matrix& errors) {
+  return errors.colwise().norm().mean() / std::sqrt(double(errors.rows()));
+}
+
+HeldOutErrors errors_with(const Matrix& errors, const Vector& shift) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const HeldOutErrors result{rms(errors), rms(errors.rowwise() - shift.transpose())};
+  return std::isfinite(result.whole) ? result : HeldOutErrors{infinity, infinity};
+}
+
+}  // namespace
+
+Fold Fold::with_fit_of(Index rows) const {
+  const Index count = std::min(rows, fit.size());
+  return {
+      is_forwards() ? RowRange{fit.end - count, fit.end} : RowRange{fit.begin, fit.begin + count},
+      tune};
+}
+
+Fold Fold::with_tune_of(Index rows) const {
+  const Index count = std::min(rows, tune.size());
+  return {fit, is_forwards() ? RowRange{tune.begin, tune.begin + count}
+                             : RowRange{tune.end - count, tune.end}};
+}
+
+std::vector<Fold> folds_of(Index rows, double tune_share) {
+  const Index tune = std::clamp<Index>(std::lround(double(rows) * tune_share), 2, rows - 1);
+  const Index half = tune / 2;
+  return {{{0, rows - half}, {rows - half, rows}},
+          {{half, rows}, {0, half}},
+          {{0, rows - tune}, {rows - tune, rows - half}},
+          {{tune, rows}, {half, tune}}};
+}
+
+HeldOutErrors held_out_errors(const Response& response, const Record& record, const Fold& fold) {
+  // Forwards the state is carried on; backwards the run starts anew from its first outputs.
+  const bool forwards = fold.is_forwards();
+  const RowRange run{fold.fit.begin, forwards ? fold.tune.end : fold.fit.end};
+  const Matrix y_hat = free_run(response.model, record, run, response.x0);
+  const Matrix residuals =
+      record.y.middleRows(fold.fit.begin, fold.fit.size()) - y_hat.topRows(fold.fit.size());
+  const Matrix errors = record.y.middleRows(fold.tune.begin, fold.tune.size()) -
+                        (forwards ? Matrix(y_hat.bottomRows(fold.tune.size()))
+                                  : free_run(response.model, record, fold.tune));
+  return errors_with(errors, recent_operating_point(residuals, forwards));
+}
+
+HeldOutErrors quick_held_out_errors(const StateSpaceModel& model, const Record& record,
+                                    const Fold& fold) {
+  constexpr Index most_beside = 512;
+  const bool forwards = fold.is_forwards();
+  const Index beside = std::min(most_beside, fold.fit.size() / 2);
+  const RowRange run{fold.tune.begin - (forwards ? beside : 0),
+                     fold.tune.end + (forwards ? 0 : beside)};
+  const Matrix residuals =
+      record.y.middleRows(run.begin, run.size()) - free_run(model, record, run);
+  const auto fitted = residuals.middleRows(forwards ? 0 : fold.tune.size(), beside);
+  return errors_with(residuals.middleRows(fold.tune.begin - run.begin, fold.tune.size()),
+                     fitted.colwise().mean().transpose());
+}
+
+double held_out_error_of_constant(const Record& record, const std::vector<Fold>& folds) {
+  double sum = 0;
+  for (const Fold& fold : folds) {
+    const Eigen::RowVectorXd mean =
+        record.y.middleRows(fold.fit.begin, fold.fit.size()).colwise().mean();
+    sum += rms(record.y.middleRows(fold.tune.begin, fold.tune.size()).rowwise() - mean);
+  }
+  return sum / double(folds.size());
+}
+
+Vector recent_operating_point(const Matrix& residuals, bool towards_end) {
+  const Index half = (residuals.rows() + 1) / 2;
+  const auto nearest = residuals.middleRows(towards_end ? residuals.rows() - half : 0, half);
+  return nearest.colwise().mean().transpose();
+}
+
+}  // namespace reident::identification

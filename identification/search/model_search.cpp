@@ -1,0 +1,302 @@
+#include "identification/search/model_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "identification/fit/output_error_fit.hpp"
+#include "identification/simulation/simulate.hpp"
+
+namespace reident::identification {
+namespace {
+
+constexpr double equal_errors = 1.002;
+constexpr double no_error = 1e-6;  // of an output's deviation
+constexpr double worthwhile_recency = 0.95;
+constexpr double worthwhile_refinement = 0.99;
+constexpr int refinement_steps = 25;
+constexpr Index least_scored = 1000, most_scored = 2000;  // rows of a fold in the first stage
+constexpr Index least_fitted = 2000;
+constexpr double intended_recipes = 8;  // of the second stage, where rows are many
+
+/// Multiply-adds of a run of one row.
+double work_of_run(Index n, Index m, Index p) {
+  return double((n + p) * (n + m));
+}
+
+/// A recipe and what became of it on each fold.
+struct Candidate {
+  std::size_t place = 0;  // of its A and C among those of the first stage
+  Recipe recipe;
+  double error = 0;
+};
+
+/// Takes the operating point that the folds speak for. False where a fold had no stable model.
+bool take_errors(Candidate& candidate, const std::vector<HeldOutErrors>& errors) {
+  HeldOutErrors mean;
+  for (const HeldOutErrors& of_fold : errors) {
+    mean.whole += of_fold.whole / double(errors.size());
+    mean.recent += of_fold.recent / double(errors.size());
+  }
+  if (!std::isfinite(mean.whole)) return false;
+  const bool recent = mean.recent < worthwhile_recency * mean.whole;
+  candidate.recipe.operating_point = recent ? OperatingPoint::recent : OperatingPoint::whole;
+  candidate.error = recent ? mean.recent : mean.whole;
+  return true;
+}
+
+/// Best first by the rule of the header.
+void rank(std::vector<Candidate>& candidates) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Candidate& candidate : candidates) best = std::min(best, candidate.error);
+  const auto key = [best](const Candidate& candidate) {
+    const bool equal = candidate.error <= std::max(equal_errors * best, no_error);
+    return std::tuple(!equal, equal ? candidate.recipe.order : 0, candidate.error);
+  };
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&key](const auto& a, const auto& b) { return key(a) < key(b); });
+}
+
+class Search {
+ public:
+  Search(const SearchData& data, const SearchSpace& space, const ForEach& for_each,
+         SearchEffort& effort)
+      : data_(data),
+        space_(space),
+        for_each_(for_each),
+        effort_(effort),
+        m_(data.normalised.u.cols()),
+        p_(data.normalised.y.cols()) {}
+
+  std::vector<ScoredRecipe> run();
+
+ private:
+  /// Scores every order, horizon and weighting with B and D from the compression.
+  std::vector<Candidate> compressed_stage();
+  void score_compressed(std::size_t fold, std::size_t horizon, std::vector<HeldOutErrors>& errors);
+  /// Order, horizon and weighting of a place in the table of the first stage.
+  Recipe recipe_at(std::size_t place) const;
+  Index rows_scored_quickly() const;
+
+  std::vector<Candidate> simulated_stage(std::vector<Candidate> compressed);
+  std::vector<Candidate> refined_stage(const std::vector<Candidate>& simulated);
+  /// Fits and scores the candidates on the folds with no more than so many fitted rows.
+  std::vector<Candidate> scored(std::vector<Candidate> candidates, Index rows_of_fold);
+  HeldOutErrors errors_on(const Candidate& candidate, std::size_t fold, Index rows_of_fold) const;
+  /// The first candidates for which a third of the budget lasts, at least one.
+  std::vector<Candidate> affordable(const std::vector<Candidate>& candidates,
+                                    Index rows_of_fold) const;
+  double work_of(const Candidate& candidate, Index rows_of_fold) const;
+  Index affordable_rows_of_fold(const Recipe& recipe, double recipes) const;
+
+  std::size_t folds() const { return data_.folds.size(); }
+  std::size_t orders() const {
+    return static_cast<std::size_t>(space_.max_order - space_.min_order + 1);
+  }
+  std::size_t places_of_horizon() const { return space_.weightings.size() * orders(); }
+
+  const SearchData& data_;
+  const SearchSpace& space_;
+  const ForEach& for_each_;
+  SearchEffort& effort_;
+  Index m_, p_;
+  std::vector<std::vector<StateSpaceModel>> models_;  // of the first stage, by fold and place
+};
+
+Recipe Search::recipe_at(std::size_t place) const {
+  const std::size_t in_horizon = place % places_of_horizon();
+  Recipe recipe;
+  recipe.horizon = space_.horizons[place / places_of_horizon()];
+  recipe.weighting = space_.weightings[in_horizon / orders()];
+  recipe.order = space_.min_order + static_cast<int>(in_horizon % orders());
+  recipe.stability = space_.stability;
+  recipe.direct = space_.direct.front();
+  return recipe;
+}
+
+Index Search::rows_scored_quickly() const {
+  double one_row = 0;
+  for (int n = space_.min_order; n <= space_.max_order; ++n) one_row += work_of_run(n, m_, p_);
+  one_row *= double(folds() * space_.horizons.size() * space_.weightings.size());
+  return std::clamp(static_cast<Index>(effort_.budget / 3 / one_row), least_scored, most_scored);
+}
+
+void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
+                              std::vector<HeldOutErrors>& errors) {
+  const Record& record = data_.normalised;
+  const Fold fold = data_.folds[fold_index].with_tune_of(rows_scored_quickly());
+  const StretchSums& sums = data_.sums[fold_index];
+  const Projection projection(compress(sums, data_.normalisation, record,
+                                       segments_within(record, fold.fit),
+                                       space_.horizons[horizon_index]));
+  const Vector mean = sums.mean();
+  for (std::size_t w = 0; w < space_.weightings.size(); ++w) {
+    const Matrix gamma = projection.observability(space_.weightings[w]).gamma;
+    for (std::size_t i = 0; i < orders(); ++i) {
+      const std::size_t place = horizon_index * places_of_horizon() + w * orders() + i;
+      const Recipe recipe = recipe_at(place);
+      if (recipe.order > gamma.cols() - p_) break;
+      const Dynamics found = shift_invariant(gamma, p_, recipe.order, recipe.stability);
+      if (!is_stable(found.A)) continue;
+      StateSpaceModel& model = models_[fold_index][place];
+      model = projection.with_response(found.A, found.C, recipe.direct, record.period_s);
+      set_operating_point(model, data_.normalisation, mean);
+      errors[place] = quick_held_out_errors(model, record, fold);
+    }
+  }
+}
+
+std::vector<Candidate> Search::compressed_stage() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::size_t places = space_.horizons.size() * places_of_horizon();
+  std::vector<std::vector<HeldOutErrors>> errors(
+      folds(), std::vector<HeldOutErrors>(places, {infinity, infinity}));
+  models_.assign(folds(), std::vector<StateSpaceModel>(places));
+  for_each_(folds() * space_.horizons.size(), [&](std::size_t task) {
+    const std::size_t fold = task % folds();
+    score_compressed(fold, task / folds(), errors[fold]);
+  });
+  std::vector<Candidate> found;
+  for (std::size_t place = 0; place < places; ++place) {
+    std::vector<HeldOutErrors> own;
+    for (const std::vector<HeldOutErrors>& of_fold : errors) own.push_back(of_fold[place]);
+    Candidate candidate{place, recipe_at(place), 0};
+    if (!take_errors(candidate, own)) continue;
+    for (const Fold& fold : data_.folds)
+      effort_.spent += work_of_run(candidate.recipe.order, m_, p_) *
+                       double(fold.with_tune_of(rows_scored_quickly()).tune.size());
+    found.push_back(std::move(candidate));
+  }
+  rank(found);
+  return found;
+}
+
+HeldOutErrors Search::errors_on(const Candidate& candidate, std::size_t fold_index,
+                                Index rows_of_fold) const {
+  const Recipe& recipe = candidate.recipe;
+  const Record& record = data_.normalised;
+  const Fold fold = data_.folds[fold_index].with_fit_of(rows_of_fold);
+  const StateSpaceModel& model = models_[fold_index][candidate.place];
+  if (recipe.fit == ResponseFit::subspace) {
+    const std::vector<Segment> segments = segments_within(record, fold.fit);
+    return held_out_errors(
+        {model, estimate_initial_state(model, record, segments, initial_rows(model)), 0}, record,
+        fold);
+  }
+  return held_out_errors(
+      recipe.refinement_steps > 0
+          ? refine_response(model.A, model.C, recipe.direct, record, fold.fit,
+                            recipe.refinement_steps)
+          : fit_response(model.A, model.C, recipe.direct, record, fold.fit, Accuracy::fast),
+      record, fold);
+}
+
+std::vector<Candidate> Search::scored(std::vector<Candidate> candidates, Index rows_of_fold) {
+  std::vector<HeldOutErrors> errors(candidates.size() * folds());
+  for_each_(errors.size(), [&](std::size_t task) {
+    errors[task] = errors_on(candidates[task / folds()], task % folds(), rows_of_fold);
+  });
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const auto first = errors.begin() + static_cast<std::ptrdiff_t>(i * folds());
+    effort_.spent += work_of(candidates[i], rows_of_fold);
+    if (take_errors(candidates[i], {first, first + static_cast<std::ptrdiff_t>(folds())}))
+      found.push_back(std::move(candidates[i]));
+  }
+  rank(found);
+  return found;
+}
+
+double Search::work_of(const Candidate& candidate, Index rows_of_fold) const {
+  Index rows = 0;
+  for (const Fold& fold : data_.folds) rows += fold.with_fit_of(rows_of_fold).fit.size();
+  return double(rows) * (candidate.recipe.fit == ResponseFit::subspace
+                             ? work_of_run(candidate.recipe.order, m_, p_)
+                             : work_of_regression(candidate.recipe, m_, p_));
+}
+
+Index Search::affordable_rows_of_fold(const Recipe& recipe, double recipes) const {
+  return affordable_rows(recipe, m_, p_, effort_.budget / 3 / (recipes * double(folds())));
+}
+
+std::vector<Candidate> Search::affordable(const std::vector<Candidate>& candidates,
+                                          Index rows_of_fold) const {
+  std::vector<Candidate> taken;
+  double work = 0;
+  for (const Candidate& candidate : candidates) {
+    work += work_of(candidate, rows_of_fold);
+    if (!taken.empty() && work > effort_.budget / 3) break;
+    taken.push_back(candidate);
+  }
+  return taken;
+}
+
+std::vector<Candidate> Search::simulated_stage(std::vector<Candidate> compressed) {
+  if (compressed.empty()) return {};
+  std::vector<Candidate> both_ways;
+  for (const Candidate& candidate : compressed)
+    for (const ResponseFit fit : space_.fits) {
+      both_ways.push_back(candidate);
+      both_ways.back().recipe.fit = fit;
+    }
+  const Index rows = affordable_rows_of_fold(both_ways.front().recipe, intended_recipes);
+  std::vector<Candidate> found = scored(affordable(both_ways, rows), rows);
+  if (found.empty() || space_.direct.size() == 1 ||
+      found.front().recipe.fit == ResponseFit::subspace)
+    return found;
+  Candidate other = found.front();
+  other.recipe.direct = !other.recipe.direct;
+  const std::vector<Candidate> without = scored({other}, rows);
+  found.insert(found.end(), without.begin(), without.end());
+  rank(found);
+  return found;
+}
+
+std::vector<Candidate> Search::refined_stage(const std::vector<Candidate>& simulated) {
+  if (simulated.empty() || simulated.front().error <= no_error) return {};
+  Recipe first = simulated.front().recipe;
+  first.refinement_steps = refinement_steps;
+  const Index rows = affordable_rows_of_fold(first, 1);
+  std::vector<Candidate> refined;
+  for (const Candidate& candidate : simulated) {
+    if (candidate.recipe.fit != ResponseFit::simulation) continue;
+    refined.push_back(candidate);
+    refined.back().recipe.refinement_steps = refinement_steps;
+    refined.back().recipe.refined_rows = rows * static_cast<Index>(folds());
+  }
+  return refined.empty() ? refined : scored(affordable(refined, rows), rows);
+}
+
+std::vector<ScoredRecipe> Search::run() {
+  std::vector<Candidate> found = simulated_stage(compressed_stage());
+  const std::vector<Candidate> refined = refined_stage(found);
+  if (!refined.empty() && refined.front().error < worthwhile_refinement * found.front().error)
+    found.insert(found.begin(), refined.front());
+  std::vector<ScoredRecipe> result;
+  for (const Candidate& candidate : found) result.push_back({candidate.recipe, candidate.error});
+  return result;
+}
+
+}  // namespace
+
+double work_of_regression(const Recipe& recipe, Index m, Index p) {
+  const Index n = recipe.order;
+  const double columns = double(n + n * m + m + 2);
+  // A step of the refinement walks the rows twice, once with more columns.
+  return double(p) * (double(n * n * (m + 1)) + columns * columns / 2) *
+         double(1 + 3 * recipe.refinement_steps);
+}
+
+Index affordable_rows(const Recipe& recipe, Index m, Index p, double work) {
+  return std::max(least_fitted, static_cast<Index>(work / work_of_regression(recipe, m, p)));
+}
+
+std::vector<ScoredRecipe> ranked_recipes(const SearchData& data, const SearchSpace& space,
+                                         const ForEach& for_each, SearchEffort& effort) {
+  return Search(data, space, for_each, effort).run();
+}
+
+}  // namespace reident::identification

@@ -1,0 +1,119 @@
+#include "service/cli/history_access.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "service/cli/config_options.hpp"
+#include "service/history/remote_sources.hpp"
+#include "service/history/stored_sources.hpp"
+
+namespace reident::cli {
+namespace {
+
+constexpr double max_timeout_s = 1e6;
+
+struct Service {
+  dds::Endpoint endpoint;
+  std::string name;  // empty: any
+};
+
+std::variant<Service, Refusal> service_of(const HistoryAccessOptions& options) {
+  if (options.database.database)
+    return Refusal{
+        fmt::format("--remote asks the running service and reads no file; leave out {}, "
+                    "or --remote",
+                    *options.database.database)};
+  auto chosen = chosen_config(options.database.config);
+  if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
+  Service service;
+  if (const auto& config = std::get<std::optional<Config>>(chosen))
+    service = {{config->domain, config->partition}, config->service_name};
+  else if (!options.domain && !options.partition)
+    return Refusal{
+        fmt::format("there is no {} here; name the service's configuration with --config FILE, or "
+                    "its DDS domain and partition",
+                    default_config_file)};
+  service.endpoint.domain = options.domain.value_or(service.endpoint.domain);
+  service.endpoint.partition = options.partition.value_or(service.endpoint.partition);
+  return service;
+}
+
+int with_service(const Service& service, const HistoryAccessOptions& options,
+                 const std::function<int(const Sources&)>& work) {
+  dds::Participant participant(service.endpoint);
+  history::RemoteHistory remote(participant, service.name);
+  const history::RemoteRows rows(remote, std::chrono::duration_cast<std::chrono::milliseconds>(
+                                             std::chrono::duration<double>(options.timeout_s)));
+  try {
+    return work({history::RemoteHistorySource(rows), history::RemoteTelemetrySource(rows)});
+  } catch (const history::Error& error) {
+    if (error.kind() == history::Error::Kind::refused) return refuse({error.what()});
+    fmt::print(stderr,
+               "reident: {} on domain {}, partition {}; check that reidentd runs and the domain "
+               "and partition are its own\n",
+               error.what(), service.endpoint.domain, service.endpoint.partition);
+    return exit_timed_out;
+  }
+}
+
+}  // namespace
+
+void add_remote_options(CLI::App& command, HistoryAccessOptions& options) {
+  options.remote_before = command.get_parent()->get_option("--remote");
+  command.add_flag("--remote", options.remote,
+                   "ask the running service over DDS instead of reading a file");
+  command.add_option("--domain", options.domain, "DDS domain, with --remote")
+      ->check(CLI::Range(0, 230));
+  command.add_option("--partition", options.partition, "DDS partition, with --remote");
+  command.add_option("--timeout", options.timeout_s, "seconds for each answer, with --remote")
+      ->check(CLI::Range(0.0, max_timeout_s))
+      ->capture_default_str();
+}
+
+void add_source_options(CLI::App& command, HistoryAccessOptions& options) {
+  add_database_options(command, options.database);
+  add_remote_options(command, options);
+}
+
+void add_archive_options(CLI::App& command, HistoryAccessOptions& options) {
+  command.add_option("archive", options.database.database,
+                     "database of the service; none with --remote");
+  command.add_option("--config", options.database.config,
+                     fmt::format("configuration with the equipment, and the service's DDS domain "
+                                 "and partition ({})",
+                                 default_config_file));
+  add_remote_options(command, options);
+}
+
+std::string no_archive(const std::string& command) {
+  return fmt::format("archive is required, or --remote; see reident {} --help", command);
+}
+
+int with_sources(const HistoryAccessOptions& options,
+                 const std::function<int(const Sources&)>& work) {
+  if (!options.is_remote()) {
+    if (options.domain || options.partition)
+      return refuse({"--domain and --partition say which service is asked; add --remote"});
+    return with_database(options.database, [&work](storage::Database& database) {
+      return work({history::StoredHistory(database), history::StoredTelemetry(database)});
+    });
+  }
+  const auto service = service_of(options);
+  if (const auto* refusal = std::get_if<Refusal>(&service)) return refuse(*refusal);
+  return with_service(std::get<Service>(service), options, work);
+}
+
+std::string why_not_remote(const std::string& command) {
+  constexpr std::array of_the_file{"backfill", "backup", "import", "retain", "reproduce", "verify"};
+  if (std::find(of_the_file.begin(), of_the_file.end(), command) != of_the_file.end())
+    return fmt::format(
+        "{} works on the database file itself: run it where that is, without --remote", command);
+  return fmt::format("{} is none of the commands that read a database; leave out --remote",
+                     command);
+}
+
+}  // namespace reident::cli

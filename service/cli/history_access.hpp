@@ -1,0 +1,51 @@
+// Where the commands that only read look: in a database file, or with --remote at the running
+// service.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "service/cli/command.hpp"
+#include "service/cli/stored.hpp"
+#include "service/history/sources.hpp"
+
+namespace reident::cli {
+
+struct HistoryAccessOptions {
+  DatabaseOptions database;
+  bool remote = false;
+  std::optional<std::uint32_t> domain;
+  std::optional<std::string> partition;
+  double timeout_s = 10;
+  /// Of the whole program, for what stands before the command.
+  const CLI::Option* remote_before = nullptr;
+
+  bool is_remote() const { return remote || (remote_before && remote_before->count() > 0); }
+};
+
+/// --remote, --domain, --partition and --timeout.
+void add_remote_options(CLI::App& command, HistoryAccessOptions& options);
+/// Those, --database and --config.
+void add_source_options(CLI::App& command, HistoryAccessOptions& options);
+
+/// The same for a command that takes the database as its first word, and a configuration for the
+/// rest.
+void add_archive_options(CLI::App& command, HistoryAccessOptions& options);
+/// What to say where such a command is given neither a database nor --remote.
+std::string no_archive(const std::string& command);
+
+struct Sources {
+  const history::HistorySource& history;
+  const history::TelemetrySource& telemetry;
+};
+
+/// Calls `work` with what the options name. A database that cannot be used, and what a service
+/// cannot answer, is refused; exit_timed_out where no service answers.
+int with_sources(const HistoryAccessOptions& options,
+                 const std::function<int(const Sources&)>& work);
+
+/// For --remote with a command that cannot have it: why.
+std::string why_not_remote(const std::string& command);
+
+}  // namespace reident::cli

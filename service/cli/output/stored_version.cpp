@@ -1,0 +1,109 @@
+#include "service/cli/output/stored_version.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "service/cli/stored.hpp"
+#include "service/model/model_json.hpp"
+#include "service/operations/commands.hpp"
+
+namespace reident::cli {
+
+using history::HistorySource;
+
+namespace {
+
+std::string versions_text(const HistorySource& history, const storage::EquipmentName& equipment) {
+  constexpr std::size_t most = 5;
+  const std::vector<storage::VersionSummary> versions = history.summaries(equipment);
+  if (versions.empty()) return "none yet";
+  std::string text = versions.size() > most
+                         ? fmt::format("{} to {}, the last of them ", versions.front().number,
+                                       versions.back().number)
+                         : "";
+  for (std::size_t i = versions.size() - std::min(most, versions.size()); i < versions.size(); ++i)
+    text += fmt::format("{} ({}){}", versions[i].number, versions[i].status,
+                        i + 1 < versions.size() ? ", " : "");
+  return text;
+}
+
+/// The equipment that a subject means.
+std::variant<storage::EquipmentName, Refusal> find_equipment(const HistorySource& history,
+                                                             const Subject& subject) {
+  std::optional<storage::EquipmentName> found;
+  for (const storage::EquipmentName& one : history.equipment()) {
+    if (one.equipment != subject.equipment) continue;
+    if (!subject.spacecraft.empty() && one.spacecraft != subject.spacecraft) continue;
+    if (found)
+      return Refusal{fmt::format("{} is on {} and on {}; name the spacecraft, as in {}",
+                                 subject.equipment, found->spacecraft, one.spacecraft,
+                                 full_name({found->spacecraft, subject.equipment}))};
+    found = one;
+  }
+  if (found) return *found;
+  return Refusal{fmt::format("nothing is known about {}; the database has {}",
+                             subject.spacecraft.empty()
+                                 ? subject.equipment
+                                 : full_name({subject.spacecraft, subject.equipment}),
+                             equipment_in(history))};
+}
+
+}  // namespace
+
+std::variant<Subject, Refusal> parse_subject(const std::string& text) {
+  Subject subject;
+  std::string rest = text;
+  if (const std::size_t at = rest.rfind('@'); at != std::string::npos) {
+    subject.version = whole_number(rest.substr(at + 1));
+    if (!subject.version || *subject.version < 1)
+      return Refusal{fmt::format("{} names no version; write it as SPACECRAFT/EQUIPMENT@1", text)};
+    rest.resize(at);
+  }
+  const std::size_t slash = rest.find('/');
+  if (slash != std::string::npos) subject.spacecraft = rest.substr(0, slash);
+  subject.equipment = slash == std::string::npos ? rest : rest.substr(slash + 1);
+  if (subject.equipment.empty())
+    return Refusal{fmt::format("{} names no equipment; write it as SPACECRAFT/EQUIPMENT", text)};
+  return subject;
+}
+
+std::variant<StoredVersion, Refusal> find_stored_version(const HistorySource& history,
+                                                         const Subject& subject) {
+  const auto found = find_equipment(history, subject);
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
+  const auto& equipment = std::get<storage::EquipmentName>(found);
+  std::optional<std::int64_t> number = subject.version;
+  if (!number)
+    if (const auto made = history.champion_decision(equipment)) number = made->version;
+  auto version = number ? history.version(equipment, *number) : std::nullopt;
+  if (!version)
+    return Refusal{fmt::format(
+        "{} has no {}; versions: {}", full_name(equipment),
+        subject.version ? fmt::format("version {}", *subject.version) : "approved version",
+        versions_text(history, equipment))};
+  StoredVersion story;
+  story.attempt = history.attempt(equipment, version->number).value();
+  story.decisions = history.decisions(equipment, version->number);
+  story.hold = history.hold(equipment);
+  story.model = equipment_model_from_json(version->model_json);
+  story.digest_matches = model_digest(story.model) == version->digest;
+  story.version = *std::move(version);
+  return story;
+}
+
+std::optional<storage::TimeRange> tuned_on(const storage::Version& version) {
+  const nlohmann::ordered_json provenance =
+      nlohmann::ordered_json::parse(version.provenance_json, nullptr, false);
+  const nlohmann::ordered_json::json_pointer tune("/parts/tune");
+  if (!provenance.is_object() || !provenance.contains(tune)) return std::nullopt;
+  const nlohmann::ordered_json& part = provenance[tune];
+  const auto begin = part.find("begin_ns"), end = part.find("end_ns");
+  if (begin == part.end() || end == part.end() || !begin->is_number_integer() ||
+      !end->is_number_integer())
+    return std::nullopt;
+  return storage::TimeRange{begin->get<storage::Time>(), end->get<storage::Time>()};
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,44 @@
+// One version of a model as an operator names it, and all that is stored about it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "service/cli/command.hpp"
+#include "service/history/sources.hpp"
+#include "service/model/model_version.hpp"
+#include "storage/registry/registry.hpp"
+
+namespace reident::cli {
+
+/// SPACECRAFT/EQUIPMENT@VERSION taken apart; the spacecraft and the version may be left out.
+struct Subject {
+  std::string spacecraft;
+  std::string equipment;
+  std::optional<std::int64_t> version;
+};
+
+std::variant<Subject, Refusal> parse_subject(const std::string& text);
+
+/// All that is stored about one version.
+struct StoredVersion {
+  storage::Version version;
+  storage::Attempt attempt;
+  std::vector<storage::Decision> decisions;
+  std::optional<storage::Hold> hold;  // of its equipment, now
+  EquipmentModel model;
+  bool digest_matches = false;
+};
+
+/// The stretch whose samples chose, as the version's provenance says it; absent in versions from
+/// before schema 2.
+std::optional<storage::TimeRange> tuned_on(const storage::Version& version);
+
+/// The version that the subject names, or the champion of its equipment. A spacecraft that is left
+/// out is found by the equipment's name.
+std::variant<StoredVersion, Refusal> find_stored_version(const history::HistorySource& history,
+                                                         const Subject& subject);
+
+}  // namespace reident::cli

@@ -1,0 +1,85 @@
+#include "service/cli/partition_survey.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace reident::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr auto settled = 1s;
+constexpr auto settled_without = 2s;  // that nobody is there takes longer to tell
+constexpr auto look_around = 20ms;    // for writers: the wait set wakes for samples
+constexpr std::size_t take_at_most = 1024;
+
+class Listener {
+ public:
+  explicit Listener(const dds::Endpoint& endpoint)
+      : participant_(endpoint),
+        acknowledgements_(participant_),
+        versions_(participant_),
+        ready_(participant_) {
+    ready_.attach(acknowledgements_);
+    ready_.attach(versions_);
+  }
+
+  /// Waits a moment and takes what came. Returns how much is known: writers, simulators, champions.
+  std::array<std::size_t, 4> look(Clock::duration limit) {
+    ready_.wait(std::min<Clock::duration>(limit, look_around));
+    acknowledgements_.take(take_at_most, [this](ModelAcknowledgement&& said) {
+      simulators_[{said.simulator, said.spacecraft, said.equipment}] = std::move(said);
+    });
+    const auto note = [this](const ModelVersion& version) {
+      if (version.number < 1) return;
+      champions_[{version.model.spacecraft, version.model.equipment}] = {
+          version.number, version.decided, version.digest};
+    };
+    // A version that simulators refuse, because its content is malformed, is published all the
+    // same.
+    versions_.take(
+        take_at_most, [&](ModelVersion&& version) { note(version); },
+        [&](const ModelVersion& version, const std::string&) { note(version); });
+    services_ = std::max<std::size_t>(services_, versions_.matched_writers());
+    return {acknowledgements_.matched_writers(), services_, simulators_.size(), champions_.size()};
+  }
+
+  PartitionSurvey sight() {
+    PartitionSurvey sight;
+    for (auto& [key, said] : simulators_) sight.simulators.push_back(std::move(said));
+    sight.champions = std::move(champions_);
+    sight.services = services_;
+    return sight;
+  }
+
+ private:
+  dds::Participant participant_;
+  dds::Reader<ModelAcknowledgement> acknowledgements_;
+  dds::Reader<ModelVersion> versions_;
+  dds::WaitSet ready_;
+  std::map<std::array<std::string, 3>, ModelAcknowledgement> simulators_;
+  std::map<storage::EquipmentName, PublishedVersion> champions_;
+  std::size_t services_ = 0;
+};
+
+}  // namespace
+
+PartitionSurvey look_into(const dds::Endpoint& endpoint, std::chrono::nanoseconds limit) {
+  Listener listener(endpoint);
+  const auto deadline = Clock::now() + limit;
+  auto changed = Clock::now();
+  std::array<std::size_t, 4> known{};
+  const auto has_settled = [&](Clock::time_point now) {
+    const bool is_full = std::find(known.begin(), known.end(), 0U) == known.end();
+    return now - changed >= (is_full ? settled : settled_without);
+  };
+  for (auto now = changed; now < deadline && !has_settled(now); now = Clock::now()) {
+    const auto known_now = listener.look(deadline - now);
+    if (known_now != known) changed = Clock::now();
+    known = known_now;
+  }
+  return listener.sight();
+}
+
+}  // namespace reident::cli

@@ -1,0 +1,32 @@
+// A source of frames as the ground receives it through a FaultInjector.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "service/satcs/faults/fault_injector.hpp"
+#include "service/satcs/frame_source.hpp"
+
+namespace reident::satcs {
+
+class FaultySource : public FrameSource {
+ public:
+  /// Throws std::invalid_argument when a fault cannot be told about the truth.
+  FaultySource(std::unique_ptr<FrameSource> truth, std::span<const Fault> faults,
+               const FaultInjectorOptions& options);
+
+  std::vector<storage::ParameterDescriptor> parameters() const override {
+    return truth_->parameters();
+  }
+  bool next(storage::TelemetryFrame& frame) override;
+  double progress() const override { return truth_->progress(); }
+
+ private:
+  std::unique_ptr<FrameSource> truth_;
+  FaultInjector injector_;
+  std::vector<storage::TelemetryFrame> received_;
+  std::size_t handed_out_ = 0;  // of those received
+  bool truth_ended_ = false;
+};
+
+}  // namespace reident::satcs

@@ -1,0 +1,74 @@
+#include "service/windows/window_cache.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "service/support/floor_divide.hpp"
+#include "service/windows/caching_source.hpp"
+
+namespace reident {
+
+using identification::Record;
+using identification::TickRange;
+using identification::TickSet;
+
+WindowCache::WindowCache(const WindowRequest& request, identification::Index block_rows,
+                         const Checks& checks)
+    : request_(request),
+      checks_(request, checks),
+      sums_({static_cast<identification::Index>(request.inputs.size() + request.outputs.size()),
+             block_rows, ChunkCache::chunk_ticks}) {}
+
+void WindowCache::make_holes(const TickSet& holes, TickRange ticks) {
+  for (const TickRange& changed : differing(holes, inside(holes_, ticks))) sums_.forget(changed);
+  TickSet all = outside(holes_, ticks);
+  all.insert(all.end(), holes.begin(), holes.end());
+  holes_ = identification::united(std::move(all));
+}
+
+std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Archive& archive,
+                                                             storage::TimeRange window) {
+  const CachingSource source(archive);
+  auto described = describe_window(source, request_);
+  if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
+  WindowData data = std::get<WindowData>(std::move(described));
+  std::vector<Channel> channels = data.input_channels;
+  channels.insert(channels.end(), data.output_channels.begin(), data.output_channels.end());
+  if (channels != channels_) {
+    samples_.clear();
+    sums_ = identification::LagSums(sums_.shape());
+    channels_ = std::move(channels);
+  }
+
+  const TickRange ticks = ticks_of(window, request_.period);
+  constexpr std::int64_t earliest = std::numeric_limits<std::int64_t>::min();
+  const std::int64_t first_chunk = floor_divide(ticks.begin, ChunkCache::chunk_ticks);
+  const TickRange past{earliest, first_chunk * ChunkCache::chunk_ticks};
+  sums_.forget(past);
+  holes_ = outside(holes_, past);
+  Record samples = samples_.over(ticks, [&](TickRange missing) {
+    ticks_read_ += missing.end - missing.begin;
+    return load_samples(source, request_, data,
+                        {missing.begin * request_.period, missing.end * request_.period});
+  });
+  data.plausibility = checks_.look(source, data, samples, ticks);
+  make_holes(inside(data.plausibility.holes, ticks), ticks);
+  Record read = InputExpressions(request_.inputs, request_.derived).evaluate(std::move(samples));
+  data.read_coverage = coverage_of(read, window, request_.period);
+  data.record = without(std::move(read), data.plausibility.holes);
+  data.coverage = coverage_of(data.record, window, request_.period);
+  return data;
+}
+
+void WindowCache::forget(storage::TimeRange range) {
+  // A sample serves the ticks until it is too old.
+  const storage::Time latest = std::numeric_limits<storage::Time>::max() - request_.hold;
+  const TickRange ticks =
+      ticks_of({range.begin, std::min(range.end, latest) + request_.hold}, request_.period);
+  samples_.forget(ticks);
+  checks_.forget(ticks);
+  sums_.forget(ticks);
+}
+
+}  // namespace reident

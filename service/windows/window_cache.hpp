@@ -1,0 +1,57 @@
+// What a refresh leaves of an equipment's window for the next one: its samples on the grid, and
+// their sums. A window that slides reads and sums only what is new.
+//
+// Time is cut into chunks that do not depend on the window, so that what is kept gives the same
+// bits as what is read again. What is not believed of a window depends on all of it: its holes are
+// made anew each time, and sums are kept as long as the holes in them stay the same.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "identification/samples/record.hpp"
+#include "identification/samples/tick_ranges.hpp"
+#include "identification/subspace/lag_sums.hpp"
+#include "service/windows/chunk_cache.hpp"
+#include "service/windows/telemetry_checks.hpp"
+#include "service/windows/window_data.hpp"
+#include "storage/archive/archive.hpp"
+
+namespace reident {
+
+class WindowCache {
+ public:
+  /// `block_rows` as identification::block_rows_needed says.
+  WindowCache(const WindowRequest& request, identification::Index block_rows,
+              const Checks& checks = {});
+
+  const WindowRequest& request() const { return request_; }
+
+  /// The same as load_window without what the checks do not believe; what lies before the window is
+  /// forgotten.
+  std::variant<WindowData, UnknownParameter> load(const storage::Archive& archive,
+                                                  storage::TimeRange window);
+
+  /// Samples in `range` were stored after the window was loaded.
+  void forget(storage::TimeRange range);
+
+  /// Of the rows that load() gave.
+  identification::LagSums& sums() { return sums_; }
+
+  /// Ticks that load() has read from the archive so far.
+  std::int64_t ticks_read() const { return ticks_read_; }
+
+ private:
+  /// Forgets the sums in which these holes differ from those that they were made with.
+  void make_holes(const identification::TickSet& holes, identification::TickRange ticks);
+
+  WindowRequest request_;
+  PlausibilityChecks checks_;
+  std::vector<Channel> channels_;  // that the chunks were read of
+  ChunkCache samples_;             // u holds the input channels
+  identification::LagSums sums_;
+  identification::TickSet holes_;  // in the samples that the sums are of
+  std::int64_t ticks_read_ = 0;
+};
+
+}  // namespace reident
