@@ -1,6 +1,7 @@
 #include "identification/correction/integral_feedback_search.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -9,16 +10,16 @@
 #include <vector>
 
 #include "identification/correction/pole_placement_search.hpp"
+#include "identification/numerics/decompositions.hpp"
 
 namespace reident::identification {
 namespace {
 
-constexpr double worthwhile = 0.99;
 constexpr double full_rank = 1e-8;
 constexpr Index first_rows = 1000;
-constexpr Index most_rows = 5000;
+constexpr Index most_tuned_rows = 5000;
 constexpr std::ptrdiff_t runs_on_all_rows = 12;
-constexpr int scales_per_decade = 10;
+constexpr int loop_scales_per_decade = 10;
 constexpr int shortest_tau = -2;  // powers of two
 constexpr int longest_tau = 6;
 
@@ -37,7 +38,7 @@ std::optional<Verdict> obstacle(const StateSpaceModel& model, const Vector& erro
   const std::optional<Matrix> gain = static_gain(model);
   if (!gain) return no_gain("a pole of the model is too near to 1 for a second integrator");
   const Index n = model.order();
-  const Matrix settled = (Matrix::Identity(n, n) - model.A).fullPivLu().solve(model.B);
+  const Matrix settled = solve_full_lu(Matrix::Identity(n, n) - model.A, model.B);
   const Vector parts =
       (model.C.cwiseAbs() * settled.cwiseAbs() + model.D.cwiseAbs()).rowwise().norm();
   const Vector sizes = gain->rowwise().norm();
@@ -46,7 +47,7 @@ std::optional<Verdict> obstacle(const StateSpaceModel& model, const Vector& erro
       return no_gain("constant inputs leave output " + std::to_string(q + 1) +
                      " where it is (a zero at z = 1), so that they cannot correct it");
   const Matrix rows = sizes.cwiseInverse().asDiagonal() * *gain;
-  const Vector singular = rows.jacobiSvd().singularValues();
+  const Vector singular = singular_values(rows);
   if (!(singular(p - 1) > full_rank * singular(0)))
     return no_gain(
         "constant inputs move the outputs together alone (a zero at z = 1), so that they cannot "
@@ -70,7 +71,7 @@ std::variant<TrackingPlacement, Verdict> place_tracking_poles(const StateSpaceMo
                                                               const Poles& wanted,
                                                               const Vector& error_limit) {
   const Index n = model.order(), m = model.inputs(), p = model.outputs();
-  eigen_assert(is_well_formed(model) && is_stable(model.A) && error_limit.size() == p);
+  assert(is_well_formed(model) && is_stable(model.A) && error_limit.size() == p);
   if (auto verdict = obstacle(model, error_limit)) return *verdict;
 
   // Without feedback the loop is closed_loop() of no gain.
@@ -103,9 +104,9 @@ std::vector<TrackingSearch> every_placement(const StateSpaceModel& model,
   const Poles poles = poles_of(model.A);
   const std::size_t further = 2 * static_cast<std::size_t>(model.outputs());
   std::vector<TrackingSearch> found;
-  for (int step = -scales_per_decade; step <= scales_per_decade; ++step)
+  for (int step = -loop_scales_per_decade; step <= loop_scales_per_decade; ++step)
     for (int power = shortest_tau; power <= longest_tau; ++power) {
-      const double scale = std::pow(10, double(step) / scales_per_decade);
+      const double scale = std::pow(10, double(step) / loop_scales_per_decade);
       const double tau = std::exp2(power);
       Poles wanted = scaled_poles(poles, scale);
       wanted.resize(wanted.size() + further, std::exp(-1 / tau));
@@ -147,14 +148,14 @@ void score_tracking(const StateSpaceModel& model, const Record& record, RowRange
 std::variant<TrackingSearch, Verdict> search_tracking(const StateSpaceModel& model,
                                                       const Record& record, RowRange identify,
                                                       RowRange tune) {
-  eigen_assert(0 <= identify.begin && identify.begin < identify.end);
-  eigen_assert(identify.end <= record.rows() && tune.begin < tune.end);
-  eigen_assert(0 <= tune.begin && tune.end <= record.rows());
+  assert(0 <= identify.begin && identify.begin < identify.end);
+  assert(identify.end <= record.rows() && tune.begin < tune.end);
+  assert(0 <= tune.begin && tune.end <= record.rows());
   const auto identified = record.y.middleRows(identify.begin, identify.size()).colwise();
   const Vector error_limit = (identified.maxCoeff() - identified.minCoeff()).transpose();
   if (auto verdict = obstacle(model, error_limit)) return *verdict;
 
-  const RowRange rows{tune.begin, std::min(tune.end, tune.begin + most_rows)};
+  const RowRange rows{tune.begin, std::min(tune.end, tune.begin + most_tuned_rows)};
   const RowRange few = liveliest(record, rows, error_limit);
   std::vector<TrackingSearch> tried = every_placement(model, error_limit);
   const auto by_error = [](const TrackingSearch& a, const TrackingSearch& b) {

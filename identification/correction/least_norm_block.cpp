@@ -42,7 +42,8 @@ Eigen::Matrix2d nearest_with_poles(const Eigen::Matrix2d& A, double ratio, doubl
   double low = -end, high = end;
   for (int i = 0; i < halvings; ++i) {
     const double middle = (low + high) / 2;
-    (stationary(A, ratio, trace, middle).determinant() > determinant ? low : high) = middle;
+    const Eigen::Matrix2d M = stationary(A, ratio, trace, middle);
+    (M(0, 0) * M(1, 1) - M(1, 0) * M(0, 1) > determinant ? low : high) = middle;
   }
   const double mu = (low + high) / 2;
   Eigen::Matrix2d M = stationary(A, ratio, trace, mu);

@@ -1,7 +1,7 @@
 // Pole placement for two states: the feedback of least norm.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace reident::identification {
 

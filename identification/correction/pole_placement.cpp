@@ -1,10 +1,12 @@
 #include "identification/correction/pole_placement.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "identification/correction/least_norm_block.hpp"
+#include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/schur_blocks.hpp"
 
 namespace reident::identification {
@@ -167,9 +169,9 @@ bool Placement::leave_unreached() {
 bool Placement::leave_unreached_part() {
   const Index last = end_ - 1, row = schur_.first_row(last);
   if (schur_.size(last) == 1) return false;
-  const Eigen::JacobiSVD<Matrix> svd(rows_of(last), Eigen::ComputeFullU);
-  schur_.rotate(last, svd.matrixU());
-  rows_of(last) = (svd.matrixU().transpose() * rows_of(last)).eval();
+  const Matrix U = left_singular(rows_of(last), SingularVectors::full).U;
+  schur_.rotate(last, U);
+  rows_of(last) = (U.transpose() * rows_of(last)).eval();
   const double sigma_2 = rows_of(last).row(1).norm();
   if (sigma_2 > unreached_) return false;
   if (std::abs(schur_.T()(row + 1, row)) > negligible * schur_.T().norm()) return false;
@@ -211,8 +213,7 @@ void Placement::place(Index block) {
 void Placement::separate(Index block, double pole) {
   const Index row = schur_.first_row(block);
   const Eigen::Matrix2d T = schur_.T().block<2, 2>(row, row) - pole * Eigen::Matrix2d::Identity();
-  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(T, Eigen::ComputeFullV);
-  const Eigen::Vector2d v = svd.matrixV().col(1);  // T v = 0
+  const Eigen::Vector2d v = least_right_singular(T);  // T v = 0
   Matrix Z(2, 2);
   Z << v(0), -v(1), v(1), v(0);
   schur_.rotate(block, Z);
@@ -278,8 +279,8 @@ Poles poles_of(const Matrix& A) {
 
 std::variant<PolePlacement, Verdict> place_poles(const Matrix& A, const Matrix& B,
                                                  const Poles& wanted) {
-  eigen_assert(A.rows() == A.cols() && B.rows() == A.rows() && A.allFinite() && B.allFinite());
-  eigen_assert(static_cast<Index>(wanted.size()) == A.rows() && is_self_conjugate(wanted));
+  assert(A.rows() == A.cols() && B.rows() == A.rows() && A.allFinite() && B.allFinite());
+  assert(static_cast<Index>(wanted.size()) == A.rows() && is_self_conjugate(wanted));
   const Vector size = balance(A), inverse = size.cwiseInverse();
   auto result =
       Placement(inverse.asDiagonal() * A * size.asDiagonal(), inverse.asDiagonal() * B, wanted)

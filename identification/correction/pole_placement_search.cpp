@@ -1,17 +1,19 @@
 #include "identification/correction/pole_placement_search.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "identification/numerics/decompositions.hpp"
+
 namespace reident::identification {
 namespace {
 
 constexpr double gone_at_once = 1e-8;
-constexpr double worthwhile = 0.99;
 constexpr double well_conditioned = 1e-10;
 constexpr Index most_rows = 20000;  // of either part
 constexpr int scales_per_decade = 20;
@@ -31,8 +33,7 @@ std::optional<Matrix> input_gain(const Matrix& wanted, const StateSpaceModel& fe
   const std::optional<Matrix> gain = static_gain(fed_back);
   if (!gain) return std::nullopt;
   const Matrix change =
-      S.asDiagonal() *
-      (*gain * S.asDiagonal()).completeOrthogonalDecomposition().solve(wanted - *gain);
+      S.asDiagonal() * solve_least_norm(*gain * S.asDiagonal(), Matrix(wanted - *gain));
   if ((*gain * change - (wanted - *gain)).norm() > 1e-8 * wanted.norm()) return std::nullopt;
   return Matrix::Identity(S.size(), S.size()) + change;
 }
@@ -171,16 +172,16 @@ Poles scaled_poles(const Poles& poles, double scale) {
 std::optional<Matrix> static_gain(const StateSpaceModel& model) {
   const Index n = model.order();
   if (n == 0) return model.D;
-  const Eigen::FullPivLU<Matrix> resolvent(Matrix::Identity(n, n) - model.A);
-  if (!(resolvent.rcond() > well_conditioned)) return std::nullopt;
-  return model.C * resolvent.solve(model.B) + model.D;
+  const auto states = solve_full_lu(Matrix::Identity(n, n) - model.A, model.B, well_conditioned);
+  if (!states) return std::nullopt;
+  return model.C * *states + model.D;
 }
 
 CorrectionSearch search_correction(const StateSpaceModel& model, const Record& record,
                                    RowRange identify, RowRange tune, const ForEach& for_each) {
-  eigen_assert(is_well_formed(model) && is_stable(model.A));
-  eigen_assert(0 <= identify.begin && identify.begin < identify.end);
-  eigen_assert(identify.end <= tune.begin && tune.begin < tune.end && tune.end <= record.rows());
+  assert(is_well_formed(model) && is_stable(model.A));
+  assert(0 <= identify.begin && identify.begin < identify.end);
+  assert(identify.end <= tune.begin && tune.begin < tune.end && tune.end <= record.rows());
   return Search(model, record, identify, tune).result(for_each);
 }
 

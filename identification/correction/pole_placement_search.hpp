@@ -23,6 +23,9 @@
 
 namespace reident::identification {
 
+/// A correction that lowers the error by less than 1 % is none.
+inline constexpr double worthwhile = 0.99;
+
 /// z^scale of a positive real pole and of complex ones; the angle of a pair stays where scale times
 /// it would reach half of the sample rate. sign(z) |z|^scale of a negative one: it turns with every
 /// sample and is that of no differential equation. A pole below 1e-8 is gone within a sample and

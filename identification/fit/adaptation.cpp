@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "identification/fit/output_error_fit.hpp"
+#include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/gram.hpp"
 #include "identification/simulation/simulate.hpp"
 
@@ -65,17 +66,17 @@ Components components_of(const Matrix& u, const std::vector<Segment>& segments) 
   constexpr double determined = 1e-6;  // below it is the rounding of inputs that follow from others
   const Index m = u.cols();
   if (m == 0) return {};
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(lower_gram(u.transpose()) / double(u.rows()));
+  const SymmetricEigen eigen = symmetric_eigen(lower_gram(u.transpose()) / double(u.rows()));
   std::vector<Index> moving, noise;
   for (Index i = 0; i < m; ++i) {
-    const double size = std::sqrt(std::max(0.0, eigen.eigenvalues()(i)));
-    const Vector weights = eigen.eigenvectors().col(i);
+    const double size = std::sqrt(std::max(0.0, eigen.values(i)));
+    const Vector weights = eigen.vectors.col(i);
     const bool moves =
         size > small ||
         (size > determined && carried_on(u * weights, segments, rows_held(u, weights)) > half);
     (moves ? moving : noise).push_back(i);
   }
-  return {eigen.eigenvectors()(Eigen::all, moving), eigen.eigenvectors()(Eigen::all, noise)};
+  return {eigen.vectors(Eigen::all, moving), eigen.vectors(Eigen::all, noise)};
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowR
   const Matrix dB = moves.B * to_components;
   const Matrix dD = per_y.cwiseInverse().asDiagonal() * moves.D * to_components;
   const Matrix I = Matrix::Identity(known.order(), known.order());
-  const Matrix static_gain = known.C * (I - known.A).partialPivLu().solve(dB) + dD;
+  const Matrix static_gain = known.C * solve_lu(I - known.A, dB) + dD;
   model.B(Eigen::all, inputs) += dB;
   model.D(Eigen::all, inputs) += dD;
   model.y0 += moves.y0.cwiseQuotient(per_y) - static_gain * (mean - known.u0)(inputs);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/kernels.hpp"
 
 namespace reident::identification {
@@ -122,9 +123,7 @@ void NormalEquations::end_segment() {
     own.setZero();
   }
   sums.triangularView<Eigen::StrictlyUpper>() = sums.transpose();
-  Elimination elimination{
-      sums.topLeftCorner(n, n).completeOrthogonalDecomposition().pseudoInverse(),
-      sums.topRightCorner(n, rest)};
+  Elimination elimination{pseudo_inverse(sums.topLeftCorner(n, n)), sums.topRightCorner(n, rest)};
   sums_ += sums.bottomRightCorner(rest, rest);
   sums_.noalias() -= elimination.coupling.transpose() * elimination.inverse * elimination.coupling;
   segments_.push_back(std::move(elimination));
@@ -153,23 +152,22 @@ std::optional<RegressionSolution> NormalEquations::solve(double damping, double 
   G.diagonal() = weight;
   const Vector scale = inverse_roots(weight);
   G = (scale.asDiagonal() * G * scale.asDiagonal()).eval();
-  const Eigen::LLT<Matrix> llt(G);
-  if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least_pivot))
-    return std::nullopt;
+  const auto cholesky = Cholesky::of(G, least_pivot);
+  if (!cholesky) return std::nullopt;
 
   const Vector target = sums_.col(unknowns).head(unknowns);
-  return solution_of(scale.asDiagonal() * llt.solve(scale.asDiagonal() * target));
+  return solution_of(scale.asDiagonal() * cholesky->solve(Vector(scale.asDiagonal() * target)));
 }
 
 std::optional<NormalEquations::Components> NormalEquations::components() const {
   const Index unknowns = columns_.target() - columns_.n;
   const Vector scale = inverse_roots(sums_.diagonal().head(unknowns));
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(
+  const SymmetricEigen eigen = symmetric_eigen(
       scale.asDiagonal() * sums_.topLeftCorner(unknowns, unknowns) * scale.asDiagonal());
-  if (eigen.info() != Eigen::Success) return std::nullopt;
+  if (!eigen.converged) return std::nullopt;
   return Components{
-      scale, eigen.eigenvectors(), eigen.eigenvalues(),
-      eigen.eigenvectors().transpose() * (scale.asDiagonal() * sums_.col(unknowns).head(unknowns))};
+      scale, eigen.vectors, eigen.values,
+      eigen.vectors.transpose() * (scale.asDiagonal() * sums_.col(unknowns).head(unknowns))};
 }
 
 std::optional<RegressionSolution> NormalEquations::solve_without_small(double least_size) const {
@@ -226,8 +224,7 @@ RegressionSolution NormalEquations::solution_of(const Vector& found) const {
 namespace {
 
 Matrix triangular(const Eigen::Ref<const Matrix>& rows) {
-  const Index size = std::min(rows.rows(), rows.cols());
-  return rows.householderQr().matrixQR().topRows(size).triangularView<Eigen::Upper>();
+  return triangular_factor(rows);
 }
 
 /// The triangular factor of `factor` with `rows` below.
@@ -271,14 +268,13 @@ void OrthogonalFactor::end_segment() {
 RegressionSolution OrthogonalFactor::solve() const {
   const Index n = columns_.n, unknowns = columns_.target() - n;
   RegressionSolution solution{Vector::Zero(columns_.target()), {}, 0};
-  const Vector found =
-      factor_.leftCols(unknowns).completeOrthogonalDecomposition().solve(factor_.col(unknowns));
+  const Vector found = solve_least_norm(factor_.leftCols(unknowns), Vector(factor_.col(unknowns)));
   solution.theta.tail(unknowns) = found;
   solution.sum_of_squares =
       (factor_.col(unknowns) - factor_.leftCols(unknowns) * found).squaredNorm();
   for (const Matrix& rows : segments_)
-    solution.x0.push_back(rows.leftCols(n).completeOrthogonalDecomposition().solve(
-        rows.rightCols(1) - rows.middleCols(n, unknowns) * found));
+    solution.x0.push_back(solve_least_norm(
+        rows.leftCols(n), Matrix(rows.rightCols(1) - rows.middleCols(n, unknowns) * found)));
   return solution;
 }
 

@@ -1,7 +1,7 @@
 // Matrices and vectors of the mathematics.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace reident::identification {
 

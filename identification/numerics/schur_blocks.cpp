@@ -1,10 +1,11 @@
 #include "identification/numerics/schur_blocks.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
+#include "identification/numerics/decompositions.hpp"
 
 namespace reident::identification {
 namespace {
@@ -21,7 +22,7 @@ Matrix sylvester(const Matrix& T11, const Matrix& T22, const Matrix& T12) {
       operation.block(column * n1, other * n1, n1, n1) -=
           T22(other, column) * Matrix::Identity(n1, n1);
   }
-  const Vector x = operation.fullPivLu().solve(T12.reshaped());
+  const Vector x = solve_full_lu(operation, Vector(T12.reshaped()));
   return x.reshaped(n1, n2);
 }
 
@@ -35,12 +36,12 @@ Matrix exchange(Index n1, Index n2) {
 }  // namespace
 
 SchurBlocks::SchurBlocks(const Matrix& A) {
-  eigen_assert(A.rows() == A.cols() && A.allFinite());
+  assert(A.rows() == A.cols() && A.allFinite());
   if (A.rows() == 0) return;
-  const Eigen::RealSchur<Matrix> schur(A);
-  if (schur.info() != Eigen::Success) return;
-  T_ = schur.matrixT();
-  Q_ = schur.matrixU();
+  const auto schur = real_schur(A);
+  if (!schur) return;
+  T_ = schur->T;
+  Q_ = schur->Q;
   for (Index row = 0; row < A.rows(); row += sizes_.back())
     sizes_.push_back(row + 1 < A.rows() && T_(row + 1, row) != 0 ? 2 : 1);
 }
@@ -75,7 +76,7 @@ Matrix SchurBlocks::swap_with_next(Index block) {
     Matrix subspace(n, n2);
     subspace << -X, Matrix::Identity(n2, n2);
     subspace /= std::max(1.0, X.norm());
-    Z = subspace.householderQr().householderQ();
+    Z = orthogonal_factor(subspace);
   }
   const Matrix swapped = Z.transpose() * local * Z;
   if (!(swapped.bottomLeftCorner(n1, n2).norm() <= accepted_swap * local.norm()))
@@ -87,7 +88,7 @@ Matrix SchurBlocks::swap_with_next(Index block) {
 }
 
 void SchurBlocks::join_with_next(Index block) {
-  eigen_assert(size(block) == 1 && size(block + 1) == 1);
+  assert(size(block) == 1 && size(block + 1) == 1);
   sizes_[static_cast<std::size_t>(block)] = 2;
   sizes_.erase(sizes_.begin() + block + 1);
 }
@@ -97,7 +98,7 @@ void SchurBlocks::rotate(Index block, const Matrix& Z) {
 }
 
 void SchurBlocks::split(Index block) {
-  eigen_assert(size(block) == 2);
+  assert(size(block) == 2);
   const Index row = first_row(block);
   T_(row + 1, row) = 0;
   sizes_[static_cast<std::size_t>(block)] = 1;

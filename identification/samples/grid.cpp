@@ -1,5 +1,6 @@
 #include "identification/samples/grid.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -68,7 +69,7 @@ struct Rows {
 
 Record make_record(std::span<const ChannelSamples> inputs, std::span<const ChannelSamples> outputs,
                    std::int64_t begin_ns, std::int64_t end_ns, const GridOptions& options) {
-  eigen_assert(options.period_ns > 0 && options.hold_ns > 0);
+  assert(options.period_ns > 0 && options.hold_ns > 0);
   const std::int64_t period = options.period_ns;
   std::vector<Cursor> cursors;
   for (const ChannelSamples& channel : inputs) cursors.emplace_back(channel, options.hold_ns);

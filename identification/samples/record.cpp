@@ -1,12 +1,13 @@
 #include "identification/samples/record.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace reident::identification {
 
 Record contiguous_record(double period_s, Matrix u, Matrix y) {
-  eigen_assert(u.rows() == y.rows());
+  assert(u.rows() == y.rows());
   Record record{period_s, std::move(u), std::move(y), {}};
   if (record.rows() > 0) record.segments.push_back({0, record.rows(), 0});
   return record;
@@ -44,7 +45,7 @@ Record rows_at(const Record& record, TickRange ticks) {
 }
 
 Record joined(const std::vector<const Record*>& parts) {
-  eigen_assert(!parts.empty());
+  assert(!parts.empty());
   Index rows = 0;
   for (const Record* part : parts) rows += part->rows();
   const Record& first = *parts.front();

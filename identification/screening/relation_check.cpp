@@ -1,6 +1,7 @@
 #include "identification/screening/relation_check.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -67,7 +68,7 @@ std::int64_t tick_of(const Record& record, Index row) {
 }  // namespace
 
 std::vector<Inconsistency> inconsistencies(const Record& residual, double tolerance) {
-  eigen_assert(residual.y.cols() == 1 && tolerance > 0);
+  assert(residual.y.cols() == 1 && tolerance > 0);
   const Vector r = residual.y.col(0);
   std::vector<Inconsistency> found;
   const auto take = [&](double centre, double limit, Index length, bool is_shift) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -234,7 +235,7 @@ std::string_view name(SensorFaultKind kind) {
 
 std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<bool>& analog) {
   const Index inputs = record.u.cols(), outputs = record.y.cols();
-  eigen_assert(static_cast<Index>(analog.size()) == inputs + outputs);
+  assert(static_cast<Index>(analog.size()) == inputs + outputs);
   std::vector<SensorFault> faults;
   if (record.rows() == 0) return faults;
   std::vector<Channel> channels;

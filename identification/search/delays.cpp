@@ -1,11 +1,12 @@
 #include "identification/search/delays.hpp"
 
+#include <cassert>
 #include <numeric>
 
 namespace reident::identification {
 
 Record delayed(const Record& record, RowRange rows, const std::vector<int>& delays, int left_out) {
-  eigen_assert(static_cast<Index>(delays.size()) == record.u.cols());
+  assert(static_cast<Index>(delays.size()) == record.u.cols());
   Record result{record.period_s, {}, {}, {}};
   Index total = 0;
   const std::vector<Segment> parts = segments_within(record, rows);

@@ -1,6 +1,7 @@
 #include "identification/search/identify.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include "identification/search/delays.hpp"
@@ -98,8 +99,8 @@ IdentifyResult identify_delayed(const Record& record, RowRange rows,
 
 IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
                         LagSums* kept) {
-  eigen_assert(mistakes(options).empty() && record.y.cols() >= 1);
-  eigen_assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
+  assert(mistakes(options).empty() && record.y.cols() >= 1);
+  assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
   const bool may_delay = options.max_input_delay > 0 || !options.input_delays.empty();
   if (may_delay && record.u.cols() > 0) return identify_delayed(record, rows, options);
   return run_pipeline(record, rows, options, kept);

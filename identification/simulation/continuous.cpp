@@ -1,11 +1,12 @@
 #include "identification/simulation/continuous.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <complex>
 #include <optional>
 #include <string>
 
-#include <unsupported/Eigen/MatrixFunctions>
+#include "identification/numerics/decompositions.hpp"
 
 namespace reident::identification {
 namespace {
@@ -43,15 +44,15 @@ Dynamics exponential(const Dynamics& dynamics, double period_s) {
   const Vector sizes = column_sizes(dynamics.B);
   const Matrix generator = block_matrix(
       {dynamics.A * period_s, dynamics.B * sizes.cwiseInverse().asDiagonal() * period_s}, 0);
-  Dynamics result = upper_blocks(generator.exp(), dynamics.A.rows());
+  Dynamics result = upper_blocks(matrix_exponential(generator), dynamics.A.rows());
   result.B *= sizes.asDiagonal();
   return result;
 }
 
 Dynamics logarithm(const Dynamics& dynamics, double period_s) {
   const Vector sizes = column_sizes(dynamics.B);
-  const Matrix M =
-      block_matrix({dynamics.A, dynamics.B * sizes.cwiseInverse().asDiagonal()}, 1).log();
+  const Matrix M = matrix_logarithm(
+      block_matrix({dynamics.A, dynamics.B * sizes.cwiseInverse().asDiagonal()}, 1));
   Dynamics result = upper_blocks(M / period_s, dynamics.A.rows());
   result.B *= sizes.asDiagonal();
   return result;
@@ -67,7 +68,7 @@ double relative_error(const Dynamics& found, const Dynamics& wanted) {
 }
 
 std::optional<Verdict> pole_without_logarithm(const Matrix& A) {
-  const Eigen::VectorXcd poles = A.eigenvalues();
+  const ComplexVector poles = eigenvalues(A);
   for (const std::complex<double>& pole : poles)
     if (std::abs(pole) < smallest_pole)
       return Verdict{VerdictCode::no_continuous_time,
@@ -87,7 +88,7 @@ std::optional<Verdict> pole_without_logarithm(const Matrix& A) {
 }  // namespace
 
 std::variant<ContinuousModel, Verdict> to_continuous(const StateSpaceModel& model) {
-  eigen_assert(is_well_formed(model));
+  assert(is_well_formed(model));
   if (model.order() == 0)
     return ContinuousModel{model.A, model.B, model.C, model.D, model.u0, model.y0};
   if (auto verdict = pole_without_logarithm(model.A)) return *std::move(verdict);
@@ -106,7 +107,7 @@ std::variant<ContinuousModel, Verdict> to_continuous(const StateSpaceModel& mode
 }
 
 StateSpaceModel to_discrete(const ContinuousModel& model, double period_s) {
-  eigen_assert(period_s > 0);
+  assert(period_s > 0);
   Dynamics discrete{model.A, model.B};
   if (model.order() > 0) discrete = exponential(discrete, period_s);
   return {std::move(discrete.A),

@@ -1,5 +1,8 @@
 #include "identification/simulation/integral_feedback.hpp"
 
+#include <cassert>
+
+#include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/simulate.hpp"
 
 namespace reident::identification {
@@ -22,7 +25,7 @@ bool sizes_agree(const StateSpaceModel& model, const TrackingGain& gain) {
 }  // namespace
 
 Matrix closed_loop(const StateSpaceModel& model, const TrackingGain& gain) {
-  eigen_assert(sizes_agree(model, gain));
+  assert(sizes_agree(model, gain));
   const Index n = model.order(), p = model.outputs(), size = n + 2 * p;
   Matrix loop = Matrix::Zero(size, size);
   loop.topLeftCorner(n, n) = model.A;
@@ -44,10 +47,10 @@ bool is_stabilising(const StateSpaceModel& model, const TrackingGain& gain) {
 
 Tracker::Tracker(const StateSpaceModel& model, const TrackingGain& gain, const Vector& x0)
     : model_(model), gain_(gain), x_f_(x0), d_(Vector::Zero(model.order())) {
-  eigen_assert(is_well_formed(model) && is_stabilising(model, gain) && x0.size() == model.order());
+  assert(is_well_formed(model) && is_stabilising(model, gain) && x0.size() == model.order());
   const Index m = model.inputs(), p = model.outputs();
-  fading_ = closed_loop(model, gain).eigenvalues().cwiseAbs().maxCoeff();
-  integrators_of_v_ = -gain.integral.rightCols(p).completeOrthogonalDecomposition().pseudoInverse();
+  fading_ = spectral_radius(closed_loop(model, gain));
+  integrators_of_v_ = -pseudo_inverse(gain.integral.rightCols(p));
   xi1_ = xi2_ = y_hat_ = e_ = Vector::Zero(p);
   v_ = v_next_ = bridge_ = du_ = Vector::Zero(m);
   next_ = d_peak_ = Vector::Zero(model.order());

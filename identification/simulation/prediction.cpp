@@ -1,5 +1,6 @@
 #include "identification/simulation/prediction.hpp"
 
+#include <cassert>
 #include <utility>
 
 namespace reident::identification {
@@ -7,8 +8,8 @@ namespace reident::identification {
 Predictor::Predictor(const StateSpaceModel& model, const Record& record, RowRange run,
                      Matrix y_free)
     : A_(model.A), C_(model.C), y_free_(std::move(y_free)), d_(model.order(), run.size()) {
-  eigen_assert(model.K.rows() == model.order() && model.K.cols() == model.outputs());
-  eigen_assert(y_free_.rows() == run.size() && y_free_.cols() == model.outputs());
+  assert(model.K.rows() == model.order() && model.K.cols() == model.outputs());
+  assert(y_free_.rows() == run.size() && y_free_.cols() == model.outputs());
   const Matrix F = model.A - model.K * model.C;
   const Matrix Ke = model.K * (record.y.middleRows(run.begin, run.size()) - y_free_).transpose();
   for (const Segment& segment : segments_within(record, run)) {
@@ -23,7 +24,7 @@ Predictor::Predictor(const StateSpaceModel& model, const Record& record, RowRang
 }
 
 Matrix Predictor::outputs(Index steps) const {
-  eigen_assert(steps >= 1);
+  assert(steps >= 1);
   Matrix gain = C_;
   for (Index step = 1; step < steps; ++step) gain = (gain * A_).eval();
   Matrix y_hat = y_free_;

@@ -1,12 +1,14 @@
 #include "identification/simulation/simulate.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
 #include <vector>
 
+#include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/gram.hpp"
 #include "identification/numerics/kernels.hpp"
 
@@ -87,8 +89,8 @@ UncertainState through_hole(const StateSpaceModel& model, const Record& record,
             .eval();
   }
   if (!P.allFinite()) return result;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(P);
-  result.L = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  const SymmetricEigen eigen = symmetric_eigen(P);
+  result.L = eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
   return result;
 }
 
@@ -113,10 +115,9 @@ Vector least_squares(const Matrix& left, const Vector& right) {
   const Vector scale = left.colwise().norm().transpose().unaryExpr(
       [](double norm) { return norm > 0 ? 1 / norm : 0.0; });
   const Matrix scaled = scale.asDiagonal() * left.transpose();
-  const Eigen::LLT<Matrix> llt(lower_gram(scaled));
-  if (llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > least_pivot)
-    return scale.asDiagonal() * llt.solve(scaled * right);
-  return left.completeOrthogonalDecomposition().solve(right);
+  if (const auto cholesky = Cholesky::of(lower_gram(scaled), least_pivot))
+    return scale.asDiagonal() * cholesky->solve(Vector(scaled * right));
+  return solve_least_norm(left, right);
 }
 
 /// Of each output's errors, by their mean squares and the output's size in the rows.
@@ -167,10 +168,9 @@ struct Information {
 /// is left where the former take their best values.
 Information without_unknowns(const Matrix& rows, Index given_up) {
   const Index n = rows.cols() - 1 - given_up;
-  const Eigen::HouseholderQR<Matrix> qr(rows);
   const Index left = std::min(rows.rows(), given_up + n) - given_up;
-  const Matrix triangle = qr.matrixQR().block(given_up, given_up, left, n + 1);
-  return {triangle.leftCols(n).triangularView<Eigen::Upper>(), triangle.col(n)};
+  const Matrix triangle = triangular_factor(rows).block(given_up, given_up, left, n + 1);
+  return {triangle.leftCols(n), triangle.col(n)};
 }
 
 Matrix power_of(Matrix A, std::int64_t exponent) {
@@ -246,7 +246,7 @@ Vector state_before_holes(const StateSpaceModel& model, const Record& record,
     if (!hole.allFinite()) return state_of_part(model, record, parts.front());
     known = without_unknowns(hole, n);
   }
-  return known.R.completeOrthogonalDecomposition().solve(known.r);
+  return solve_least_norm(known.R, known.r);
 }
 
 }  // namespace
@@ -295,7 +295,7 @@ std::optional<Vector> state_after_hole(const StateSpaceModel& model, const Recor
   right.head(weight.size()) =
       weight.cwiseProduct(remainder_of(model, record, after, count, behind));
   if (!left.allFinite() || !right.allFinite()) return prior.x;
-  return prior.x + prior.L * left.colPivHouseholderQr().solve(right);
+  return prior.x + prior.L * solve_pivoted_qr(left, right);
 }
 
 Index initial_rows(const StateSpaceModel& model) {
@@ -338,12 +338,12 @@ Matrix free_run(const StateSpaceModel& model, const Record& record, RowRange row
             .transpose();
     out += segment.size();
   }
-  eigen_assert(out == rows.size());
+  assert(out == rows.size());
   return y_hat;
 }
 
 Score score(const Matrix& y, const Matrix& y_hat) {
-  eigen_assert(y.rows() == y_hat.rows() && y.cols() == y_hat.cols() && y.rows() > 0);
+  assert(y.rows() == y_hat.rows() && y.cols() == y_hat.cols() && y.rows() > 0);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Score result{Vector(y.cols()), Vector(y.cols()), y.rows()};
   for (Index q = 0; q < y.cols(); ++q) {

@@ -3,19 +3,12 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
+#include "identification/numerics/decompositions.hpp"
 
 namespace reident::identification {
-namespace {
-
-double largest_eigenvalue(const Matrix& A) {
-  return A.rows() == 0 ? 0 : A.eigenvalues().cwiseAbs().maxCoeff();
-}
-
-}  // namespace
 
 double spectral_radius(const StateSpaceModel& model) {
-  return largest_eigenvalue(model.A);
+  return spectral_radius(model.A);
 }
 
 double slowest_time_constant_s(const StateSpaceModel& model) {
@@ -23,13 +16,13 @@ double slowest_time_constant_s(const StateSpaceModel& model) {
 }
 
 double slowest_time_constant_s(const Matrix& A, double period_s) {
-  const double radius = largest_eigenvalue(A);
+  const double radius = spectral_radius(A);
   if (radius <= 0) return 0;
   return radius < 1 ? -period_s / std::log(radius) : std::numeric_limits<double>::infinity();
 }
 
 bool is_stable(const Matrix& A) {
-  return A.allFinite() && largest_eigenvalue(A) < 1;
+  return A.allFinite() && spectral_radius(A) < 1;
 }
 
 bool is_well_formed(const StateSpaceModel& model) {

@@ -1,6 +1,7 @@
 #include "identification/statistics/change_detection.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "identification/statistics/quantiles.hpp"
@@ -16,7 +17,7 @@ constexpr double least_deviation = 1e-3;
 }  // namespace
 
 ChangeDetector::ChangeDetector(const Vector& reference) : mean_(reference.mean()) {
-  eigen_assert(reference.size() >= least_blocks);
+  assert(reference.size() >= least_blocks);
   const auto n = double(reference.size());
   const double squares = (reference.array() - mean_).square().sum();
   deviation_ = std::max(least_deviation, std::sqrt(squares / chi_squared_quantile(0.1, n - 1)));

@@ -1,18 +1,17 @@
 #include "identification/statistics/comparison.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
+#include "identification/simulation/simulate.hpp"
 #include "identification/statistics/correlation.hpp"
 #include "identification/statistics/error_confidence.hpp"
 #include "identification/statistics/quantiles.hpp"
-#include "identification/simulation/simulate.hpp"
 
 namespace reident::identification {
 namespace {
 
-constexpr Index least_rows = 50;
-constexpr Index least_blocks = 10;
 constexpr Index most_blocks = 50;
 /// No single stretch of this share of the rows may decide.
 constexpr double stretch_share = 0.05;
@@ -109,8 +108,8 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
                                              const Matrix& candidate,
                                              const std::vector<RowRange>& stretches,
                                              double confidence, Course course) {
-  eigen_assert(y.rows() == incumbent.rows() && y.cols() == incumbent.cols());
-  eigen_assert(y.rows() == candidate.rows() && y.cols() == candidate.cols());
+  assert(y.rows() == incumbent.rows() && y.cols() == incumbent.cols());
+  assert(y.rows() == candidate.rows() && y.cols() == candidate.cols());
   const Index rows = y.rows();
   if (rows < least_rows) return std::nullopt;
   const Matrix of_incumbent = (y - incumbent).cwiseAbs2(),

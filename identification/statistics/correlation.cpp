@@ -1,6 +1,7 @@
 #include "identification/statistics/correlation.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -103,7 +104,7 @@ Correlogram autocorrelogram(Series& series, Index lags) {
 }
 
 Correlogram cross_correlogram(Series& input, Series& residual, Index lags) {
-  eigen_assert(input.rows() == residual.rows());
+  assert(input.rows() == residual.rows());
   const Index reach = reach_within(input, lags);
   if (reach == 0) return {};
   const Vector &u = input.centred(), &e = residual.centred();

@@ -1,6 +1,7 @@
 #include "identification/statistics/diagnostics.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "identification/simulation/prediction.hpp"
 
@@ -60,7 +61,7 @@ std::vector<InputCorrelation> input_correlations(std::vector<Series>& inputs,
 
 Diagnostics diagnose(const StateSpaceModel& model, const Record& record, RowRange run,
                      RowRange scored, const std::optional<Vector>& x0) {
-  eigen_assert(scored.size() > 0 && run.begin <= scored.begin && scored.end <= run.end);
+  assert(scored.size() > 0 && run.begin <= scored.begin && scored.end <= run.end);
   Scored part = scored_part(record, scored);
   const auto in_part = [run, scored](const Matrix& y_hat) -> Matrix {
     return y_hat.middleRows(scored.begin - run.begin, scored.size());

@@ -1,6 +1,7 @@
 #include "identification/statistics/error_confidence.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -12,9 +13,7 @@
 namespace reident::identification {
 namespace {
 
-constexpr Index least_rows = 50;
-constexpr Index most_blocks = 250;
-constexpr Index least_blocks = 10;
+constexpr Index most_interval_blocks = 250;
 constexpr Index replicates = 1000;
 constexpr double lengthening = 3;
 constexpr std::uint32_t seed = 20170717;
@@ -90,7 +89,7 @@ double optimal_block_rows(double correlated_rows, Index rows) {
 
 std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat,
                                             const std::vector<RowRange>& stretches) {
-  eigen_assert(y.rows() == y_hat.rows() && y.cols() == y_hat.cols());
+  assert(y.rows() == y_hat.rows() && y.cols() == y_hat.cols());
   const Index N = y.rows(), p = y.cols();
   if (N < least_rows) return std::nullopt;
   const Matrix e2 = (y - y_hat).cwiseAbs2(), y2 = y.cwiseAbs2();
@@ -103,7 +102,7 @@ std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat
   for (Index q = 0; q < p; ++q)
     optimal = std::max(optimal, optimal_block(e2.col(q), y2.col(q), stretches));
   const Index longest = N / least_blocks;
-  const Index shortest = (N + most_blocks - 1) / most_blocks;
+  const Index shortest = (N + most_interval_blocks - 1) / most_interval_blocks;
   ErrorInterval result{Vector(p), Vector(p)};
   result.block_rows =
       std::clamp(static_cast<Index>(std::ceil(lengthening * optimal)), shortest, longest);

@@ -32,6 +32,10 @@
 
 namespace reident::identification {
 
+/// Fewer rows, or fewer blocks of rows that are as good as independent, give no interval.
+inline constexpr Index least_rows = 50;
+inline constexpr Index least_blocks = 10;
+
 /// The block length of least mean square error for the variance of a mean over `rows` rows, of
 /// which `correlated_rows` count as one.
 double optimal_block_rows(double correlated_rows, Index rows);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "identification/numerics/decompositions.hpp"
+
 namespace reident::identification {
 
 std::vector<RedundantInput> redundant_inputs(const Matrix& u) {
@@ -11,7 +13,7 @@ std::vector<RedundantInput> redundant_inputs(const Matrix& u) {
   std::vector<Index> kept;
   for (Index j = 0; j < u.cols(); ++j) {
     const Matrix before = u(Eigen::all, kept);
-    const Vector weights = before.householderQr().solve(u.col(j));
+    const Vector weights = solve_qr(before, u.col(j));
     const double rest = (u.col(j) - before * weights).norm();
     if (kept.empty() || rest > of_its_own * u.col(j).norm()) {
       kept.push_back(j);
@@ -28,10 +30,9 @@ std::vector<RedundantInput> redundant_inputs(const Matrix& u) {
 
 bool are_independent(const Matrix& correlation) {
   if (correlation.rows() == 0) return true;
-  const Eigen::LLT<Matrix> llt(correlation);
   // The square of 1e-6 is beyond what a sum of squares tells from rounding.
   constexpr double clearly = 1e-4;
-  return llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > clearly;
+  return Cholesky::of(correlation, clearly).has_value();
 }
 
 Excitation excitation_of(const Matrix& input_innovations) {

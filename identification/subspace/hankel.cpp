@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/kernels.hpp"
 
 namespace reident::identification {
@@ -132,8 +133,7 @@ HankelFactor factor_of_rows(const Record& normalised, const std::vector<Segment>
   Matrix stacked = Matrix::Zero(5 * size, size);
   Index filled = size;
   const auto fold = [&] {
-    const Eigen::HouseholderQR<Matrix> qr(stacked.topRows(filled));
-    stacked.topRows(size) = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+    stacked.topRows(size) = triangular_factor(stacked.topRows(filled));
     filled = size;
   };
   for (const Segment& segment : segments) {

@@ -1,5 +1,8 @@
 #include "identification/subspace/kalman.hpp"
 
+#include <cassert>
+
+#include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/state_space.hpp"
 
 namespace reident::identification {
@@ -20,7 +23,7 @@ Noise parts(const Matrix& noise, Index n) {
 Matrix gain_of(const Matrix& A, const Matrix& C, const Noise& noise, const Matrix& P) {
   const Matrix innovation = C * P * C.transpose() + noise.R;
   const Matrix cross = A * P * C.transpose() + noise.S;
-  return innovation.ldlt().solve(cross.transpose()).transpose();
+  return solve_ldlt(innovation, cross.transpose()).transpose();
 }
 
 double relative_residual(const Matrix& A, const Matrix& C, const Noise& noise, const Matrix& P) {
@@ -34,19 +37,19 @@ double relative_residual(const Matrix& A, const Matrix& C, const Noise& noise, c
 
 std::optional<Matrix> riccati_solution(const Matrix& A, const Matrix& C, const Matrix& noise) {
   const Index n = A.rows();
-  eigen_assert(noise.rows() == n + C.rows() && noise.cols() == noise.rows());
+  assert(noise.rows() == n + C.rows() && noise.cols() == noise.rows());
   const Noise parted = parts(noise, n);
-  const Eigen::LLT<Matrix> R(parted.R);
-  if (!noise.allFinite() || R.info() != Eigen::Success || !(R.rcond() > 1e-14)) return std::nullopt;
+  if (!noise.allFinite()) return std::nullopt;
+  const auto R = Cholesky::of(parted.R, 0, 1e-14);
+  if (!R) return std::nullopt;
 
   // With the cross covariance removed: P = F P F' - F P C' (C P C' + R)^-1 C P F' + Q_s.
-  const Matrix F = A - parted.S * R.solve(C);
-  Matrix H = parted.Q - parted.S * R.solve(parted.S.transpose());
-  Matrix E = F.transpose(), G = C.transpose() * R.solve(C);
+  const Matrix F = A - parted.S * R->solve(C);
+  Matrix H = parted.Q - parted.S * R->solve(Matrix(parted.S.transpose()));
+  Matrix E = F.transpose(), G = C.transpose() * R->solve(C);
   const Matrix identity = Matrix::Identity(n, n);
   for (int i = 0; i < doublings; ++i) {
-    const Eigen::PartialPivLU<Matrix> W(identity + G * H);
-    const Matrix WE = W.solve(E), WG = W.solve(G);
+    const auto [WE, WG] = solve_lu(identity + G * H, E, G);
     const Matrix step = E.transpose() * H * WE;
     G += E * WG * E.transpose();
     E = (E * WE).eval();

@@ -1,6 +1,7 @@
 #include "identification/subspace/lag_sums.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "identification/numerics/kernels.hpp"
@@ -38,7 +39,7 @@ RunSums::RunSums(const Matrix& z, std::int64_t first_tick, Index block_rows)
       least_(z.rowwise().minCoeff()),
       greatest_(z.rowwise().maxCoeff()),
       F_(Matrix::Zero(block_rows * z.rows(), z.rows())) {
-  eigen_assert(count_ >= 1 && block_rows >= 1);
+  assert(count_ >= 1 && block_rows >= 1);
   const Matrix centred = z.colwise() - reference_;
   const Index ends = std::min(count_, block_rows - 1);
   sum_ = centred.rowwise().sum();
@@ -68,7 +69,7 @@ void RunSums::refer_to(const Vector& reference) {
 }
 
 void RunSums::append(RunSums next) {
-  eigen_assert(next.first_tick_ == ticks().end && next.block_rows_ == block_rows_);
+  assert(next.first_tick_ == ticks().end && next.block_rows_ == block_rows_);
   next.refer_to(reference_);
   F_ += next.F_;
   // Across the seam: the samples before it meet those behind it, never their own kind.
@@ -93,7 +94,7 @@ void RunSums::append(RunSums next) {
 
 void StretchSums::append(StretchSums later) {
   for (RunSums& run : later.runs) {
-    eigen_assert(runs.empty() || run.ticks().begin >= runs.back().ticks().end);
+    assert(runs.empty() || run.ticks().begin >= runs.back().ticks().end);
     if (!runs.empty() && runs.back().ticks().end == run.ticks().begin)
       runs.back().append(std::move(run));
     else

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/kernels.hpp"
 
 namespace reident::identification {
@@ -29,20 +30,14 @@ constexpr Index longest_response = 20;
 
 /// Lower triangular factor of M M' for M of no more rows than columns.
 Matrix lower_factor(const Matrix& M) {
-  return Matrix(M.transpose())
-      .householderQr()
-      .matrixQR()
-      .topRows(M.rows())
-      .triangularView<Eigen::Upper>()
-      .transpose();
+  return triangular_factor(M.transpose()).transpose();
 }
 
 /// X L = M for a lower triangular L; of least norm where L is singular to rounding.
 Matrix divided(const Matrix& M, const Matrix& L) {
   const auto pivots = L.diagonal().cwiseAbs();
-  if (pivots.minCoeff() > 1e-13 * pivots.maxCoeff())
-    return L.triangularView<Eigen::Lower>().solve<Eigen::OnTheRight>(M);
-  return L.transpose().completeOrthogonalDecomposition().solve(M.transpose()).transpose();
+  if (pivots.minCoeff() > 1e-13 * pivots.maxCoeff()) return solve_lower_on_right(M, L);
+  return solve_least_norm(L.transpose(), Matrix(M.transpose())).transpose();
 }
 
 }  // namespace
@@ -79,14 +74,14 @@ Projection::Observability Projection::observability(Weighting weighting) const {
       Matrix off_inputs(L_yw_.rows(), L_yw_.cols() + L_yy_.cols());
       off_inputs << L_yw_, L_yy_;
       W1_inverse = lower_factor(off_inputs);
-      weighted = W1_inverse.completeOrthogonalDecomposition().solve(L_yw_);
+      weighted = solve_least_norm(W1_inverse, L_yw_);
       break;
     }
   }
-  const Eigen::JacobiSVD<Matrix> svd(lower_factor(weighted), Eigen::ComputeThinU);
-  Matrix gamma = svd.matrixU() * svd.singularValues().cwiseSqrt().asDiagonal();
+  const auto [U, values] = left_singular(lower_factor(weighted), SingularVectors::thin);
+  Matrix gamma = U * values.cwiseSqrt().asDiagonal();
   if (weighting == Weighting::cva) gamma = W1_inverse * gamma;
-  return {gamma, svd.singularValues()};
+  return {gamma, values};
 }
 
 Matrix Projection::input_innovations() const {
@@ -127,12 +122,11 @@ std::optional<Vector> solve_sums(const Matrix& sums, const Matrix& removed) {
       [](double w) { return w > 0 ? 1 / std::sqrt(w) : 0.0; });
   const Matrix left = (sums - removed).triangularView<Eigen::Lower>();
   const Matrix G = scale.asDiagonal() * left.topLeftCorner(unknowns, unknowns) * scale.asDiagonal();
-  const Eigen::LLT<Matrix> llt(G);
   constexpr double least_pivot = 1e-5;  // its square is the share of a row that is its own
-  if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least_pivot))
-    return std::nullopt;
-  return Vector(scale.asDiagonal() *
-                llt.solve(scale.asDiagonal() * left.row(unknowns).head(unknowns).transpose()));
+  const auto cholesky = Cholesky::of(G, least_pivot);
+  if (!cholesky) return std::nullopt;
+  const Vector right = scale.asDiagonal() * left.row(unknowns).head(unknowns).transpose();
+  return Vector(scale.asDiagonal() * cholesky->solve(right));
 }
 
 }  // namespace
@@ -145,7 +139,7 @@ StateSpaceModel Projection::with_response(const Matrix& A, const Matrix& C, bool
       A, Matrix::Zero(n, m), C, Matrix::Zero(p, m), {}, Vector::Zero(m), Vector::Zero(p), period_s};
   if (mu == 0) return model;
   const Matrix gamma = extended_observability(model, s);
-  const Matrix Q = Matrix(gamma.householderQr().householderQ() * Matrix::Identity(p * s, n));
+  const Matrix Q = orthonormal_basis(gamma);
   const Matrix Qt = Q.transpose();
   // Each coordinate of U_f is a short experiment: inputs v, outputs L_yu. Nothing moves before the
   // block row whose input it is.
@@ -183,9 +177,8 @@ StateSpaceModel Projection::with_response(const Matrix& A, const Matrix& C, bool
       auto own = rows.middleCols(j * p * s, p * s);
       own -= (own * Q) * Qt;
     }
-    theta = Matrix(rows.topRows(unknowns).transpose())
-                .completeOrthogonalDecomposition()
-                .solve(rows.row(unknowns).transpose());
+    theta = solve_least_norm(rows.topRows(unknowns).transpose(),
+                             Vector(rows.row(unknowns).transpose()));
   }
   model.B = theta.head(n * m).reshaped(n, m);
   if (direct) model.D = theta.tail(p * m).reshaped(m, p).transpose();
@@ -207,9 +200,10 @@ Matrix Projection::noise_covariance(const StateSpaceModel& model) const {
   const Matrix gamma = extended_observability(model, s);
   const Matrix H = impulse_toeplitz(model, gamma);
   const Index less = (s - 1) * p;
-  const Matrix X = gamma.completeOrthogonalDecomposition().solve(Z - H * U_f);
-  const Matrix X_next = gamma.topRows(less).completeOrthogonalDecomposition().solve(
-      Y_f.bottomRows(less) - H.topLeftCorner(less, (s - 1) * m) * U_f.bottomRows((s - 1) * m));
+  const Matrix X = solve_least_norm(gamma, Matrix(Z - H * U_f));
+  const Matrix X_next = solve_least_norm(
+      gamma.topRows(less), Matrix(Y_f.bottomRows(less) - H.topLeftCorner(less, (s - 1) * m) *
+                                                             U_f.bottomRows((s - 1) * m)));
   Matrix residual(n + p, span);
   residual.topRows(n) = X_next - model.A * X - model.B * U_f.topRows(m);
   residual.bottomRows(p) = Y_f.topRows(p) - model.C * X - model.D * U_f.topRows(m);
@@ -220,13 +214,12 @@ Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order, Stabil
   const Index rows = gamma.rows() - outputs;
   const Matrix C = gamma.topLeftCorner(outputs, order);
   if (stability == Stability::as_found)
-    return {gamma.topLeftCorner(rows, order)
-                .colPivHouseholderQr()
-                .solve(gamma.bottomLeftCorner(rows, order)),
+    return {solve_pivoted_qr(gamma.topLeftCorner(rows, order),
+                             Matrix(gamma.bottomLeftCorner(rows, order))),
             C};
   Matrix shifted = Matrix::Zero(gamma.rows(), order);
   shifted.topRows(rows) = gamma.bottomLeftCorner(rows, order);
-  return {gamma.leftCols(order).colPivHouseholderQr().solve(shifted), C};
+  return {solve_pivoted_qr(gamma.leftCols(order), shifted), C};
 }
 
 }  // namespace reident::identification

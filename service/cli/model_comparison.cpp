@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <fmt/format.h>
+
+#include "identification/numerics/decompositions.hpp"
 
 namespace reident::cli {
 namespace {
@@ -84,7 +84,7 @@ void add_channels(const EquipmentModel& model, const std::vector<double>& times_
 std::vector<Pole> poles_of(const StateSpaceModel& model) {
   std::vector<Pole> poles;
   if (model.order() == 0) return poles;
-  for (const std::complex<double>& value : Eigen::VectorXcd(model.A.eigenvalues())) {
+  for (const std::complex<double>& value : identification::eigenvalues(model.A)) {
     if (value.imag() < 0) continue;
     const double decay = -std::log(std::abs(value));
     const double angle = std::abs(std::arg(value));
@@ -99,7 +99,7 @@ std::vector<Pole> poles_of(const StateSpaceModel& model) {
 
 Matrix static_gain(const StateSpaceModel& model) {
   const Matrix I = Matrix::Identity(model.order(), model.order());
-  return model.C * (I - model.A).partialPivLu().solve(model.B) + model.D;
+  return model.C * identification::solve_lu(I - model.A, model.B) + model.D;
 }
 
 Matrix step_response(const StateSpaceModel& model, Index input,

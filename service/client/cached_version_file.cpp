@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t file_format = 1;
-// Of a file of ours: an order of 200 with as many inputs takes 3 MB.
+// Bound of a file's size: an order of 200 with as many inputs takes 3 MB.
 constexpr std::uintmax_t max_file_bytes = 64U << 20U;
 
 Unusable damaged(std::string reason) {

@@ -57,7 +57,7 @@ class EquipmentRunner {
   /// Has the run go on with `model`, prepared for declaration(), at its next step. Takes the place
   /// of one that was posted before and that no step has taken yet.
   void post(std::unique_ptr<PreparedModel> model, const Arrival& arrival);
-  /// Whether one is posted whose first step collect() has not told of yet.
+  /// Whether one is posted whose first step collect() has not reported yet.
   bool is_waiting() const { return under_way_ > 0; }
   /// A first step on a version that was posted.
   struct Swapped {

@@ -45,13 +45,13 @@ class InputBinding {
     return 0;
   }
 
-  /// The same flags of one declared input, at the last call of bind().
+  /// Flags of one declared input at the last call of bind(), as bind() returns them.
   int flags(std::size_t declared) const;
 
  private:
   InputBinding(const EquipmentModel& model, InputExpressions expressions,
                std::vector<std::size_t> places, bool is_derived);
-  /// The same for inputs that are derived, missing or outside.
+  /// Does what bind() does where inputs are derived, missing or outside.
   int bind_any(const double* declared, double* du);
 
   struct Input {

@@ -1,5 +1,5 @@
-// One equipment beside the satellite: live telemetry in, the model's run, free or following, beside
-// the measured outputs, and versions exchanged on the way.
+// One equipment along with the satellite: live telemetry in, the model's run, free or following,
+// compared with the measured outputs, and versions exchanged on the way.
 #pragma once
 
 #include <memory>

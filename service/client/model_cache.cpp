@@ -26,7 +26,7 @@ using namespace std::chrono_literals;
 
 constexpr auto lock_patience = 1s;
 constexpr auto lock_look = 5ms;
-// Of 255 that a file name may have: room for what OutputFile and set_aside() append.
+// A file name has at most 255: this leaves room for what OutputFile and set_aside() append.
 constexpr std::size_t max_name_bytes = 200;
 constexpr std::size_t cut_name_bytes = 100;
 
@@ -51,7 +51,7 @@ std::string shortened(const std::string& encoded) {
 }
 
 /// 0 when it is locked, or the file system knows no locks: then two programs that write at once may
-/// damage a file, which its SHA-256 tells.
+/// damage a file, which its SHA-256 shows.
 int wait_for_lock(int descriptor) {
   const auto deadline = std::chrono::steady_clock::now() + lock_patience;
   while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {

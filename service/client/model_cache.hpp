@@ -7,7 +7,7 @@
 // for a file name is cut and ends in ~ and the SHA-256 of the whole. A file is one JSON object:
 // "format" (1), "sha256" (of the text of "kept" without blanks), and "kept": partition, number,
 // digest, decided_ns, decided_by, rollback, program_version, published_ns, received_ns, model
-// (service/model/model_json.hpp). It is written beside its place, flushed to the disk and renamed.
+// (service/model/model_json.hpp). It is written next to its place, flushed to the disk and renamed.
 //
 // Several simulators may share the folder: reading what is there, deciding and replacing it happen
 // under a lock of the folder (flock), which goes with the process that holds it. A newer version is

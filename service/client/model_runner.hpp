@@ -40,7 +40,7 @@ class ModelRunner {
 
   /// The outputs at this tick; the state moves on to the next one. Returns flags of client.h.
   int step(const double* u, double* y);
-  /// The same, corrected by what was measured at the ticks before; NaN where an output is missing.
+  /// A step corrected by what was measured at the ticks before; NaN where an output is missing.
   int follow(const double* u, const double* measured, double* y) { return advance(u, measured, y); }
   /// The measured outputs at the tick of the last step, where they are known and finite: a swap
   /// then estimates the state from them rather than from the model's own.

@@ -145,7 +145,7 @@ void ModelSubscriber::refuse(const ModelVersion& version, const std::string& rea
   dds::TextReader names;
   names.name(name.spacecraft.c_str(), "spacecraft");
   names.name(name.equipment.c_str(), "equipment");
-  if (names.fault()) return;  // nobody could be told about it
+  if (names.fault()) return;  // no acknowledgement can name it
   Told& told = told_[name];
   told.refusal = refusal;
   told.refused_digest = version.digest;

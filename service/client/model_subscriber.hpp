@@ -28,7 +28,7 @@ struct Arrival {
   bool from_cache = false;      // kept from an earlier run, and not confirmed in this one
 };
 
-/// Hands each approved version over once, checked, and tells the service what becomes of it. A
+/// Hands each approved version over once, checked, and reports to the service what becomes of it. A
 /// version that is damaged, unstable, or older than the newest that was verified without being a
 /// rollback is refused. What was verified stays when the service disposes of it, ends or dies.
 ///
@@ -41,7 +41,7 @@ class ModelSubscriber {
     std::int64_t version = 0;
     std::string reason;
   };
-  /// What poll() tells of; each may be absent.
+  /// What poll() reports; each may be absent.
   struct Listener {
     std::function<void(const ModelVersion&, const Arrival&)> adopt;  // to be run from now on
     std::function<void(const Refusal&)> refuse;                      // must not be run
@@ -60,8 +60,8 @@ class ModelSubscriber {
   /// to acknowledge what it runs. A version is kept in the cache after `adopt` has returned.
   std::size_t poll(const Listener& listener);
 
-  /// Tells the service what runs of an equipment: a version that was adopted, or none. A refusal is
-  /// told with it until a version of the equipment is verified.
+  /// Reports to the service what runs of an equipment: a version that was adopted, or none. A
+  /// refusal is reported with it until a version of the equipment is verified.
   void acknowledge(const storage::EquipmentName& equipment, const RunningModel& running);
 
   struct Verified {

@@ -33,8 +33,8 @@ class PreparedModel {
   /// Rows of the recent past that a new state is estimated from.
   static constexpr identification::Index matched_rows = 128;
 
-  /// Of a version that has no damage() (version_check.hpp). A sentence where the declaration does
-  /// not cover its signals.
+  /// Prepares a version that has no damage() (version_check.hpp). A sentence where the declaration
+  /// does not cover its signals.
   static std::variant<std::unique_ptr<PreparedModel>, std::string> make(
       ModelVersion version, const Declaration& declaration);
   PreparedModel(const PreparedModel&) = delete;

@@ -1,4 +1,5 @@
-// Errors of a run that has no end: the scores of identification/simulation/simulate.hpp, sample by sample.
+// Errors of a run that has no end: the scores of identification/simulation/simulate.hpp, sample by
+// sample.
 #pragma once
 
 #include "identification/simulation/simulate.hpp"
@@ -11,13 +12,13 @@ class RunningScore {
 
   explicit RunningScore(identification::Index outputs);
 
-  /// Begins anew.
+  /// Begins again.
   void clear();
   /// The measured and the simulated outputs at one tick. Those that are not finite are left out.
   void add(const Eigen::Ref<const Vector>& y, const Eigen::Ref<const Vector>& y_hat);
   /// NaN before the first sample of an output, and for a fit before two different values of it.
   identification::Score score() const;
-  /// The same as score().mrse(), without allocating.
+  /// score().mrse() without allocating.
   double mrse() const;
   identification::Index rows() const { return rows_; }
 

@@ -1,5 +1,5 @@
 // What libreident-client does for a simulator: it subscribes, verifies, hands versions to the runs
-// and tells the service what runs, on a thread of its own.
+// and reports to the service what runs, on a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@
 
 namespace reident {
 
-/// Of a simulator that was given no name: host and process id.
+/// The name of a simulator that was given none: host and process id.
 std::string default_simulator_name();
 
 struct SimulatorClientOptions {

@@ -1,4 +1,4 @@
-// reident-simulator: subscribes to the approved models and runs them beside the live telemetry.
+// reident-simulator: subscribes to the approved models and runs them along with live telemetry.
 #include <cstdio>
 #include <unistd.h>
 

@@ -124,7 +124,7 @@ void TelemetryTracker::insert(Channel& channel, Held held) {
       std::upper_bound(channel.samples.begin(), channel.samples.end(), held.time,
                        [](storage::Time time, const Held& other) { return time < other.time; });
   if (place != channel.samples.begin() && std::prev(place)->time == held.time) {
-    // The same sample twice is one sample; a usable value is better than none.
+    // A sample that comes twice is one sample; a usable value is better than none.
     if (std::isnan(std::prev(place)->value)) std::prev(place)->value = held.value;
     return;
   }

@@ -1,10 +1,10 @@
 // From live frames to the ticks of a model's grid.
 //
-// The rule is that of identification/samples/grid.hpp: the value of a signal at a tick is its latest usable
-// sample at or before it and younger than the hold; a sample that is not usable ends the hold of
-// the one before it. A tick is given out once a frame with a later generation time has come, so
-// that samples of the tick's own time that travel in several frames are all there. Derived inputs
-// follow from the values of their parameters at the tick.
+// The rule is that of identification/samples/grid.hpp: the value of a signal at a tick is its
+// latest usable sample at or before it and younger than the hold; a sample that is not usable ends
+// the hold of the one before it. A tick is given out once a frame with a later generation time has
+// come, so that samples of the tick's own time that travel in several frames are all there. Derived
+// inputs follow from the values of their parameters at the tick.
 #pragma once
 
 #include <cstdint>
@@ -66,7 +66,7 @@ class TelemetryTracker {
   void give_out(std::int64_t tick, const std::function<void(const Tick&)>& sink);
   /// The first tick in [tick, end) at which every parameter of the inputs has a value, or end.
   std::int64_t next_complete(std::int64_t tick, std::int64_t end) const;
-  /// The same for one channel.
+  /// next_complete() for one channel.
   std::int64_t next_value(const Channel& channel, std::int64_t tick, std::int64_t end) const;
   void forget_before(storage::Time time);
 

@@ -72,9 +72,9 @@ class Writer {
   /// Telemetry blocks while the readers' bounds are reached, so that nothing is lost; other topics
   /// give up after 10 s. Throws Error.
   void write(const M& message);
-  /// The same, but asks `stop` several times a second while it blocks. False when it stopped: then
-  /// the message was not written (a reader in this process that was full may find it missing, those
-  /// in other processes may have it).
+  /// Writes too, but asks `stop` several times a second while it blocks. False when it stopped:
+  /// then the message was not written (a reader in this process that was full may find it missing,
+  /// those in other processes may have it).
   bool write(const M& message, const std::function<bool()>& stop);
   /// Says that what was written for the message's key holds no more: readers that join later get
   /// nothing for it. Throws Error.
@@ -106,7 +106,7 @@ class Reader {
   Reader& operator=(Reader&&) noexcept;
 
   using Sink = std::function<void(M&&)>;
-  /// The same, and when the message was sent, by its writer's clock; 0 where that is not known.
+  /// Also takes when the message was sent, by its writer's clock; 0 where that is not known.
   using DatedSink = std::function<void(M&&, storage::Time sent)>;
   /// A malformed message, filled in as far as it could be read, and what is wrong with it.
   using Refused = std::function<void(const M&, const std::string& reason)>;

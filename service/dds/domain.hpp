@@ -11,7 +11,7 @@ namespace reident::dds {
 
 /// Cyclone DDS configuration that keeps all traffic on 127.0.0.1 (service/dds/loopback.xml).
 extern const char* const loopback_configuration;
-/// The same without its part about discovery.
+/// loopback_configuration without its part about discovery.
 extern const char* const loopback_traffic;
 
 /// Keeps a domain configured for as long as anyone in the process uses it. Without CYCLONEDDS_URI

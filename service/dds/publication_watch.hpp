@@ -10,7 +10,7 @@ namespace reident::dds {
 
 /// Follows the middleware's own topic of publications, which has every writer of the domain. The
 /// status of incompatible QoS that a reader can be asked for would not do: it keeps the policy of
-/// the last writer alone, and does not tell writers of other partitions from those of its own.
+/// the last writer alone, and does not separate writers of other partitions from those of its own.
 class PublicationWatch {
  public:
   PublicationWatch(Participant& participant, std::string topic);
@@ -20,7 +20,7 @@ class PublicationWatch {
     bool best_effort = false;        // some offer BEST_EFFORT
     bool reliable_volatile = false;  // some are RELIABLE and VOLATILE
   };
-  /// Of the writers that were discovered since the last call.
+  /// Looks at the writers that were discovered since the last call.
   Unmatched take();
 
   /// A condition that is true while take() has something to look at, for wait sets.

@@ -13,7 +13,7 @@ namespace {
 
 using storage::Time;
 
-// Small beside a page, so that pages are well filled.
+// Small compared with a page, so that pages are well filled.
 constexpr std::size_t samples_of_row = 512;
 constexpr std::size_t bins_of_row = 512;
 constexpr std::size_t max_bins = 100'000;

@@ -30,7 +30,7 @@ std::string mat_file(const ExportedVersion& exported);
 /// missing.
 std::string fmu_file(const ExportedVersion& exported, const std::filesystem::path& parts);
 
-/// The folder of these parts: beside the running program as it was built, or as it was installed.
+/// The folder of these parts: by the place of the running program, as it was built or installed.
 /// Throws std::runtime_error where there is none.
 std::filesystem::path fmu_parts();
 

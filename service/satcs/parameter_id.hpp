@@ -7,7 +7,7 @@
 namespace reident::satcs {
 
 /// FNV-1a, 32 bits, of the name: the same parameter has the same id in every file and every run,
-/// whatever stands beside it.
+/// whatever stands next to it.
 constexpr std::uint32_t parameter_id(std::string_view name) {
   std::uint32_t hash = 2166136261U;
   for (const char c : name) {

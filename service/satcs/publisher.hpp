@@ -44,7 +44,7 @@ struct PublisherSummary {
   std::uint64_t frames = 0;
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;
-  // Of the first and the last frame that was published; nothing when there are none.
+  // The first and the last frame that was published; 0 when there are none.
   std::uint64_t first_sequence = 0;
   std::uint64_t last_sequence = 0;
   storage::Time first_time = 0;

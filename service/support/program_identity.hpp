@@ -6,7 +6,7 @@
 
 namespace reident {
 
-/// Of this machine; empty where it has none.
+/// The name of this machine; empty where it has none.
 std::string host_name();
 
 /// Begins with `program`; like no other's of any process on any machine, at any time.

@@ -16,7 +16,7 @@ using csv::Reader;
 constexpr std::uint64_t digest_bytes = std::uint64_t{64} << 10;
 constexpr std::size_t bad_lines_shown = 5;
 
-/// What tells one import from another: the same words for the same file go on where it ended.
+/// What identifies an import: the same words for the same file go on where it ended.
 std::string request_text(const ImportOptions& options, const Reader& reader) {
   const auto text = [](const std::optional<std::string>& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();

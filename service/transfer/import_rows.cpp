@@ -194,7 +194,7 @@ class LongRows : public ImportRows {
   std::optional<std::size_t> spacecraft_, source_, origin_, quality_, unit_;
   std::map<std::string, ParameterBook> books_;
 
-  // Of the row before: most rows differ from it in time and value alone.
+  // What the row before had: most rows differ from it in time and value alone.
   std::string cell_of_spacecraft_, cell_of_source_, cell_of_origin_;
   std::optional<TelemetryFrame> stream_;
   ParameterBook* book_ = nullptr;

@@ -22,10 +22,10 @@ struct ImportOptions {
   std::optional<std::string> spacecraft;
   std::optional<std::string> source;      // otherwise import:FILE
   std::optional<storage::Origin> origin;  // otherwise real
-  /// Of a wide file: absent, the first column that looks like a time.
+  /// The time column of a wide file; absent: the first that looks like a time.
   std::optional<std::string> time_column;
   TimeUnit time_unit = TimeUnit::any;  // `any`: by the column's name
-  /// Of a wide file, as satcs-replay takes them.
+  /// Columns of a wide file, as satcs-replay takes them.
   std::vector<satcs::ColumnMapping> mappings;
   std::vector<std::string> only;
   std::vector<std::string> leave_out;  // columns

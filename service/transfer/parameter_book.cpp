@@ -22,7 +22,7 @@ ParameterBook::ParameterBook(const storage::Archive& archive, std::string spacec
     : spacecraft_(std::move(spacecraft)) {
   for (auto& descriptor : archive.parameters(spacecraft_)) {
     name_of_.emplace(descriptor.id, descriptor.name);
-    // Of several with one name the lowest number, which comes first.
+    // Among several with one name the lowest number counts, which comes first.
     by_name_.try_emplace(descriptor.name, Entry{descriptor, true});
   }
 }

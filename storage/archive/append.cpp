@@ -11,7 +11,7 @@
 namespace reident::storage {
 namespace {
 
-// Of one series in one batch: frames may be many and of many series with a sample each.
+// Room for one series in one batch: frames may be many and of many series with a sample each.
 constexpr std::size_t reserved_arrivals = 4096;
 
 bool same_value(double a, double b) {

@@ -1,10 +1,13 @@
 // Every telemetry sample that was received, once.
 //
 // A sample's identity is (spacecraft, origin, parameter, generation time). The same sample twice is
-// one sample; of two values for one identity the better quality wins, then the first. Values are
+// one sample. Of two values for one identity the better quality wins, then the first. Values are
 // the same when their bits are, and all NaNs are one value. Where a frame of the satellite brings
 // another good value than the one that is there, by more than rounding, that one stays for ever
 // with the quality `disputed`. A parameter needs no descriptor to be archived.
+//
+// Every function may throw Error where the file or the disk refuses (error.hpp has the kinds); what
+// is said below of throwing is in addition to that.
 #pragma once
 
 #include <optional>
@@ -19,8 +22,8 @@
 
 namespace reident::storage {
 
-/// What one append did. Samples are counted once each: stored + duplicates + conflicts; `late` and
-/// `non_finite` are counted beside that.
+/// What one append did. Samples are counted once each: stored + duplicates + conflicts. `late` and
+/// `non_finite` count some of them again.
 struct AppendReport {
   std::uint64_t frames = 0;
   std::uint64_t stored = 0;
@@ -42,7 +45,8 @@ struct AppendReport {
   std::vector<std::string> damages;
 };
 
-/// How the writer arranges samples; the defaults suit any archive.
+/// How the writer arranges samples, in numbers of samples; the defaults suit any archive.
+/// SCHEMA.md, "Samples", says what each of them costs and saves.
 struct ArchiveOptions {
   std::size_t chunk_samples = 12288;  // of a chunk that is filled in order of time; 16 to 65536
   std::size_t recent_samples = 1'000'000;  // that wait for a place in chunks; at most twice as many
@@ -51,6 +55,7 @@ struct ArchiveOptions {
 };
 
 /// A stretch of sealed time (see Archive::seal) in which samples of one series landed or changed.
+/// Stretches of a series that are no more than 10 minutes apart are one.
 struct LateRange {
   std::int64_t id = 0;  // never used again
   std::string spacecraft;
@@ -59,6 +64,9 @@ struct LateRange {
   TimeRange range;
 };
 
+/// The telemetry in a database. Any number of archives may be made on one database; they share its
+/// writer. Functions that are not const need a database that is opened for writing, and throw Error
+/// (read_only) elsewhere.
 class Archive : public SampleSource {
  public:
   /// The database must outlive the archive. The options are the writer's: those of the archive that
@@ -68,8 +76,9 @@ class Archive : public SampleSource {
   Database& database() { return database_; }
   const ArchiveOptions& options() const { return options_; }
 
-  /// One transaction: all of it is stored, or (Error thrown) none. A bounded share of moving older
-  /// samples into chunks is part of it.
+  /// Stores the frames, which may be of any spacecraft and source and in any order, in one
+  /// transaction. A bounded share of moving older samples into chunks is part of it. Returns what
+  /// became of the samples. Throws Error where not all of it can be stored; then nothing is.
   AppendReport append(std::span<const TelemetryFrame> frames);
   /// Moves all samples into chunks, in many bounded transactions. Never needed: it saves room.
   void compact();
@@ -77,34 +86,38 @@ class Archive : public SampleSource {
   void describe(std::span<const ParameterDescriptor> descriptors);
 
   /// Says that a window which ends at `end` is about to be read: from now on append() marks what
-  /// lands or changes before `end`, in the transaction that stores it. Call it, then read the
-  /// window, and nothing falls between. The seal only moves forward and outlives a crash.
+  /// lands or changes before `end`, in the transaction that stores it. Seal first, then read the
+  /// window, so that nothing is missed. The seal only moves forward and outlives a crash.
   void seal(const std::string& spacecraft, Time end);
-  /// Marks that were not forgotten yet, ascending by id. Near ones of a series are one range.
+  /// Marks that were not forgotten yet, ascending by id.
   std::vector<LateRange> late_ranges(const std::string& spacecraft) const;
-  /// To be called when the windows were looked at again. A mark that grew since it was read has
+  /// Removes marks whose windows were evaluated again. A mark that grew since it was read has
   /// another id and stays.
   void forget_late(std::span<const LateRange> ranges);
 
-  /// All that have samples or descriptors, in alphabetical order.
+  /// Every spacecraft that has samples or descriptors, in alphabetical order.
   std::vector<std::string> spacecraft() const;
-  /// Those described, ascending by id.
+  /// Descriptors of the spacecraft's parameters, ascending by id.
   std::vector<ParameterDescriptor> parameters(const std::string& spacecraft) const;
   std::optional<ParameterDescriptor> parameter(const std::string& spacecraft,
                                                const std::string& name) const override;
 
+  /// Samples of one series with a generation time in `range`, from one snapshot; none where the
+  /// series is not known. `source` stays empty. Throws Error (corrupt) where samples of the range
+  /// cannot be decoded, with parameter, time and remedy.
   Series read(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
               TimeRange range) const override;
-  /// The same, with the ids of the sources.
+  /// As read(), with the ids of the sources.
   Series read_with_sources(const std::string& spacecraft, Origin origin, std::uint32_t parameter,
                            TimeRange range) const;
   /// Batches that changed samples of the series in `range` after that time was sealed, the latest
-  /// first.
+  /// first. Each one's number is an argument of before().
   std::vector<std::int64_t> revisions(const std::string& spacecraft, Origin origin,
                                       std::uint32_t parameter, TimeRange range) const;
-  /// The same archive, whose read() gives sealed time as it was before this batch.
+  /// An archive on the same database whose read() gives sealed time as it was before this batch.
   Archive before(std::int64_t batch) const;
-  /// Generation time of the series' nearest sample on one side of `time`, itself included.
+  /// Generation time of the series' nearest sample on one side of `time`, itself included; absent
+  /// where there is none.
   std::optional<Time> first_at_or_after(const std::string& spacecraft, Origin origin,
                                         std::uint32_t parameter, Time time) const;
   std::optional<Time> last_at_or_before(const std::string& spacecraft, Origin origin,
@@ -114,8 +127,12 @@ class Archive : public SampleSource {
   /// absent when there is none.
   std::optional<TimeRange> extent(const std::string& spacecraft, Origin origin) const;
 
+  /// Samples of all series together.
   std::uint64_t sample_count() const;
+  /// Counts of every source, by spacecraft, name and origin.
   std::vector<SourceCounts> sources() const;
+  /// Every gap of every source, in the order of sources(), then by run and number. There may be
+  /// many: each_sequence_gap() in holdings.hpp gives one at a time.
   std::vector<SequenceGap> sequence_gaps() const;
 
  private:

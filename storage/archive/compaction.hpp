@@ -26,7 +26,7 @@ class Compaction {
   void begin();
   /// Rewrites about `samples` samples, and at the end of a round removes some rows. Within a
   /// transaction of the caller; after an Error the compaction, the tier and the store are to be
-  /// made anew.
+  /// made again.
   void step(std::size_t samples);
 
  private:

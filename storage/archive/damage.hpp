@@ -9,7 +9,7 @@
 
 namespace reident::storage {
 
-/// Where undecodable bytes lie, as the row beside them says.
+/// Where undecodable bytes lie, as their row says.
 struct Stretch {
   std::int64_t series = 0;
   Time first = 0;

@@ -1,5 +1,6 @@
-// What is archived, series by series, and its samples in stretches: for those who take a whole
-// archive through their hands, such as an export.
+// What is archived, series by series, and its samples in stretches: for those who read a whole
+// archive, such as an export. All of it works on a database that is opened for reading, and throws
+// Error where the file cannot be read.
 #pragma once
 
 #include <cstdint>
@@ -15,30 +16,35 @@
 
 namespace reident::storage {
 
-/// Those with samples, by spacecraft, origin and name.
+/// Every series with samples, by spacecraft, origin and name.
 std::vector<SeriesInfo> all_series(const Database& database);
 
-/// Id of a series; absent where nothing of it was archived.
+/// Id of a series; absent where nothing of it was ever archived.
 std::optional<std::int64_t> series_id(const Database& database, const std::string& spacecraft,
                                       Origin origin, std::uint32_t parameter);
 
-/// Calls `visit` with one gap at a time that lies beyond `beyond`, until it answers false.
+/// Calls `visit` with one gap at a time, ascending by key, until it answers false. With `beyond`
+/// only gaps after that key, so that a reading can go on where another one ended.
 void each_sequence_gap(const Database& database, const std::optional<GapKey>& beyond,
                        const std::function<bool(const GapKey&, SequenceGap&&)>& visit);
 
-/// Names of the sources by their ids.
+/// Names of all sources by the ids that samples have (SampleColumns::source).
 std::map<std::int64_t, std::string> source_names(const Database& database);
 
-/// Reads one series forward. Each stretch is a snapshot of its own.
+/// Reads one series forward, a stretch at a time. Each stretch is a snapshot of its own, so that a
+/// long reading does not keep the log from being folded. What lands before the place that it has
+/// reached is not seen.
 class SeriesBatches {
  public:
-  /// `chunks` bounds the memory: a stretch has the samples of so many chunks, and what is recent.
-  /// The database must outlive this object.
+  /// Reads the samples of `series`, an id, in `range`. `chunks`, at least 1, bounds the memory: a
+  /// stretch has the samples of so many chunks, and what is recent. Columns that are not `wanted`
+  /// stay empty. The database must outlive this object.
   SeriesBatches(const Database& database, std::int64_t series, TimeRange range, std::size_t chunks,
                 WantedColumns wanted);
 
-  /// The next samples in place of those that `stretch` held; false, and none, at the end. Throws
-  /// Error (corrupt) where they cannot be decoded.
+  /// Puts the next samples in the place of those that `stretch` held, ascending in time and at
+  /// least one. False, with an empty stretch, at the end. Throws Error (corrupt) where samples
+  /// cannot be decoded.
   bool next(SampleColumns& stretch);
 
  private:

@@ -1,7 +1,10 @@
 // Which files were imported, and how far: kept with the samples, in their transactions.
 //
 // An import that was killed goes on where its last transaction ended. Nothing is lost by starting
-// anew instead: samples that are there already are counted as duplicates.
+// again instead: samples that are there already are counted as duplicates.
+//
+// The log knows nothing of the file's format. Request and digest are texts of the importer, by
+// which it finds its own imports again.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +17,8 @@
 
 namespace reident::storage {
 
-/// How far an import is. Samples are counted once each: stored + duplicates + conflicts.
+/// How far an import is. Samples are counted once each: stored + duplicates + conflicts. The
+/// importer sets what concerns the file; append() adds what became of the samples.
 struct ImportPosition {
   std::uint64_t position = 0;  // bytes of the file that are in the archive
   std::uint64_t line = 1;      // of the next row
@@ -27,25 +31,30 @@ struct ImportPosition {
   std::uint64_t conflicts = 0;
 };
 
+/// The imports of one database, which is opened for writing but for unfinished().
 class ImportLog {
  public:
   /// The database must outlive the log.
   explicit ImportLog(Database& database);
 
-  /// Imports of the same request (what was asked for, in the importer's words) that did not come to
-  /// their end, the last one first.
+  /// An import that was begun and not finished.
   struct Unfinished {
     std::int64_t id = 0;
     ImportPosition at;
   };
+  /// Imports with this very `request` (what was asked for, in the importer's words) that did not
+  /// come to their end, the last one first. Whether the file is still the same is the importer's to
+  /// check, by the digest.
   std::vector<Unfinished> unfinished(const std::string& request) const;
 
-  /// A new import of `file`; its id.
+  /// Records that an import of `file` begins. Returns its id.
   std::int64_t begin(const std::string& file, const std::string& request, Time now);
-  /// One transaction: describes the parameters, appends the frames, and adds what became of their
-  /// samples to the counts of `at`, which is kept.
+  /// Describes the parameters, appends the frames, adds what became of their samples to the counts
+  /// of `at`, and keeps `at`, all in one transaction. Throws Error where it cannot; then nothing is
+  /// stored and `at` is as it was.
   AppendReport append(std::int64_t import, std::span<const ParameterDescriptor> descriptors,
                       std::span<const TelemetryFrame> frames, ImportPosition& at);
+  /// Records that the import came to its end: unfinished() does not give it any more.
   void finish(std::int64_t import, Time now);
 
  private:

@@ -32,7 +32,7 @@ class SequenceTracker {
   };
 
   std::int64_t source = 0;  // id in the table
-  // Of the current run. The lowest is above the highest until a frame with a number has come.
+  // In the current run. The lowest is above the highest until a frame with a number has come.
   Mark lowest{1, 0}, highest{0, 0};
   std::uint64_t out_of_order = 0;
   std::uint64_t restarts = 0;  // also the number of the current run

@@ -117,8 +117,8 @@ Connection open_target(const fs::path& file) {
   return target;
 }
 
-/// Reads the copy as one that does not change, so that no log is made beside it. Throws Error where
-/// it is not what the source's snapshot was.
+/// Reads the copy as one that does not change, so that no log is made next to it. Throws Error
+/// where it is not what the source's snapshot was.
 BackupReport look_at(const fs::path& file, const std::string& schema, std::int64_t pages) {
   Connection connection(sqlite::immutable_uri(file), file, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
   BackupReport report{.bytes = fs::file_size(file)};

@@ -19,11 +19,13 @@
 
 namespace reident::storage {
 
+/// How a copy is made.
 struct BackupOptions {
   bool replace = false;  // an existing copy, in the moment in which the new one is whole
   std::uint32_t pages_of_step = 2048;  // copied between two reports of progress
 };
 
+/// How far it is, in pages of the file.
 struct BackupProgress {
   std::uint64_t pages = 0;  // of the snapshot
   std::uint64_t done = 0;
@@ -38,10 +40,11 @@ struct BackupReport {
   std::optional<Time> newest{};  // generation time of the newest sample
 };
 
-/// Copies `source`, which may be opened for reading alone. `go_on` is asked after each step; where
-/// it says no, nothing is left and nothing returned. Throws Error, and leaves nothing: cannot_open
-/// (the copy exists, is the source or one of its companions, its folder does not exist), locked (a
-/// service or another backup writes the copy), read_only, full, corrupt (the source is damaged).
+/// Copies `source`, which may be opened for reading alone. `go_on` is asked after each step.
+/// Returns what the copy holds; absent where `go_on` said no, and then no copy is left. Throws
+/// Error, and leaves no copy: cannot_open (the copy exists, is the source or one of its companions,
+/// its folder does not exist), locked (a service or another backup writes the copy), read_only,
+/// full, corrupt (the source is damaged).
 std::optional<BackupReport> back_up(Database& source, const std::filesystem::path& copy,
                                     const BackupOptions& options,
                                     const std::function<bool(const BackupProgress&)>& go_on);

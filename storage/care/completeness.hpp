@@ -1,7 +1,7 @@
 // How many samples came, and how many are missing, in each stretch of time.
 //
 // Missing samples are those that would stand in the gaps of a series (sample_gaps.hpp), one for
-// each step of the chunks beside the gap: the larger step of the two. A gap counts in the bin in
+// each step of the chunks at the gap: the larger step of the two. A gap counts in the bin in
 // which it begins, its missing samples in the bins in which they would stand. A series is expected
 // from its first sample on.
 //

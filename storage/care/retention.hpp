@@ -1,8 +1,9 @@
 // How long telemetry is kept, and in how much room.
 //
-// What is removed are whole chunks, the oldest first, of every series. Chunks that hold a sample of
-// a protected stretch stay, and so do samples that are not in chunks yet. What was removed is kept
-// in the table `removal`. Pages that become free are used again; the file does not shrink.
+// What is removed are whole chunks, the oldest first, of every series. Chunks that hold time of a
+// protected stretch stay, and so do samples that are not in chunks yet. What was removed is
+// recorded in the table `removal`. Pages that become free are used again; the file does not shrink.
+// What has to be protected is the caller's to say: storage cannot read models.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@
 
 namespace reident::storage {
 
-/// Without either everything is kept.
+/// How much is kept. Without either limit everything is.
 struct RetentionRule {
   /// Telemetry older than this [ns] goes. Age is counted back from the spacecraft's newest sample,
   /// or from the clock where that is earlier: what nothing newer follows stays.
@@ -30,40 +31,49 @@ struct RetentionRule {
 /// Telemetry that stays, of both origins.
 struct ProtectedRange {
   std::string spacecraft;
-  std::optional<std::uint32_t> parameter;  // absent: of every parameter
+  /// Absent: of every parameter.
+  std::optional<std::uint32_t> parameter;
   TimeRange range;
 };
 
+/// What was removed, or would be. Counts of a Retention add up over its steps.
 struct RetentionReport {
-  std::uint64_t chunks = 0;  // removed, or to be removed
+  /// Chunks that were removed or would be, with their samples and bytes.
+  std::uint64_t chunks = 0;
   std::uint64_t samples = 0;
-  std::uint64_t bytes = 0;              // of the chunks
+  std::uint64_t bytes = 0;
   std::optional<Time> first{}, last{};  // generation times of the samples
-  std::uint64_t protected_chunks = 0;   // passed over
-  std::uint64_t bytes_in_use = 0;       // of the file's pages, at the end
-  bool too_large = false;  // still more than the rule allows, with nothing left that may go
+  /// Chunks that were passed over because they are protected.
+  std::uint64_t protected_chunks = 0;
+  std::uint64_t bytes_in_use = 0;  // of the file's pages, at the end
+  /// Still more than the rule allows, with nothing left that may go.
+  bool too_large = false;
 };
 
-/// What a rule would remove now; works on a database opened for reading. Samples that are not in
-/// chunks yet are left out, and the room that would be left is an estimate.
+/// Returns what a rule would remove now, and removes nothing; works on a database opened for
+/// reading. `now` is the clock [ns]. Samples that are not in chunks yet are left out, and the room
+/// that would be left is an estimate.
 RetentionReport plan_retention(Database& database, const RetentionRule& rule,
                                const std::vector<ProtectedRange>& protection, Time now);
 
 class ChunkWalk;
 
-/// Removes by one rule, a bounded step at a time, so that others write in between. On the thread of
-/// the archive, which must be the writer's and outlive it.
+/// Removes by one rule, a bounded step at a time, so that others write in between. It belongs to
+/// the archive's thread. The archive's database is opened for writing, and the archive outlives it.
 class Retention {
  public:
-  /// Looks at the series that there are; those that come later have nothing old.
+  /// Takes up the series that there are; those that come later have nothing old. `now` is the clock
+  /// [ns]; ages are counted back from it or from the newest sample, as RetentionRule says.
   Retention(Archive& archive, const RetentionRule& rule,
             const std::vector<ProtectedRange>& protection, Time now);
   ~Retention();
 
-  /// One transaction, of at most `chunks_of_step` chunks. False when nothing is left to remove.
+  /// Removes at most `chunks_of_step` chunks in one transaction. False when nothing is left to
+  /// remove. Throws Error where the file or the disk refuses; then nothing of the step is removed.
   bool step();
-  /// More is protected from now on.
+  /// Protects these stretches too, from now on.
   void protect(const std::vector<ProtectedRange>& protection);
+  /// What the steps so far removed.
   const RetentionReport& report() const { return report_; }
 
   static constexpr std::size_t chunks_of_step = 256;

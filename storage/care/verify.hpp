@@ -1,8 +1,9 @@
 // Whether a database file holds what it says: every checksum and every invariant of SCHEMA.md.
 //
-// Works beside a writer. Each table and each series is read in a snapshot of its own, so that the
-// log is not kept from being folded into the file for longer than one of them takes; SQLite's own
-// check of all pages is one snapshot.
+// It works while the file is written. Each table and each series is read in a snapshot of its own,
+// so that the log is not kept from being folded into the file for longer than one of them takes.
+// SQLite's own check of all pages is one snapshot. SCHEMA.md, "Verify", lists the checks and what
+// they cannot find.
 #pragma once
 
 #include <cstdint>
@@ -15,30 +16,37 @@
 
 namespace reident::storage {
 
-/// Something that is not as it should be.
+/// Something that is not as it should be. One damage may give several findings, since each check
+/// reports what it sees.
 struct Finding {
-  std::string check;         // what was looked at: "pages", "schema", "chunk", "series", ...
+  /// What was looked at: "pages", "schema", "chunk", "series", ...
+  std::string check;
   std::string spacecraft{};  // empty where it concerns the file as a whole
   std::string name{};        // of the parameter, source or equipment
   std::optional<Origin> origin{};
-  std::optional<Time> first{}, last{};  // generation times that it concerns, both included
-  std::string what;                     // a sentence without its full stop
-  std::string remedy;                   // what an operator can do
+  /// Generation times that it concerns, both included.
+  std::optional<Time> first{}, last{};
+  std::string what;    // a sentence without its full stop
+  std::string remedy;  // what an operator can do
 };
 
+/// How thoroughly to look.
 struct VerifyOptions {
   /// Looks at the summaries of chunks and does not decode them; leaves out what follows from their
   /// samples, and that indexes agree with their tables.
   bool quick = false;
-  /// What is wrong with a version's model or provenance; storage cannot read them.
+  /// Returns what is wrong with a version's model or provenance, in words; absent where nothing is.
+  /// Storage cannot read them: without this function they are not checked.
   std::function<std::optional<std::string>(const Version&)> mistake_in{};
 };
 
+/// How far it is; shares are of the work, which chunks take most of.
 struct VerifyProgress {
   double share = 0;  // of the work, from 0 to 1
   std::string at;    // what is looked at
 };
 
+/// What was found and how much was looked at. No findings and `complete` mean a sound file.
 struct VerifyReport {
   std::vector<Finding> findings;  // the first `most_findings` of them
   std::uint64_t found = 0;        // all
@@ -49,11 +57,13 @@ struct VerifyReport {
   bool complete = true;  // false when it was stopped
 
   static constexpr std::size_t most_findings = 1000;
+  /// Counts a finding, and keeps it where fewer than most_findings are kept.
   void add(Finding finding);
 };
 
-/// Damage does not throw: it is what is looked for. `go_on` is asked often; where it says no, what
-/// was found until then is returned.
+/// Checks the file of `database`, which may be opened for reading alone. `go_on` is asked often.
+/// Returns what was found; where `go_on` said no, what was found until then, not complete. Damage
+/// is reported and does not throw.
 VerifyReport verify(Database& database, const VerifyOptions& options,
                     const std::function<bool(const VerifyProgress&)>& go_on);
 

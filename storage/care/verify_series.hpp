@@ -36,7 +36,7 @@ class DataReferences {
 /// One thread at a time; keeps its memory from series to series.
 class SeriesVerifier {
  public:
-  /// `advanced` is told how many samples were looked at, and says whether to go on.
+  /// `advanced` gets how many samples were looked at, and says whether to go on.
   SeriesVerifier(sqlite::Connection& connection, bool quick, VerifyReport& report,
                  DataReferences& references, std::function<bool(std::uint64_t)> advanced);
 
@@ -83,7 +83,7 @@ class SeriesVerifier {
   SamplingMeter meter_;
   SampleColumns samples_;
 
-  // Of the series at hand.
+  // The series at hand.
   std::string spacecraft_, name_;
   Origin origin_ = Origin::real;
   std::uint64_t count_ = 0;

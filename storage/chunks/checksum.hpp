@@ -1,4 +1,4 @@
-// XXH64: 64 bits that tell damaged bytes from whole ones. Private to storage.
+// XXH64: 64 bits that show whether bytes are damaged. Private to storage.
 //
 // Reference: Y. Collet, xxHash fast digest algorithm, specification 0.1.1, section "XXH64". It
 // guards against chance, not against a forger.

@@ -105,7 +105,7 @@ bool is_steady(const ChunkSummary& summary, std::uint64_t step) {
          span / step == summary.count - 1;
 }
 
-/// Gives the vectors their sizes back unless it is told to keep what was added.
+/// Gives the vectors their sizes back unless keep() was called.
 class Restore {
  public:
   explicit Restore(const ChunkTarget& target)

@@ -17,7 +17,7 @@
 
 namespace reident::storage {
 
-/// Of a sequence that is used again and again: its memory is kept.
+/// Encodes one sequence after the other and keeps its memory between them.
 class IntegerEncoder {
  public:
   explicit IntegerEncoder(int level) : compressor_(level) {}

@@ -21,7 +21,7 @@ class ValueEncoder {
  public:
   explicit ValueEncoder(IntegerEncoder& integers) : integers_(integers) {}
 
-  /// Puts values, at least one, into `out` and tells how.
+  /// Puts values, at least one, into `out` and returns the scheme that was used.
   ValueScheme put(std::span<const double> values, std::vector<std::uint8_t>& out);
 
  private:
@@ -52,7 +52,8 @@ class ValueDecoder {
   explicit ValueDecoder(IntegerDecoder& integers) : integers_(integers) {}
 
   /// Values [first, first + out.size()) of the `count` that `in` stands at. False if the bytes do
-  /// not hold such values. Needs up to 32 bytes for each of `count` beside those of the integers.
+  /// not hold such values. Needs up to 32 bytes for each of `count` on top of those of the
+  /// integers.
   bool get(ByteReader& in, std::size_t count, std::size_t first, std::span<double> out);
 
  private:

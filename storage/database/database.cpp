@@ -59,7 +59,7 @@ void refuse_an_emptied_file(const fs::path& path, const std::optional<WriterLock
   throw Error(Error::Kind::corrupt, "database " + path.string() + " was cut short: " + found);
 }
 
-// SQLite keeps the log beside the name by which a file was opened: two names, two logs.
+// SQLite keeps the log next to the name by which a file was opened: two names, two logs.
 void refuse_a_second_name(const fs::path& path) {
   std::error_code error;
   const std::uintmax_t names = fs::hard_link_count(path, error);
@@ -135,7 +135,7 @@ Connection open_writer(const fs::path& path, Durability durability) {
 }
 
 // In a folder that cannot be written SQLite cannot make the shared memory that a log needs.
-// Without a log the file is complete, and a file that nobody can write beside does not change.
+// Without a log the file is complete. It does not change where nobody can write to its folder.
 Connection open_sealed(const fs::path& path) {
   const fs::path log = path.string() + "-wal";
   if (has_content(log))

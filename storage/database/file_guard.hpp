@@ -30,7 +30,7 @@ void refuse_damaged_files(const sqlite::Connection& connection,
 
 class FileGuard {
  public:
-  /// Of a database that is open in WAL mode, so that all of its files exist.
+  /// `database` is open in WAL mode, so that all of its files exist.
   explicit FileGuard(const std::filesystem::path& database);
 
   /// Throws Error displaced where one of the files is not the one that was opened, and corrupt

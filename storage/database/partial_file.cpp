@@ -74,8 +74,8 @@ bool PartialFile::make(mode_t mode) {
   refuse_busy(path_);
 }
 
-// The lock tells a file that is being written from one that was left. Between open and lock the
-// file may have taken its target's name: then it is another's, and whole.
+// The lock distinguishes a file that is being written from one that was left. Between open and lock
+// the file may have taken its target's name: then it is another's, and whole.
 void PartialFile::remove_what_was_left() {
   const int left = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (left < 0) {

@@ -38,7 +38,7 @@ class Query {
   Query(const Query&) = delete;
   Query& operator=(const Query&) = delete;
 
-  /// Binds all parameters in their order; starts the statement anew if it ran already.
+  /// Binds all parameters in their order; starts the statement again if it ran already.
   template <typename... Values>
   Query& bind(const Values&... values) {
     sqlite3_reset(statement_);
@@ -95,7 +95,7 @@ class Connection {
 
   /// Runs statements that give no rows and are not worth keeping.
   void execute(const std::string& sql);
-  /// The same text must not be in use by another Query.
+  /// Prepares `sql` once and keeps it. Its text must not be in use by another Query.
   template <typename... Values>
   Query query(std::string_view sql, const Values&... values) {
     return Query(prepared(sql), values...);
@@ -123,7 +123,7 @@ class Connection {
   void check_files() {
     if (guard_) guard_->check(*this);
   }
-  /// The log is left beside the file when the connection closes.
+  /// The log is left next to the file when the connection closes.
   void keep_log();
 
  private:

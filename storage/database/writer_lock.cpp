@@ -18,7 +18,7 @@ namespace reident::storage {
 namespace {
 
 // The lock file has the pid of its last holder in a line of this many bytes, and behind it a line
-// that tells that the database has tables. Where a full disk keeps them from being written the lock
+// that says that the database has tables. Where a full disk keeps them from being written the lock
 // holds all the same.
 constexpr std::size_t pid_line = 16;
 constexpr std::string_view tables_line = "has tables\n";
@@ -70,7 +70,7 @@ WriterLock::WriterLock(const std::filesystem::path& database) {
     throw Error(Error::Kind::locked, "database " + database.string() + " is in use by " + who +
                                          "; stop it or use another database");
   }
-  // Whoever removed the database begins anew.
+  // Whoever removed the database begins again.
   had_tables_ = std::filesystem::exists(database) && tells_of_tables(descriptor_);
   if (!had_tables_ && ::ftruncate(descriptor_, 0) != 0) cannot_lock(file, errno);
   std::string pid = std::to_string(::getpid());

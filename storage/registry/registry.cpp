@@ -159,7 +159,7 @@ std::optional<Version> Registry::version(const std::string& spacecraft,
   return row.step() ? std::optional(read_version(row)) : std::nullopt;
 }
 
-// One statement, so that a reader beside the writer sees one state.
+// One statement, so that a reader sees one state while the writer writes.
 std::optional<Decision> Registry::champion_decision(const std::string& spacecraft,
                                                     const std::string& equipment,
                                                     std::optional<Time> time) const {

@@ -3,13 +3,10 @@
 // Rows are only ever added. Every attempt at a window is recorded. An attempt that gave a model has
 // a version; its number counts the versions of one equipment from 1. Every version has at least one
 // decision. The champion of an equipment at a time is the version named by the last decision of
-// kind `approve` or `roll_back` not later than it, unless that version was withdrawn by then; the
+// kind `approve` or `roll_back` not later than it, unless that version was withdrawn by then. The
 // last one is the one with the highest id, which also holds when the clock was set back. A
-// version's parent is the champion that it was judged against; that one is still champion when it
-// is approved.
-//
-// What changes a decision's ground (another decision, a hold) and the decision itself never cross:
-// everything that decides checks its ground in the transaction that records it.
+// version's parent is the champion that it was judged against. A decision rests on what was decided
+// before it (Standing): everything that decides checks this in the transaction that records it.
 #pragma once
 
 #include <cstdint>
@@ -24,83 +21,90 @@
 
 namespace reident::storage {
 
+/// The registry in a database; what is not const needs one that is opened for writing. Every
+/// function may throw Error where the file or the disk refuses, and nothing is recorded then.
 class Registry {
  public:
   /// The database must outlive the registry.
   explicit Registry(Database& database);
 
-  /// An attempt that gave no model. Returns its id.
+  /// Records an attempt that gave no model. Returns its id.
   std::int64_t record(const NewAttempt& attempt);
-  /// An attempt, the next version of its equipment and the decision about it, in one transaction.
-  /// Returns the version's number.
+  /// Records an attempt, the next version of its equipment and the decision about it, in one
+  /// transaction. Returns the version's number.
   std::int64_t record(const NewAttempt& attempt, const NewVersion& version,
                       const NewDecision& decision);
-  /// The same, unless the equipment's standing is not the given one any more: then nothing is
-  /// recorded and nothing returned.
+  /// As record(), if the equipment's standing is still the given one. Absent where it is not; then
+  /// nothing is recorded.
   std::optional<std::int64_t> record_if(const Standing& standing, const NewAttempt& attempt,
                                         const NewVersion& version, const NewDecision& decision);
-  /// One more decision about a version that exists. Throws Error where it does not follow from what
-  /// was decided before: a waiting version is approved, if its parent is the champion, or rejected,
-  /// a superseded one rolled back to, an approved or superseded one withdrawn. In the transaction
-  /// that withdraws the champion, the previous champion, where there is one, is rolled back to.
-  /// Returns the decision's id.
+  /// Records one more decision about a version that exists. A waiting version may be approved, if
+  /// its parent is the champion, or rejected; a superseded one rolled back to; an approved or
+  /// superseded one withdrawn. The transaction that withdraws the champion also rolls back to the
+  /// previous champion, where there is one. Returns the decision's id. Throws Error (failed) for
+  /// any other decision, and where the version does not exist.
   std::int64_t decide(const std::string& spacecraft, const std::string& equipment,
                       std::int64_t version, const NewDecision& decision, Time time);
 
-  /// The same by one who judged a waiting version against today's champion, whatever its parent was
-  /// till then, unless the equipment's standing is not the given one any more.
+  /// As decide(), by one who judged a waiting version against today's champion, whatever its parent
+  /// was till then. Absent where the standing is not the given one; then nothing is recorded.
   std::optional<std::int64_t> decide_if(const Standing& standing, const std::string& spacecraft,
                                         const std::string& equipment, std::int64_t version,
                                         const NewDecision& decision, Time time);
 
-  /// Holds the equipment's champion, or releases it. Throws Error where it is held, or not held,
-  /// already.
+  /// Holds the equipment's champion, or releases it. Throws Error (failed) where it is held, or not
+  /// held, already.
   void put_on_hold(const std::string& spacecraft, const std::string& equipment, const Hold& hold);
   void release(const std::string& spacecraft, const std::string& equipment, const Hold& release);
 
   /// Runs `effect`, which decides on this registry, and keeps the command with its outcome, in one
-  /// transaction. A command whose outcome is kept already gets that, and its effect does not run
-  /// again. Throws Error where the request's number was used for another command.
+  /// transaction. Returns the outcome. A command whose outcome is kept already gets that, and its
+  /// effect does not run again. Where the request's number was used for another command the outcome
+  /// is not ok, and nothing is kept. What `effect` throws is thrown; then nothing is kept either.
   CommandOutcome execute(const Command& command, Time time,
                          const std::function<CommandOutcome()>& effect);
 
+  /// A version with its model; absent where there is none of that number.
   std::optional<Version> version(const std::string& spacecraft, const std::string& equipment,
                                  std::int64_t number) const;
-  /// The champion now, or at `time`.
+  /// The champion now, or at `time`; absent where there is none. Its status is that of now.
   std::optional<Version> champion(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<Time> time = std::nullopt) const;
-  /// The decision that made that champion; absent where there is none.
+  /// The decision that made this champion; absent where there is none.
   std::optional<Decision> champion_decision(const std::string& spacecraft,
                                             const std::string& equipment,
                                             std::optional<Time> time = std::nullopt) const;
-  /// The next one up the champion's line of parents that was not withdrawn.
+  /// The next version up the champion's line of parents that was not withdrawn; absent where there
+  /// is none.
   std::optional<Version> previous_champion(const std::string& spacecraft,
                                            const std::string& equipment) const;
+  /// The champions of all equipment, by spacecraft and equipment.
   std::vector<Version> champions() const;
-  /// Every version of an equipment, ascending.
+  /// Every version of an equipment, ascending by number.
   std::vector<VersionSummary> summaries(const std::string& spacecraft,
                                         const std::string& equipment) const;
-  /// Versions of attempts with this outcome whose only decision is to wait, ascending.
+  /// Numbers of the versions of attempts with this outcome that wait and nothing more, ascending.
   std::vector<std::int64_t> undecided(const std::string& spacecraft, const std::string& equipment,
                                       const std::string& outcome) const;
-  /// Ascending by id.
+  /// Decisions about an equipment, or one version of it, ascending by id.
   std::vector<Decision> decisions(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<std::int64_t> version = std::nullopt) const;
-  /// Those with attempts, in alphabetical order.
+  /// Every equipment with attempts, in alphabetical order.
   std::vector<EquipmentName> equipment() const;
+  /// The hold in force; absent where the champion is not held.
   std::optional<Hold> hold(const std::string& spacecraft, const std::string& equipment) const;
   /// Id of the last decision about any equipment, 0 before the first.
   std::int64_t last_decision() const;
   Standing standing(const std::string& spacecraft, const std::string& equipment) const;
   std::optional<Attempt> attempt(std::int64_t id) const;
-  /// Ascending by id.
+  /// Attempts that the filter selects, ascending by id.
   std::vector<Attempt> attempts(const HistoryFilter& filter = {}) const;
-  /// Calls `visit` with one row at a time, by id, until it answers false. The id of a version is
-  /// that of its attempt.
+  /// Calls `visit` with one row at a time, in the filter's order by id, until it answers false. The
+  /// id of a version is that of its attempt.
   void each_attempt(const RowFilter& filter, const std::function<bool(Attempt&&)>& visit) const;
   void each_version(const RowFilter& filter, const std::function<bool(Version&&)>& visit) const;
   void each_decision(const RowFilter& filter, const std::function<bool(Decision&&)>& visit) const;
-  /// End of the latest window that was tried for an equipment.
+  /// End of the latest window that was tried for an equipment; absent where none was.
   std::optional<Time> last_window_end(const std::string& spacecraft,
                                       const std::string& equipment) const;
 

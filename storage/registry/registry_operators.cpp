@@ -1,4 +1,4 @@
-// What operators leave in the registry beside decisions: holds, and their commands with the
+// What operators leave in the registry apart from decisions: holds, and their commands with the
 // replies.
 #include "storage/database/connection.hpp"
 #include "storage/registry/registry.hpp"

@@ -72,7 +72,7 @@ class ArchiveFile {
   /// Room for a chunk of which a part is taken, kept for the next one.
   SampleColumns scratch;
 
-  /// Of a source's id; empty for an unknown one.
+  /// Name of the source with this id; empty for an unknown one.
   std::string_view source_name(std::int64_t id);
 
  private:

@@ -57,7 +57,7 @@ struct Plan {
   WantedColumns wanted;
 };
 
-/// Of what plan_telemetry() passed on, with the values of the conditions.
+/// The plan that plan_telemetry() passed on, with the values of the conditions.
 Plan understand(int columns, const char* text, std::span<sqlite3_value*> operands);
 
 }  // namespace reident::storage::sql

@@ -19,7 +19,7 @@ bool is_lower_bound(Comparison comparison) {
   return comparison == Comparison::above || comparison == Comparison::from;
 }
 
-/// Of the times that are at least `from`, or below it: what compares true with a number between
+/// Those times that are at least `from`, or below it: what compares true with a number between
 /// `from - 1` and `from`, where `exact` says that it is `from` itself.
 TimeBounds beside(Time from, bool exact, Comparison comparison) {
   const TimeBounds after = from == latest ? none : TimeBounds{from + 1, latest};

@@ -57,7 +57,7 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  /// Starts anew with these values for all parameters.
+  /// Starts again with these values for all parameters.
   template <typename... Values>
   Statement& bind(const Values&... values) {
     sqlite3_reset(statement_);

@@ -2,7 +2,7 @@
 //
 // SQLite asks a virtual table for each row and column by itself, which costs more than decoding the
 // sample. Here whole columns are taken at once, and a chunk that lies in one stretch is not even
-// decoded where its row in the table chunk tells enough.
+// decoded where its row in the table chunk says enough.
 #pragma once
 
 #include <limits>

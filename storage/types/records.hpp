@@ -1,4 +1,7 @@
 // Rows of the registry: attempts, versions, decisions, commands, and how they are selected.
+//
+// These types hold what a row says and check nothing. Windows are in generation time; all other
+// times are those of the clock when the row was made. registry.hpp has the rules that rows follow.
 #pragma once
 
 #include <compare>
@@ -11,68 +14,92 @@
 
 namespace reident::storage {
 
+/// What is recorded of one try to identify a model from a window, whether it gave one or not.
 struct NewAttempt {
   std::string spacecraft;
   std::string equipment;
+  /// Generation times of the samples that it took.
   TimeRange window;
-  std::string trigger;  // why now: "slide", "late telemetry", ...
-  Time time = 0;        // when it was decided
-  std::string outcome;  // "approved", "waiting", or the code of the reason that speaks against it
-  std::string reason;   // one sentence for an operator
-  std::string evidence_json;  // scores, coverage, timings: all that the decision looked at
+  /// Why now: "slide", "late telemetry", ...
+  std::string trigger;
+  /// When it was decided.
+  Time time = 0;
+  /// "approved", "waiting", or the code of the reason that speaks against it.
+  std::string outcome;
+  /// One sentence for an operator.
+  std::string reason;
+  /// Scores, coverage, timings: all that the decision looked at.
+  std::string evidence_json;
   std::string configuration_digest;
   std::string program_version;
 };
 
+/// The model that an attempt gave, as text that is stored as it is and never changed.
 struct NewVersion {
-  std::string model_json;  // complete and exact: the version can be rebuilt from it alone
-  std::string digest;      // SHA-256 of the model, hexadecimal
-  // What it was identified from, so that it can be identified again; empty in versions from before
-  // schema 2.
-  std::string provenance_json{};  // window, parts, options
-  std::string samples_digest{};   // SHA-256 of the samples, hexadecimal
+  /// Complete and exact: the version can be rebuilt from it alone.
+  std::string model_json;
+  /// SHA-256 of the model, hexadecimal.
+  std::string digest;
+  /// Window, parts and options, so that it can be identified again; empty in versions from before
+  /// schema 2, as the next one is.
+  std::string provenance_json{};
+  /// SHA-256 of the samples that it was identified from, hexadecimal.
+  std::string samples_digest{};
 };
 
+/// What a decision does to a version. `wait` is only ever a version's first decision.
 enum class DecisionKind { approve, reject, wait, roll_back, withdraw };
+/// The kind as the database holds it, such as "roll_back".
 std::string_view name(DecisionKind kind);
-/// Absent where no kind has that name.
+/// The kind of that name; absent where no kind has it.
 std::optional<DecisionKind> decision_kind(std::string_view name);
 
+/// A decision about a version, before it is recorded.
 struct NewDecision {
   DecisionKind kind = DecisionKind::reject;
-  std::string actor;  // "gate" or an operator's name
+  /// "gate" or an operator's name.
+  std::string actor;
+  /// One sentence, in the operator's own words where one decided.
   std::string reason;
-  std::string evidence_json{};  // what it looked at beside the attempt; empty: nothing
+  /// What it looked at apart from the attempt; empty: nothing.
+  std::string evidence_json{};
 };
 
+/// A recorded attempt.
 struct Attempt : NewAttempt {
   std::int64_t id = 0;
+  /// Number of the version that it gave; absent where it gave none.
   std::optional<std::int64_t> version;
 };
 
+/// A recorded version. `status` and `parent` follow from the decisions at the time of reading.
 struct Version {
   std::string spacecraft;
   std::string equipment;
+  /// Counts the versions of the equipment from 1.
   std::int64_t number = 0;
+  /// Id of the attempt that gave it, and that one's window and time.
   std::int64_t attempt = 0;
   TimeRange window;
   Time created = 0;
   std::string model_json;
   std::string digest;
-  // "approved" (champion now), "superseded", "rejected", "waiting", "withdrawn" (for ever)
+  /// "approved" (champion now), "superseded", "rejected", "waiting", "withdrawn" (for ever).
   std::string status;
-  std::optional<std::int64_t> parent;  // absent where it was judged against no champion
+  /// Number of the champion that it was judged against; absent where there was none.
+  std::optional<std::int64_t> parent;
   std::string provenance_json;
   std::string samples_digest;
 };
 
-/// A version without its model.
+/// A version without its model, for those who list many. Fields are as in Version.
 struct VersionSummary {
   std::int64_t number = 0;
   std::string status;
   std::optional<std::int64_t> parent;
 };
 
+/// A recorded decision. Ids ascend in the order of recording, which times need not.
 struct Decision : NewDecision {
   std::int64_t id = 0;
   std::string spacecraft;
@@ -81,63 +108,84 @@ struct Decision : NewDecision {
   Time time = 0;
 };
 
-/// An operator's word that the champion of an equipment stays, until it is released.
+/// An operator's decision that the champion of an equipment stays, until it is released. A release
+/// has the same fields.
 struct Hold {
   std::string actor;
   std::string reason;
+  /// When it was held, or released.
   Time since = 0;
 };
 
-/// What a decision about an equipment stands on: it changes with every decision and hold.
+/// What a decision about an equipment is based on. It changes with every decision and hold, so that
+/// two equal ones mean that nothing was decided in between.
 struct Standing {
-  std::int64_t last_decision = 0;  // id, 0 before the first
+  /// Ids of the last decision, and of the last hold or release; 0 before the first.
+  std::int64_t last_decision = 0;
   std::int64_t last_hold = 0;
   bool operator==(const Standing&) const = default;
 };
 
-/// An operator's command, identified by who asks and that one's count.
+/// An operator's command. Requester and request identify it: the same pair with the same contents
+/// is the same command, sent again.
 struct Command {
-  std::string requester;  // unique name of the asking program
+  /// Unique name of the asking program.
+  std::string requester;
+  /// The program's count of its commands.
   std::uint64_t request = 0;
+  /// What is to be done; the registry keeps the word and gives it no meaning.
   std::string action;
   std::string spacecraft;
   std::string equipment;
-  std::int64_t version = 0;  // 0 where the action names none
-  std::string actor;         // the operator's name
+  /// 0 where the action names none.
+  std::int64_t version = 0;
+  /// The operator's name.
+  std::string actor;
   std::string reason;
   bool operator==(const Command&) const = default;
 };
 
+/// The answer to a command, kept with it.
 struct CommandOutcome {
+  /// The command was carried out.
   bool ok = false;
-  std::string reply;  // what was done, or why not
+  /// What was done, or why not.
+  std::string reply;
 };
 
+/// The name of an equipment, which is unique within its spacecraft alone.
 struct EquipmentName {
   std::string spacecraft;
   std::string equipment;
   auto operator<=>(const EquipmentName&) const = default;
 };
 
-/// Empty fields select everything.
+/// Which attempts Registry::attempts() returns at once. Empty fields select everything. RowFilter
+/// is for more than fit into memory.
 struct HistoryFilter {
   std::string spacecraft;
   std::string equipment;
-  std::optional<TimeRange> window;  // attempts whose window overlaps it
-  bool versions_only = false;       // leave out attempts that gave no model
-  std::optional<std::size_t> last;  // the newest so many
+  /// Attempts whose window overlaps it.
+  std::optional<TimeRange> window;
+  /// Leaves out attempts that gave no model.
+  bool versions_only = false;
+  /// The newest so many.
+  std::optional<std::size_t> last;
 };
 
 /// Which rows are read one after the other, by whoever may not hold all of them. Empty fields
-/// select everything.
+/// select everything. To go on where a reading ended, set `beyond` to the last id that was seen.
 struct RowFilter {
   std::string spacecraft;
   std::string equipment;
-  std::optional<TimeRange>
-      range;  // attempts and versions whose window overlaps it, decisions in it
+  /// Attempts and versions whose window overlaps it, decisions with a time in it.
+  std::optional<TimeRange> range;
+  /// Rows of this version alone.
   std::optional<std::int64_t> version;
+  /// Descending by id, else ascending.
   bool newest_first = false;
-  std::optional<std::int64_t> beyond;  // only rows after this id, in the order that is asked for
+  /// Only rows after this id, in the order that is asked for.
+  std::optional<std::int64_t> beyond;
 };
 
 }  // namespace reident::storage

@@ -23,7 +23,7 @@ struct TimeRange {
 
 /// As telemetry flags a sample, ascending from best to worst: of two values for one identity the
 /// lower wins. `disputed` is the archive's own: good telemetry gave two values for that identity,
-/// and nobody can tell which is true.
+/// and which of them is true cannot be decided.
 enum class Quality : std::uint8_t {
   good = 0,
   out_of_limits = 1,

@@ -28,7 +28,7 @@ std::string utc_text(Time time) {
   put(&text[11], 2, of_day / 3600);
   put(&text[14], 2, of_day / 60 % 60);
   put(&text[17], 2, of_day % 60);
-  // Of the earliest times the begin of the second is not a number of nanoseconds.
+  // The begin of the second of the earliest times is not a number of nanoseconds.
   put(&text[20], 9, (time % 1'000'000'000 + 1'000'000'000) % 1'000'000'000);
   return text;
 }

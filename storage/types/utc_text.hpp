@@ -1,4 +1,4 @@
-// Times for people.
+// Times for people, in UTC.
 #pragma once
 
 #include <string>
@@ -7,7 +7,9 @@
 
 namespace reident::storage {
 
-/// ISO 8601 with nanoseconds: 2023-04-29T12:00:00.000000000Z.
+/// The time in ISO 8601 with nanoseconds: 2023-04-29T12:00:00.000000000Z. Every Time has such a
+/// text. All are of 30 characters, so that texts sort as times do, and a beginning of one names the
+/// day, hour or second.
 std::string utc_text(Time time);
 
 }  // namespace reident::storage

@@ -1,6 +1,6 @@
 """Recorded BUPT-1 telemetry through the real loop: satcs-replay at full speed, reidentd with
 deploy/bupt1.toml, one simulator. Checks that the archive holds exactly the samples of the files and
-prints what was tried, approved and rejected, as Markdown.
+prints what was tried, approved and rejected, as Markdown. The last line is one JSON object.
 
     loop.py PROGRAMS CONFIGURATIONS FILE.csv...
 """
@@ -37,33 +37,47 @@ def archived(programs, database):
     return {(name, at): value for name, at, value in map(json.loads, lines)}
 
 
-def table(attempts):
-    lines = ["| equipment | windows tried | approved | rejected, by reason | "
-             "approved: MRSE %, fit % on unseen data (median, worst) |",
-             "|---|---|---|---|---|"]
+def summary(attempts):
+    """By equipment; `slides` are the models of each slide, whatever the gate decided."""
     by_equipment = collections.defaultdict(list)
     for attempt in attempts:
         by_equipment[attempt["equipment"]].append(attempt)
+    figures = {}
     for name, tried in by_equipment.items():
         good = [a for a in tried if a["outcome"] == "approved"]
-        reasons = collections.Counter(a["outcome"] for a in tried if a["outcome"] != "approved")
-        mrse = [a["mrse_percent"] for a in good]
-        fit = [a["fit_percent"] for a in good]
-        score = (f"{statistics.median(mrse):.2f} ({max(mrse):.2f}), "
-                 f"{statistics.median(fit):.1f} ({min(fit):.1f})") if good else "-"
-        lines.append(f"| {name} | {len(tried)} | {len(good)} | " + ", ".join(
-            f"{reason} {count}" for reason, count in reasons.most_common()) + f" | {score} |")
+        others = collections.Counter(a["outcome"] for a in tried if a["outcome"] != "approved")
+        figures[name] = {"tried": len(tried), "approved": len(good),
+                         "outcomes": dict(others.most_common())}
+        for what, worst in (("mrse_percent", max), ("fit_percent", min)):
+            scores = [a[what] for a in good]
+            if scores:
+                figures[name][what] = {"median": statistics.median(scores), "worst": worst(scores)}
+        errors = [a["mrse_percent"] for a in tried
+                  if a["trigger"] == "slide" and a.get("mrse_percent") is not None]
+        figures[name]["slides"] = {"median": statistics.median(errors) if errors else None,
+                                   "models": len(errors)}
+    return figures
+
+
+def table(equipment):
+    lines = ["| equipment | windows tried | approved | rejected, by reason | "
+             "approved: MRSE %, fit % on unseen data (median, worst) |",
+             "|---|---|---|---|---|"]
+    for name, tried in equipment.items():
+        score = "-"
+        if tried["approved"]:
+            mrse, fit = tried["mrse_percent"], tried["fit_percent"]
+            score = (f"{mrse['median']:.2f} ({mrse['worst']:.2f}), "
+                     f"{fit['median']:.1f} ({fit['worst']:.1f})")
+        lines.append(f"| {name} | {tried['tried']} | {tried['approved']} | " + ", ".join(
+            f"{reason} {count}" for reason, count in tried["outcomes"].items()) + f" | {score} |")
     return "\n".join(lines)
 
 
-def every_model(attempts):
-    """The median error of the models of each slide, whatever the gate said of them."""
-    errors = collections.defaultdict(list)
-    for attempt in attempts:
-        if attempt["trigger"] == "slide" and attempt.get("mrse_percent") is not None:
-            errors[attempt["equipment"]].append(attempt["mrse_percent"])
+def every_model(equipment):
     return "The model of every slide, median MRSE on unseen data: " + ", ".join(
-        f"{name} {statistics.median(some):.2f} % of {len(some)}" for name, some in errors.items())
+        f"{name} {tried['slides']['median']:.2f} % of {tried['slides']['models']}"
+        for name, tried in equipment.items() if tried["slides"]["models"])
 
 
 def main():
@@ -115,8 +129,13 @@ def main():
               f"{'holds exactly' if same else 'DIFFERS FROM'} the {len(expected)} samples of the "
               f"files; {len(history['attempts'])} windows decided {seconds:.0f} s after the start; "
               f"the simulator took {len(adopted)} versions.\n")
-        print(table(history["attempts"]))
-        print("\n" + every_model(history["attempts"]))
+        equipment = summary(history["attempts"])
+        print(table(equipment))
+        print("\n" + every_model(equipment))
+        print(json.dumps({
+            "frames": frames, "replay_s": replay_s, "samples": len(expected),
+            "archive_exact": same, "windows": len(history["attempts"]), "decided_s": seconds,
+            "versions_adopted": len(adopted), "equipment": equipment}))
         return 0 if same else 1
 
 

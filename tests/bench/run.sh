@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Benchmarks and measurements, apart from the tests. Builds the release preset first.
 #   tests/bench/run.sh loop FILE.csv...   BUPT-1 telemetry through the real processes, as fast as
-#                                         they take it: what was archived, tried and approved
+#                                         they take it: what was archived, tried and approved.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh identification [DATA_FOLDER]
-#                                         time, memory and free-run error beside SLICOT, on one
-#                                         thread each. With DATA_FOLDER, which holds DaISy data
-#                                         sets as daisy_NAME.csv (columns u1.. y1..), also accuracy
-#                                         beside SLICOT and Octave and SLICOT's published figures.
+#                                         time, memory and free-run error compared with SLICOT,
+#                                         on one thread each. With DATA_FOLDER, which holds DaISy
+#                                         data sets as daisy_NAME.csv (columns u1.. y1..), also
+#                                         accuracy compared with SLICOT and Octave, and SLICOT's
+#                                         published figures.
 #                                         The last line is one JSON object. Without SLICOT or
 #                                         Octave it says what it leaves out
 #   tests/bench/run.sh paper [DATA_FOLDER] [--pictures FOLDER]
@@ -17,20 +19,28 @@
 #                                         drawn to FOLDER as SVG.
 #                                         The last line is one JSON object
 #   tests/bench/run.sh archive [DATA_FOLDER] [--billion | --samples N] [--folder FOLDER]
-#                                         the archive beside a plain SQLite table: bytes a sample,
-#                                         appending, reading, SQL; and two publishers over DDS into
-#                                         it. With DATA_FOLDER also the size of BUPT-1's telemetry
-#                                         (bupt1_eps_*.csv). The large archive has 100 million
-#                                         samples, or N, or a billion, and is made in FOLDER.
+#                                         the archive compared with a plain SQLite table: bytes a
+#                                         sample, appending, reading, SQL; and two publishers over
+#                                         DDS into it. With DATA_FOLDER also the size of BUPT-1's
+#                                         telemetry (bupt1_eps_*.csv). The large archive has
+#                                         100 million samples, or N, or a billion, and is made in
+#                                         FOLDER.
 #                                         The last line is one JSON object
 #   tests/bench/run.sh screening FILE.csv --input NAME... --output NAME... [--time NAME] [--window ROWS]
 #                                         what the screens for sensor faults leave out of a file's
 #                                         telemetry, as one JSON object
 #   tests/bench/run.sh simulator          a version's way from the service to a step in another
-#                                         process beside ddsperf's round trip, a step beside the
-#                                         bare products, what a step allocates, a hundred
-#                                         simulators that come late and go a hundred times, the
-#                                         output's jump at a swap. The last line is one JSON object
+#                                         process compared with ddsperf's round trip, a step
+#                                         compared with the bare products, what a step allocates, a
+#                                         hundred simulators that come late and go a hundred times,
+#                                         the output's jump at a swap.
+#                                         The last line is one JSON object
+#   tests/bench/run.sh record [--as NAME] WHAT ARGUMENT...
+#                                         runs one of these and stores the object of its last line
+#                                         in tests/bench/results/NAME.json (default: WHAT.json),
+#                                         with commit, date and machine, and writes RESULTS.md.
+#                                         WHAT may also be trust, month or trust_dds, which are
+#                                         tests/trust/run.sh with --month or --dds for the last two
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 usage() {
@@ -41,6 +51,10 @@ what=${1:-}
 [ $# -gt 0 ] && shift
 targets=(all)
 case $what in
+  record)
+    [ $# -gt 0 ] || usage
+    exec python3 tests/bench/record.py "$@"
+    ;;
   loop)
     [ $# -gt 0 ] || usage
     arguments=(build/release/service deploy "$@")

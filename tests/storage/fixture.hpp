@@ -37,7 +37,7 @@ std::vector<std::string> rows(const std::filesystem::path& database, const std::
 
 /// Runs `work` in a child process and returns what it returned, or how the child died.
 std::string in_child(const std::function<std::string()>& work);
-/// The same as a user whom file permissions bind (root is not bound by them).
+/// As in_child(), as a user whom file permissions bind (root is not bound by them).
 std::string in_unprivileged_child(const std::function<std::string()>& work);
 
 /// "kind: message" of the Error that `work` throws, or what it threw instead, or "no error".

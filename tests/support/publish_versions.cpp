@@ -1,5 +1,5 @@
-// Publishes versions exactly as it is told, good and bad, a JSON object a line, for as long as the
-// pipe is open; prints a line for each:
+// Publishes versions exactly as its input says, good and bad, a JSON object a line, for as long as
+// the pipe is open; prints a line for each:
 //   {"number": 3, "model": {...}, "rollback": true, "decided_ns": 1, "spoil": "nan"}
 // The digest is that of the model. `spoil` changes what was signed, or goes round our own writer's
 // checks: digest, truncated, order, format, nan, number.

@@ -1,4 +1,4 @@
-// Whether two results are the same to the last bit, which == does not tell: it takes -0 for 0.
+// Whether two results are the same to the last bit, which == does not show: it takes -0 for 0.
 #pragma once
 
 #include "identification/search/identify.hpp"

@@ -12,7 +12,7 @@ struct SwapInMidRun {
   double remaining;  // difference from the new model at the end
 };
 
-/// Of version_pair(seed), on smooth_input().
+/// Swaps version_pair(seed) on smooth_input().
 SwapInMidRun swap_in_mid_run(std::uint64_t seed);
 
 }  // namespace reident::testing

@@ -9,7 +9,7 @@
 
 namespace reident::test {
 
-/// Made anew, accessible to every user, removed with all that is in it.
+/// A new folder, accessible to every user, removed with all that is in it.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(

@@ -45,8 +45,8 @@ class Flight {
 
   storage::Time time() const { return plant_.time(); }
 
-  /// Goes on to the next frame, beside which `truth` has what perfect sensors would have sent in it
-  /// and `simulated` what the simulator says.
+  /// Goes on to the next frame. `truth` has what perfect sensors would have sent in it, and
+  /// `simulated` what the simulator says.
   void next(storage::TelemetryFrame& frame, std::vector<storage::Sample>& truth,
             storage::TelemetryFrame& simulated) {
     frame.samples.clear();

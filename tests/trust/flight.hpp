@@ -18,7 +18,7 @@ storage::TimeRange extent_of(const LifeGroup& group);
 /// Descriptors of what the equipment of `spacecraft` names.
 std::vector<storage::ParameterDescriptor> telemetry_of(const SpacecraftConfig& spacecraft);
 
-/// What is known of a life beside what the services hear.
+/// What is known of a life in addition to what the services hear.
 struct Known {
   KnownSeries truth;      // of perfect sensors
   KnownSeries clean;      // without faults

@@ -1,5 +1,5 @@
-// Runs a group of scenarios: the plant once, each scenario's faults and service beside it, then the
-// score of each.
+// Runs a group of scenarios: the plant once, each scenario's faults and service along with it, then
+// the score of each.
 #pragma once
 
 #include <filesystem>
@@ -43,7 +43,7 @@ std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& con
                                        const std::filesystem::path& folder,
                                        Databases databases = Databases::removed);
 
-/// The same of what reidentd made of the scenarios: `folder` has the database of each, <number>.db.
+/// Scores what reidentd made of the scenarios: `folder` has the database of each, <number>.db.
 /// Its clock was not the spacecraft's, so that a version counts from where the telemetry ended that
 /// its approval rests on, and every window that was tried because of drift as a request. Throws
 /// storage::Error where a database cannot be read.

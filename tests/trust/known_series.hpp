@@ -11,11 +11,11 @@
 
 namespace reident::trust {
 
-/// Of one spacecraft and origin, whatever a caller asks for; samples come in the order of time and
-/// are good.
+/// Holds one spacecraft and origin, whatever a caller asks for; samples come in the order of time
+/// and are good.
 class KnownSeries : public storage::SampleSource {
  public:
-  /// Of the descriptors, those whose names are in `names` are kept.
+  /// Keeps those of the descriptors whose names are in `names`.
   KnownSeries(std::span<const storage::ParameterDescriptor> descriptors,
               const std::vector<std::string>& names);
 

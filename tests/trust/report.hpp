@@ -50,7 +50,7 @@ std::string tables(const std::vector<ScenarioOutcome>& outcomes, Outcomes* worst
 /// The figures of both halves as one object.
 nlohmann::ordered_json figures_json(const std::vector<ScenarioOutcome>& outcomes);
 
-/// report.md, and beside it the pictures that it links to. Throws std::runtime_error where a file
+/// report.md, and next to it the pictures that it links to. Throws std::runtime_error where a file
 /// cannot be written.
 void write_report(const std::vector<ScenarioOutcome>& outcomes,
                   const std::filesystem::path& folder);

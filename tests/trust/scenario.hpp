@@ -1,7 +1,7 @@
 // What happens to a spacecraft and to its telemetry while the service looks on.
 //
-// Scenarios come in groups of one life: the plant runs once for a group, and each scenario of it is
-// told other faults. Numbers, seeds and times are a function of this file alone.
+// Scenarios come in groups of one life: the plant runs once for a group, and each scenario of it
+// has other faults. Numbers, seeds and times are a function of this file alone.
 #pragma once
 
 #include <string>
@@ -40,7 +40,7 @@ inline constexpr Duration simulator_sends = 12 * 86'400'000'000'000;
 
 /// All of the suite, for the equipment of its configuration. With `draw` above 0 the plans of its
 /// tuned half, numbered as there, with other seeds, dates and times: rules that are made on few
-/// lives fit these, and others tell.
+/// lives fit these, and other lives show it.
 std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw = 0);
 
 /// Those that go over real DDS too: every 71st, so that lives and faults are different ones and two

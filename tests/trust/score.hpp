@@ -69,7 +69,7 @@ struct TrueChange {
 };
 std::vector<TrueChange> true_changes(const std::vector<satcs::reference::LifeEvent>& life);
 
-/// Of models by the time at which the window that they are identified from begins.
+/// Gives models by the time at which the window that they are identified from begins.
 using Oracle = std::function<std::optional<EquipmentModel>(storage::Time begin)>;
 
 /// Every version among `tenures`, which ascend and begin with the hand-written model.
@@ -79,7 +79,7 @@ std::vector<Publication> score_publications(const Truth& truth, const std::vecto
 /// Error of what simulators ran, orbit by orbit.
 ErrorCurve champion_curve(const Truth& truth, const std::vector<Tenure>& tenures);
 
-/// `honest` says whether an orbit's telemetry tells the truth about the equipment.
+/// `honest` says whether an orbit's telemetry of the equipment is without faults that mislead.
 std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Tenure>& tenures,
                                        const std::vector<TrueChange>& changes, const Oracle& oracle,
                                        const std::function<bool(storage::TimeRange)>& honest);

@@ -17,7 +17,7 @@ namespace {
 using identification::Index;
 using identification::Matrix;
 
-/// Of the truth, which has no holes.
+/// A window of the truth, which has no holes.
 WindowData load(const KnownSeries& series, const WindowRequest& request, storage::TimeRange range) {
   auto loaded = load_window(series, request, range);
   if (const auto* unknown = std::get_if<UnknownParameter>(&loaded))

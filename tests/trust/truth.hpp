@@ -26,7 +26,7 @@ class ErrorCurve {
   storage::Time begin_of(std::int64_t block) const { return origin_ + block * block_; }
   Duration block() const { return block_; }
   /// MRSE (design: 100 ||y - yhat|| / ||y||, the mean over the outputs) over the blocks
-  /// [first, last); absent where they hold no row. Infinite where a run went astray.
+  /// [first, last); absent where they hold no row. Infinite where a run diverged.
   std::optional<double> mrse_percent(std::int64_t first, std::int64_t last) const;
 
  private:
@@ -42,7 +42,7 @@ class ErrorCurve {
   std::vector<Sums> sums_;  // of block b and output q at b * outputs_ + q
 };
 
-/// Of a stretch of a signal.
+/// Extremes of a stretch of a signal.
 struct Extremes {
   storage::Time time = 0;
   double low = 0;
@@ -65,7 +65,7 @@ class Truth {
   /// converter's quantum together.
   double resolution_percent(storage::TimeRange range) const;
 
-  /// Of the first output over `range`, in stretches of `step`.
+  /// Extremes of the first output over `range`, in stretches of `step`.
   std::vector<Extremes> output_extremes(storage::TimeRange range, Duration step) const;
 
   const EquipmentConfig& equipment() const { return equipment_; }

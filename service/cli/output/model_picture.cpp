@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "identification/numerics/decompositions.hpp"
 #include "service/cli/model_comparison.hpp"
 #include "service/cli/output/axis.hpp"
 #include "service/cli/output/svg.hpp"
@@ -249,7 +249,7 @@ void draw_poles(Svg& svg, const PictureData& data, const Box& box) {
   svg.turned_text({box.x - 38, box.y + box.height / 2}, "imaginary part", "small");
   svg.begin_group("poles");
   if (dynamics.order() > 0)
-    for (const std::complex<double>& pole : Eigen::VectorXcd(dynamics.A.eigenvalues()))
+    for (const std::complex<double>& pole : identification::eigenvalues(dynamics.A))
       svg.cross({x(pole.real()), y(pole.imag())}, 5, "pole");
   svg.end_group();
   draw_pole_list(svg, data, box.right() + 16, box.y + 10);

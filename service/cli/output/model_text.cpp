@@ -4,8 +4,9 @@
 #include <complex>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+
+#include "identification/numerics/decompositions.hpp"
 
 namespace reident::cli {
 namespace {
@@ -18,7 +19,7 @@ std::string pole_text(const std::complex<double>& pole) {
 /// A complex pair once, the one first whose `slowness` is largest.
 template <typename Slowness>
 std::string sorted_poles_text(const identification::Matrix& A, Slowness slowness) {
-  const Eigen::VectorXcd eigenvalues = A.eigenvalues();
+  const auto eigenvalues = identification::eigenvalues(A);
   std::vector<std::complex<double>> poles;
   for (const std::complex<double>& pole : eigenvalues)
     if (pole.imag() >= 0) poles.push_back(pole);

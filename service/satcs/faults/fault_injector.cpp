@@ -31,7 +31,7 @@ class FaultInjector::Stages {
       for (Flight& flight : flights_) stage.fault->pass(std::move(flight), passed_);
       flights_.swap(passed_);
     }
-    // Of equal keys the first that was inserted comes first.
+    // Among equal keys the first that was inserted comes first.
     for (Flight& flight : flights_) on_the_way_.emplace(flight.arrival, std::move(flight.frame));
     release(on_the_way_.upper_bound(now), received);
   }

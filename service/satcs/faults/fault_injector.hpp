@@ -23,22 +23,22 @@
 namespace reident::satcs {
 
 /// Span is high limit - low limit of the parameter's descriptor, 1 where it has none. Readings of a
-/// faulty sensor stay within those limits, as its converter's do.
+/// faulty sensor stay within those limits, as its converter's do, but for a magnitude of `stuck`.
 enum class FaultKind : std::uint8_t {
-  // Of one sensor. Magnitude in the parameter's unit.
+  // Faults of one sensor. Magnitude in the parameter's unit.
   stuck,          // reads the magnitude; by default its first reading in the stretch
   bias_step,      // reads the magnitude more; 2 % of the span
   drifting_bias,  // reads more and more, at the end the magnitude; 5 % of the span
   noise_burst,    // white noise with the magnitude as standard deviation; 2 % of the span
   spikes,         // 1 % of the readings are off by the magnitude, up or down; 20 % of the span
-  // Of one parameter, on board or on the ground.
+  // Faults of one parameter, on board or on the ground.
   swapped,            // its readings come as those of the other, and the other's as its own
   wrong_calibration,  // magnitude: the gain, 1.05; the offset keeps the middle of the limits right
   stops,              // is sent no more
   // Magnitude: share of the samples, 0.2. Half of them are right and flagged invalid; the others
   // are flagged good and are anything within the limits. All parameters where none is named.
   wrong_validity,
-  // Of frames.
+  // Faults of frames.
   frames_lost,  // magnitude: the share that is lost, 0.1
   // Frames in ground contact come at once, the others with the next pass, at 256 times their rate
   // or, should that come first, at the end of the stretch. Magnitude: the share of the passes that
@@ -47,7 +47,7 @@ enum class FaultKind : std::uint8_t {
   // Nothing comes until the end of the stretch and then its frames, the last one first, at 8 times
   // their rate. Magnitude: how long after the end that begins [s], 600.
   backwards_playback,
-  // Of every 600 s the first station hears the first two thirds and a second one, source
+  // The first station hears the first two thirds of every 600 s and a second one, source
   // "<source>-2", the last two. Numbers are those of the spacecraft's counter. Magnitude: how far
   // the second station's clock is ahead [s], 0.4; it stamps the reception.
   two_stations,
@@ -85,7 +85,7 @@ struct FaultError {
 std::variant<Fault, FaultError> parse_fault(std::string_view text, storage::Time start,
                                             std::uint64_t seed = 0);
 
-/// What keeps `fault` from being told about these parameters; nothing where it can be.
+/// What keeps `fault` from being applied to these parameters; nothing where it can be.
 std::optional<FaultError> obstacle(const Fault& fault,
                                    std::span<const storage::ParameterDescriptor> parameters);
 

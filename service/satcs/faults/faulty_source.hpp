@@ -11,7 +11,7 @@ namespace reident::satcs {
 
 class FaultySource : public FrameSource {
  public:
-  /// Throws std::invalid_argument when a fault cannot be told about the truth.
+  /// Throws std::invalid_argument when a fault cannot be applied to the truth.
   FaultySource(std::unique_ptr<FrameSource> truth, std::span<const Fault> faults,
                const FaultInjectorOptions& options);
 

@@ -66,12 +66,12 @@ class HandwrittenEps {
 
   struct Flows {
     double load_A = 0, array_A = 0, sg2_A = 0, shunt_A = 0, bdr_out_A = 0;
-    // Of load_A.
+    // Parts of load_A.
     double platform_A = 0, transmitter_A = 0, heaters_A = 0;
     std::array<double, reference::converter_count> converter_A{};
     std::array<double, reference::converter_count> line_A{}, line_V{};  // behind the converters
     double section_A = 0;                                               // SAG1A, SAG1B: the same
-    // Of each battery; both are alike.
+    // Each battery; both are alike.
     double charge_A = 0, bdr_in_A = 0, battery_A = 0, battery_V = 0;
     double bus_V = 0;
     reference::OperationsPlan::On on;
@@ -91,8 +91,8 @@ class HandwrittenEps {
   Flows flows_;
 };
 
-/// Of the telemetry points that the model has, in the order of its samples; those of the spacecraft
-/// of the same names.
+/// Describes the telemetry points that the model has, in the order of its samples, as the
+/// spacecraft's points of the same names.
 std::vector<storage::ParameterDescriptor> handwritten_descriptors(std::string_view spacecraft);
 
 }  // namespace reident::satcs

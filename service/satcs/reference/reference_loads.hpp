@@ -28,7 +28,7 @@ enum Load : std::size_t {
 /// Which of the instruments and transmitters are on: a function of time, seed and modes alone.
 class OperationsPlan {
  public:
-  /// Of `life`, the modes alone count.
+  /// The modes of `life` alone count.
   OperationsPlan(const Orbit& orbit, const LoadConstants& constants, std::vector<LifeEvent> life,
                  std::uint64_t seed);
 

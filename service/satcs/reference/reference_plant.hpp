@@ -107,7 +107,7 @@ class Plant {
 
   storage::Time time() const;
   const Flows& flows() const { return flows_; }
-  /// Of the last step.
+  /// The balance of the last step.
   PowerBalance power_balance() const;
   const Battery& battery(std::size_t k) const { return batteries_[k]; }
   const DischargeRegulator& bdr() const { return bdr_; }

@@ -1,7 +1,7 @@
 // The reference spacecraft: a CBERS-4-class electrical power subsystem and its telemetry, a frame a
 // second.
 //
-// The same constants, life, start and seed give the same telemetry to the last bit.
+// Equal constants, life, start and seed give equal telemetry to the last bit.
 #pragma once
 
 #include <cstdint>

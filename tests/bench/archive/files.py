@@ -56,7 +56,8 @@ def sizes(programs, folder, data, scale):
     rows.append(size_row(f"reference spacecraft, {scale.reference_s} s", reference))
     print("Size, bytes in use a sample\n")
     table(["telemetry", "samples", "archive", "plain table", "ratio"], rows)
-    return {"bytes_per_sample_bupt": each(bupt, "archive"),
+    return {"samples_bupt": bupt["samples"] if bupt else None,
+            "bytes_per_sample_bupt": each(bupt, "archive"),
             "bytes_per_sample_plain_bupt": each(bupt, "plain"),
             "bytes_per_sample_reference": each(reference, "archive"),
             "bytes_per_sample_plain": each(reference, "plain")}
@@ -175,7 +176,9 @@ def reads(programs, folder, scale, large):
         remove(file)
     print(f"Reading a window of {scale.rows} samples of 5 parameters into arrays, ms\n")
     table(["samples", "archive", "plain table", "ratio"], rows)
-    return {"window_read_vs_plain": median["plain", "large"] / median["archive", "large"],
+    return {"large_samples": scale.large_frames * PARAMETERS,
+            "window_samples": scale.large_frames * PARAMETERS,
+            "window_read_vs_plain": median["plain", "large"] / median["archive", "large"],
             "window_read_small_vs_plain": median["plain", "small"] / median["archive", "small"],
             "window_read_large_over_small": median["archive", "large"] / median["archive", "small"],
             "window_read_ms": median["archive", "large"],

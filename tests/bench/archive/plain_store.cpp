@@ -73,7 +73,7 @@ void PlainStore::read(std::uint32_t parameter, storage::TimeRange range,
   sqlite3_reset(statement);
 }
 
-// That of the first parameter: all are sampled together.
+// The extent of the first parameter: all are sampled together.
 std::optional<storage::TimeRange> PlainStore::extent() const {
   const auto end = [&](const std::string& which) {
     const SqliteStatement query =

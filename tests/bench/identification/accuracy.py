@@ -138,11 +138,13 @@ def compare(tools, data, folder):
             print(f"{protocol.name} is left out: {file} does not exist", flush=True)
             continue
         inputs, outputs = preprocessed(protocol, *read_columns(file))
-        result = {**reident_result(tools, protocol, inputs, outputs, folder),
+        rows = "{}:{}, {}:{}".format(*protocol.identify, *protocol.validate)
+        result = {"rows": rows,
+                  **reident_result(tools, protocol, inputs, outputs, folder),
                   **other_results(tools, protocol, inputs, outputs, folder),
                   "best_of_others": protocol.others}
         results[protocol.name] = result
-        lines.append([protocol.name, "{}:{}, {}:{}".format(*protocol.identify, *protocol.validate),
+        lines.append([protocol.name, rows,
                       number(result["reident"]),
                       result.get("failure") or
                       f"{result['order']}, {result['horizon']}, {result['weighting']}" +

@@ -18,7 +18,7 @@ double status_kib(const std::string& key) {
   throw std::runtime_error("/proc/self/status has no " + key + "; the benchmark needs Linux");
 }
 
-/// The kernel starts its record of the peak anew.
+/// The kernel starts its record of the peak again.
 void reset_peak() {
   std::ofstream("/proc/self/clear_refs") << "5\n";
 }

@@ -7,7 +7,7 @@
 namespace reident::bench {
 
 struct Measurement {
-  /// Of each repeat: the processor time of all threads, which other load on the machine does not
+  /// For each repeat the processor time of all threads, which other load on the machine does not
   /// change, and the wall time. With one thread on an idle machine they are the same.
   std::vector<double> cpu_ms, wall_ms;
   double peak_extra_mib = 0;  // resident memory of the first call above what was resident before

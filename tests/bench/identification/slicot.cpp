@@ -34,7 +34,7 @@ namespace {
 // Rows that the QR algorithm factors at once: the block stays in the second-level cache, and the
 // memory does not follow the rows.
 constexpr int qr_rows = 1000;
-// The same for the factorisations of IB01CD.
+// Rows of the factorisations of IB01CD.
 constexpr int initial_state_rows = 2000;
 
 void check(const char* routine, int info) {
@@ -61,8 +61,8 @@ Slicot::Slicot(Samples samples, const SlicotOptions& options)
   const int leading = std::max(columns_, 3 * m_ * s_);
   R_.resize(size(leading, columns_));
   singular_values_.resize(size(p_, s_));
-  // IB01BD needs little beside IB01AD but for METH = N or C, where its bound is the product of the
-  // sizes below.
+  // IB01BD needs little compared with IB01AD but for METH = N or C, where its bound is the product
+  // of the sizes below.
   const int matrices = p_ * s_ * n_ + m_ * s_ * (n_ + p_) * (m_ * (n_ + p_) + 1) +
                        std::max((n_ + p_) * (n_ + p_), 4 * m_ * (n_ + p_) + 1) +
                        4 * p_ * s_ * (n_ + p_ * s_ + m_ * s_) + 20 * (n_ + p_) * (n_ + p_) + 100;

@@ -159,4 +159,6 @@ def compare(tools, folder, sizes):
             "million_extra_mib": round(measured["million"]["reident one-shot"].peak_extra_mib, 1),
             "against_slicot_with_b_d_of_the_compression": against(
                 "slicot, B D of the compression", "reident one-shot, B D of the compression"),
+            "cpu_ms": {size: {name: round(s.median, 3) for name, s in group.items()}
+                       for size, group in measured.items()},
             "free_run_error_percent": errors}

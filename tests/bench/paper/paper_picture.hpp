@@ -1,4 +1,4 @@
-// A line of the paper's table as a picture: what was measured and the runs beside it, and below
+// A line of the paper's table as a picture: what was measured together with the runs, and below
 // the error of each.
 #pragma once
 

@@ -30,7 +30,10 @@ def measure(programs, folder, scale):
           f"{statistics.median(times):.2f} s after the first start (median), {max(times):.2f} s at "
           f"most\nmemory of the service: {before:.1f} MiB before the first came, {memory[0]:.1f} after "
           f"the first cycle, {memory[-1]:.1f} after the last\n", flush=True)
-    return {"late_100_seconds": max(times), "memory_growth_mib": memory[-1] - before}
+    return {"simulators": scale.simulators, "champions": len(EQUIPMENT), "cycles": scale.cycles,
+            "late_100_seconds": max(times), "late_median_seconds": statistics.median(times),
+            "memory_mib": [before, memory[0], memory[-1]],
+            "memory_growth_mib": memory[-1] - before}
 
 
 def cycle(programs, service, number, count):

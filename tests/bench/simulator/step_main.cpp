@@ -1,5 +1,5 @@
-// The step of an order-6, 4-in, 1-out model through the C interface: its time beside the bare
-// products of the same matrices, in turns, and what it allocates and asks of the system, with
+// The step of an order-6, 4-in, 1-out model through the C interface: its time compared with the
+// bare products of the same matrices, in turns, and what it allocates and asks of the system, with
 // swaps in between. Prints one JSON object.
 //   reident_step_bench REPETITIONS STEPS SWAPS
 #include <algorithm>

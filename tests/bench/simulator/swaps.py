@@ -83,11 +83,15 @@ def report(size, delays, trips, back_to_back):
     print(f"from the service's write to the first step on the version in another process that "
           f"steps without a pause, {len(delays)} swaps: {median:.1f} us (median; "
           f"{min(delays):.1f} to {max(delays):.1f})", flush=True)
-    if None in trips:
+    figures = {"flips": len(delays), "publish_to_step_us": median, "roundtrip_us": trips,
+               "roundtrip_back_to_back_us": back_to_back, "publish_to_step_over_roundtrip": None,
+               "publish_to_step_over_back_to_back": None}
+    if None in [*trips, back_to_back]:
         print("no ddsperf (cyclonedds-tools) to compare it with\n", flush=True)
-        return {"publish_to_step_over_roundtrip": None}
+        return figures
     trip = statistics.mean(trips)
     print(f"round trip of ddsperf ping with {size} bytes at {SELDOM[0]}, before and after: "
           f"{trips[0]:.1f} and {trips[1]:.1f} us: {median / trip:.2f} times; back to back: "
           f"{back_to_back:.1f} us\n", flush=True)
-    return {"publish_to_step_over_roundtrip": median / trip}
+    return figures | {"publish_to_step_over_roundtrip": median / trip,
+                      "publish_to_step_over_back_to_back": median / back_to_back}

@@ -338,7 +338,7 @@ TEST(FlippedBits, AreNamedOrChangeNothingAndNeverEndTheProgram) {
   }
   for (const auto& [outcome, count] : outcomes) RecordProperty(outcome, count);
   EXPECT_GT(outcomes["corrupt"] + outcomes["corrupt, unsound"], 100);
-  // Of the few rows that index the chunks, numbers and times have no checksum: 'reident verify'
+  // In the few rows that index the chunks, numbers and times have no checksum: 'reident verify'
   // compares them with the chunks.
   EXPECT_LT(outcomes["different"], 15);
 }

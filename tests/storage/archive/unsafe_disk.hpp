@@ -1,7 +1,7 @@
 // What a disk may hold after the power failed: everything that was synced, and of the rest any
 // part.
 //
-// Of a file that was not synced, each write may be there, absent, or there in some of its sectors
+// In a file that was not synced, each write may be there, absent, or there in some of its sectors
 // of 512 bytes; each truncation may be there or not. Names are kept by a journal, as ext4 and xfs
 // keep them: of those made and removed since the last sync any first part is there. Syncing a file
 // whose name is new puts the names on the disk as well.

@@ -47,8 +47,8 @@ std::vector<TelemetryFrame> station_frames(std::uint64_t first, std::uint64_t co
   return frames;
 }
 
-/// What was recorded on board before the first frame of the station, played backwards; beside it
-/// what the station receives meanwhile.
+/// What was recorded on board before the first frame of the station, played backwards; in
+/// between what the station receives meanwhile.
 std::vector<TelemetryFrame> with_playback(std::vector<TelemetryFrame> frames, std::uint64_t cycle) {
   constexpr std::uint64_t last_sequence = 1'000'000;
   for (std::uint64_t i = 0; i < frames_of_batch; ++i) {

@@ -29,7 +29,7 @@ inline constexpr ArchiveOptions session_options{
     .chunk_samples = 16, .recent_samples = 200, .recent_batches = 3, .step_samples = 40};
 
 /// Carries out steps [first, end) on the archive at `path`, which is opened at the first and
-/// closed after the last. `done` is told the number of each step that returned.
+/// closed after the last. `done` gets the number of each step that returned.
 void carry_out_steps(const std::filesystem::path& path, Durability durability, std::uint64_t first,
                      std::uint64_t end, const std::function<void(std::uint64_t)>& begins,
                      const std::function<void(std::uint64_t)>& done);

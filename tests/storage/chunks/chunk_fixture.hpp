@@ -27,7 +27,7 @@ inline std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
   return bits;
 }
 
-/// Equal to the last bit, which == on doubles does not tell.
+/// Equal to the last bit, which == on doubles does not compare.
 inline bool same(const Columns& a, const Columns& b) {
   return a.time == b.time && bits_of(a.value) == bits_of(b.value) && a.quality == b.quality &&
          a.source == b.source;

@@ -1,4 +1,4 @@
-// Recent runs: every bit comes back, and damage is told.
+// Recent runs: every bit comes back, and damage is reported.
 #include "storage/chunks/recent_run.hpp"
 
 #include <limits>

@@ -256,7 +256,7 @@ TEST(Database, ReadersWorkWhetherOrNotAWriterRuns) {
   EXPECT_EQ(reader_finds(other), "1") << "after the writer was killed";
 }
 
-// The last program to close a database takes its log away, and file locks tell it whether it is the
+// The last program to close a database takes its log away, and file locks show whether it is the
 // last. They are the process's: whoever closes any descriptor of the file drops them.
 TEST(Database, KeepsItsLogWhenAnotherProgramOpensAndClosesTheFile) {
   const TemporaryFolder folder;

@@ -183,7 +183,7 @@ class Twins {
             "; the first difference: " + (row == rows.end() ? "nothing" : *row) + ", expected " +
             (other == expected.end() ? "nothing" : *other));
   }
-  /// The same question to both tables.
+  /// Asks both tables one question.
   void ask_both(const std::string& columns, const std::string& after, bool in_order = false) const {
     compare("SELECT " + columns + " FROM telemetry" + after,
             "SELECT " + columns + " FROM plain" + after, in_order);
@@ -240,7 +240,7 @@ class Twins {
 constexpr const char* all_columns =
     "spacecraft, parameter, source, time, value, quality, origin, utc, typeof(value)";
 
-// Of 0.0 and -0.0 neither is the greater one, and any of them may be given as such.
+// Neither 0.0 nor -0.0 is the greater one, and either may be given as such.
 const std::string size = "value + 0.0";
 
 RC_GTEST_PROP(SqlExtensionProperty, AnyConditionGivesTheRowsOfAPlainTable, ()) {

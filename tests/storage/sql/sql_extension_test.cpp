@@ -1,4 +1,4 @@
-// The loadable extension through SQLite's own door: rows, errors, and a writer beside the reader.
+// The loadable extension through SQLite's own door: rows, errors, and a writer next to the reader.
 // What conditions and orders give is compared with a plain table in
 // sql_extension_property_test.cpp.
 #include <cmath>

@@ -1,0 +1,145 @@
+#include "identification/numerics/decompositions.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <unsupported/Eigen/MatrixFunctions>
+
+namespace reident::identification {
+
+Matrix triangular_factor(const Matrix& A) {
+  const Eigen::HouseholderQR<Matrix> qr(A);
+  return qr.matrixQR().topRows(std::min(A.rows(), A.cols())).triangularView<Eigen::Upper>();
+}
+
+Matrix orthogonal_factor(const Matrix& A) {
+  return Eigen::HouseholderQR<Matrix>(A).householderQ();
+}
+
+Matrix orthonormal_basis(const Matrix& A) {
+  return Eigen::HouseholderQR<Matrix>(A).householderQ() * Matrix::Identity(A.rows(), A.cols());
+}
+
+Vector solve_qr(const Matrix& A, const Vector& b) {
+  return Eigen::HouseholderQR<Matrix>(A).solve(b);
+}
+
+Vector solve_pivoted_qr(const Matrix& A, const Vector& b) {
+  return Eigen::ColPivHouseholderQR<Matrix>(A).solve(b);
+}
+
+Matrix solve_pivoted_qr(const Matrix& A, const Matrix& B) {
+  return Eigen::ColPivHouseholderQR<Matrix>(A).solve(B);
+}
+
+Vector solve_least_norm(const Matrix& A, const Vector& b) {
+  return Eigen::CompleteOrthogonalDecomposition<Matrix>(A).solve(b);
+}
+
+Matrix solve_least_norm(const Matrix& A, const Matrix& B) {
+  return Eigen::CompleteOrthogonalDecomposition<Matrix>(A).solve(B);
+}
+
+Matrix pseudo_inverse(const Matrix& A) {
+  return solve_least_norm(A, Matrix(Matrix::Identity(A.rows(), A.rows())));
+}
+
+Matrix solve_lu(const Matrix& A, const Matrix& B) {
+  return Eigen::PartialPivLU<Matrix>(A).solve(B);
+}
+
+std::pair<Matrix, Matrix> solve_lu(const Matrix& A, const Matrix& B, const Matrix& C) {
+  const Eigen::PartialPivLU<Matrix> lu(A);
+  return {lu.solve(B), lu.solve(C)};
+}
+
+Vector solve_full_lu(const Matrix& A, const Vector& b) {
+  return Eigen::FullPivLU<Matrix>(A).solve(b);
+}
+
+Matrix solve_full_lu(const Matrix& A, const Matrix& B) {
+  return Eigen::FullPivLU<Matrix>(A).solve(B);
+}
+
+std::optional<Matrix> solve_full_lu(const Matrix& A, const Matrix& B, double least_rcond) {
+  const Eigen::FullPivLU<Matrix> lu(A);
+  if (!(lu.rcond() > least_rcond)) return std::nullopt;
+  return Matrix(lu.solve(B));
+}
+
+Matrix solve_ldlt(const Matrix& A, const Matrix& B) {
+  return Eigen::LDLT<Matrix>(A).solve(B);
+}
+
+Matrix solve_lower_on_right(const Matrix& M, const Matrix& L) {
+  return L.triangularView<Eigen::Lower>().solve<Eigen::OnTheRight>(M);
+}
+
+std::optional<Cholesky> Cholesky::of(const Matrix& A, double least_pivot, double least_rcond) {
+  const Eigen::LLT<Matrix> llt(A);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  if (A.rows() > 0 && !(llt.matrixLLT().diagonal().minCoeff() > least_pivot)) return std::nullopt;
+  if (least_rcond > 0 && !(llt.rcond() > least_rcond)) return std::nullopt;
+  Cholesky result;
+  result.L_ = llt.matrixLLT();
+  return result;
+}
+
+Vector Cholesky::solve(const Vector& b) const {
+  Vector x = L_.triangularView<Eigen::Lower>().solve(b);
+  L_.triangularView<Eigen::Lower>().adjoint().solveInPlace(x);
+  return x;
+}
+
+Matrix Cholesky::solve(const Matrix& B) const {
+  Matrix X = L_.triangularView<Eigen::Lower>().solve(B);
+  L_.triangularView<Eigen::Lower>().adjoint().solveInPlace(X);
+  return X;
+}
+
+SymmetricEigen symmetric_eigen(const Matrix& A) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(A);
+  return {eigen.eigenvalues(), eigen.eigenvectors(), eigen.info() == Eigen::Success};
+}
+
+LeftSingular left_singular(const Matrix& A, SingularVectors vectors) {
+  const Eigen::JacobiSVD<Matrix> svd(
+      A, vectors == SingularVectors::thin ? Eigen::ComputeThinU : Eigen::ComputeFullU);
+  return {svd.matrixU(), svd.singularValues()};
+}
+
+Vector singular_values(const Matrix& A) {
+  return Eigen::JacobiSVD<Matrix>(A).singularValues();
+}
+
+Eigen::Vector2d least_right_singular(const Eigen::Matrix2d& A) {
+  return Eigen::JacobiSVD<Eigen::Matrix2d>(A, Eigen::ComputeFullV).matrixV().col(1);
+}
+
+ComplexVector eigenvalues(const Matrix& A) {
+  return A.eigenvalues();
+}
+
+double spectral_radius(const Matrix& A) {
+  return A.rows() == 0 ? 0 : eigenvalues(A).cwiseAbs().maxCoeff();
+}
+
+std::optional<RealSchur> real_schur(const Matrix& A) {
+  const Eigen::RealSchur<Matrix> schur(A);
+  if (schur.info() != Eigen::Success) return std::nullopt;
+  return RealSchur{schur.matrixT(), schur.matrixU()};
+}
+
+Matrix matrix_exponential(const Matrix& A) {
+  return A.exp();
+}
+
+Matrix matrix_logarithm(const Matrix& A) {
+  return A.log();
+}
+
+}  // namespace reident::identification
