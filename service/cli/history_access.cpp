@@ -1,7 +1,5 @@
 #include "service/cli/history_access.hpp"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdio>
 
@@ -105,15 +103,6 @@ int with_sources(const HistoryAccessOptions& options,
   const auto service = service_of(options);
   if (const auto* refusal = std::get_if<Refusal>(&service)) return refuse(*refusal);
   return with_service(std::get<Service>(service), options, work);
-}
-
-std::string why_not_remote(const std::string& command) {
-  constexpr std::array of_the_file{"backfill", "backup", "import", "retain", "reproduce", "verify"};
-  if (std::find(of_the_file.begin(), of_the_file.end(), command) != of_the_file.end())
-    return fmt::format(
-        "{} works on the database file itself: run it where that is, without --remote", command);
-  return fmt::format("{} is none of the commands that read a database; leave out --remote",
-                     command);
 }
 
 }  // namespace reident::cli

@@ -45,7 +45,4 @@ struct Sources {
 int with_sources(const HistoryAccessOptions& options,
                  const std::function<int(const Sources&)>& work);
 
-/// For --remote with a command that cannot have it: why.
-std::string why_not_remote(const std::string& command);
-
 }  // namespace reident::cli

@@ -8,8 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/command.hpp"
-#include "service/cli/history_access.hpp"
+#include "service/cli/verb.hpp"
 
 namespace reident::cli {
 namespace {
@@ -24,9 +23,10 @@ int run(int argc, char** argv) {
           ->description(
               "with a command that reads: ask the running service over DDS instead of a file");
   const auto remote_in_vain = [&app, remote]() -> std::optional<std::string> {
-    for (const CLI::App* command : app.get_subcommands())
-      if (remote->count() > 0 && command->get_option_no_throw("--remote") == nullptr)
-        return why_not_remote(command->get_name());
+    for (const Verb& verb : verbs())
+      if (verb.works_on != WorksOn::history && remote->count() > 0 &&
+          app.got_subcommand(std::string(verb.name)))
+        return why_not_remote(verb);
     return std::nullopt;
   };
   app.parse_complete_callback([&remote_in_vain] {
@@ -34,27 +34,11 @@ int run(int argc, char** argv) {
   });
   app.footer("reident COMMAND --help shows the options of a command and an example.");
   int exit_code = exit_done;
-  add_identify(app, exit_code);
-  add_history(app, exit_code);
-  add_show(app, exit_code);
-  add_why(app, exit_code);
-  add_reproduce(app, exit_code);
-  add_backfill(app, exit_code);
-  add_import(app, exit_code);
-  add_export(app, exit_code);
-  add_export_model(app, exit_code);
-  add_completeness(app, exit_code);
-  add_at(app, exit_code);
-  add_operator_commands(app, exit_code);
-  add_compare(app, exit_code);
-  add_plot(app, exit_code);
-  add_check_config(app, exit_code);
-  add_backup(app, exit_code);
-  add_verify(app, exit_code);
-  add_retain(app, exit_code);
-  add_simulators(app, exit_code);
-  add_status(app, exit_code);
-  add_version(app, exit_code);
+  for (const Verb& verb : verbs()) {
+    CLI::App* command = app.add_subcommand(std::string(verb.name), std::string(verb.purpose));
+    command->group(std::string(group_title(verb.works_on)));
+    command->callback([work = verb.declare(*command), &exit_code] { exit_code = work(); });
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

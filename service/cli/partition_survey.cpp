@@ -10,9 +10,9 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto settled = 1s;
-constexpr auto settled_without = 2s;  // that nobody is there takes longer to tell
-constexpr auto look_around = 20ms;    // for writers: the wait set wakes for samples
-constexpr std::size_t take_at_most = 1024;
+constexpr auto settled_without = 2s;     // that nobody is there takes longer to tell
+constexpr auto writers_interval = 20ms;  // for writers: the wait set wakes for samples
+constexpr std::size_t messages_at_most = 1024;
 
 class Listener {
  public:
@@ -27,8 +27,8 @@ class Listener {
 
   /// Waits a moment and takes what came. Returns how much is known: writers, simulators, champions.
   std::array<std::size_t, 4> look(Clock::duration limit) {
-    ready_.wait(std::min<Clock::duration>(limit, look_around));
-    acknowledgements_.take(take_at_most, [this](ModelAcknowledgement&& said) {
+    ready_.wait(std::min<Clock::duration>(limit, writers_interval));
+    acknowledgements_.take(messages_at_most, [this](ModelAcknowledgement&& said) {
       simulators_[{said.simulator, said.spacecraft, said.equipment}] = std::move(said);
     });
     const auto note = [this](const ModelVersion& version) {
@@ -39,7 +39,7 @@ class Listener {
     // A version that simulators refuse, because its content is malformed, is published all the
     // same.
     versions_.take(
-        take_at_most, [&](ModelVersion&& version) { note(version); },
+        messages_at_most, [&](ModelVersion&& version) { note(version); },
         [&](const ModelVersion& version, const std::string&) { note(version); });
     services_ = std::max<std::size_t>(services_, versions_.matched_writers());
     return {acknowledgements_.matched_writers(), services_, simulators_.size(), champions_.size()};

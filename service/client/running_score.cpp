@@ -4,12 +4,6 @@
 #include <limits>
 
 namespace reident {
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 RunningScore::RunningScore(identification::Index outputs)
     : count_(Array::Zero(outputs)),
       mean_(Array::Zero(outputs)),
@@ -38,7 +32,7 @@ void RunningScore::add(const Eigen::Ref<const Vector>& y, const Eigen::Ref<const
 }
 
 double RunningScore::mrse(identification::Index output) const {
-  if (!(count_(output) > 0)) return nan;
+  if (!(count_(output) > 0)) return std::numeric_limits<double>::quiet_NaN();
   // 0/0 is a zero output that was met exactly.
   return errors_(output) > 0 ? 100 * std::sqrt(errors_(output) / squares_(output)) : 0;
 }
@@ -53,7 +47,8 @@ identification::Score RunningScore::score() const {
   identification::Score score{Vector(count_.size()), Vector(count_.size()), rows_};
   for (identification::Index q = 0; q < count_.size(); ++q) {
     score.mrse_percent(q) = mrse(q);
-    score.fit_percent(q) = spread_(q) > 0 ? 100 * (1 - std::sqrt(errors_(q) / spread_(q))) : nan;
+    score.fit_percent(q) = spread_(q) > 0 ? 100 * (1 - std::sqrt(errors_(q) / spread_(q)))
+                                          : std::numeric_limits<double>::quiet_NaN();
   }
   return score;
 }

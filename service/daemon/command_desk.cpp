@@ -10,8 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t take_at_most = 16;
-constexpr auto look_around = 500ms;  // for stop(); data and wake() end the wait earlier
+constexpr std::size_t requests_at_most = 16;
 
 }  // namespace
 
@@ -47,12 +46,13 @@ void CommandDesk::answer(const CommandRequest& request, const Execute& execute) 
 
 void CommandDesk::run(const Execute& execute) {
   while (!stopping_) {
-    ready_.wait(look_around);
+    ready_.wait(dds::stop_check_interval);
     std::vector<CommandRequest> requests;
     do {
       requests.clear();
       commands_.take(
-          take_at_most, [&](CommandRequest&& request) { requests.push_back(std::move(request)); },
+          requests_at_most,
+          [&](CommandRequest&& request) { requests.push_back(std::move(request)); },
           [](const CommandRequest& request, const std::string& reason) {
             log::warning("command", "refused a malformed command",
                          {{"requester", request.command.requester}, {"reason", reason}});

@@ -10,10 +10,9 @@ namespace reident {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
-constexpr std::size_t take_at_most = 16;
-constexpr auto look_around = 500ms;  // for stop(); data and wake() end the wait earlier
+constexpr std::size_t questions_at_most = 16;
 // A page that a console does not take is given up by the middleware sooner than that.
 constexpr auto patience = 2s;
 
@@ -39,19 +38,19 @@ void HistoryDesk::reply(const HistoryRequest& request,
     reply.page = std::get<HistoryPage>(std::move(answer));
   else
     reply.reason = std::move(std::get<history::BadQuestion>(answer).reason);
-  const auto deadline = Clock::now() + patience;
-  replies_.write(reply, [&] { return stopping_ || Clock::now() >= deadline; });
+  const auto deadline = SteadyClock::now() + patience;
+  replies_.write(reply, [&] { return stopping_ || SteadyClock::now() >= deadline; });
 }
 
 void HistoryDesk::run(const Answer& answer) {
   using Asked = std::pair<HistoryRequest, std::string>;  // what is malformed, or nothing
   while (!stopping_) {
-    ready_.wait(look_around);
+    ready_.wait(dds::stop_check_interval);
     std::vector<Asked> asked;
     do {
       asked.clear();
       requests_.take(
-          take_at_most,
+          questions_at_most,
           [&](HistoryRequest&& request) { asked.emplace_back(std::move(request), ""); },
           [&](const HistoryRequest& request, const std::string& reason) {
             asked.emplace_back(request, reason);

@@ -13,9 +13,8 @@ constexpr std::size_t simulators_remembered = 4096;
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t take_at_most = 256;  // messages of one topic in a turn
-constexpr std::size_t push_together = 64;  // the archive's thread is woken for so many at once
-constexpr auto look_around = 500ms;        // for stop(); data and wake() end the wait earlier
+constexpr std::size_t messages_at_most = 256;  // messages of one topic in a turn
+constexpr std::size_t push_together = 64;      // the archive's thread is woken for so many at once
 
 dds::ReaderOptions options_of(const Config& config) {
   dds::ReaderOptions options;
@@ -90,10 +89,10 @@ void Ingest::hear(const ModelAcknowledgement& acknowledgement) {
 
 std::size_t Ingest::take() {
   std::size_t taken = descriptors_.take(
-      take_at_most, [this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });
-  taken +=
-      frames_.take(take_at_most, [this](storage::TelemetryFrame&& one) { queue(std::move(one)); });
-  taken += acknowledgements_.take(take_at_most,
+      messages_at_most, [this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });
+  taken += frames_.take(messages_at_most,
+                        [this](storage::TelemetryFrame&& one) { queue(std::move(one)); });
+  taken += acknowledgements_.take(messages_at_most,
                                   [this](ModelAcknowledgement&& message) { hear(message); });
   push_taken();
   count_rejected();
@@ -113,7 +112,7 @@ void Ingest::watch_simulators() {
 
 void Ingest::run() {
   while (!stopping_) {
-    ready_.wait(look_around);
+    ready_.wait(dds::stop_check_interval);
     while (take() > 0 && !stopping_) {
     }
     watch_simulators();

@@ -130,6 +130,10 @@ class Reader {
   std::unique_ptr<Impl> impl_;
 };
 
+/// How long a thread waits at most before it looks whether it has to stop; data and wake() end
+/// the wait earlier.
+inline constexpr std::chrono::milliseconds stop_check_interval{500};
+
 /// Wakes one thread when any attached reader has something to take, or when woken.
 class WaitSet {
  public:

@@ -9,7 +9,7 @@ namespace {
 using storage::EquipmentName;
 using storage::Registry;
 
-std::optional<storage::TimeRange> range_of(const HistoryQuery& query) {
+std::optional<storage::TimeRange> wanted_range(const HistoryQuery& query) {
   return query.range.begin == query.range.end ? std::nullopt : std::optional(query.range);
 }
 
@@ -17,7 +17,7 @@ storage::RowFilter filter_of(const HistoryQuery& query, const PageMaker& maker) 
   storage::RowFilter filter;
   filter.spacecraft = query.spacecraft;
   filter.equipment = query.equipment;
-  filter.range = range_of(query);
+  filter.range = wanted_range(query);
   if (query.version != 0) filter.version = query.version;
   filter.newest_first = query.newest_first;
   if (maker.beyond()) filter.beyond = maker.beyond()->at(0).get<std::int64_t>();
@@ -56,7 +56,7 @@ HistoryPage equipment_page(storage::Database& database, const HistoryQuery& quer
 HistoryPage champions_page(storage::Database& database, const HistoryQuery& query) {
   // At the last instant of the range; an end at the greatest time is in it.
   std::optional<storage::Time> time;
-  if (const auto range = range_of(query))
+  if (const auto range = wanted_range(query))
     time = range->end == INT64_MAX ? range->end : range->end - 1;
   return page_by_equipment(database, query, [time](const Registry& registry, const auto& name) {
     return row_of(

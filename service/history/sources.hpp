@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "storage/types/records.hpp"
+#include "storage/types/sample_columns.hpp"
 #include "storage/types/sample_source.hpp"
 #include "storage/types/series.hpp"
 #include "storage/types/time_bins.hpp"

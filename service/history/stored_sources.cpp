@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "storage/care/completeness.hpp"
+
 namespace reident::history {
 
 using storage::EquipmentName;

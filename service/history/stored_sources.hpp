@@ -3,6 +3,7 @@
 
 #include "service/history/sources.hpp"
 #include "storage/archive/archive.hpp"
+#include "storage/archive/holdings.hpp"
 
 namespace reident::history {
 

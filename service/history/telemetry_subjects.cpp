@@ -7,6 +7,8 @@
 #include "service/history/page_maker.hpp"
 #include "service/history/subjects.hpp"
 #include "storage/archive/archive.hpp"
+#include "storage/archive/holdings.hpp"
+#include "storage/care/completeness.hpp"
 
 namespace reident::history {
 namespace {

@@ -15,8 +15,7 @@ namespace reident::satcs {
 namespace {
 
 void append_time(std::string& row, storage::Time time) {
-  constexpr storage::Time second_ns = 1'000'000'000;
-  const auto [seconds, nanoseconds] = std::div(time, second_ns);
+  const auto [seconds, nanoseconds] = std::div(time, storage::second_ns);
   if (time < 0 && seconds == 0) row += '-';
   fmt::format_to(std::back_inserter(row), "{}", seconds);
   if (nanoseconds != 0) {

@@ -10,10 +10,6 @@
 namespace reident::storage {
 namespace {
 
-sqlite::Connection& connection(Database& database) {
-  return *database.impl().connection;
-}
-
 std::optional<double> optional_real(const sqlite::Query& row, int column) {
   return row.is_null(column) ? std::nullopt : std::optional(row.real(column));
 }

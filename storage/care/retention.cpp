@@ -14,10 +14,6 @@ namespace {
 
 using Cause = ChunkWalk::Cause;
 
-sqlite::Connection& connection(Database& database) {
-  return *database.impl().connection;
-}
-
 std::uint64_t bytes_in_use(sqlite::Connection& connection) {
   const auto pragma = [&connection](const char* name) {
     sqlite::Query row = connection.query(std::string("PRAGMA ") + name);

@@ -46,7 +46,8 @@ struct VerifyProgress {
   std::string at;    // what is looked at
 };
 
-/// What was found and how much was looked at. No findings and `complete` mean a sound file.
+/// What was found and how much was looked at. Every check passed where it is complete and found
+/// nothing.
 struct VerifyReport {
   std::vector<Finding> findings;  // the first `most_findings` of them
   std::uint64_t found = 0;        // all

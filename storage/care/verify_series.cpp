@@ -12,7 +12,7 @@ namespace {
 
 constexpr TimeRange all_times{std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()};
 
-constexpr const char* restore =
+constexpr const char* restore_samples =
     "restore these samples from a backup, or import them again with 'reident import'; what is "
     "damaged is set aside when it is next written to";
 constexpr const char* counts_are_wrong =
@@ -75,7 +75,8 @@ bool SeriesVerifier::verify(std::int64_t series) {
     compare_gaps(series);
     compare_sources();
   } catch (const Error& error) {
-    add("series", first_, last_, std::string("it cannot be read: ") + error.what(), restore);
+    add("series", first_, last_, std::string("it cannot be read: ") + error.what(),
+        restore_samples);
   }
   return true;
 }
@@ -132,13 +133,13 @@ void SeriesVerifier::read_recent(std::int64_t series) {
       add("recent", first, last,
           std::to_string(row.integer(2)) + " recent samples cannot be read: their run " +
               error->message,
-          restore);
+          restore_samples);
       continue;
     }
     if (samples_.size() != row.integer<std::size_t>(2) || samples_.time.front() != first ||
         samples_.time.back() != last)
       add("recent", first, last, "a row of recent samples says other counts or times than it holds",
-          restore);
+          restore_samples);
     look_at_values(first, last);
     recent_.insert(recent_.end(), samples_.time.begin(), samples_.time.end());
   }
@@ -166,12 +167,13 @@ bool SeriesVerifier::read_chunks(std::int64_t series) {
     ++report_.chunks;
     references_.add(chunk.integer(7));
     if (seen_.previous && row.first <= seen_.previous->last)
-      add("chunk", row.first, row.last, "it begins before the chunk before it ends", restore);
+      add("chunk", row.first, row.last, "it begins before the chunk before it ends",
+          restore_samples);
     if (chunk.is_null(8)) {
       seen_.undecodable = true;
       add("chunk", row.first, row.last,
           "its data (row " + std::to_string(chunk.integer(7)) + " of chunk_data) are missing",
-          restore);
+          restore_samples);
     } else {
       look_at_chunk(row, chunk.bytes(8));
     }
@@ -199,18 +201,18 @@ void SeriesVerifier::look_at_chunk(const Row& row, std::span<const std::uint8_t>
   seen_.undecodable = true;
   add("chunk", row.first, row.last,
       std::to_string(row.samples) + " samples cannot be read: their chunk " + error->message,
-      error->kind == ChunkError::Kind::newer ? "use a newer reident" : restore);
+      error->kind == ChunkError::Kind::newer ? "use a newer reident" : restore_samples);
 }
 
 void SeriesVerifier::compare_with_summary(const Row& row, const ChunkSummary& summary) {
   if (row.samples != summary.count)
-    add("chunk", row.first, row.last, than("samples", row.samples, summary.count), restore);
+    add("chunk", row.first, row.last, than("samples", row.samples, summary.count), restore_samples);
   if (row.first != summary.first_time || row.last != summary.last_time)
-    add("chunk", row.first, row.last, "its row says other times than it holds", restore);
+    add("chunk", row.first, row.last, "its row says other times than it holds", restore_samples);
   if (!same(row.least, bound(summary, summary.least)) ||
       !same(row.greatest, bound(summary, summary.greatest)))
     add("chunk", row.first, row.last, "its row says other least and greatest values than it holds",
-        restore);
+        restore_samples);
 }
 
 void SeriesVerifier::look_at_samples(const Row& row) {
@@ -235,7 +237,8 @@ void SeriesVerifier::look_at_values(Time first, Time last) {
   report_.samples += samples_.size();
   for (std::size_t i = 0; i < samples_.size(); ++i)
     if (!std::isfinite(samples_.value[i]) && samples_.quality[i] != Quality::invalid) {
-      add("samples", first, last, "a value that is not finite is not of quality invalid", restore);
+      add("samples", first, last, "a value that is not finite is not of quality invalid",
+          restore_samples);
       break;
     }
   seen_.sources.insert(samples_.source.begin(), samples_.source.end());
@@ -302,7 +305,7 @@ void SeriesVerifier::compare_sources() {
     if (!row.bind(source, spacecraft_, origin_).step())
       add("samples", first_, last_,
           "samples name the source " + std::to_string(source) + ", which does not exist",
-          "restore the table source from a backup");
+          "restore_samples the table source from a backup");
 }
 
 }  // namespace reident::storage

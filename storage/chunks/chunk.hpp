@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "storage/chunks/integer_codec.hpp"
+#include "storage/chunks/value_codec.hpp"
 #include "storage/types/sample_columns.hpp"
 #include "storage/types/telemetry.hpp"
-#include "storage/chunks/value_codec.hpp"
 
 namespace reident::storage {
 
@@ -77,7 +77,7 @@ class ChunkEncoder {
 
   /// Returns the bytes of one chunk with these samples. All four columns have one length, from 1 to
   /// most_samples, times strictly ascend, and qualities are known ones. The same samples give the
-  /// same bytes.
+  /// same bytes, as long as zstd is the same.
   std::vector<std::uint8_t> encode(const ChunkSamples& samples);
   /// The sizes of the last chunk that was encoded.
   const Sizes& sizes() const { return sizes_; }

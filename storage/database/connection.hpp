@@ -23,4 +23,8 @@ struct Database::Impl {
   std::unique_ptr<Attachment> archive;  // archive_access.hpp
 };
 
+inline sqlite::Connection& connection(const Database& database) {
+  return *database.impl().connection;
+}
+
 }  // namespace reident::storage

@@ -38,12 +38,6 @@ void refuse_what_is_no_file(const fs::path& path, Database::Mode mode) {
                 what + " does not exist: check the path, or start the service that makes it");
 }
 
-bool has_content(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
-  return !error && size > 0;
-}
-
 // SQLite deletes the log of an empty file.
 void refuse_an_emptied_file(const fs::path& path, const std::optional<WriterLock>& lock) {
   if (has_content(path) || !fs::exists(path) || has_content(path.string() + "-journal")) return;

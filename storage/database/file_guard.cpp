@@ -64,12 +64,6 @@ bool log_has_the_rest(const LogContents& log, std::uint64_t pages_there, std::ui
   return true;
 }
 
-bool has_content(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
-  return !error && size > 0;
-}
-
 [[noreturn]] void displaced(const std::string& database, const std::string& file,
                             const char* what) {
   const std::string process = std::to_string(::getpid());
@@ -83,6 +77,12 @@ bool has_content(const fs::path& file) {
 }
 
 }  // namespace
+
+bool has_content(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  return !error && size > 0;
+}
 
 void refuse_damaged_files(const sqlite::Connection& connection, const fs::path& database,
                           bool owns_log, Durability durability) {

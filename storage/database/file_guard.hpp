@@ -20,6 +20,9 @@ namespace sqlite {
 class Connection;
 }
 
+/// Whether there is such a file and it is not empty.
+bool has_content(const std::filesystem::path& file);
+
 /// Throws Error corrupt for a file that has lost its end, and, where commits are flushed, for a log
 /// that is damaged. To be called before the connection has read: what SQLite does not find it takes
 /// for zeros, and the end of a damaged log it leaves out. Where `owns_log` is false another process

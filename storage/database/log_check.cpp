@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t header_bytes = 32;
 constexpr std::size_t frame_header_bytes = 24;
-constexpr std::uint32_t magic = 0x377f0682;  // with its lowest bit set: big-endian checksums
+constexpr std::uint32_t log_magic = 0x377f0682;  // with its lowest bit set: big-endian checksums
 
 using Bytes = std::span<const unsigned char>;
 
@@ -66,7 +66,7 @@ class FrameReader {
     sum.add(Bytes(header_).first(24), big_endian_);
     previous_ = stored_at(header_, 24);
     is_whole_ =
-        (found & ~1U) == magic && sum == previous_ && page_size_ >= 512 && page_size_ <= 65536;
+        (found & ~1U) == log_magic && sum == previous_ && page_size_ >= 512 && page_size_ <= 65536;
     if (is_whole_) bytes_.resize(frame_header_bytes + page_size_);
   }
 

@@ -9,10 +9,6 @@
 namespace reident::storage {
 namespace {
 
-sqlite::Connection& connection(Database& database) {
-  return *database.impl().connection;
-}
-
 std::int64_t add_attempt(sqlite::Connection& connection, const NewAttempt& attempt) {
   connection
       .query(

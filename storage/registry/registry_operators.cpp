@@ -6,10 +6,6 @@
 namespace reident::storage {
 namespace {
 
-sqlite::Connection& connection(Database& database) {
-  return *database.impl().connection;
-}
-
 void add_hold(sqlite::Connection& connection, const std::string& spacecraft,
               const std::string& equipment, std::string_view kind, const Hold& hold) {
   connection

@@ -27,7 +27,7 @@ constexpr std::array<Unit, 7> units = {{{"ns", 1},
   throw QueryError(SQLITE_ERROR, "telemetry_summary: " + what);
 }
 
-std::string text_of(sqlite3_value* value) {
+std::string copied_text(sqlite3_value* value) {
   const unsigned char* text = sqlite3_value_text(value);
   if (text == nullptr) throw std::bad_alloc();
   return {reinterpret_cast<const char*>(text),
@@ -67,7 +67,7 @@ void narrow_to_argument(TimeBounds& bounds, Comparison comparison, const char* n
   if (type == SQLITE_NULL) return;
   if (type == SQLITE_INTEGER || type == SQLITE_FLOAT)
     return narrow_time(bounds, comparison, argument);
-  std::string text = text_of(argument);
+  std::string text = copied_text(argument);
   if (text.size() > 10 && text[10] == ' ') text[10] = 'T';
   if (!is_utc(text))
     refuse(std::string(name) + " is '" + text +
@@ -83,7 +83,7 @@ std::optional<std::int64_t> step_argument(sqlite3_value* argument) {
     return static_cast<std::int64_t>(number);
   if (type == SQLITE_INTEGER && sqlite3_value_int64(argument) > 0)
     return sqlite3_value_int64(argument);
-  const std::string text = text_of(argument);
+  const std::string text = copied_text(argument);
   if (const auto step = type == SQLITE_TEXT ? duration(text) : std::nullopt) return step;
   refuse("step is '" + text +
          "': give nanoseconds above 0, or a whole number of ns, us, ms, s, min, h or d as '10min'");
@@ -91,7 +91,7 @@ std::optional<std::int64_t> step_argument(sqlite3_value* argument) {
 
 void narrow_to_quality(TextChoice& quality, sqlite3_value* argument) {
   if (sqlite3_value_type(argument) == SQLITE_NULL) return;
-  const std::string text = text_of(argument);
+  const std::string text = copied_text(argument);
   for (const Quality one : qualities)
     if (text == name(one)) return quality.intersect({text});
   refuse("quality is '" + text +

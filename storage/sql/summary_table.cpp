@@ -10,6 +10,7 @@
 #include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
+namespace summary_table {
 namespace {
 
 enum class Field : char {
@@ -207,8 +208,10 @@ int connect(sqlite3* connection, void*, int, const char* const*, sqlite3_vtab** 
 }
 
 }  // namespace
+}  // namespace summary_table
 
 int add_summary_table(sqlite3* connection) {
+  using namespace summary_table;
   static const sqlite3_module module =
       table_module<Cursor>({connect, best_index, filter, next, at_end, column});
   return sqlite3_create_module(connection, "telemetry_summary", &module, nullptr);

@@ -9,6 +9,7 @@
 #include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
+namespace telemetry_table {
 namespace {
 
 // What is used for each row comes first and is plain.
@@ -126,8 +127,10 @@ int column(sqlite3_vtab_cursor* base, sqlite3_context* context, int index) {
 }
 
 }  // namespace
+}  // namespace telemetry_table
 
 int add_telemetry_table(sqlite3* connection) {
+  using namespace telemetry_table;
   static const sqlite3_module module =
       table_module<Cursor>({connect, best_index, filter, next, at_end, column});
   return sqlite3_create_module(connection, "telemetry", &module, nullptr);

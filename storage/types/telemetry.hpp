@@ -12,6 +12,7 @@ namespace reident::storage {
 
 /// Nanoseconds since 1970-01-01T00:00:00 UTC.
 using Time = std::int64_t;
+inline constexpr Time second_ns = 1'000'000'000;
 
 /// Half-open stretch of time [begin, end). An end at the greatest Time includes it, so that every
 /// time lies in some range.

@@ -14,7 +14,8 @@ namespace reident::storage {
 /// range is in one bin.
 class TimeBins {
  public:
-  /// Cuts `range` into bins of `length` [ns]. range.begin < range.end, 0 < length.
+  /// Cuts `range` into bins of `length` [ns], one for each multiple of the length that it meets.
+  /// range.begin < range.end, 0 < length.
   TimeBins(TimeRange range, Time length);
   /// How many bins there are, at least 1.
   std::size_t count() const { return count_; }
@@ -28,7 +29,8 @@ class TimeBins {
  private:
   TimeRange range_;
   Time length_;
-  std::int64_t first_;  // begin of the first bin, as a multiple of the length
+  /// Begin of the first bin, as a multiple of the length.
+  std::int64_t first_;
   std::size_t count_;
 };
 

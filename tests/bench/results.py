@@ -27,6 +27,9 @@ date and machine.
   over the outputs.
 - Fit is 100 (1 − ‖y − ŷ‖ / ‖y − mean(y)‖).
 - Both are of free-run simulations, which get the inputs alone, unless a table says otherwise.
+- Integral feedback, or tracking, is a run that also corrects itself by the output of the samples
+  before.
+- The baseline is the simulator's own, hand-written model, as its telemetry shows it.
 - "The paper" is "Identification and control techniques applied to an operational satellite
   simulator", INPE's paper on CBERS-4.
 - FILE, FOLDER and DATA_FOLDER in a command stand for recorded telemetry, which is not part of the
@@ -45,8 +48,13 @@ def figure(value, digits=3):
     return "-" if value is None else format(Context(prec=digits).create_decimal(value), "f")
 
 
+def scaled(value, digits):
+    """Without so many digits before the point: 6 for millions."""
+    return figure(None if value is None else Decimal(value).scaleb(-digits))
+
+
 def millions(value):
-    return figure(Decimal(value).scaleb(-6))
+    return scaled(value, 6)
 
 
 def table(header, rows):
@@ -131,7 +139,7 @@ def archive(figures):
         return [figure(own), figure(plain), f"{plain / own:.0f}"]
     get, disk = figures.get, figures["machine"]
     rows = [
-        [f"bytes a sample, all of the file counted: BUPT-1, {millions(get('samples_bupt') or 0)} "
+        [f"bytes a sample, all of the file counted: BUPT-1, {millions(get('samples_bupt'))} "
          "million samples", *size("bupt")],
         ["the same: a day of the reference spacecraft", *size("reference")],
         ["appended and flushed, million samples a second, compaction included",
@@ -154,7 +162,7 @@ def archive(figures):
     rows += [
         ["samples lost, doubled or changed on that way", get("end_to_end_lost"), "", ""],
         ["messages of a 629-sample frame's size that ddsperf sends, thousand a second",
-         millions(Decimal(get("ddsperf_messages_per_s") or 0) * 1000), "", ""],
+         scaled(get("ddsperf_messages_per_s"), 3), "", ""],
         ["the longest append of 512 frames with its step of compaction",
          figure(get("longest_append_ms")) + " ms", "", ""],
         ["memory of the writer, at most", figure(get("writer_peak_mib")) + " MiB", "", ""]]
@@ -395,7 +403,7 @@ def build(figures):
              "tests_wall_s": "time of building the tests after that",
              "suite_wall_s": "time of running the tests"}
     return [table(["what", "figure"],
-                  [[label, figure(figures[key]) + (" s" if key.endswith("_s") else "")]
+                  [[label, figure(figures[key], 4) + (" s" if key.endswith("_s") else "")]
                    for key, label in names.items() if key in figures])]
 
 

@@ -43,6 +43,7 @@
 #                                         tests/trust/run.sh with --month or --dds for the last two
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+export PYTHONDONTWRITEBYTECODE=1
 usage() {
   sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//p}' "$0" >&2
   exit 2

@@ -6,10 +6,11 @@
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::at_verb {
 namespace {
 
 using history::HistorySource;
@@ -96,19 +97,21 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_at(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("at", "Tell which version was champion at a time, and who decided so");
-  command->add_option("time", arguments->time, "UTC, or seconds since 1970")->required();
-  command->add_option("equipment", arguments->subject,
-                      "EQUIPMENT or SPACECRAFT/EQUIPMENT (all of them)");
-  add_source_options(*command, arguments->source);
-  command->add_flag("--json", arguments->json, "one JSON object");
-  command->footer("Example:\n  reident at 2026-03-01T12:00:00Z CBERS-4/BDR --config reident.toml");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.add_option("time", arguments->time, "UTC, or seconds since 1970")->required();
+  command.add_option("equipment", arguments->subject,
+                     "EQUIPMENT or SPACECRAFT/EQUIPMENT (all of them)");
+  add_source_options(command, arguments->source);
+  command.add_flag("--json", arguments->json, "one JSON object");
+  command.footer("Example:\n  reident at 2026-03-01T12:00:00Z CBERS-4/BDR --config reident.toml");
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"at",
+                                   "Tell which version was champion at a time, and who decided so",
+                                   WorksOn::history, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::at_verb

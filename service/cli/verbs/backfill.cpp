@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/command.hpp"
 #include "service/cli/config_options.hpp"
 #include "service/cli/file_errors.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/time_options.hpp"
+#include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
@@ -17,7 +17,7 @@
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
 
-namespace reident::cli {
+namespace reident::cli::backfill_verb {
 namespace {
 
 struct Arguments {
@@ -90,23 +90,25 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_backfill(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "backfill", "Try the windows of telemetry that is archived already, on all cores");
-  command->add_option("subject", arguments->subject,
-                      "SPACECRAFT/EQUIPMENT; without it every equipment of the configuration");
-  command->add_option("--config", arguments->config,
-                      fmt::format("configuration of the service ({})", default_config_file));
-  add_time_options(*command, arguments->time, "windows that end");
-  command->add_flag("--json", arguments->json, "one JSON object with the counts");
-  command->footer(
+  command.add_option("subject", arguments->subject,
+                     "SPACECRAFT/EQUIPMENT; without it every equipment of the configuration");
+  command.add_option("--config", arguments->config,
+                     fmt::format("configuration of the service ({})", default_config_file));
+  add_time_options(command, arguments->time, "windows that end");
+  command.add_flag("--json", arguments->json, "one JSON object with the counts");
+  command.footer(
       "Works on the file, so reidentd must not run; it publishes the champions when it starts.\n"
       "Windows that were tried are left out: stopped with Ctrl-C, the same command goes on.\n"
       "Example:\n  reident backfill CBERS-4/BDR --from 2025-01-01 --to 2026-01-01");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"backfill", "Try the windows of telemetry that is archived already, on all cores",
+     WorksOn::database, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::backfill_verb

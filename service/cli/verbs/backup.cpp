@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/command.hpp"
 #include "service/cli/file_errors.hpp"
+#include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::backup_verb {
 namespace {
 
 struct Arguments {
@@ -58,20 +58,22 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_backup(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("backup", "Copy the database while the service writes it");
-  command->add_option("file", arguments->file, "database of the service")->required();
-  command->add_option("copy", arguments->copy, "file to make")->required();
-  command->add_flag("--replace", arguments->options.replace,
-                    "put the copy in the place of a file that exists");
-  command->add_flag("--json", arguments->json, "one JSON object with what was copied");
-  command->footer(
+  command.add_option("file", arguments->file, "database of the service")->required();
+  command.add_option("copy", arguments->copy, "file to make")->required();
+  command.add_flag("--replace", arguments->options.replace,
+                   "put the copy in the place of a file that exists");
+  command.add_flag("--json", arguments->json, "one JSON object with what was copied");
+  command.footer(
       "The copy holds one moment, and takes its name when it is whole and on the disk.\n"
       "Example:\n  reident backup reident.db /backup/reident-2026-03-01.db");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"backup", "Copy the database while the service writes it",
+                                   WorksOn::database, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::backup_verb

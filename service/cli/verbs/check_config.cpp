@@ -6,9 +6,10 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/verb.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::check_config_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -146,17 +147,19 @@ int run(const Arguments& arguments) {
   return exit_done;
 }
 
-}  // namespace
-
-void add_check_config(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "check-config", "Check a configuration: every mistake at once, each with its line");
-  command->add_option("file", arguments->file, "configuration of reidentd")->required();
-  command->add_flag("--json", arguments->json, "one JSON object");
-  command->footer(
+  command.add_option("file", arguments->file, "configuration of reidentd")->required();
+  command.add_flag("--json", arguments->json, "one JSON object");
+  command.footer(
       "Example:\n  reident check-config reident.toml\nExit status: 2 when there is a mistake.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"check-config", "Check a configuration: every mistake at once, each with its line",
+     WorksOn::files, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::check_config_verb

@@ -10,11 +10,12 @@
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/verb.hpp"
 #include "service/model/model_json.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::compare_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -247,21 +248,22 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_compare(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "compare",
-      "Compare two versions: poles, gains, step responses, errors on archived telemetry");
-  command->add_option("equipment", arguments->equipment, "SPACECRAFT/EQUIPMENT")->required();
-  command->add_option("first", arguments->first, "number of a version")->required();
-  command->add_option("second", arguments->second, "number of another")->required();
-  add_range_options(*command, arguments->range, "the validation part of the second version");
-  add_source_options(*command, arguments->source);
-  command->add_flag("--json", arguments->json, "one JSON object");
-  command->footer("Example:\n  reident compare CBERS-4/BDR 3 5 --config reident.toml");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.add_option("equipment", arguments->equipment, "SPACECRAFT/EQUIPMENT")->required();
+  command.add_option("first", arguments->first, "number of a version")->required();
+  command.add_option("second", arguments->second, "number of another")->required();
+  add_range_options(command, arguments->range, "the validation part of the second version");
+  add_source_options(command, arguments->source);
+  command.add_flag("--json", arguments->json, "one JSON object");
+  command.footer("Example:\n  reident compare CBERS-4/BDR 3 5 --config reident.toml");
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"compare", "Compare two versions: poles, gains, step responses, errors on archived telemetry",
+     WorksOn::history, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::compare_verb

@@ -14,12 +14,13 @@
 #include "service/cli/output/table.hpp"
 #include "service/cli/output/throughput.hpp"
 #include "service/cli/time_options.hpp"
+#include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/windows/window_data.hpp"
 
-namespace reident::cli {
+namespace reident::cli::completeness_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -319,33 +320,35 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_completeness(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "completeness", "Count for each day the samples that came and those that are missing");
-  add_archive_options(*command, arguments->source);
-  command->add_option("--spacecraft", arguments->spacecraft, "this one alone (all)");
+  add_archive_options(command, arguments->source);
+  command.add_option("--spacecraft", arguments->spacecraft, "this one alone (all)");
   CLI::Option* parameters =
-      command->add_option("--parameter", arguments->parameters, "these alone (all)");
+      command.add_option("--parameter", arguments->parameters, "these alone (all)");
   command
-      ->add_option("--equipment", arguments->equipment,
-                   "the parameters of EQUIPMENT or SPACECRAFT/EQUIPMENT alone")
+      .add_option("--equipment", arguments->equipment,
+                  "the parameters of EQUIPMENT or SPACECRAFT/EQUIPMENT alone")
       ->excludes(parameters);
-  add_time_options(*command, arguments->time, "samples");
-  command->add_option("--by", arguments->by, "day or hour, of UTC")
+  add_time_options(command, arguments->time, "samples");
+  command.add_option("--by", arguments->by, "day or hour, of UTC")
       ->check(CLI::IsMember({"day", "hour"}))
       ->capture_default_str();
-  command->add_flag("--parameters", arguments->detail, "a table of the parameters as well");
-  command->add_flag("--json", arguments->json, "one JSON object");
-  command->footer(
+  command.add_flag("--parameters", arguments->detail, "a table of the parameters as well");
+  command.add_flag("--json", arguments->json, "one JSON object");
+  command.footer(
       "Missing are the samples that would stand in the gaps of each parameter, by its own step.\n"
       "A gap counts on the day on which it begins, what is missing on the days where it would\n"
       "stand; frames are missing by their sequence numbers. Works while reidentd writes.\n"
       "Example:\n"
       "  reident completeness reident.db --spacecraft SAT-1 --from 2026-03-01 --by hour");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"completeness", "Count for each day the samples that came and those that are missing",
+     WorksOn::history, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::completeness_verb

@@ -9,12 +9,13 @@
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/throughput.hpp"
 #include "service/cli/time_options.hpp"
+#include "service/cli/verb.hpp"
 #include "service/support/output_file.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/transfer/telemetry_csv.hpp"
 
-namespace reident::cli {
+namespace reident::cli::export_verb {
 namespace {
 
 using transfer::ExportOptions;
@@ -73,30 +74,32 @@ int run(Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_export(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("export", "Write archived telemetry as CSV");
-  add_archive_options(*command, arguments->source);
-  command->add_option("--spacecraft", arguments->options.spacecraft, "this one alone (all)");
-  command->add_option("--parameter", arguments->options.parameters, "these alone (all)");
-  command->add_option("--origin", arguments->origin, "real or simulated alone (both)")
+  add_archive_options(command, arguments->source);
+  command.add_option("--spacecraft", arguments->options.spacecraft, "this one alone (all)");
+  command.add_option("--parameter", arguments->options.parameters, "these alone (all)");
+  command.add_option("--origin", arguments->origin, "real or simulated alone (both)")
       ->check(CLI::IsMember({"real", "simulated"}));
-  add_time_options(*command, arguments->time, "samples");
-  command->add_flag("--wide", arguments->options.wide,
-                    "a row for each time and a column for each parameter, without quality and "
-                    "source");
-  command->add_option("-o,--output", arguments->output, "file; - is standard output")
+  add_time_options(command, arguments->time, "samples");
+  command.add_flag("--wide", arguments->options.wide,
+                   "a row for each time and a column for each parameter, without quality and "
+                   "source");
+  command.add_option("-o,--output", arguments->output, "file; - is standard output")
       ->capture_default_str();
-  command->footer(
+  command.footer(
       "One sample a row: spacecraft,parameter,origin,source,time,value,quality, each series in\n"
       "order of time. Values have all their digits: reident import brings the same samples back.\n"
       "A file gets its name when it is complete. Works while reidentd writes.\n"
       "Example:\n"
       "  reident export reident.db --spacecraft SAT-1 --parameter V_BUS --from 2026-03-01 -o "
       "v.csv");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"export", "Write archived telemetry as CSV", WorksOn::history,
+                                   declare});
+
+}  // namespace
+
+}  // namespace reident::cli::export_verb

@@ -6,11 +6,12 @@
 
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/stored_version.hpp"
+#include "service/cli/verb.hpp"
 #include "service/model_export/model_export.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/output_file.hpp"
 
-namespace reident::cli {
+namespace reident::cli::export_model_verb {
 namespace {
 
 using model_export::ExportedVersion;
@@ -118,26 +119,27 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_export_model(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("export-model", "Write a version as FMU, MATLAB file or JSON");
   command
-      ->add_option("subject", arguments->subject,
-                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      .add_option("subject", arguments->subject,
+                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
       ->required();
-  command->add_option("--fmu", arguments->fmu, "FMU for co-simulation, FMI 2.0");
-  command->add_option("--mat", arguments->mat, "MATLAB file, version 5");
-  command->add_option("--json", arguments->json, "JSON; - is standard output");
-  command->add_flag("--force", arguments->force, "replace files that exist");
-  add_source_options(*command, arguments->source);
-  command->footer(
+  command.add_option("--fmu", arguments->fmu, "FMU for co-simulation, FMI 2.0");
+  command.add_option("--mat", arguments->mat, "MATLAB file, version 5");
+  command.add_option("--json", arguments->json, "JSON; - is standard output");
+  command.add_flag("--force", arguments->force, "replace files that exist");
+  add_source_options(command, arguments->source);
+  command.footer(
       "Of several no file takes its name before all of them are written.\n"
       "Example:\n"
       "  reident export-model CBERS-4/BDR@3 --fmu bdr.fmu --mat bdr.mat --config reident.toml");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"export-model", "Write a version as FMU, MATLAB file or JSON",
+                                   WorksOn::history, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::export_model_verb

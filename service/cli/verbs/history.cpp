@@ -7,10 +7,11 @@
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::history_verb {
 namespace {
 
 using history::HistorySource;
@@ -195,22 +196,24 @@ int run(Arguments arguments) {
   });
 }
 
-}  // namespace
-
-void add_history(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "history", "List every window that was tried, what came out and why, the latest last");
-  add_source_options(*command, arguments->source);
-  command->add_option("--spacecraft", arguments->spacecraft, "of this spacecraft alone");
-  command->add_option("--equipment", arguments->equipment,
-                      "of this EQUIPMENT or SPACECRAFT/EQUIPMENT alone");
-  command->add_option("--last", arguments->last, "the newest so many")->check(CLI::PositiveNumber);
-  command->add_flag("--versions-only", arguments->versions_only,
-                    "leave out windows that gave no model");
-  command->add_flag("--json", arguments->json, "one JSON object with all evidence");
-  command->footer("Example:\n  reident history --config reident.toml --equipment BDR --last 20");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  add_source_options(command, arguments->source);
+  command.add_option("--spacecraft", arguments->spacecraft, "of this spacecraft alone");
+  command.add_option("--equipment", arguments->equipment,
+                     "of this EQUIPMENT or SPACECRAFT/EQUIPMENT alone");
+  command.add_option("--last", arguments->last, "the newest so many")->check(CLI::PositiveNumber);
+  command.add_flag("--versions-only", arguments->versions_only,
+                   "leave out windows that gave no model");
+  command.add_flag("--json", arguments->json, "one JSON object with all evidence");
+  command.footer("Example:\n  reident history --config reident.toml --equipment BDR --last 20");
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"history", "List every window that was tried, what came out and why, the latest last",
+     WorksOn::history, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::history_verb

@@ -8,14 +8,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/command.hpp"
-#include "service/cli/verbs/identify_data.hpp"
-#include "service/cli/verbs/identify_options.hpp"
-#include "service/cli/verbs/identify_result.hpp"
+#include "service/cli/identify_data.hpp"
+#include "service/cli/identify_options.hpp"
+#include "service/cli/identify_result.hpp"
+#include "service/cli/verb.hpp"
 #include "service/support/parallel.hpp"
 #include "service/support/phase_timer.hpp"
 
-namespace reident::cli {
+namespace reident::cli::identify_verb {
 namespace {
 
 using identification::Identified;
@@ -150,40 +150,41 @@ int run(const Arguments& arguments) {
   return exit_done;
 }
 
-}  // namespace
-
-void add_identify(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "identify", "Identify a state-space model from a CSV file and score it on other rows");
-  command->add_option("file", arguments->data.file, "CSV file with a header row; opened read-only");
-  command->add_option("--input", arguments->data.inputs, "columns that drive the model")
-      ->required();
-  command->add_option("--output", arguments->data.outputs, "columns that the model computes")
+  command.add_option("file", arguments->data.file, "CSV file with a header row; opened read-only");
+  command.add_option("--input", arguments->data.inputs, "columns that drive the model")->required();
+  command.add_option("--output", arguments->data.outputs, "columns that the model computes")
       ->required();
   command
-      ->add_option("--derive", arguments->data.derive,
-                   "NAME=EXPRESSION: an input for --input that follows from columns, such as "
-                   "\"P=u*i\"; + - * / ^ ( ), comparisons, a ? b : c, abs, min, max")
+      .add_option("--derive", arguments->data.derive,
+                  "NAME=EXPRESSION: an input for --input that follows from columns, such as "
+                  "\"P=u*i\"; + - * / ^ ( ), comparisons, a ? b : c, abs, min, max")
       ->allow_extra_args(false);
-  command->add_option("--time", arguments->data.time,
-                      "column of times: seconds or ISO 8601; gaps split the rows");
-  command->add_option("--period", arguments->data.period_s,
-                      "seconds between rows, or of the grid with --time (the median step)");
-  command->add_option("--identify", arguments->data.identify,
-                      "rows A:B of the file, 0-based and half-open (the first two thirds)");
-  command->add_option("--validate", arguments->data.validate,
-                      "rows C:D to score on (those after the identification rows)");
-  add_model_options(*command, arguments->model);
-  command->add_option("--threads", arguments->threads,
-                      "threads of the search, which finds the same with any number of them (one "
-                      "for each core)");
-  command->add_flag("--json", arguments->json, "one JSON object with matrices, x0 and errors");
-  command->footer(
+  command.add_option("--time", arguments->data.time,
+                     "column of times: seconds or ISO 8601; gaps split the rows");
+  command.add_option("--period", arguments->data.period_s,
+                     "seconds between rows, or of the grid with --time (the median step)");
+  command.add_option("--identify", arguments->data.identify,
+                     "rows A:B of the file, 0-based and half-open (the first two thirds)");
+  command.add_option("--validate", arguments->data.validate,
+                     "rows C:D to score on (those after the identification rows)");
+  add_model_options(command, arguments->model);
+  command.add_option("--threads", arguments->threads,
+                     "threads of the search, which finds the same with any number of them (one "
+                     "for each core)");
+  command.add_flag("--json", arguments->json, "one JSON object with matrices, x0 and errors");
+  command.footer(
       "Example:\n"
       "  reident identify dryer.csv --input u1 --output y1 --identify 0:500 --validate 500:1000\n"
       "Exit status: 2 for an impossible request, 3 when the data give no model.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"identify", "Identify a state-space model from a CSV file and score it on other rows",
+     WorksOn::files, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::identify_verb

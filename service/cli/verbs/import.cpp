@@ -7,11 +7,12 @@
 
 #include "service/cli/output/throughput.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/support/utc_clock.hpp"
 
-namespace reident::cli {
+namespace reident::cli::import_verb {
 namespace {
 
 using transfer::ImportOptions;
@@ -128,24 +129,21 @@ void add_column_options(CLI::App& command, Arguments& arguments) {
                    "do not take units from names (bus_u_mv is bus_u in mV)");
 }
 
-}  // namespace
-
-void add_import(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("import", "Bring telemetry from a CSV file in");
-  command->add_option("file", arguments->import.file, "CSV file with a header row")->required();
-  add_database_options(*command, arguments->database);
-  command->add_option("--spacecraft", arguments->import.spacecraft,
-                      "spacecraft that the samples are of");
-  command->add_option("--source", arguments->import.source,
-                      "what they came from (the file's column source, or import:FILE)");
-  command->add_option("--origin", arguments->origin, "real or simulated (real)")
+  command.add_option("file", arguments->import.file, "CSV file with a header row")->required();
+  add_database_options(command, arguments->database);
+  command.add_option("--spacecraft", arguments->import.spacecraft,
+                     "spacecraft that the samples are of");
+  command.add_option("--source", arguments->import.source,
+                     "what they came from (the file's column source, or import:FILE)");
+  command.add_option("--origin", arguments->origin, "real or simulated (real)")
       ->check(CLI::IsMember({"real", "simulated"}));
-  add_column_options(*command, *arguments);
-  command->add_flag("--skip-bad-lines", arguments->import.skip_bad_lines,
-                    "leave out lines that cannot be read, and count them");
-  command->add_flag("--json", arguments->json, "one JSON object with the counts");
-  command->footer(
+  add_column_options(command, *arguments);
+  command.add_flag("--skip-bad-lines", arguments->import.skip_bad_lines,
+                   "leave out lines that cannot be read, and count them");
+  command.add_flag("--json", arguments->json, "one JSON object with the counts");
+  command.footer(
       "A file has a column with the time and one for each parameter, or one sample a row in the\n"
       "columns parameter, time and value, and spacecraft, origin, source, quality and unit where\n"
       "there are any. An empty cell is no sample.\n"
@@ -154,7 +152,12 @@ void add_import(CLI::App& app, int& exit_code) {
       "Example:\n"
       "  reident import telemetry.csv --db reident.db --spacecraft SAT-1\n"
       "Exit status: 2 for a file that cannot be imported, 1 when stopped or the disk is full.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"import", "Bring telemetry from a CSV file in",
+                                   WorksOn::database, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::import_verb

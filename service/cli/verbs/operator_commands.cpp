@@ -3,8 +3,9 @@
 #include "service/cli/config_options.hpp"
 #include "service/cli/operate.hpp"
 #include "service/cli/output/stored_version.hpp"
+#include "service/cli/verb.hpp"
 
-namespace reident::cli {
+namespace reident::cli::operator_verbs {
 namespace {
 
 constexpr double max_timeout_s = 1e6;
@@ -28,25 +29,23 @@ int run(const Arguments& arguments, const std::string& action) {
                  {action, subject.spacecraft, subject.equipment, arguments.version});
 }
 
-/// A subcommand with what all of them have; the caller adds its own.
-CLI::App* add(CLI::App& app, int& exit_code, const std::shared_ptr<Arguments>& arguments,
-              const std::string& name, const std::string& action, const std::string& description) {
-  CLI::App* command = app.add_subcommand(name, description);
+/// What all of them have; the caller adds its own. Returns what the verb does.
+std::function<int()> declare_common(CLI::App& command, const std::shared_ptr<Arguments>& arguments,
+                                    const std::string& action) {
   OperatorOptions& options = arguments->options;
   options.actor = login_name();
-  command->add_option("equipment", arguments->subject, "EQUIPMENT or SPACECRAFT/EQUIPMENT")
+  command.add_option("equipment", arguments->subject, "EQUIPMENT or SPACECRAFT/EQUIPMENT")
       ->required();
-  command->add_option("--actor", options.actor, "the operator's name, kept with the decision")
+  command.add_option("--actor", options.actor, "the operator's name, kept with the decision")
       ->capture_default_str();
-  add_database_options(*command, options.database);
-  command->add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 230));
-  command->add_option("--partition", options.partition, "DDS partition");
-  command->add_option("--timeout", options.timeout_s, "seconds to wait for the service")
+  add_database_options(command, options.database);
+  command.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 230));
+  command.add_option("--partition", options.partition, "DDS partition");
+  command.add_option("--timeout", options.timeout_s, "seconds to wait for the service")
       ->check(CLI::Range(0.0, max_timeout_s))
       ->capture_default_str();
-  command->add_flag("--json", options.json, "one JSON object with the reply");
-  command->callback([arguments, action, &exit_code] { exit_code = run(*arguments, action); });
-  return command;
+  command.add_flag("--json", options.json, "one JSON object with the reply");
+  return [arguments, action] { return run(*arguments, action); };
 }
 
 void footer(CLI::App& command, const std::string& example) {
@@ -56,47 +55,60 @@ void footer(CLI::App& command, const std::string& example) {
       command.get_name(), example));
 }
 
-void add_decision(CLI::App& app, int& exit_code, const std::string& name,
-                  const std::string& description, const std::string& reason) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = add(app, exit_code, arguments, name, name, description);
-  command->add_option("version", arguments->version, "number of the version")
-      ->required()
-      ->check(CLI::PositiveNumber);
-  command->add_option("--reason", arguments->options.reason, "why, kept with the decision")
-      ->required();
-  footer(*command, fmt::format("CBERS-4/BDR 7 --reason \"{}\"", reason));
+/// A decision about a version that is named.
+Verb decision(std::string_view name, std::string_view purpose, std::string example_reason) {
+  return {name, purpose, WorksOn::decision, [name, example_reason](CLI::App& command) {
+            const auto arguments = std::make_shared<Arguments>();
+            auto work = declare_common(command, arguments, std::string(name));
+            command.add_option("version", arguments->version, "number of the version")
+                ->required()
+                ->check(CLI::PositiveNumber);
+            command
+                .add_option("--reason", arguments->options.reason, "why, kept with the decision")
+                ->required();
+            footer(command, fmt::format("CBERS-4/BDR 7 --reason \"{}\"", example_reason));
+            return work;
+          }};
 }
 
-void add_order(CLI::App& app, int& exit_code, const std::string& name, const std::string& action,
-               const std::string& description, const std::string& reason) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = add(app, exit_code, arguments, name, action, description);
-  command->add_option("--reason", arguments->options.reason, "why, kept with it");
-  footer(*command, fmt::format("CBERS-4/BDR --reason \"{}\"", reason));
+/// An order about an equipment.
+Verb order(std::string_view name, std::string action, std::string_view purpose,
+           std::string example_reason) {
+  return {name, purpose, WorksOn::decision, [action, example_reason](CLI::App& command) {
+            const auto arguments = std::make_shared<Arguments>();
+            auto work = declare_common(command, arguments, action);
+            command.add_option("--reason", arguments->options.reason, "why, kept with it");
+            footer(command, fmt::format("CBERS-4/BDR --reason \"{}\"", example_reason));
+            return work;
+          }};
 }
+
+std::function<int()> declare_rollback(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  auto work = declare_common(command, arguments, "roll_back");
+  command.add_option("--to", arguments->version, "to this version (the previous champion)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--reason", arguments->options.reason, "why, kept with the decision");
+  footer(command, "CBERS-4/BDR --to 5 --reason \"odd in eclipse\"");
+  return work;
+}
+
+const VerbRegistration registered[] = {
+    VerbRegistration(
+        decision("approve", "Make a waiting version the champion", "seen on two passes")),
+    VerbRegistration(decision("reject", "Refuse a waiting version", "a heater test fell into it")),
+    VerbRegistration(decision(
+        "withdraw", "Take a version that is or was champion out of use for ever", "wrong sensor")),
+    VerbRegistration(order("hold", "hold", "Keep the champion, whatever new windows give",
+                           "training until Friday")),
+    VerbRegistration(order("release", "release", "End a hold", "training is over")),
+    VerbRegistration(
+        order("identify-now", "identify_now",
+              "Try the window that ends where telemetry ends, without waiting for the next slide",
+              "after the manoeuvre")),
+    VerbRegistration(
+        {"rollback", "Return to an earlier champion", WorksOn::decision, declare_rollback}),
+};
 
 }  // namespace
-
-void add_operator_commands(CLI::App& app, int& exit_code) {
-  add_decision(app, exit_code, "approve", "Make a waiting version the champion",
-               "seen on two passes");
-  add_decision(app, exit_code, "reject", "Refuse a waiting version", "a heater test fell into it");
-  add_decision(app, exit_code, "withdraw",
-               "Take a version that is or was champion out of use for ever", "wrong sensor");
-  add_order(app, exit_code, "hold", "hold", "Keep the champion, whatever new windows give",
-            "training until Friday");
-  add_order(app, exit_code, "release", "release", "End a hold", "training is over");
-  add_order(app, exit_code, "identify-now", "identify_now",
-            "Try the window that ends where telemetry ends, without waiting for the next slide",
-            "after the manoeuvre");
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* rollback =
-      add(app, exit_code, arguments, "rollback", "roll_back", "Return to an earlier champion");
-  rollback->add_option("--to", arguments->version, "to this version (the previous champion)")
-      ->check(CLI::PositiveNumber);
-  rollback->add_option("--reason", arguments->options.reason, "why, kept with the decision");
-  footer(*rollback, "CBERS-4/BDR --to 5 --reason \"odd in eclipse\"");
-}
-
-}  // namespace reident::cli
+}  // namespace reident::cli::operator_verbs

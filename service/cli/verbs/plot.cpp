@@ -11,10 +11,11 @@
 #include "service/cli/output/model_picture.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::plot_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -103,23 +104,24 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_plot(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "plot",
-      "Draw a version: measured and simulated outputs, error, singular values, poles (SVG)");
   command
-      ->add_option("subject", arguments->subject,
-                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      .add_option("subject", arguments->subject,
+                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
       ->required();
-  command->add_option("-o,--output", arguments->output,
-                      "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
-  add_range_options(*command, arguments->range, "the window of the version");
-  add_source_options(*command, arguments->source);
-  command->footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.add_option("-o,--output", arguments->output,
+                     "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
+  add_range_options(command, arguments->range, "the window of the version");
+  add_source_options(command, arguments->source);
+  command.footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"plot", "Draw a version: measured and simulated outputs, error, singular values, poles (SVG)",
+     WorksOn::history, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::plot_verb

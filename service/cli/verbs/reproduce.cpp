@@ -5,6 +5,7 @@
 
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/verb.hpp"
 #include "service/history/stored_sources.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/parallel.hpp"
@@ -13,7 +14,7 @@
 #include "storage/archive/archive.hpp"
 #include "storage/registry/registry.hpp"
 
-namespace reident::cli {
+namespace reident::cli::reproduce_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -99,22 +100,24 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_reproduce(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "reproduce", "Identify a version again from the archive and compare it bit for bit");
   command
-      ->add_option("subject", arguments->subject,
-                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      .add_option("subject", arguments->subject,
+                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
       ->required();
-  add_database_options(*command, arguments->database);
-  command->add_flag("--json", arguments->json, "one JSON object with the digests");
-  command->footer(
+  add_database_options(command, arguments->database);
+  command.add_flag("--json", arguments->json, "one JSON object with the digests");
+  command.footer(
       "Example:\n  reident reproduce CBERS-4/BDR@3 --config reident.toml\n"
       "Exit status: 0 for the same bits, 3 for another model or none.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"reproduce", "Identify a version again from the archive and compare it bit for bit",
+     WorksOn::database, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::reproduce_verb

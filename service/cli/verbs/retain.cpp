@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/command.hpp"
 #include "service/cli/config_options.hpp"
 #include "service/cli/file_errors.hpp"
+#include "service/cli/verb.hpp"
 #include "service/operations/protected_telemetry.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/size_text.hpp"
@@ -15,7 +15,7 @@
 #include "service/support/utc_clock.hpp"
 #include "storage/care/retention.hpp"
 
-namespace reident::cli {
+namespace reident::cli::retain_verb {
 namespace {
 
 using storage::ProtectedRange;
@@ -155,28 +155,30 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_retain(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("retain", "Remove the oldest telemetry of a database, by age or by size");
-  command->add_option("file", arguments->file, "database, which no service may hold")->required();
-  command->add_option("--keep", arguments->keep,
-                      "remove what is older than this before the spacecraft's newest telemetry, "
-                      "as 400d");
-  command->add_option("--max-size", arguments->max_size,
-                      "remove the oldest until no more than this is in use, as 200GB");
-  command->add_option("--config", arguments->config,
-                      "configuration that says keep and max_size where the options do not");
-  command->add_flag("--dry-run", arguments->dry_run,
-                    "say what would be removed, and remove nothing");
-  command->add_flag("--including-versions", arguments->including_versions,
-                    "also what published versions were identified from: they cannot be reproduced "
-                    "any more");
-  command->add_flag("--json", arguments->json, "one JSON object with what was removed");
-  command->footer("Example:\n  reident retain reident.db --keep 400d --dry-run");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.add_option("file", arguments->file, "database, which no service may hold")->required();
+  command.add_option("--keep", arguments->keep,
+                     "remove what is older than this before the spacecraft's newest telemetry, "
+                     "as 400d");
+  command.add_option("--max-size", arguments->max_size,
+                     "remove the oldest until no more than this is in use, as 200GB");
+  command.add_option("--config", arguments->config,
+                     "configuration that says keep and max_size where the options do not");
+  command.add_flag("--dry-run", arguments->dry_run,
+                   "say what would be removed, and remove nothing");
+  command.add_flag("--including-versions", arguments->including_versions,
+                   "also what published versions were identified from: they cannot be reproduced "
+                   "any more");
+  command.add_flag("--json", arguments->json, "one JSON object with what was removed");
+  command.footer("Example:\n  reident retain reident.db --keep 400d --dry-run");
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"retain",
+                                   "Remove the oldest telemetry of a database, by age or by size",
+                                   WorksOn::database, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::retain_verb

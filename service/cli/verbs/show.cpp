@@ -8,12 +8,13 @@
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/verb.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::show_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -179,20 +180,21 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_show(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("show", "Show all that is stored about one version of a model");
   command
-      ->add_option("subject", arguments->subject,
-                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      .add_option("subject", arguments->subject,
+                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
       ->required();
-  add_source_options(*command, arguments->source);
-  command->add_flag("--json", arguments->json, "one JSON object with the matrices");
-  command->footer("Example:\n  reident show CBERS-4/BDR@3 --config reident.toml");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  add_source_options(command, arguments->source);
+  command.add_flag("--json", arguments->json, "one JSON object with the matrices");
+  command.footer("Example:\n  reident show CBERS-4/BDR@3 --config reident.toml");
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"show", "Show all that is stored about one version of a model",
+                                   WorksOn::history, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::show_verb

@@ -5,14 +5,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/command.hpp"
 #include "service/cli/config_options.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/partition_survey.hpp"
+#include "service/cli/verb.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::simulators_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -196,33 +196,35 @@ int run(const Arguments& arguments) {
   return rows.empty() ? exit_done : exit_failed;
 }
 
-}  // namespace
-
-void add_simulators(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "simulators", "List over DDS who runs which version, and who runs something old");
-  command->add_option("equipment", arguments->subject,
-                      "EQUIPMENT or SPACECRAFT/EQUIPMENT (every one)");
-  command->add_option(
+  command.add_option("equipment", arguments->subject,
+                     "EQUIPMENT or SPACECRAFT/EQUIPMENT (every one)");
+  command.add_option(
       "--config", arguments->config,
       fmt::format("configuration with domain and partition ({})", default_config_file));
-  command->add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, 230));
-  command->add_option("--partition", arguments->partition, "DDS partition");
-  command->add_flag("--old", arguments->old,
-                    "those alone that run another version than the champion");
+  command.add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, 230));
+  command.add_option("--partition", arguments->partition, "DDS partition");
+  command.add_flag("--old", arguments->old,
+                   "those alone that run another version than the champion");
   command
-      ->add_option(
+      .add_option(
           "--wait", arguments->wait_s,
           "seconds to listen at most; it ends once nobody new was heard for a second or two")
       ->check(CLI::Range(0.0, max_wait_s))
       ->capture_default_str();
-  command->add_flag("--json", arguments->json, "one JSON object");
-  command->footer(
+  command.add_flag("--json", arguments->json, "one JSON object");
+  command.footer(
       "Example:\n  reident simulators CBERS-4/BDR --old\n"
       "Exit status: 0 when the list was printed, also an empty one; with --old 1 when somebody is\n"
       "on it, and 4 when there are simulators and no service says which version is champion.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"simulators", "List over DDS who runs which version, and who runs something old",
+     WorksOn::service, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::simulators_verb

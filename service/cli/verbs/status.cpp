@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/command.hpp"
 #include "service/cli/config_options.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/verb.hpp"
 #include "service/dds/dds.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::status_verb {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -139,27 +139,29 @@ int run(const Arguments& arguments) {
   return exit_done;
 }
 
-}  // namespace
-
-void add_status(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("status", "Ask over DDS what the running service does");
-  command->add_option(
+  command.add_option(
       "--config", arguments->config,
       fmt::format("configuration with domain and partition ({})", default_config_file));
-  command->add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, 230));
-  command->add_option("--partition", arguments->partition, "DDS partition");
-  command->add_option("--service", arguments->service, "this service alone, by its name");
-  command->add_option("--wait", arguments->wait, "idle: until all that came in is dealt with")
+  command.add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, 230));
+  command.add_option("--partition", arguments->partition, "DDS partition");
+  command.add_option("--service", arguments->service, "this service alone, by its name");
+  command.add_option("--wait", arguments->wait, "idle: until all that came in is dealt with")
       ->check(CLI::IsMember({"idle"}));
-  command->add_option("--timeout", arguments->timeout_s, "seconds to listen")
+  command.add_option("--timeout", arguments->timeout_s, "seconds to listen")
       ->check(CLI::Range(0.0, max_timeout_s))
       ->capture_default_str();
-  command->add_flag("--json", arguments->json, "one JSON object");
-  command->footer(
+  command.add_flag("--json", arguments->json, "one JSON object");
+  command.footer(
       "Example:\n  reident status --config reident.toml --wait idle --timeout 60\n"
       "Exit status: 4 when nothing was heard in time, or the service was not idle.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"status", "Ask over DDS what the running service does",
+                                   WorksOn::service, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::status_verb

@@ -5,14 +5,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "service/cli/command.hpp"
 #include "service/cli/file_errors.hpp"
+#include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/windows/provenance.hpp"
 
-namespace reident::cli {
+namespace reident::cli::verify_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -104,21 +104,23 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_verify(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
-      "verify", "Check every checksum and every invariant of a database, also while it is written");
-  command->add_option("file", arguments->file, "database of the service, or a backup")->required();
-  command->add_flag("--quick", arguments->quick,
-                    "look at the summaries of chunks, and do not decode them");
-  command->add_flag("--json", arguments->json, "one JSON object with the findings");
-  command->footer(
+  command.add_option("file", arguments->file, "database of the service, or a backup")->required();
+  command.add_flag("--quick", arguments->quick,
+                   "look at the summaries of chunks, and do not decode them");
+  command.add_flag("--json", arguments->json, "one JSON object with the findings");
+  command.footer(
       "Example:\n  reident verify reident.db\n"
       "Exit status: 0 for a sound file, 1 where something was found or it was stopped, 2 where "
       "there is no such database.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered(
+    {"verify", "Check every checksum and every invariant of a database, also while it is written",
+     WorksOn::database, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::verify_verb

@@ -2,17 +2,22 @@
 
 #include <fmt/format.h>
 
-#include "service/cli/command.hpp"
+#include "service/cli/verb.hpp"
 
-namespace reident::cli {
+namespace reident::cli::version_verb {
+namespace {
 
-void add_version(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("version", "Print the version of the program");
-  command->footer("Example:\n  reident version");
-  command->callback([&exit_code] {
+std::function<int()> declare(CLI::App& command) {
+  command.footer("Example:\n  reident version");
+  return []() -> int {
     fmt::print("reident {}\n", program_version());
-    exit_code = exit_done;
-  });
+    return exit_done;
+  };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"version", "Print the version of the program", WorksOn::files,
+                                   declare});
+
+}  // namespace
+
+}  // namespace reident::cli::version_verb

@@ -10,10 +10,11 @@
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::why_verb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -217,20 +218,22 @@ int run(const Arguments& arguments) {
   });
 }
 
-}  // namespace
-
-void add_why(CLI::App& app, int& exit_code) {
+std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("why", "Say in words why a version was approved, refused or waits");
   command
-      ->add_option("subject", arguments->subject,
-                   "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      .add_option("subject", arguments->subject,
+                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
       ->required();
-  add_source_options(*command, arguments->source);
-  command->add_flag("--json", arguments->json, "one JSON object with the evidence itself");
-  command->footer("Example:\n  reident why CBERS-4/BDR@3 --config reident.toml");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  add_source_options(command, arguments->source);
+  command.add_flag("--json", arguments->json, "one JSON object with the evidence itself");
+  command.footer("Example:\n  reident why CBERS-4/BDR@3 --config reident.toml");
+  return [arguments] { return run(*arguments); };
 }
 
-}  // namespace reident::cli
+const VerbRegistration registered({"why",
+                                   "Say in words why a version was approved, refused or waits",
+                                   WorksOn::history, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::why_verb

@@ -9,8 +9,6 @@ namespace {
 
 using storage::Time;
 
-constexpr Time second_ns = 1'000'000'000;
-
 double magnitude_of(const Fault& fault) {
   return fault.magnitude.value_or(facts(fault.kind).usual);
 }
@@ -49,11 +47,11 @@ class PassesLost : public FaultStage {
   void find_stretch(Time time) {
     in_contact_ = orbit_.in_contact(time);
     stretch_ = {time, time};
-    while (stretch_.begin - second_ns >= fault_.when.begin &&
-           orbit_.in_contact(stretch_.begin - second_ns) == in_contact_)
-      stretch_.begin -= second_ns;
+    while (stretch_.begin - storage::second_ns >= fault_.when.begin &&
+           orbit_.in_contact(stretch_.begin - storage::second_ns) == in_contact_)
+      stretch_.begin -= storage::second_ns;
     while (stretch_.end < fault_.when.end && orbit_.in_contact(stretch_.end) == in_contact_)
-      stretch_.end = std::min(stretch_.end + second_ns, fault_.when.end);
+      stretch_.end = std::min(stretch_.end + storage::second_ns, fault_.when.end);
   }
 
   Fault fault_;
@@ -102,7 +100,7 @@ class TwoStations : public FaultStage {
   }
 
  private:
-  static constexpr Time turn = 600 * second_ns;
+  static constexpr Time turn = 600 * storage::second_ns;
   Time begin_;
   Time ahead_;
   bool stamps_;
@@ -148,7 +146,7 @@ class SimulatedAsReal : public FaultStage {
   void pass(Flight&& flight, std::vector<Flight>& on) override {
     // A fault before this one may have sent the same frame twice.
     if (sent_ == 0 || flight.generated > simulator_.time()) {
-      while (simulator_.time() + second_ns <= flight.generated) simulator_.advance();
+      while (simulator_.time() + storage::second_ns <= flight.generated) simulator_.advance();
       on.push_back(simulated(flight));
     }
     on.push_back(std::move(flight));

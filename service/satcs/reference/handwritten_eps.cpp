@@ -11,8 +11,6 @@
 namespace reident::satcs {
 namespace {
 
-constexpr storage::Time second_ns = 1'000'000'000;
-
 struct Point {
   std::string_view name;
   double (*read)(const HandwrittenEps::Flows& flows);
@@ -108,7 +106,7 @@ void HandwrittenEps::read(std::vector<storage::Sample>& samples) const {
   samples.clear();
   const auto& rates = points_of_spacecraft();
   for (std::size_t k = 0; k < points.size(); ++k) {
-    if (!rates[k].due(time_ / second_ns)) continue;
+    if (!rates[k].due(time_ / storage::second_ns)) continue;
     samples.push_back(
         {parameter_id(points[k].name), storage::Quality::good, points[k].read(flows_)});
   }
@@ -117,7 +115,7 @@ void HandwrittenEps::read(std::vector<storage::Sample>& samples) const {
 void HandwrittenEps::advance() {
   constexpr double second_h = 1.0 / 3600;
   charge_ = std::clamp(charge_ + flows_.battery_A * second_h / constants_.capacity_Ah, 0.0, 1.0);
-  time_ += second_ns;
+  time_ += storage::second_ns;
   solve();
 }
 

@@ -7,7 +7,7 @@
 namespace reident::satcs::reference {
 
 namespace {
-constexpr double rated_C = 28;
+constexpr double array_rated_C = 28;
 }
 
 SolarArray::SolarArray(const ArrayConstants& constants) : constants_(constants) {}
@@ -15,7 +15,7 @@ SolarArray::SolarArray(const ArrayConstants& constants) : constants_(constants) 
 double SolarArray::string_current(int cells, double node_V) const {
   if (flux_ <= 0) return 0;
   const ArrayConstants& c = constants_;
-  const double warmer_K = temperature_C_ - rated_C;
+  const double warmer_K = temperature_C_ - array_rated_C;
   const double short_A = c.string_current_A * flux_ * (1 + c.current_per_K * warmer_K);
   const double cell_V = (node_V + c.blocking_diode_V) / cells;
   const double open_V = c.cell_open_V + c.cell_open_V_per_K * warmer_K;

@@ -6,7 +6,7 @@
 namespace reident::satcs::reference {
 
 namespace {
-constexpr double rated_C = 10;
+constexpr double battery_rated_C = 10;
 }
 
 Battery::Battery(const BatteryConstants& constants, double step_s)
@@ -27,7 +27,7 @@ double Battery::open_circuit_V() const {
   const auto left = std::min(static_cast<std::size_t>(at), table.size() - 2);
   const double share = at - static_cast<double>(left);
   const double cell_V = table[left] + share * (table[left + 1] - table[left]) +
-                        constants_.cell_open_V_per_K * (state_.temperature_C - rated_C);
+                        constants_.cell_open_V_per_K * (state_.temperature_C - battery_rated_C);
   return constants_.cells * cell_V;
 }
 

@@ -5,7 +5,7 @@
 namespace reident::satcs::reference {
 
 namespace {
-constexpr double rated_C = 25;
+constexpr double bdr_rated_C = 25;
 }
 
 DischargeRegulator::DischargeRegulator(const DischargeRegulatorConstants& constants, double step_s)
@@ -24,7 +24,7 @@ DischargeRegulator::Modules DischargeRegulator::share(double output_A,
 
 double DischargeRegulator::loss_W(double output_A, double battery_V) const {
   const DischargeRegulatorConstants& c = constants_;
-  const double ohm = c.series_ohm * (1 + c.series_per_K * (temperature_C_ - rated_C));
+  const double ohm = c.series_ohm * (1 + c.series_per_K * (temperature_C_ - bdr_rated_C));
   return c.idle_W + (c.drop_V + ohm * output_A + c.switching * battery_V) * output_A;
 }
 

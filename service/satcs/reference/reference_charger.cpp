@@ -5,7 +5,7 @@
 namespace reident::satcs::reference {
 
 namespace {
-constexpr double rated_C = 10;
+constexpr double charger_rated_C = 10;
 }
 
 double Charger::section_V(double battery_V, double charge_A) const {
@@ -15,7 +15,7 @@ double Charger::section_V(double battery_V, double charge_A) const {
 
 double Charger::limit_V(double battery_C) const {
   const ChargerConstants& c = constants_;
-  return c.cells * (c.cell_limit_V + c.cell_limit_V_per_K * (battery_C - rated_C));
+  return c.cells * (c.cell_limit_V + c.cell_limit_V_per_K * (battery_C - charger_rated_C));
 }
 
 void Charger::step(double battery_V, double battery_C) {

@@ -3,7 +3,7 @@
 namespace reident::satcs::reference {
 
 namespace {
-constexpr double rated_C = 25;
+constexpr double converter_rated_C = 25;
 }
 
 Converters::Converters(const std::array<ConverterConstants, converter_count>& constants,
@@ -16,7 +16,8 @@ double Converters::output_V(std::size_t line, double output_A) const {
 
 double Converters::input_W(std::size_t line, double output_A) const {
   const ConverterConstants& c = constants_[line];
-  const double ohm = c.series_ohm * (1 + plate_.series_per_K * (temperature_C_ - rated_C));
+  const double ohm =
+      c.series_ohm * (1 + plate_.series_per_K * (temperature_C_ - converter_rated_C));
   return c.idle_W + (output_V(line, output_A) + c.drop_V + ohm * output_A) * output_A;
 }
 

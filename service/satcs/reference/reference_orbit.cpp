@@ -10,9 +10,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double degree = pi / 180;
-constexpr storage::Time second_ns = 1'000'000'000;
 /// 2015-01-01T00:00:00Z: the spacecraft passes its ascending node.
-constexpr storage::Time reference_instant = 1'420'070'400 * second_ns;
+constexpr storage::Time reference_instant = 1'420'070'400 * storage::second_ns;
 constexpr double day_s = 86'400;
 constexpr double year_s = 365.2422 * day_s;
 /// From the reference instant to the following March equinox (2015-03-20T22:45Z).

@@ -8,10 +8,8 @@ namespace reident::satcs::reference {
 
 namespace {
 
-constexpr storage::Time second_ns = 1'000'000'000;
-
 storage::Time warm_up_ns(const Constants& constants) {
-  return static_cast<storage::Time>(std::ceil(constants.orbit.period_s)) * second_ns;
+  return static_cast<storage::Time>(std::ceil(constants.orbit.period_s)) * storage::second_ns;
 }
 
 double sum(const auto& values) {
@@ -48,7 +46,7 @@ Plant::Plant(const Constants& fresh, std::vector<LifeEvent> life, storage::Time 
 }
 
 storage::Time Plant::time() const {
-  return second_ + step_in_second_ * second_ns / steps_per_second_;
+  return second_ + step_in_second_ * storage::second_ns / steps_per_second_;
 }
 
 void Plant::step() {
@@ -65,14 +63,14 @@ void Plant::step() {
   array_.step(step_s_, array_W());
   if (++step_in_second_ == steps_per_second_) {
     step_in_second_ = 0;
-    second_ += second_ns;
+    second_ += storage::second_ns;
   }
 }
 
 void Plant::begin_second() {
-  if (ages_between(life_, second_ - second_ns, second_)) age();
+  if (ages_between(life_, second_ - storage::second_ns, second_)) age();
   illumination_begin_ = illumination_end_;
-  illumination_end_ = orbit_.illumination(second_ + second_ns);
+  illumination_end_ = orbit_.illumination(second_ + storage::second_ns);
   incidence_ = array_.incidence(orbit_.beta(second_));
   relative_flux_ = orbit_.relative_flux(second_);
   std::array<double, battery_count> battery_C{};

@@ -8,8 +8,8 @@
 namespace reident::satcs::reference {
 
 storage::Time whole_seconds(storage::Time time) {
-  using namespace std::chrono;
-  return nanoseconds(floor<seconds>(nanoseconds(time))).count();
+  using std::chrono::nanoseconds;
+  return nanoseconds(std::chrono::floor<std::chrono::seconds>(nanoseconds(time))).count();
 }
 
 Spacecraft::Spacecraft(const Constants& fresh, std::vector<LifeEvent> life, storage::Time start,
@@ -23,8 +23,7 @@ Spacecraft::Spacecraft(const Constants& fresh, std::vector<LifeEvent> life, stor
 }
 
 void Spacecraft::read(std::vector<storage::Sample>& samples) {
-  constexpr storage::Time second_ns = 1'000'000'000;
-  const std::int64_t second = time() / second_ns;
+  const std::int64_t second = time() / storage::second_ns;
   samples.clear();
   for (Channel& channel : channels_) {
     if (!channel.point->due(second)) continue;

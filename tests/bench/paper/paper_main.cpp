@@ -17,7 +17,7 @@
 #include "identification/correction/pole_placement_search.hpp"
 #include "identification/search/identify.hpp"
 #include "identification/simulation/simulate.hpp"
-#include "service/cli/verbs/identify_data.hpp"
+#include "service/cli/identify_data.hpp"
 #include "tests/bench/paper/paper_picture.hpp"
 
 namespace {

@@ -15,7 +15,7 @@
 
 #include "identification/samples/tick_ranges.hpp"
 #include "identification/screening/sensor_screening.hpp"
-#include "service/cli/verbs/identify_data.hpp"
+#include "service/cli/identify_data.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "service/cli/verbs/identify_options.hpp"
+#include "service/cli/identify_options.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "service/cli/verbs/identify_data.hpp"
+#include "service/cli/identify_data.hpp"
 
 #include <algorithm>
 #include <cmath>

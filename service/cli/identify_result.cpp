@@ -1,4 +1,4 @@
-#include "service/cli/verbs/identify_result.hpp"
+#include "service/cli/identify_result.hpp"
 
 #include <fmt/format.h>
 
