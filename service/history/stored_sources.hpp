@@ -4,6 +4,7 @@
 #include "service/history/sources.hpp"
 #include "storage/archive/archive.hpp"
 #include "storage/archive/holdings.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::history {
 

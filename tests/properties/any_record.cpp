@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace reident::testing {
+namespace reident::test {
 
 Setting any_setting(const SettingLimits& limits) {
   Noise noise(*rc::gen::arbitrary<std::uint32_t>());
@@ -41,4 +41,4 @@ Record with_segments_reversed(const Record& record) {
   return result;
 }
 
-}  // namespace reident::testing
+}  // namespace reident::test

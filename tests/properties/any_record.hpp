@@ -8,7 +8,7 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::testing {
+namespace reident::test {
 
 /// Any of [begin, end), as often in the first cases as in the last: rc::gen::inRange starts with
 /// the smallest ones and grows.
@@ -54,4 +54,4 @@ Record rows_where(const Record& record, const Wanted& wanted) {
   return {record.period_s, record.u(rows, Eigen::all), record.y(rows, Eigen::all), segments};
 }
 
-}  // namespace reident::testing
+}  // namespace reident::test

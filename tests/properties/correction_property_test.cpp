@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -11,10 +12,10 @@
 #include "identification/correction/pole_placement.hpp"
 #include "tests/properties/any_record.hpp"
 
-namespace reident::identification {
+namespace reident::identification::correction_property_test {
 namespace {
 
-using reident::testing::any_of;
+using reident::test::any_of;
 
 /// Few different whole numbers: equal poles, chains, empty columns and modes out of reach abound.
 Matrix any_whole(Index rows, Index columns, int largest) {
@@ -79,7 +80,7 @@ RC_GTEST_PROP(AnyPlacement, MovesEveryModeThatIsReachedAndReportsTheOthers, ()) 
 }
 
 RC_GTEST_PROP(AnyTelemetry, LeavesATrackerBounded, ()) {
-  auto [model, noise] = testing::any_setting({.order = 6, .inputs = 3, .outputs = 2});
+  auto [model, noise] = test::any_setting({.order = 6, .inputs = 3, .outputs = 2});
   RC_PRE(model.inputs() >= model.outputs());
   Poles wanted = poles_of(model.A);
   for (Index i = 0; i < 2 * model.outputs(); ++i) wanted.push_back(0.4 + 0.1 * double(i));
@@ -104,4 +105,4 @@ RC_GTEST_PROP(AnyTelemetry, LeavesATrackerBounded, ()) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::correction_property_test

@@ -10,10 +10,10 @@
 #include "service/model/expression.hpp"
 #include "tests/properties/any_record.hpp"
 
-namespace reident {
+namespace reident::expression_property_test {
 namespace {
 
-using testing::any_of;
+using test::any_of;
 
 const std::vector<std::string> names = {"a", "I_BUS", "eps.v2"};
 
@@ -123,4 +123,4 @@ RC_GTEST_PROP(Expression, HasTheBitsOfItsTree, ()) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::expression_property_test

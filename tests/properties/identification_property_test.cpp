@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -12,7 +13,7 @@
 #include "identification/subspace/subspace.hpp"
 #include "tests/properties/any_record.hpp"
 
-namespace reident::identification {
+namespace reident::identification::identification_property_test {
 namespace {
 
 /// The compression of a record as identify() makes it.
@@ -55,12 +56,12 @@ IdentifyOptions fixed_choice(Index order, Weighting weighting) {
 }
 
 RC_GTEST_PROP(Identification, WithoutNoisePolesAndMarkovParametersAreExact, ()) {
-  testing::Setting s = testing::any_setting({});
+  test::Setting s = test::any_setting({});
   const Index n = s.truth.order(), p = s.truth.outputs();
-  const Index horizon = n + testing::any_of<Index>(1, 5);
+  const Index horizon = n + test::any_of<Index>(1, 5);
   const Index size = 1 + 2 * horizon * (s.truth.inputs() + p);
-  Record record = testing::excited(s.truth, s.noise, 3 * size + 200, 0);
-  testing::cut(record, 4);
+  Record record = test::excited(s.truth, s.noise, 3 * size + 200, 0);
+  test::cut(record, 4);
   RC_PRE(hankel_columns(record.segments, 2 * horizon) > size);
   const Compressed c = compressed(record, horizon);
   const Projection projection(c.factor);
@@ -71,22 +72,22 @@ RC_GTEST_PROP(Identification, WithoutNoisePolesAndMarkovParametersAreExact, ()) 
   const StateSpaceModel by_simulation =
       in_units(fit_response(found.A, found.C, true, c.work, c.work.all(), Accuracy::exact).model,
                c.normalisation);
-  RC_ASSERT(testing::markov_distance(by_sums, s.truth) < 1e-6);
-  RC_ASSERT(testing::markov_distance(by_simulation, s.truth) < 1e-6);
+  RC_ASSERT(test::markov_distance(by_sums, s.truth) < 1e-6);
+  RC_ASSERT(test::markov_distance(by_simulation, s.truth) < 1e-6);
   // Nearly double poles are ill-conditioned: what the model does is not.
-  if (pole_separation(s.truth) > 0.1) RC_ASSERT(testing::pole_distance(by_sums, s.truth) < 1e-5);
+  if (pole_separation(s.truth) > 0.1) RC_ASSERT(test::pole_distance(by_sums, s.truth) < 1e-5);
 }
 
 RC_GTEST_PROP(Identification, WithNoiseTheErrorFallsAsRowsGrow, ()) {
-  testing::Setting s = testing::any_setting({6, 4, 3, 0.8});
-  const double share = testing::any_of(1, 31) / 100.0;
+  test::Setting s = test::any_setting({6, 4, 3, 0.8});
+  const double share = test::any_of(1, 31) / 100.0;
   const IdentifyOptions options = fixed_choice(s.truth.order(), any_weighting());
   const auto error = [&](Index rows) {
-    Record record = testing::excited(s.truth, s.noise, rows, share);
-    testing::cut(record, 4);
+    Record record = test::excited(s.truth, s.noise, rows, share);
+    test::cut(record, 4);
     const IdentifyResult result = identify(record, record.all(), options);
     RC_ASSERT(std::holds_alternative<Identified>(result));
-    return testing::markov_distance(std::get<Identified>(result).model, s.truth);
+    return test::markov_distance(std::get<Identified>(result).model, s.truth);
   };
   const double coarse = error(1000), fine = error(16000);
   RC_ASSERT(fine < 0.02 + share / 10);
@@ -94,27 +95,27 @@ RC_GTEST_PROP(Identification, WithNoiseTheErrorFallsAsRowsGrow, ()) {
 }
 
 RC_GTEST_PROP(Identification, TheOrderOfTheSegmentsChangesNothingBeyondRounding, ()) {
-  testing::Setting s = testing::any_setting({5, 4, 3});
-  Record record = testing::excited(s.truth, s.noise, 1200, testing::any_of(1, 31) / 100.0);
-  testing::cut(record, 5);
-  const Record other = testing::with_segments_reversed(record);
+  test::Setting s = test::any_setting({5, 4, 3});
+  Record record = test::excited(s.truth, s.noise, 1200, test::any_of(1, 31) / 100.0);
+  test::cut(record, 5);
+  const Record other = test::with_segments_reversed(record);
   const IdentifyOptions options = fixed_choice(s.truth.order(), any_weighting());
   const IdentifyResult a = identify(record, record.all(), options);
   const IdentifyResult b = identify(other, other.all(), options);
   RC_ASSERT(a.index() == b.index());
   RC_PRE(std::holds_alternative<Identified>(a));
-  RC_ASSERT(testing::markov_distance(std::get<Identified>(b).model, std::get<Identified>(a).model) <
+  RC_ASSERT(test::markov_distance(std::get<Identified>(b).model, std::get<Identified>(a).model) <
             1e-9);
 }
 
 RC_GTEST_PROP(Subspace, TheResponseOfTheTruthIsRecoveredFromTheCompression, ()) {
-  testing::Setting s = testing::any_setting({});
+  test::Setting s = test::any_setting({});
   const bool direct = *rc::gen::arbitrary<bool>();
   if (!direct) s.truth.D.setZero();
-  const Index n = s.truth.order(), horizon = n + testing::any_of<Index>(1, 13);
+  const Index n = s.truth.order(), horizon = n + test::any_of<Index>(1, 13);
   const Index size = 1 + 2 * horizon * (s.truth.inputs() + s.truth.outputs());
-  Record record = testing::excited(s.truth, s.noise, 3 * size + 200, 0);
-  testing::cut(record, 4);
+  Record record = test::excited(s.truth, s.noise, 3 * size + 200, 0);
+  test::cut(record, 4);
   RC_PRE(hankel_columns(record.segments, 2 * horizon) > size);
   const Compressed c = compressed(record, horizon);
   const Matrix C = c.normalisation.y_scale.cwiseInverse().asDiagonal() * s.truth.C;
@@ -122,14 +123,14 @@ RC_GTEST_PROP(Subspace, TheResponseOfTheTruthIsRecoveredFromTheCompression, ()) 
       in_units(Projection(c.factor).with_response(s.truth.A, C, direct, 1), c.normalisation);
   // Neighbouring poles share B among them as rounding has it; what they do together is exact to
   // what normal equations of pivots above 1e-5 leave.
-  RC_ASSERT(testing::markov_distance(found, s.truth) < 1e-6);
+  RC_ASSERT(test::markov_distance(found, s.truth) < 1e-6);
   RC_ASSERT((found.D - s.truth.D).norm() < 1e-6);
 }
 
 RC_GTEST_PROP(Identification, AnyNumbersGiveAStableModelOrAVerdict, ()) {
-  const int rows = testing::any_of(0, 160), m = testing::any_of(0, 4);
-  const int p = testing::any_of(1, 3);
-  testing::Noise noise(*rc::gen::arbitrary<std::uint32_t>());
+  const int rows = test::any_of(0, 160), m = test::any_of(0, 4);
+  const int p = test::any_of(1, 3);
+  test::Noise noise(*rc::gen::arbitrary<std::uint32_t>());
   Record record = contiguous_record(1, noise.normal(rows, m), noise.normal(rows, p));
   const double step = *rc::gen::element(0.0, 0.1, 1.0, 3.0);  // of quantisation
   if (step > 0) {
@@ -137,7 +138,7 @@ RC_GTEST_PROP(Identification, AnyNumbersGiveAStableModelOrAVerdict, ()) {
     record.y = (record.y / step).array().round() * step;
   }
   if (m > 1 && *rc::gen::arbitrary<bool>()) record.u.col(1) = 2 * record.u.col(0);
-  if (rows > 10) testing::cut(record, 4);
+  if (rows > 10) test::cut(record, 4);
   const IdentifyResult result = identify(record, record.all(), {});
   if (const auto* found = std::get_if<Identified>(&result)) {
     RC_ASSERT(is_well_formed(found->model));
@@ -148,4 +149,4 @@ RC_GTEST_PROP(Identification, AnyNumbersGiveAStableModelOrAVerdict, ()) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::identification_property_test

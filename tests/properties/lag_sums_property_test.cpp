@@ -7,25 +7,25 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include "identification/subspace/hankel.hpp"
 #include "identification/search/identify.hpp"
+#include "identification/subspace/hankel.hpp"
 #include "identification/subspace/lag_sums.hpp"
 #include "tests/properties/any_record.hpp"
 #include "tests/support/same_bits.hpp"
 
-namespace reident::identification {
+namespace reident::identification::lag_sums_property_test {
 namespace {
 
-using testing::same_bits;
+using test::same_bits;
 
 /// White channels about operating points of very different size, with gaps.
 Record any_record(int max_rows) {
-  testing::Noise noise(*rc::gen::arbitrary<std::uint32_t>());
-  const int rows = testing::any_of(2, max_rows);
-  const int m = testing::any_of(0, 4), p = testing::any_of(1, 3);
+  test::Noise noise(*rc::gen::arbitrary<std::uint32_t>());
+  const int rows = test::any_of(2, max_rows);
+  const int m = test::any_of(0, 4), p = test::any_of(1, 3);
   Record record = contiguous_record(1, noise.normal(rows, m), noise.normal(rows, p));
   for (Index c = 0; c < m; ++c) record.u.col(c).array() += std::pow(10, 3 * c);
-  testing::cut(record, 8);
+  test::cut(record, 8);
   return record;
 }
 
@@ -37,21 +37,21 @@ TickRange ticks_of(const Record& record) {
 /// A window in the record or a little around it; not empty.
 TickRange any_range(const Record& record) {
   const TickRange whole = ticks_of(record);
-  const std::int64_t begin = testing::any_of(whole.begin - 50, whole.end);
-  return {begin, testing::any_of(begin + 1, whole.end + 50)};
+  const std::int64_t begin = test::any_of(whole.begin - 50, whole.end);
+  return {begin, test::any_of(begin + 1, whole.end + 50)};
 }
 
 LagSums::Shape any_shape(const Record& record) {
-  return {record.u.cols() + record.y.cols(), testing::any_of<Index>(1, 20),
-          testing::any_of<Index>(1, 130)};
+  return {record.u.cols() + record.y.cols(), test::any_of<Index>(1, 20),
+          test::any_of<Index>(1, 130)};
 }
 
 RC_GTEST_PROP(LagSums, AWindowHasTheSameBitsWhateverWasKeptAndForgottenBefore, ()) {
   const Record record = any_record(900);
   const LagSums::Shape shape = any_shape(record);
   LagSums kept(shape);
-  for (int step = testing::any_of(1, 12); step > 0; --step) {
-    if (testing::any_of(0, 4) == 0)
+  for (int step = test::any_of(1, 12); step > 0; --step) {
+    if (test::any_of(0, 4) == 0)
       kept.forget(any_range(record));
     else
       kept.keep_over(any_range(record), record);
@@ -70,7 +70,7 @@ RC_GTEST_PROP(LagSums, AWindowThatSlidesHasTheBitsOfOneFromScratch, ()) {
   TickRange window = any_range(record);
   for (int windows = 0; windows < 20; ++windows) {
     RC_ASSERT(same_bits(kept.keep_over(window, record), LagSums(shape).over(window, record)));
-    const std::int64_t step = testing::any_of(1, 200);
+    const std::int64_t step = test::any_of(1, 200);
     window = {window.begin + step, window.end + step};
   }
 }
@@ -80,10 +80,10 @@ RC_GTEST_PROP(LagSums, SamplesThatArriveInAnyOrderGiveTheSameBits, ()) {
   const LagSums::Shape shape = any_shape(record);
   LagSums kept(shape);
   std::vector<TickRange> late;
-  for (int i = testing::any_of(1, 6); i > 0; --i) late.push_back(any_range(record));
+  for (int i = test::any_of(1, 6); i > 0; --i) late.push_back(any_range(record));
   // The ranges come one by one, the last one first; each marks what it touches.
   while (!late.empty()) {
-    const Record arrived = testing::rows_where(record, [&late](std::int64_t tick) {
+    const Record arrived = test::rows_where(record, [&late](std::int64_t tick) {
       return std::none_of(late.begin(), late.end(),
                           [tick](TickRange r) { return r.begin <= tick && tick < r.end; });
     });
@@ -99,7 +99,7 @@ RC_GTEST_PROP(LagSums, NothingIsReadBeyondWhatIsMissing, ()) {
   const Record record = any_record(900);
   const LagSums::Shape shape = any_shape(record);
   LagSums kept(shape);
-  for (int step = testing::any_of(0, 5); step > 0; --step) {
+  for (int step = test::any_of(0, 5); step > 0; --step) {
     kept.keep_over(any_range(record), record);
     if (*rc::gen::arbitrary<bool>()) kept.forget(any_range(record));
   }
@@ -110,7 +110,7 @@ RC_GTEST_PROP(LagSums, NothingIsReadBeyondWhatIsMissing, ()) {
     RC_ASSERT(missing[i].end <= window.end);
     if (i > 0) RC_ASSERT(missing[i - 1].end < missing[i].begin);
   }
-  const Record read = testing::rows_where(record, [&missing](std::int64_t tick) {
+  const Record read = test::rows_where(record, [&missing](std::int64_t tick) {
     return std::any_of(missing.begin(), missing.end(),
                        [tick](TickRange r) { return r.begin <= tick && tick < r.end; });
   });
@@ -122,7 +122,7 @@ RC_GTEST_PROP(LagSums, ChunksFollowTimeAndNotTheRecord, ()) {
   const Record record = any_record(900);
   const LagSums::Shape shape = any_shape(record);
   const TickRange window = any_range(record), around = any_range(record);
-  const Record less = testing::rows_where(record, [&](std::int64_t tick) {
+  const Record less = test::rows_where(record, [&](std::int64_t tick) {
     return (window.begin <= tick && tick < window.end) ||
            (around.begin <= tick && tick < around.end);
   });
@@ -134,7 +134,7 @@ RC_GTEST_PROP(LagSums, AddUpToTheProductsOfTheSamples, ()) {
   const LagSums::Shape shape = any_shape(record);
   const TickRange window = any_range(record);
   const StretchSums sums = LagSums(shape).over(window, record);
-  const Record inside = testing::rows_where(
+  const Record inside = test::rows_where(
       record, [window](std::int64_t tick) { return window.begin <= tick && tick < window.end; });
   RC_ASSERT(sums.runs.size() == inside.segments.size());
   const Index w = shape.channels;
@@ -158,12 +158,12 @@ RC_GTEST_PROP(LagSums, AddUpToTheProductsOfTheSamples, ()) {
 }
 
 RC_GTEST_PROP(LagSums, GiveTheFactorThatTheRowsGive, ()) {
-  testing::Setting s = testing::any_setting({4, 4, 3});
-  Record record = testing::excited(s.truth, s.noise, 700, 0.3);
-  testing::cut(record, 6);
-  const Index horizon = testing::any_of(2, 8), m = record.u.cols();
-  const LagSums::Shape shape{m + record.y.cols(), 2 * horizon + testing::any_of(0, 9),
-                             testing::any_of<Index>(1, 130)};
+  test::Setting s = test::any_setting({4, 4, 3});
+  Record record = test::excited(s.truth, s.noise, 700, 0.3);
+  test::cut(record, 6);
+  const Index horizon = test::any_of(2, 8), m = record.u.cols();
+  const LagSums::Shape shape{m + record.y.cols(), 2 * horizon + test::any_of(0, 9),
+                             test::any_of<Index>(1, 130)};
   const StretchSums sums = LagSums(shape).over(ticks_of(record), record);
   const Normalisation normalisation = normalisation_of(sums, m);
   const Record work = normalised(record, record.all(), normalisation);
@@ -177,18 +177,18 @@ RC_GTEST_PROP(LagSums, GiveTheFactorThatTheRowsGive, ()) {
 }
 
 RC_GTEST_PROP(Identify, GivesTheSameBitsWhateverItsSumsWentThrough, ()) {
-  testing::Setting s = testing::any_setting({4, 3, 2});
-  Record record = testing::excited(s.truth, s.noise, 1200, 0.1);
-  testing::cut(record, 3);
+  test::Setting s = test::any_setting({4, 3, 2});
+  Record record = test::excited(s.truth, s.noise, 1200, 0.1);
+  test::cut(record, 3);
   IdentifyOptions options;
-  options.order = testing::any_of(1, 4);
+  options.order = test::any_of(1, 4);
   options.horizon = 6;
   const LagSums::Shape shape{record.u.cols() + record.y.cols(),
-                             block_rows_needed(options) + testing::any_of(0, 5),
-                             testing::any_of<Index>(20, 200)};
-  const Index begin = testing::any_of(0, 400), end = testing::any_of(begin + 500, Index{1200});
+                             block_rows_needed(options) + test::any_of(0, 5),
+                             test::any_of<Index>(20, 200)};
+  const Index begin = test::any_of(0, 400), end = test::any_of(begin + 500, Index{1200});
   LagSums fresh(shape), used(shape);
-  for (int step = testing::any_of(1, 5); step > 0; --step) {
+  for (int step = test::any_of(1, 5); step > 0; --step) {
     used.keep_over(any_range(record), record);
     if (*rc::gen::arbitrary<bool>()) used.forget(any_range(record));
   }
@@ -198,4 +198,4 @@ RC_GTEST_PROP(Identify, GivesTheSameBitsWhateverItsSumsWentThrough, ()) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::lag_sums_property_test

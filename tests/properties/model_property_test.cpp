@@ -11,13 +11,13 @@
 #include "service/model/model_json.hpp"
 #include "tests/properties/any_record.hpp"
 
-namespace reident {
+namespace reident::model_property_test {
 namespace {
 
 using identification::Index;
 using identification::Matrix;
 using identification::Vector;
-using testing::any_of;
+using test::any_of;
 
 /// Finite, of every magnitude, denormals and both zeros among them.
 double any_number() {
@@ -160,4 +160,4 @@ RC_GTEST_PROP(Model, HasAnotherDigestWhenAnyBitIsAnother, ()) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::model_property_test

@@ -3,7 +3,7 @@
 
 #include "tests/support/swap_jump.hpp"
 
-namespace reident::testing {
+namespace reident::test::swap_property_test {
 namespace {
 
 TEST(AnySwap, moves_the_output_by_at_most_three_times_the_models_own_step) {
@@ -15,4 +15,4 @@ TEST(AnySwap, moves_the_output_by_at_most_three_times_the_models_own_step) {
 }
 
 }  // namespace
-}  // namespace reident::testing
+}  // namespace reident::test::swap_property_test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 namespace {
 
 constexpr TimeRange always{std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()};
@@ -135,4 +135,4 @@ std::string ExpectedArchive::difference(const Archive& archive) const {
   return difference;
 }
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

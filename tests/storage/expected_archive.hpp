@@ -10,7 +10,7 @@
 
 #include "storage/archive/archive.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 class ExpectedArchive {
  public:
@@ -43,4 +43,4 @@ class ExpectedArchive {
   std::map<SourceKey, Source> sources_;
 };
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

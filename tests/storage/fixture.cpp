@@ -9,7 +9,7 @@
 
 #include <sys/wait.h>
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 namespace {
 
 constexpr uid_t nobody = 65534;
@@ -145,4 +145,4 @@ std::string read_file(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

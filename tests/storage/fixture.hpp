@@ -15,15 +15,15 @@
 #include "storage/registry/registry.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 /// In memory where the system has a file system there: most tests wait for the disk otherwise.
 std::filesystem::path fast_folder();
 
-class TemporaryFolder : public test::TemporaryFolder {
+class TemporaryFolder : public reident::test::TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::filesystem::path& parent = fast_folder())
-      : test::TemporaryFolder(parent) {}
+      : reident::test::TemporaryFolder(parent) {}
 };
 
 /// A frame of spacecraft CB4 from source "station"; received when it was generated.
@@ -58,4 +58,4 @@ class ArchiveTest : public ::testing::Test {
   AppendReport append(const std::vector<TelemetryFrame>& frames) { return archive.append(frames); }
 };
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
-namespace reident::testing {
+namespace reident::test {
 namespace {
 
 using namespace identification;
@@ -120,4 +120,4 @@ NaiveResult naive_n4sid(const Record& record, Index order, Index horizon, Weight
   return result;
 }
 
-}  // namespace reident::testing
+}  // namespace reident::test

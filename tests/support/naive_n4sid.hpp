@@ -2,11 +2,11 @@
 // follows the definitions (projections by pseudo-inverses), with no factor shared between steps.
 #pragma once
 
-#include "identification/search/identify.hpp"
 #include "identification/samples/record.hpp"
+#include "identification/search/identify.hpp"
 #include "identification/simulation/state_space.hpp"
 
-namespace reident::testing {
+namespace reident::test {
 
 /// A, C, B, D, y0 and x0 of the given order. The record's channels are used as they are.
 struct NaiveResult {
@@ -17,4 +17,4 @@ struct NaiveResult {
 NaiveResult naive_n4sid(const identification::Record& record, identification::Index order,
                         identification::Index horizon, identification::Weighting weighting);
 
-}  // namespace reident::testing
+}  // namespace reident::test

@@ -31,7 +31,7 @@ std::string json_of(sqlite3_stmt* statement, int column) {
   }
 }
 
-int print_rows(const reident::storage::testing::SqlUser& user, const char* sql) {
+int print_rows(const reident::storage::test::SqlUser& user, const char* sql) {
   const auto error = user.each_row(sql, [](sqlite3_stmt* statement) {
     std::string row;
     for (int i = 0; i < sqlite3_column_count(statement); ++i)
@@ -51,7 +51,7 @@ int main(int count, char** arguments) {
     return 2;
   }
   try {
-    return print_rows(reident::storage::testing::SqlUser(arguments[1]), arguments[2]);
+    return print_rows(reident::storage::test::SqlUser(arguments[1]), arguments[2]);
   } catch (const std::exception& error) {
     std::cerr << "query: " << error.what() << '\n';
     return 1;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace reident::testing {
+namespace reident::test {
 namespace {
 
 using namespace identification;
@@ -66,4 +66,4 @@ bool same_bits(const IdentifyResult& a, const IdentifyResult& b) {
   return same(std::get<Identified>(a), std::get<Identified>(b));
 }
 
-}  // namespace reident::testing
+}  // namespace reident::test

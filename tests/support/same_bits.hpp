@@ -4,11 +4,11 @@
 #include "identification/search/identify.hpp"
 #include "identification/subspace/lag_sums.hpp"
 
-namespace reident::testing {
+namespace reident::test {
 
 bool same_bits(const identification::StretchSums& a, const identification::StretchSums& b);
 
 /// Models with all that is said of them, or the same verdict in the same words.
 bool same_bits(const identification::IdentifyResult& a, const identification::IdentifyResult& b);
 
-}  // namespace reident::testing
+}  // namespace reident::test

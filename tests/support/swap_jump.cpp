@@ -4,7 +4,7 @@
 
 #include "service/client/model_runner.hpp"
 
-namespace reident::testing {
+namespace reident::test {
 namespace {
 
 using identification::Index;
@@ -64,4 +64,4 @@ SwapInMidRun swap_in_mid_run(std::uint64_t seed) {
   return {(felt.array() / own.array()).maxCoeff(), (left.array() / own.array()).maxCoeff()};
 }
 
-}  // namespace reident::testing
+}  // namespace reident::test

@@ -3,7 +3,7 @@
 
 #include "tests/support/version_pairs.hpp"
 
-namespace reident::testing {
+namespace reident::test {
 
 /// Both are the largest of the outputs, over the larger of the two models' own change in a step in
 /// the neighbourhood, each model as it runs alone on the same inputs.
@@ -15,4 +15,4 @@ struct SwapInMidRun {
 /// Swaps version_pair(seed) on smooth_input().
 SwapInMidRun swap_in_mid_run(std::uint64_t seed);
 
-}  // namespace reident::testing
+}  // namespace reident::test

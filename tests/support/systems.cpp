@@ -6,7 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace reident::testing {
+namespace reident::test {
 
 double Noise::uniform() {
   return (static_cast<double>(generator_() >> 11) + 0.5) * 0x1p-53;
@@ -119,4 +119,4 @@ double pole_distance(const StateSpaceModel& a, const StateSpaceModel& b) {
   return farthest;
 }
 
-}  // namespace reident::testing
+}  // namespace reident::test

@@ -7,7 +7,7 @@
 #include "identification/samples/record.hpp"
 #include "identification/simulation/state_space.hpp"
 
-namespace reident::testing {
+namespace reident::test {
 
 using identification::Index;
 using identification::Matrix;
@@ -59,4 +59,4 @@ double markov_distance(const StateSpaceModel& a, const StateSpaceModel& b);
 /// Largest distance from a pole of `b` to the nearest pole of `a`.
 double pole_distance(const StateSpaceModel& a, const StateSpaceModel& b);
 
-}  // namespace reident::testing
+}  // namespace reident::test

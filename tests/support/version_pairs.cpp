@@ -2,9 +2,11 @@
 
 #include <cmath>
 
+#include <Eigen/Dense>
+
 #include "tests/support/systems.hpp"
 
-namespace reident::testing {
+namespace reident::test {
 namespace {
 
 constexpr double operating_point = 3;
@@ -72,4 +74,4 @@ Vector smooth_input(const VersionPair& pair, std::uint64_t seed, std::int64_t k)
   return u;
 }
 
-}  // namespace reident::testing
+}  // namespace reident::test

@@ -5,7 +5,7 @@
 
 #include "service/model/model_version.hpp"
 
-namespace reident::testing {
+namespace reident::test {
 
 struct VersionPair {
   EquipmentModel before, after;
@@ -19,4 +19,4 @@ VersionPair version_pair(std::uint64_t seed);
 /// Slow sines and ramps within the pair's ranges at tick k.
 identification::Vector smooth_input(const VersionPair& pair, std::uint64_t seed, std::int64_t k);
 
-}  // namespace reident::testing
+}  // namespace reident::test

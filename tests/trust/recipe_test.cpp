@@ -8,7 +8,7 @@
 #include "service/support/time_text.hpp"
 #include "tests/trust/suite_config.hpp"
 
-namespace reident::trust {
+namespace reident::trust::recipe_test {
 namespace {
 
 using satcs::Fault;
@@ -86,4 +86,4 @@ TEST(Handful, IsOfBothHalvesAndOfDifferentLivesAndFaults) {
 }
 
 }  // namespace
-}  // namespace reident::trust
+}  // namespace reident::trust::recipe_test

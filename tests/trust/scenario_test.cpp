@@ -8,7 +8,7 @@
 #include "service/satcs/reference/reference_telemetry.hpp"
 #include "tests/trust/suite_config.hpp"
 
-namespace reident::trust {
+namespace reident::trust::scenario_test {
 namespace {
 
 TEST(Scenarios, AreManyAndNumberedOnce) {
@@ -78,4 +78,4 @@ TEST(Scenarios, AreTheSameEachTime) {
 }
 
 }  // namespace
-}  // namespace reident::trust
+}  // namespace reident::trust::scenario_test

@@ -9,7 +9,7 @@
 #include "service/satcs/parameter_id.hpp"
 #include "service/satcs/reference/reference_telemetry.hpp"
 
-namespace reident::trust {
+namespace reident::trust::score_test {
 namespace {
 
 constexpr Duration second = 1'000'000'000;
@@ -236,4 +236,4 @@ TEST(TrueChanges, AreWhatStays) {
 }
 
 }  // namespace
-}  // namespace reident::trust
+}  // namespace reident::trust::score_test

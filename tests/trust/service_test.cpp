@@ -9,7 +9,7 @@
 #include "tests/trust/report.hpp"
 #include "tests/trust/suite_config.hpp"
 
-namespace reident::trust {
+namespace reident::trust::service_test {
 namespace {
 
 using satcs::FaultKind;
@@ -78,4 +78,4 @@ TEST(Trust, AQuietSpacecraftGetsAModelAndTheSameOneEachTime) {
 }
 
 }  // namespace
-}  // namespace reident::trust
+}  // namespace reident::trust::service_test

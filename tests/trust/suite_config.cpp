@@ -13,8 +13,6 @@
 namespace reident::trust {
 namespace {
 
-constexpr Duration second = 1'000'000'000;
-
 std::string read_text(const char* path) {
   std::ostringstream text;
   if (!(text << std::ifstream(path).rdbuf()))
@@ -24,8 +22,8 @@ std::string read_text(const char* path) {
 
 void change(toml::table& equipment) {
   equipment.insert_or_assign("sample_period", duration_text(suite_period));
-  equipment.insert_or_assign("window", duration_text(48'000 * second));
-  equipment.insert_or_assign("slide", duration_text(18'000 * second));
+  equipment.insert_or_assign("window", duration_text(48'000 * storage::second_ns));
+  equipment.insert_or_assign("slide", duration_text(18'000 * storage::second_ns));
   equipment.insert_or_assign("validation_share", 0.4);
   equipment.insert_or_assign("order", toml::array{1, 6});
 }

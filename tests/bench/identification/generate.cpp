@@ -14,7 +14,7 @@ using identification::Index;
 using identification::Matrix;
 using identification::StateSpaceModel;
 using identification::Vector;
-using testing::Noise;
+using test::Noise;
 
 constexpr Index inputs = 4;
 
@@ -71,7 +71,7 @@ Matrix telemetry(Index rows, double noise_share, Noise& noise) {
   switched(values.col(1), noise);
   coloured(values.col(2), noise, 0.9);
   coloured(values.col(3), noise, 0.5);
-  const Vector y = testing::simulated(plant(), values.leftCols(inputs), Vector::Zero(4)).col(0);
+  const Vector y = test::simulated(plant(), values.leftCols(inputs), Vector::Zero(4)).col(0);
   const double deviation = std::sqrt((y.array() - y.mean()).square().mean());
   for (Index t = 0; t < rows; ++t)
     values(t, inputs) = y(t) + noise_share * deviation * noise.normal();

@@ -13,5 +13,5 @@ int main(int argc, char** argv) {
   }
   const std::uint64_t pairs = std::strtoull(argv[1], nullptr, 10);
   for (std::uint64_t seed = 1; seed <= pairs; ++seed)
-    std::printf("%.6f\n", reident::testing::swap_in_mid_run(seed).jump);
+    std::printf("%.6f\n", reident::test::swap_in_mid_run(seed).jump);
 }

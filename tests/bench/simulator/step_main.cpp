@@ -30,12 +30,12 @@ constexpr std::size_t input_rows = 1024;
 
 struct Versions {
   Versions() {
-    testing::Noise noise(6);
+    test::Noise noise(6);
     model.spacecraft = "BENCH";
     model.equipment = "STEP";
     for (int i = 0; i < inputs; ++i) model.inputs.push_back({fmt::format("U{}", i), "A", -1, 1});
     model.outputs = {{"Y", "V", -100, 100}};
-    model.dynamics = testing::random_system(noise, 6, inputs, 1, 0.95);
+    model.dynamics = test::random_system(noise, 6, inputs, 1, 0.95);
     model.dynamics.period_s = 1;
     model.hold_ns = 1'000'000'000;
     model.validation.mrse_percent = identification::Vector::Constant(1, 5);

@@ -7,15 +7,15 @@
 #include "identification/correction/pole_placement_search.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::integral_feedback_search_test {
 namespace {
 
 using ::testing::HasSubstr;
 
 /// A system whose outputs drift as no input tells.
 Record drifting(const StateSpaceModel& truth, std::uint64_t seed, Index rows) {
-  testing::Noise noise(seed);
-  Record record = testing::excited(truth, noise, rows, 0.01);
+  test::Noise noise(seed);
+  Record record = test::excited(truth, noise, rows, 0.01);
   Matrix drift = 0.05 * noise.normal(rows, truth.outputs());
   for (Index k = 1; k < rows; ++k) drift.row(k) += 0.995 * drift.row(k - 1);
   record.y += drift;
@@ -24,10 +24,10 @@ Record drifting(const StateSpaceModel& truth, std::uint64_t seed, Index rows) {
 }
 
 TEST(TrackingPlacement, PutsThePolesOfTheLoopWhereTheyAreWanted) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   for (Index p = 1; p <= 3; ++p)
     for (int trial = 0; trial < 10; ++trial) {
-      const StateSpaceModel model = testing::random_system(noise, 5, 3, p);
+      const StateSpaceModel model = test::random_system(noise, 5, 3, p);
       Poles wanted = scaled_poles(poles_of(model.A), 1.5);
       for (Index i = 0; i < 2 * p; ++i) wanted.push_back(0.3 + 0.1 * double(i));
       const Vector units = Vector::Constant(p, trial % 2 == 0 ? 1e-6 : 1e6);
@@ -44,9 +44,9 @@ TEST(TrackingPlacement, PutsThePolesOfTheLoopWhereTheyAreWanted) {
 }
 
 TEST(TrackingSearch, FollowsADriftThatNoInputTells) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   for (Index p = 1; p <= 2; ++p) {
-    const StateSpaceModel truth = testing::random_system(noise, 3, 2, p, 0.9);
+    const StateSpaceModel truth = test::random_system(noise, 3, 2, p, 0.9);
     StateSpaceModel model = truth;
     model.y0.setConstant(10);
     const Record record = drifting(truth, 5, 3000);
@@ -64,8 +64,8 @@ TEST(TrackingSearch, FollowsADriftThatNoInputTells) {
 }
 
 TEST(TrackingSearch, IsNotMisledByRowsAtRest) {
-  testing::Noise noise(8);
-  StateSpaceModel model = testing::random_system(noise, 3, 2, 1, 0.9);
+  test::Noise noise(8);
+  StateSpaceModel model = test::random_system(noise, 3, 2, 1, 0.9);
   model.y0.setConstant(10);
   Record record = drifting(model, 5, 6000);
   const auto lively =
@@ -89,14 +89,14 @@ std::string refusal(const StateSpaceModel& model, const Record& record) {
 }
 
 TEST(NoTracking, WithFewerInputsThanOutputs) {
-  testing::Noise noise(3);
-  const StateSpaceModel model = testing::random_system(noise, 3, 1, 2);
+  test::Noise noise(3);
+  const StateSpaceModel model = test::random_system(noise, 3, 1, 2);
   EXPECT_THAT(refusal(model, drifting(model, 1, 1000)), HasSubstr("2 outputs and 1 inputs"));
 }
 
 TEST(NoTracking, WhereConstantInputsLeaveTheOutput) {
-  testing::Noise noise(4);
-  StateSpaceModel model = testing::random_system(noise, 3, 1, 1);
+  test::Noise noise(4);
+  StateSpaceModel model = test::random_system(noise, 3, 1, 1);
   model.D.setZero();
   model.D = -*static_gain(model);
   EXPECT_THAT(refusal(model, drifting(model, 1, 1000)),
@@ -104,27 +104,27 @@ TEST(NoTracking, WhereConstantInputsLeaveTheOutput) {
 }
 
 TEST(NoTracking, WhereConstantInputsMoveTheOutputsTogether) {
-  testing::Noise noise(5);
-  StateSpaceModel model = testing::random_system(noise, 3, 2, 2);
+  test::Noise noise(5);
+  StateSpaceModel model = test::random_system(noise, 3, 2, 2);
   model.C.row(1) = 2 * model.C.row(0);
   model.D.row(1) = 2 * model.D.row(0);
   EXPECT_THAT(refusal(model, drifting(model, 1, 1000)), HasSubstr("together"));
 }
 
 TEST(NoTracking, OfAnOutputThatDoesNotMove) {
-  testing::Noise noise(6);
-  const StateSpaceModel model = testing::random_system(noise, 3, 1, 1);
+  test::Noise noise(6);
+  const StateSpaceModel model = test::random_system(noise, 3, 1, 1);
   Record record = drifting(model, 1, 1000);
   record.y.setConstant(28);
   EXPECT_THAT(refusal(model, record), HasSubstr("did not move"));
 }
 
 TEST(NoTracking, WhereTheFreeRunIsRightAlready) {
-  testing::Noise noise(7);
-  const StateSpaceModel model = testing::random_system(noise, 3, 1, 1);
-  const Record record = testing::excited(model, noise, 1000, 0.3);
+  test::Noise noise(7);
+  const StateSpaceModel model = test::random_system(noise, 3, 1, 1);
+  const Record record = test::excited(model, noise, 1000, 0.3);
   EXPECT_THAT(refusal(model, record), HasSubstr("closer than the free run"));
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::integral_feedback_search_test

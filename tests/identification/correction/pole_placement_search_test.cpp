@@ -7,11 +7,11 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::pole_placement_search_test {
 namespace {
 
 /// Slowly moving inputs with a mean.
-Matrix inputs(testing::Noise& noise, Index rows, Index m) {
+Matrix inputs(test::Noise& noise, Index rows, Index m) {
   Matrix u = noise.normal(rows, m);
   for (Index k = 1; k < rows; ++k) u.row(k) += 0.95 * u.row(k - 1);
   return u.array() + 3;
@@ -31,9 +31,9 @@ StateSpaceModel lag(double pole, double gain) {
 }
 
 Record record_of(const StateSpaceModel& truth, Index rows) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   const Matrix u = inputs(noise, rows, truth.inputs());
-  const Matrix y = testing::simulated(truth, u, Vector::Zero(truth.order()));
+  const Matrix y = test::simulated(truth, u, Vector::Zero(truth.order()));
   return contiguous_record(1, u, y);
 }
 
@@ -83,7 +83,7 @@ TEST(Correction, ByThePapersFigureMovesTheStaticGainWithThePole) {
 TEST(Correction, LeavesAModelThatIsRight) {
   const StateSpaceModel truth = lag(0.9, 2);
   Record record = record_of(truth, 3000);
-  testing::Noise noise(2);
+  test::Noise noise(2);
   record.y += noise.normal(3000, 1);
   const CorrectionSearch search = search_correction(truth, record, {0, 1500}, {1500, 3000});
   EXPECT_FALSE(search.best);
@@ -97,13 +97,13 @@ struct Mistaken {
 };
 
 Mistaken mistaken(std::uint64_t seed) {
-  testing::Noise noise(seed);
-  StateSpaceModel truth = testing::random_system(noise, 4, 2, 2, 0.97);
+  test::Noise noise(seed);
+  StateSpaceModel truth = test::random_system(noise, 4, 2, 2, 0.97);
   StateSpaceModel model = truth;
   model.A = (truth.A * truth.A).eval();
   model.y0 << 5, -2;
   const Matrix u = inputs(noise, 2000, 2);
-  return {model, contiguous_record(1, u, testing::simulated(truth, u, Vector::Zero(4)))};
+  return {model, contiguous_record(1, u, test::simulated(truth, u, Vector::Zero(4)))};
 }
 
 TEST(Correction, ReportsTheErrorOfTheModelThatItGives) {
@@ -174,4 +174,4 @@ TEST(Correction, HasNothingToMoveWithoutStatesOrInputs) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::pole_placement_search_test

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <gmock/gmock.h>
 
 #include "identification/correction/least_norm_block.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::pole_placement_test {
 namespace {
 
 /// Largest distance between wanted poles and those of A, each matched to one of the other.
@@ -32,7 +33,7 @@ PolePlacement placed(const Matrix& A, const Matrix& B, const Poles& wanted) {
 }
 
 /// Poles inside the unit circle, some of them pairs, no two nearer than 0.05.
-Poles random_poles(testing::Noise& noise, std::size_t count) {
+Poles random_poles(test::Noise& noise, std::size_t count) {
   Poles poles;
   while (poles.size() < count) {
     std::complex<double> pole(1.8 * noise.uniform() - 0.9, 0);
@@ -48,7 +49,7 @@ Poles random_poles(testing::Noise& noise, std::size_t count) {
 }
 
 TEST(PolePlacement, PutsThePolesOfRandomSystemsWhereTheyAreWanted) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   for (Index m = 1; m <= 4; ++m)
     for (Index n = 1; n <= 12; ++n)
       for (int trial = 0; trial < 20; ++trial) {
@@ -64,7 +65,7 @@ TEST(PolePlacement, PutsThePolesOfRandomSystemsWhereTheyAreWanted) {
 }
 
 TEST(PolePlacement, PutsRepeatedPolesAsOftenAsWanted) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   for (Index m = 1; m <= 4; ++m)
     for (Index n = 2; n <= 6; ++n) {
       const Matrix A = noise.normal(n, n), B = noise.normal(n, m);
@@ -82,7 +83,7 @@ TEST(PolePlacement, PutsRepeatedPolesAsOftenAsWanted) {
 TEST(PolePlacement, MovesEqualPolesApart) {
   // A multiple of I has one mode for each input, however many states there are.
   const Matrix A = 0.5 * Matrix::Identity(4, 4);
-  testing::Noise noise(3);
+  test::Noise noise(3);
   const Matrix B = noise.normal(4, 3);
   const PolePlacement placement = placed(A, B, {{0.1, 0.2}, {0.1, -0.2}, 0.3, 0.4});
   ASSERT_EQ(placement.uncontrollable.size(), 1U);
@@ -100,13 +101,13 @@ TEST(PolePlacement, MovesAChainOfEqualPoles) {
 }
 
 TEST(PolePlacement, LeavesPolesThatAreInPlace) {
-  testing::Noise noise(4);
+  test::Noise noise(4);
   const Matrix A = noise.normal(7, 7) / 3, B = noise.normal(7, 2);
   EXPECT_LT(placed(A, B, poles_of(A)).gain.norm(), 1e-13);
 }
 
 TEST(PolePlacement, IsTheSameInAnyUnitsOfTheInputs) {
-  testing::Noise noise(5);
+  test::Noise noise(5);
   const Matrix A = noise.normal(6, 6) / 3, B = noise.normal(6, 3);
   const Vector units = (Vector(3) << 1e9, 1, 1e-7).finished();
   const Poles wanted = random_poles(noise, 6);
@@ -116,7 +117,7 @@ TEST(PolePlacement, IsTheSameInAnyUnitsOfTheInputs) {
 }
 
 TEST(PolePlacement, WithstandsStatesOfVeryDifferentSize) {
-  testing::Noise noise(6);
+  test::Noise noise(6);
   for (int trial = 0; trial < 20; ++trial) {
     const Vector units = (Vector(5) << 1e-3, 1e-1, 1, 1e2, 1e3).finished();
     const Matrix A =
@@ -128,7 +129,7 @@ TEST(PolePlacement, WithstandsStatesOfVeryDifferentSize) {
 }
 
 TEST(PolePlacement, ReportsModesThatNoInputReachesAndLeavesThem) {
-  testing::Noise noise(7);
+  test::Noise noise(7);
   for (Index unreached = 1; unreached <= 3; ++unreached)
     for (Index m = 1; m <= 3; ++m) {
       const Index n = 6;
@@ -174,7 +175,7 @@ TEST(PolePlacement, RefusesAPairForASingleMode) {
 /// Octave 7.3, control 3.4.0; z of generated() with 5 rows, 6 columns:
 /// pkg load control; place(z(:,1:5), z(:,6), [0.5 -0.3 0.1 0.2+0.4i 0.2-0.4i])
 TEST(PolePlacement, OfOneInputIsOctaves) {
-  const Matrix z = testing::generated(5, 6);
+  const Matrix z = test::generated(5, 6);
   Matrix octave(1, 5);
   octave << -1.049226195902698e+01, -3.765244517191847e-01, 8.033089587268925e+00,
       -3.280349379192905e-01, -1.045943869775614e+00;
@@ -194,7 +195,7 @@ TEST(PolePlacement, OfSeveralInputsIsOfTheSizeOfOctaves) {
   };
   for (const auto& [n, m, octave] : {Case{6, 2, 1.357486185157420}, Case{8, 3, 1.067926987391483},
                                      Case{12, 4, 2.611553998073886}}) {
-    const Matrix z = testing::generated(n, n + m), A = z.leftCols(n), B = z.rightCols(m);
+    const Matrix z = test::generated(n, n + m), A = z.leftCols(n), B = z.rightCols(m);
     Poles wanted;
     for (Index i = 0; i < n; ++i) wanted.push_back(-0.8 + 1.6 * double(i) / double(n - 1));
     const Matrix gain = placed(A, B, wanted).gain;
@@ -206,7 +207,7 @@ TEST(PolePlacement, OfSeveralInputsIsOfTheSizeOfOctaves) {
 
 /// The least over a fine grid of what nearest_with_poles() minimises.
 TEST(LeastNormBlock, IsTheLeastOfAll) {
-  testing::Noise noise(8);
+  test::Noise noise(8);
   for (int trial = 0; trial < 50; ++trial) {
     Eigen::Matrix2d A = noise.normal(2, 2);
     if (trial % 5 == 0) A(1, 0) = A(0, 1) = 0;
@@ -231,4 +232,4 @@ TEST(LeastNormBlock, IsTheLeastOfAll) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::pole_placement_test

@@ -3,12 +3,13 @@
 #include <cmath>
 #include <cstdint>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "identification/simulation/simulate.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::adaptation_test {
 namespace {
 
 double output_error(const StateSpaceModel& model, const Record& record) {
@@ -17,13 +18,13 @@ double output_error(const StateSpaceModel& model, const Record& record) {
 }
 
 TEST(Adaptation, FindsGainsAndOffsetThatMovedAndKeepsThePoles) {
-  testing::Noise noise(1);
-  const StateSpaceModel known = testing::random_system(noise, 4, 2, 2);
+  test::Noise noise(1);
+  const StateSpaceModel known = test::random_system(noise, 4, 2, 2);
   StateSpaceModel truth = known;
   truth.B *= 1.4;
   truth.D.col(1) *= 0.5;
   truth.y0 << 3, -1;
-  const Record record = testing::with_gap(testing::excited(truth, noise, 900, 0), 300, 320);
+  const Record record = test::with_gap(test::excited(truth, noise, 900, 0), 300, 320);
   const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
   EXPECT_EQ(found.A, known.A);
   EXPECT_EQ(found.C, known.C);
@@ -33,24 +34,24 @@ TEST(Adaptation, FindsGainsAndOffsetThatMovedAndKeepsThePoles) {
 }
 
 TEST(Adaptation, OfAModelThatFitsChangesNothing) {
-  testing::Noise noise(2);
-  const StateSpaceModel known = testing::random_system(noise, 3, 2, 1);
-  const Record record = testing::excited(known, noise, 600, 0);
+  test::Noise noise(2);
+  const StateSpaceModel known = test::random_system(noise, 3, 2, 1);
+  const Record record = test::excited(known, noise, 600, 0);
   const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
   EXPECT_LT((found.B - known.B).norm() + (found.D - known.D).norm(), 1e-8);
   EXPECT_LT((found.y0 - known.y0).norm(), 1e-8);
 }
 
 TEST(Adaptation, LeavesTheGainOfAnInputThatDoesNotMove) {
-  testing::Noise noise(3);
-  StateSpaceModel known = testing::random_system(noise, 3, 2, 1);
+  test::Noise noise(3);
+  StateSpaceModel known = test::random_system(noise, 3, 2, 1);
   known.u0 << 0.5, -2;
   StateSpaceModel truth = known;
   truth.B.col(0) *= 1.5;
   truth.y0 << 0.3;
-  Record record = testing::excited(known, noise, 600, 0);
+  Record record = test::excited(known, noise, 600, 0);
   record.u.col(1).setConstant(0.1);
-  record.y = testing::simulated(truth, record.u, Vector::Zero(3));
+  record.y = test::simulated(truth, record.u, Vector::Zero(3));
   const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
   EXPECT_EQ(found.B.col(1), known.B.col(1));
   EXPECT_EQ(found.D.col(1), known.D.col(1));
@@ -60,11 +61,11 @@ TEST(Adaptation, LeavesTheGainOfAnInputThatDoesNotMove) {
 }
 
 TEST(Adaptation, OfInputsThatDoNotMoveFindsTheOffset) {
-  testing::Noise noise(5);
-  const StateSpaceModel known = testing::random_system(noise, 3, 2, 1);
-  Record record = testing::excited(known, noise, 600, 0);
+  test::Noise noise(5);
+  const StateSpaceModel known = test::random_system(noise, 3, 2, 1);
+  Record record = test::excited(known, noise, 600, 0);
   record.u.setConstant(0.1);
-  record.y = testing::simulated(known, record.u, Vector::Ones(3)).array() + 2;
+  record.y = test::simulated(known, record.u, Vector::Ones(3)).array() + 2;
   const StateSpaceModel found = adapted(known, record, record.all(), KnownFrom::other_rows);
   EXPECT_EQ(found.B, known.B);
   EXPECT_NEAR(found.y0(0), known.y0(0) + 2, 1e-6);
@@ -78,7 +79,7 @@ struct Node {
 };
 
 Node node(double imbalance, std::uint64_t seed = 6, double sensor_noise = 0.02, Index held = 1) {
-  testing::Noise noise(seed);
+  test::Noise noise(seed);
   const Index rows = 2000;
   Matrix u = noise.normal(rows, 3);
   for (Index k = 1; k < rows; ++k) u.row(k) += 0.95 * u.row(k - 1);
@@ -88,15 +89,14 @@ Node node(double imbalance, std::uint64_t seed = 6, double sensor_noise = 0.02, 
   Matrix seen = u + sensor_noise * noise.normal(rows, 3);
   seen.col(2) += imbalance * slow;
   for (Index k = 0; k < rows; ++k) seen.row(k) = seen.row(k - k % held).eval();
-  Node result{testing::random_system(noise, 2, 3, 1), {}, {}, Eigen::Vector3d(1, 1, -1)};
+  Node result{test::random_system(noise, 2, 3, 1), {}, {}, Eigen::Vector3d(1, 1, -1)};
   result.truth.u0.setZero();
   result.truth.B -= result.truth.B * result.balance * result.balance.transpose() / 3;
   result.truth.D -= result.truth.D * result.balance * result.balance.transpose() / 3;
   result.mistaken = result.truth;
   result.mistaken.B += 50 * Vector::Ones(2) * result.balance.transpose();
   result.record = contiguous_record(
-      1, seen,
-      testing::simulated(result.truth, seen, Vector::Zero(2)) + 0.1 * noise.normal(rows, 1));
+      1, seen, test::simulated(result.truth, seen, Vector::Zero(2)) + 0.1 * noise.normal(rows, 1));
   return result;
 }
 
@@ -147,8 +147,8 @@ TEST(Adaptation, FitsTheGainOfASumThatCarriesOnFromSampleToSample) {
 /// A model of a fast mode and of one that lasts longer than the rows do, whose errors change slowly
 /// as those of a model that is a little wrong.
 struct SlowMode {
-  explicit SlowMode(std::uint64_t seed) : known(testing::random_system(noise, 2, 1, 1)) {
-    noise = testing::Noise(seed);
+  explicit SlowMode(std::uint64_t seed) : known(test::random_system(noise, 2, 1, 1)) {
+    noise = test::Noise(seed);
     known.A = Eigen::Vector2d(0.9, 0.9995).asDiagonal();
     known.B << 1, 0.01;
     known.C << 1, 1;
@@ -156,7 +156,7 @@ struct SlowMode {
     Vector error = noise.normal(rows, 1);
     for (Index k = 1; k < rows; ++k) u(k) += 0.9 * u(k - 1);
     for (Index k = 1; k < rows; ++k) error(k) += 0.99 * error(k - 1);
-    record = contiguous_record(1, u, testing::simulated(known, u, Vector::Zero(2)) + 0.1 * error);
+    record = contiguous_record(1, u, test::simulated(known, u, Vector::Zero(2)) + 0.1 * error);
   }
 
   static double static_gain(const StateSpaceModel& model) {
@@ -164,7 +164,7 @@ struct SlowMode {
   }
 
   static constexpr Index rows = 800;
-  testing::Noise noise{7};
+  test::Noise noise{7};
   StateSpaceModel known;
   Record record;
 };
@@ -196,8 +196,8 @@ TEST(Adaptation, FollowsAGainThatTheRowsTellAmongErrorsThatLast) {
     SlowMode one(seed);
     StateSpaceModel truth = one.known;
     truth.B(0) *= 1.4;
-    one.record.y += testing::simulated(truth, one.record.u, Vector::Zero(2)) -
-                    testing::simulated(one.known, one.record.u, Vector::Zero(2));
+    one.record.y += test::simulated(truth, one.record.u, Vector::Zero(2)) -
+                    test::simulated(one.known, one.record.u, Vector::Zero(2));
     const StateSpaceModel found =
         adapted(one.known, one.record, one.record.all(), KnownFrom::other_rows);
     EXPECT_NEAR(found.B(0), truth.B(0), 0.1);
@@ -209,13 +209,13 @@ TEST(Adaptation, FollowsEachOfTwoOutputsOfOtherScalesAndMovesTheOtherHardlyMoreT
   constexpr double scale = 1e-3;  // of the second output
   double wrong = 0, known_wrong = 0, moved = 0, moved_by_noise = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    testing::Noise noise(seed);
-    StateSpaceModel known = testing::random_system(noise, 3, 2, 2);
+    test::Noise noise(seed);
+    StateSpaceModel known = test::random_system(noise, 3, 2, 2);
     known.C.row(1) *= scale;
     known.D.row(1) *= scale;
     StateSpaceModel truth = known;
     truth.D.row(1) *= 1.5;
-    Record record = testing::excited(truth, noise, 900, 0);
+    Record record = test::excited(truth, noise, 900, 0);
     Matrix errors = noise.normal(900, 2);
     for (Index i = 0; i < 2; ++i)
       errors.col(i) *= 0.1 * (record.y.col(i).array() - record.y.col(i).mean()).matrix().norm() /
@@ -238,11 +238,11 @@ TEST(Adaptation, FollowsEachOfTwoOutputsOfOtherScalesAndMovesTheOtherHardlyMoreT
 }
 
 TEST(Adaptation, LooksAtTheRowsThatItIsGivenAlone) {
-  testing::Noise noise(4);
-  const StateSpaceModel known = testing::random_system(noise, 3, 2, 1);
+  test::Noise noise(4);
+  const StateSpaceModel known = test::random_system(noise, 3, 2, 1);
   StateSpaceModel truth = known;
   truth.B *= 0.7;
-  const Record record = testing::excited(truth, noise, 800, 0);
+  const Record record = test::excited(truth, noise, 800, 0);
   Record spoilt = record;
   spoilt.y.bottomRows(300).array() += 5;
   const RowRange rows{0, 500};
@@ -252,4 +252,4 @@ TEST(Adaptation, LooksAtTheRowsThatItIsGivenAlone) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::adaptation_test

@@ -6,7 +6,7 @@
 #include "tests/support/naive_n4sid.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::output_error_fit_test {
 namespace {
 
 double output_error(const Response& response, const Record& record) {
@@ -15,11 +15,11 @@ double output_error(const Response& response, const Record& record) {
 }
 
 TEST(Response, RecoversBAndDAndTheOffsetExactly) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   for (const Accuracy accuracy : {Accuracy::fast, Accuracy::exact}) {
-    StateSpaceModel truth = testing::random_system(noise, 4, 2, 2);
+    StateSpaceModel truth = test::random_system(noise, 4, 2, 2);
     truth.y0 << 3, -1;
-    const Record record = testing::with_gap(testing::excited(truth, noise, 700, 0), 300, 320);
+    const Record record = test::with_gap(test::excited(truth, noise, 700, 0), 300, 320);
     const Response found = fit_response(truth.A, truth.C, true, record, record.all(), accuracy);
     EXPECT_LT((found.model.B - truth.B).norm(), 1e-7);
     EXPECT_LT((found.model.D - truth.D).norm(), 1e-7);
@@ -29,10 +29,10 @@ TEST(Response, RecoversBAndDAndTheOffsetExactly) {
 }
 
 TEST(Response, AgreesWithExplicitRegressors) {
-  testing::Noise noise(2);
-  const StateSpaceModel truth = testing::random_system(noise, 3, 2, 2);
-  const Record record = testing::with_gap(testing::excited(truth, noise, 160, 0.2), 60, 75);
-  const auto naive = testing::naive_n4sid(record, 3, 4, Weighting::moesp);
+  test::Noise noise(2);
+  const StateSpaceModel truth = test::random_system(noise, 3, 2, 2);
+  const Record record = test::with_gap(test::excited(truth, noise, 160, 0.2), 60, 75);
+  const auto naive = test::naive_n4sid(record, 3, 4, Weighting::moesp);
   for (const Accuracy accuracy : {Accuracy::fast, Accuracy::exact}) {
     const Response found =
         fit_response(naive.model.A, naive.model.C, true, record, record.all(), accuracy);
@@ -46,14 +46,14 @@ TEST(Response, AgreesWithExplicitRegressors) {
 /// A system of two inputs that differ by noise of the size `apart` times theirs.
 struct AlmostEqualInputs {
   explicit AlmostEqualInputs(double apart)
-      : truth(testing::random_system(noise, 2, 2, 1)),
-        record(testing::excited(truth, noise, 400, 0)),
+      : truth(test::random_system(noise, 2, 2, 1)),
+        record(test::excited(truth, noise, 400, 0)),
         between(noise.normal(400, 1)) {
     record.u.col(1) = record.u.col(0) + apart * between;
-    record.y = testing::simulated(truth, record.u, Vector::Zero(2));
+    record.y = test::simulated(truth, record.u, Vector::Zero(2));
   }
 
-  testing::Noise noise{3};
+  test::Noise noise{3};
   StateSpaceModel truth;
   Record record;
   Matrix between;
@@ -88,7 +88,7 @@ TEST(Response, FollowsWhatInputsThatAreAlmostEqualTellBesideNoise) {
   Record& record = inputs.record;
   Matrix alone = Matrix::Zero(400, 2);
   alone.col(1) = inputs.between;
-  record.y = testing::simulated(truth, alone, Vector::Zero(2));
+  record.y = test::simulated(truth, alone, Vector::Zero(2));
   record.y += 0.002 * record.y.norm() / 20 * inputs.noise.normal(400, 1);
   const auto error = [&](Accuracy accuracy) {
     return output_error(fit_response(truth.A, truth.C, true, record, record.all(), accuracy),
@@ -98,11 +98,11 @@ TEST(Response, FollowsWhatInputsThatAreAlmostEqualTellBesideNoise) {
 }
 
 TEST(Response, OfEqualInputsSharesTheEffect) {
-  testing::Noise noise(4);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
-  Record record = testing::excited(truth, noise, 300, 0);
+  test::Noise noise(4);
+  const StateSpaceModel truth = test::random_system(noise, 2, 2, 1);
+  Record record = test::excited(truth, noise, 300, 0);
   record.u.col(1) = record.u.col(0);
-  record.y = testing::simulated(truth, record.u, Vector::Zero(2));
+  record.y = test::simulated(truth, record.u, Vector::Zero(2));
   const Response found =
       fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::exact);
   EXPECT_LT(output_error(found, record), 1e-10);
@@ -110,9 +110,9 @@ TEST(Response, OfEqualInputsSharesTheEffect) {
 }
 
 TEST(Response, SegmentsShorterThanTheOrderDoNoHarm) {
-  testing::Noise noise(5);
-  const StateSpaceModel truth = testing::random_system(noise, 5, 1, 1);
-  Record record = testing::excited(truth, noise, 400, 0);
+  test::Noise noise(5);
+  const StateSpaceModel truth = test::random_system(noise, 5, 1, 1);
+  Record record = test::excited(truth, noise, 400, 0);
   record.segments = {{0, 2, 0}, {2, 3, 50}, {3, 400, 90}};  // starts anew at rows 2 and 3
   for (const Accuracy accuracy : {Accuracy::fast, Accuracy::exact})
     EXPECT_LT(
@@ -122,10 +122,10 @@ TEST(Response, SegmentsShorterThanTheOrderDoNoHarm) {
 }
 
 TEST(Refinement, LowersTheOutputErrorTowardsTheTruth) {
-  testing::Noise noise(6);
+  test::Noise noise(6);
   for (const Index outputs : {1, 2}) {
-    const StateSpaceModel truth = testing::random_system(noise, 3, 1, outputs, 0.9);
-    const Record record = testing::with_gap(testing::excited(truth, noise, 1500, 0.1), 600, 650);
+    const StateSpaceModel truth = test::random_system(noise, 3, 1, outputs, 0.9);
+    const Record record = test::with_gap(test::excited(truth, noise, 1500, 0.1), 600, 650);
     const Matrix A = truth.A * 0.97;  // a start that is off
     const Response start = fit_response(A, truth.C, true, record, record.all(), Accuracy::fast);
     const Response refined = refine_response(A, truth.C, true, record, record.all(), 30);
@@ -133,7 +133,7 @@ TEST(Refinement, LowersTheOutputErrorTowardsTheTruth) {
         fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::fast);
     EXPECT_LT(output_error(refined, record), output_error(start, record));
     EXPECT_LT(output_error(refined, record), 1.001 * output_error(best, record));
-    EXPECT_LT(testing::pole_distance(refined.model, truth), 0.02);
+    EXPECT_LT(test::pole_distance(refined.model, truth), 0.02);
     EXPECT_TRUE(is_stable(refined.model.A));
     EXPECT_NEAR(refined.error, output_error(refined, record), 1e-3 * refined.error)
         << "but for the state after the gap, which a free run takes from a few rows";
@@ -141,12 +141,12 @@ TEST(Refinement, LowersTheOutputErrorTowardsTheTruth) {
 }
 
 TEST(Refinement, OfNoStepsIsTheFit) {
-  testing::Noise noise(7);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 1, 1);
-  const Record record = testing::excited(truth, noise, 300, 0.1);
+  test::Noise noise(7);
+  const StateSpaceModel truth = test::random_system(noise, 2, 1, 1);
+  const Record record = test::excited(truth, noise, 300, 0.1);
   const Response fit = fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::fast);
   EXPECT_EQ(refine_response(truth.A, truth.C, true, record, record.all(), 0).model.B, fit.model.B);
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::output_error_fit_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::identification {
+namespace reident::identification::kernels_test {
 namespace {
 
 constexpr Index steps = 50;
@@ -64,4 +64,4 @@ TEST(Kernels, RunTheDualFiltersOfAnySize) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::kernels_test

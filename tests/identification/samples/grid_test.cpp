@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace reident::identification {
+namespace reident::identification::grid_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -112,4 +112,4 @@ TEST(Grid, CostsNothingForAGapOfCenturies) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::grid_test

@@ -4,15 +4,14 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::record_test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 Record two_segments() {
-  return testing::with_gap(contiguous_record(1, Matrix::Random(10, 1), Matrix::Random(10, 1)), 4,
-                           7);
+  return test::with_gap(contiguous_record(1, Matrix::Random(10, 1), Matrix::Random(10, 1)), 4, 7);
 }
 
 TEST(Record, WithoutRowsHasNoSegment) {
@@ -35,4 +34,4 @@ TEST(Record, FindsTheFirstRowAtATick) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::record_test

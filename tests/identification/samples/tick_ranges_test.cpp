@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::identification {
+namespace reident::identification::tick_ranges_test {
 namespace {
 
 TEST(TickRanges, UniteToAscendingOnesThatAreApart) {
@@ -36,4 +36,4 @@ TEST(TickRanges, LeaveOutRowsAsMissingSamplesDo) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::tick_ranges_test

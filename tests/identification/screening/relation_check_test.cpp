@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::identification {
+namespace reident::identification::relation_check_test {
 namespace {
 
 /// The residual of a balance that holds: noise, and the lag of a sensor at a load step every ten
@@ -89,4 +89,4 @@ TEST(Consistency, TellsTicksAcrossGaps) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::relation_check_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::identification {
+namespace reident::identification::sensor_screening_test {
 namespace {
 
 constexpr double pi = 3.14159265358979;
@@ -131,4 +131,4 @@ TEST(Screening, LooksAtAnalogChannelsAlone) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::sensor_screening_test

@@ -5,20 +5,20 @@
 #include "identification/search/identify.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::delays_test {
 namespace {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-StateSpaceModel delayed_system(testing::Noise& noise, const std::vector<int>& delays) {
-  return with_delay_states(testing::random_system(noise, 2, 2, 1, 0.8), delays);
+StateSpaceModel delayed_system(test::Noise& noise, const std::vector<int>& delays) {
+  return with_delay_states(test::random_system(noise, 2, 2, 1, 0.8), delays);
 }
 
 TEST(Delays, TheModelOfTheInputsAsTheyAreGivesTheSameOutputs) {
-  testing::Noise noise(1);
-  const StateSpaceModel model = testing::random_system(noise, 3, 3, 2);
+  test::Noise noise(1);
+  const StateSpaceModel model = test::random_system(noise, 3, 3, 2);
   const std::vector<int> delays{0, 4, 1};
   const Matrix u = noise.normal(60, 3);
   Matrix shifted = Matrix::Zero(60, 3);
@@ -28,14 +28,14 @@ TEST(Delays, TheModelOfTheInputsAsTheyAreGivesTheSameOutputs) {
   }
   const StateSpaceModel with_states = with_delay_states(model, delays);
   EXPECT_EQ(with_states.order(), 8);
-  const Matrix expected = testing::simulated(model, shifted, Vector::Zero(3));
-  EXPECT_LT((testing::simulated(with_states, u, Vector::Zero(8)) - expected).norm(), 1e-12);
+  const Matrix expected = test::simulated(model, shifted, Vector::Zero(3));
+  EXPECT_LT((test::simulated(with_states, u, Vector::Zero(8)) - expected).norm(), 1e-12);
 }
 
 TEST(Delays, RowsBeforeTheLongestDelayAreLeftOutOfEachSegment) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   const Record record =
-      testing::with_gap(contiguous_record(1, noise.normal(30, 2), noise.normal(30, 1)), 10, 13);
+      test::with_gap(contiguous_record(1, noise.normal(30, 2), noise.normal(30, 1)), 10, 13);
   const Record shifted = delayed(record, record.all(), {2, 0}, 3);
   ASSERT_EQ(shifted.rows(), 27 - 2 * 3);
   EXPECT_THAT(shifted.segments, ElementsAre(Segment{0, 7, 3}, Segment{7, 21, 16}));
@@ -46,9 +46,9 @@ TEST(Delays, RowsBeforeTheLongestDelayAreLeftOutOfEachSegment) {
 }
 
 TEST(Delays, AreFoundAndBecomeStates) {
-  testing::Noise noise(3);
+  test::Noise noise(3);
   const std::vector<int> delays{7, 0};
-  const Record record = testing::excited(delayed_system(noise, delays), noise, 1500, 0.02);
+  const Record record = test::excited(delayed_system(noise, delays), noise, 1500, 0.02);
   IdentifyOptions options;
   options.max_input_delay = 10;
   options.max_order = 4;
@@ -61,9 +61,9 @@ TEST(Delays, AreFoundAndBecomeStates) {
 }
 
 TEST(Delays, ThatAreGivenAreTaken) {
-  testing::Noise noise(4);
+  test::Noise noise(4);
   const std::vector<int> delays{0, 5};
-  const Record record = testing::excited(delayed_system(noise, delays), noise, 800, 0);
+  const Record record = test::excited(delayed_system(noise, delays), noise, 800, 0);
   IdentifyOptions options;
   options.input_delays = delays;
   const IdentifyResult result = identify(record, record.all(), options);
@@ -75,8 +75,8 @@ TEST(Delays, ThatAreGivenAreTaken) {
 }
 
 TEST(Delays, WhereThereIsNoneNoneIsFound) {
-  testing::Noise noise(5);
-  const Record record = testing::excited(testing::random_system(noise, 3, 2, 1), noise, 1000, 0.05);
+  test::Noise noise(5);
+  const Record record = test::excited(test::random_system(noise, 3, 2, 1), noise, 1000, 0.05);
   IdentifyOptions options;
   options.max_input_delay = 4;
   const IdentifyResult result = identify(record, record.all(), options);
@@ -85,4 +85,4 @@ TEST(Delays, WhereThereIsNoneNoneIsFound) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::delays_test

@@ -13,7 +13,7 @@
 #include "tests/support/same_bits.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::determinism_test {
 namespace {
 
 using Task = std::function<void(std::size_t)>;
@@ -51,11 +51,11 @@ struct Scenario {
 };
 
 std::vector<Scenario> scenarios() {
-  testing::Noise noise(31);
-  const StateSpaceModel truth = testing::random_system(noise, 4, 2, 2);
-  const Record noisy = testing::with_gap(testing::excited(truth, noise, 900, 0.1), 400, 430);
+  test::Noise noise(31);
+  const StateSpaceModel truth = test::random_system(noise, 4, 2, 2);
+  const Record noisy = test::with_gap(test::excited(truth, noise, 900, 0.1), 400, 430);
   std::vector<Scenario> all{{"noisy, with a gap", noisy, {}},
-                            {"noise-free", testing::excited(truth, noise, 700, 0), {}},
+                            {"noise-free", test::excited(truth, noise, 700, 0), {}},
                             {"a budget for a few recipes", noisy, {}},
                             {"a given order", noisy, {}},
                             {"inputs that explain nothing", noisy, {}},
@@ -64,9 +64,9 @@ std::vector<Scenario> scenarios() {
   all[3].options.order = 4;
   all[4].record.y = noise.normal(noisy.rows(), 2);
   all[5].options.max_input_delay = 3;
-  StateSpaceModel unstable = testing::random_system(noise, 1, 1, 1);
+  StateSpaceModel unstable = test::random_system(noise, 1, 1, 1);
   unstable.A(0, 0) = 1.002;
-  all.push_back({"unstable on every fold", testing::excited(unstable, noise, 900, 0), {}});
+  all.push_back({"unstable on every fold", test::excited(unstable, noise, 900, 0), {}});
   all.back().options.order = 1;
   for (Scenario& scenario : all) scenario.options.max_order = 5;
   return all;
@@ -83,8 +83,7 @@ TEST(Determinism, NeitherTheOrderOfTheTasksNorTheThreadsChangeABit) {
     for (const auto& [runner, for_each] : runners) {
       IdentifyOptions options = scenario.options;
       options.for_each = for_each;
-      EXPECT_TRUE(
-          testing::same_bits(identify(scenario.record, scenario.record.all(), options), alone))
+      EXPECT_TRUE(test::same_bits(identify(scenario.record, scenario.record.all(), options), alone))
           << scenario.name << ", " << runner;
     }
   }
@@ -92,9 +91,9 @@ TEST(Determinism, NeitherTheOrderOfTheTasksNorTheThreadsChangeABit) {
 
 TEST(Determinism, WhereTheRecordStandsInMemoryChangesNoBit) {
   // Kernels that treated aligned and other columns differently would be seen here.
-  testing::Noise noise(32);
-  const StateSpaceModel truth = testing::random_system(noise, 3, 3, 1);
-  const Record record = testing::excited(truth, noise, 800, 0.1);
+  test::Noise noise(32);
+  const StateSpaceModel truth = test::random_system(noise, 3, 3, 1);
+  const Record record = test::excited(truth, noise, 800, 0.1);
   const IdentifyResult alone = identify(record, record.all(), {});
   for (const Index before : {1, 2, 3, 5}) {
     Record later = record;
@@ -105,18 +104,18 @@ TEST(Determinism, WhereTheRecordStandsInMemoryChangesNoBit) {
     later.u.topRows(before).setConstant(7);
     later.y.topRows(before).setConstant(-7);
     later.segments = {{0, later.rows(), -before}};
-    EXPECT_TRUE(testing::same_bits(identify(later, {before, later.rows()}, {}), alone)) << before;
+    EXPECT_TRUE(test::same_bits(identify(later, {before, later.rows()}, {}), alone)) << before;
   }
 }
 
 TEST(Determinism, TheComparisonSeesALastDigitOfOneSample) {
-  testing::Noise noise(33);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 1, 1);
-  Record record = testing::excited(truth, noise, 600, 0.1);
+  test::Noise noise(33);
+  const StateSpaceModel truth = test::random_system(noise, 2, 1, 1);
+  Record record = test::excited(truth, noise, 600, 0.1);
   const IdentifyResult before = identify(record, record.all(), {});
   record.y(300, 0) = std::nextafter(record.y(300, 0), 1e9);
-  EXPECT_FALSE(testing::same_bits(identify(record, record.all(), {}), before));
+  EXPECT_FALSE(test::same_bits(identify(record, record.all(), {}), before));
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::determinism_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::folds_test {
 namespace {
 
 TEST(HeldOut, TheFoldsHoldOutTwoFifthsOfEachEndInTwoParts) {
@@ -32,9 +32,9 @@ TEST(HeldOut, AFoldIsCutWhereItsPartsMeet) {
 }
 
 TEST(HeldOut, TheErrorOfTheTruthIsTheNoise) {
-  testing::Noise noise(1);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 1, 1, 0.8);
-  Record record = testing::excited(truth, noise, 6000, 0);
+  test::Noise noise(1);
+  const StateSpaceModel truth = test::random_system(noise, 2, 1, 1, 0.8);
+  Record record = test::excited(truth, noise, 6000, 0);
   record.y += 0.1 * noise.normal(6000, 1);
   for (const Fold& fold : folds_of(6000, 0.4)) {
     const HeldOutErrors errors = held_out_errors({truth, Vector::Zero(2), 0}, record, fold);
@@ -44,9 +44,9 @@ TEST(HeldOut, TheErrorOfTheTruthIsTheNoise) {
 }
 
 TEST(HeldOut, TheRecentOperatingPointFollowsAZeroThatMoved) {
-  testing::Noise noise(2);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 1, 1, 0.8);
-  Record record = testing::excited(truth, noise, 1000, 0);
+  test::Noise noise(2);
+  const StateSpaceModel truth = test::random_system(noise, 2, 1, 1, 0.8);
+  Record record = test::excited(truth, noise, 1000, 0);
   record.y.bottomRows(700).array() += 2;
   const Fold fold{{0, 800}, {800, 1000}};
   const HeldOutErrors errors = held_out_errors({truth, Vector::Zero(2), 0}, record, fold);
@@ -55,12 +55,12 @@ TEST(HeldOut, TheRecentOperatingPointFollowsAZeroThatMoved) {
 }
 
 TEST(HeldOut, AModelThatLeavesTheNumbersHasAnInfiniteError) {
-  testing::Noise noise(3);
-  StateSpaceModel model = testing::random_system(noise, 1, 1, 1);
-  const Record record = testing::excited(model, noise, 2000, 0);
+  test::Noise noise(3);
+  StateSpaceModel model = test::random_system(noise, 1, 1, 1);
+  const Record record = test::excited(model, noise, 2000, 0);
   model.A(0, 0) = 4;
   EXPECT_TRUE(std::isinf(quick_held_out_errors(model, record, {{0, 1000}, {1000, 2000}}).whole));
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::folds_test

@@ -15,7 +15,7 @@
 #include "identification/search/identify.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::hard_cases_test {
 namespace {
 
 /// Rows of the record and the true system's own free run over them. The first two thirds identify.
@@ -30,7 +30,7 @@ struct Scenario {
 struct HardCase {
   std::string name;
   double allowance;  // [% of fit] that the model may stay behind the truth
-  std::function<Scenario(testing::Noise&)> make;
+  std::function<Scenario(test::Noise&)> make;
 };
 
 void PrintTo(const HardCase& hard_case, std::ostream* out) {
@@ -42,8 +42,8 @@ double deviation(const Matrix& channel) {
 }
 
 Scenario measured(const StateSpaceModel& system, const Matrix& u, double noise_share,
-                  testing::Noise& noise) {
-  const Matrix truth = testing::simulated(system, u, Vector::Zero(system.order()));
+                  test::Noise& noise) {
+  const Matrix truth = test::simulated(system, u, Vector::Zero(system.order()));
   Matrix y = truth;
   for (Index q = 0; q < y.cols(); ++q)
     y.col(q) += noise_share * deviation(truth.col(q)) * noise.normal(y.rows(), 1);
@@ -57,7 +57,7 @@ Matrix low_pass(Matrix x, double a) {
 }
 
 /// White levels, each held for `rows` rows, as a telecommand holds them.
-Matrix held_levels(testing::Noise& noise, Index rows, Index inputs, Index held) {
+Matrix held_levels(test::Noise& noise, Index rows, Index inputs, Index held) {
   const Matrix levels = noise.normal((rows + held - 1) / held, inputs);
   Matrix u(rows, inputs);
   for (Index k = 0; k < rows; ++k) u.row(k) = levels.row(k / held);
@@ -68,7 +68,7 @@ Matrix held_levels(testing::Noise& noise, Index rows, Index inputs, Index held) 
 struct Pole {
   double modulus, angle = 0;
 };
-StateSpaceModel system_of(testing::Noise& noise, const std::vector<Pole>& poles, Index inputs,
+StateSpaceModel system_of(test::Noise& noise, const std::vector<Pole>& poles, Index inputs,
                           Index outputs = 1) {
   Index n = 0;
   for (const Pole& pole : poles) n += pole.angle == 0 ? 1 : 2;
@@ -108,22 +108,22 @@ Matrix with_8_bits(Matrix channels) {
   return channels;
 }
 
-Scenario strongly_coloured(testing::Noise& noise) {
+Scenario strongly_coloured(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.9}, {0.8, 0.6}}, 2);
   return measured(system, low_pass(noise.normal(6000, 2), 0.99), 0.02, noise);
 }
 
-Scenario twice_low_passed(testing::Noise& noise) {
+Scenario twice_low_passed(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.95}, {0.7}}, 2);
   return measured(system, low_pass(low_pass(noise.normal(9000, 2), 0.95), 0.95), 0.02, noise);
 }
 
-Scenario lightly_damped(testing::Noise& noise) {
+Scenario lightly_damped(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.999, 0.3}, {0.999, 1.2}}, 1);
   return measured(system, noise.normal(9000, 1), 0.02, noise);
 }
 
-Scenario near_integrator(testing::Noise& noise) {
+Scenario near_integrator(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.9995}, {0.6}}, 2);
   return measured(system, noise.normal(9000, 2), 0.02, noise);
 }
@@ -134,19 +134,19 @@ Matrix with_sum(const Matrix& u) {
   return all;
 }
 
-Scenario kirchhoff_exact(testing::Noise& noise) {
+Scenario kirchhoff_exact(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.9}, {0.8, 0.6}}, 3);
   return measured(system, with_sum(noise.normal(3000, 2)), 0.05, noise);
 }
 
-Scenario kirchhoff_but_for_noise(testing::Noise& noise) {
+Scenario kirchhoff_but_for_noise(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.9}, {0.8, 0.6}}, 3);
   Matrix u = with_sum(noise.normal(3000, 2));
   u.col(2) += 1e-3 * noise.normal(3000, 1);
   return measured(system, u, 0.05, noise);
 }
 
-Scenario eight_bits(testing::Noise& noise) {
+Scenario eight_bits(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.95}, {0.8, 0.6}}, 2);
   Scenario s = measured(system, noise.normal(3000, 2), 0, noise);
   s.record.u = with_8_bits(s.record.u);
@@ -154,7 +154,7 @@ Scenario eight_bits(testing::Noise& noise) {
   return s;
 }
 
-Scenario a_few_levels(testing::Noise& noise) {
+Scenario a_few_levels(test::Noise& noise) {
   // A bus voltage that its converter shows in some ten levels.
   const StateSpaceModel system = system_of(noise, {{0.95}, {0.7}}, 1);
   Scenario s = measured(system, held_levels(noise, 6000, 1, 20), 0, noise);
@@ -163,7 +163,7 @@ Scenario a_few_levels(testing::Noise& noise) {
   return s;
 }
 
-Scenario large_offsets(testing::Noise& noise) {
+Scenario large_offsets(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.95}, {0.8, 0.6}}, 2);
   Scenario s = measured(system, noise.normal(3000, 2), 0.02, noise);
   s.record.u.array() += 1e6;
@@ -172,7 +172,7 @@ Scenario large_offsets(testing::Noise& noise) {
   return s;
 }
 
-Scenario closed_loop(testing::Noise& noise) {
+Scenario closed_loop(test::Noise& noise) {
   // u = r - 3 y of the sample before: through it the noise reaches the input, and methods that take
   // future inputs as given are biased. The free run of the truth takes the same inputs.
   StateSpaceModel system = system_of(noise, {{0.95}, {0.5}}, 1);
@@ -193,12 +193,12 @@ Scenario closed_loop(testing::Noise& noise) {
   return s;
 }
 
-Scenario noise_free(testing::Noise& noise) {
+Scenario noise_free(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.98}, {0.9, 0.4}, {0.8, 1.5}}, 2, 2);
   return measured(system, noise.normal(1500, 2), 0, noise);
 }
 
-Scenario many_short_segments(testing::Noise& noise) {
+Scenario many_short_segments(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.9}, {0.8, 0.6}}, 2);
   Scenario s = measured(system, noise.normal(6000, 2), 0.05, noise);
   // Passes of 40 rows, 10 rows apart.
@@ -214,7 +214,7 @@ Scenario many_short_segments(testing::Noise& noise) {
   return s;
 }
 
-Scenario different_scales(testing::Noise& noise) {
+Scenario different_scales(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.95}, {0.8, 0.6}}, 3, 2);
   Scenario s = measured(system, noise.normal(3000, 3), 0.02, noise);
   s.record.u.col(0) *= 1e-9;
@@ -226,26 +226,26 @@ Scenario different_scales(testing::Noise& noise) {
   return s;
 }
 
-Scenario slow_at_a_fast_rate(testing::Noise& noise) {
+Scenario slow_at_a_fast_rate(test::Noise& noise) {
   // Time constants of 300 and 1000 samples, commands held for 200.
   const StateSpaceModel system =
       system_of(noise, {{std::exp(-1 / 300.0)}, {std::exp(-1 / 1000.0)}}, 2);
   return measured(system, held_levels(noise, 24000, 2, 200), 0.02, noise);
 }
 
-Scenario two_time_scales(testing::Noise& noise) {
+Scenario two_time_scales(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{std::exp(-1.0)}, {std::exp(-1 / 1000.0)}}, 2);
   return measured(system, held_levels(noise, 24000, 2, 5), 0.02, noise);
 }
 
-Scenario on_and_off(testing::Noise& noise) {
+Scenario on_and_off(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.97}, {0.8}}, 2);
   Matrix u = held_levels(noise, 6000, 2, 25);
   u = (u.array() > 0).cast<double>();
   return measured(system, u, 0.05, noise);
 }
 
-Scenario dead_time(testing::Noise& noise) {
+Scenario dead_time(test::Noise& noise) {
   const StateSpaceModel system = system_of(noise, {{0.9}, {0.6}}, 1);
   const Index rows = 6000, delay = 5;
   const Matrix u = noise.normal(rows + delay, 1);
@@ -254,7 +254,7 @@ Scenario dead_time(testing::Noise& noise) {
   return s;
 }
 
-Scenario drifting_zero(testing::Noise& noise) {
+Scenario drifting_zero(test::Noise& noise) {
   // Over all rows the zero moves by as much as the output's own deviation. The truth here takes the
   // zero to be where it stood on average in the later half of the rows to identify from.
   const StateSpaceModel system = system_of(noise, {{0.9}, {0.8, 0.6}}, 2);
@@ -291,7 +291,7 @@ const HardCase cases[] = {
 class HardCases : public ::testing::TestWithParam<HardCase> {};
 
 TEST_P(HardCases, FreeRunOnUnseenRowsIsNearlyThatOfTheTruth) {
-  testing::Noise noise(41);
+  test::Noise noise(41);
   const Scenario s = GetParam().make(noise);
   const IdentifyResult result = identify(s.record, s.seen(), {});
   if (const auto* verdict = std::get_if<Verdict>(&result))
@@ -311,4 +311,4 @@ INSTANTIATE_TEST_SUITE_P(Synthetic, HardCases, ::testing::ValuesIn(cases),
                          [](const auto& instance) { return instance.param.name; });
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::hard_cases_test

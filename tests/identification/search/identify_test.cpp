@@ -2,12 +2,13 @@
 
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <gmock/gmock.h>
 
 #include "tests/support/naive_n4sid.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::identify_test {
 namespace {
 
 using ::testing::Contains;
@@ -29,17 +30,17 @@ Identified expect_model(const Record& record, RowRange rows, const IdentifyOptio
 }
 
 TEST(Identify, WithoutNoiseTheModelIsTheSystem) {
-  testing::Noise noise(11);
+  test::Noise noise(11);
   struct {
     Index order, inputs, outputs;
   } const cases[] = {{1, 1, 1}, {2, 3, 1}, {3, 1, 2}, {4, 2, 1}, {6, 2, 3}};
   for (const auto& c : cases) {
-    const StateSpaceModel truth = testing::random_system(noise, c.order, c.inputs, c.outputs);
-    const Record record = testing::excited(truth, noise, 1200, 0);
+    const StateSpaceModel truth = test::random_system(noise, c.order, c.inputs, c.outputs);
+    const Record record = test::excited(truth, noise, 1200, 0);
     const Identified found = expect_model(record, record.all());
     EXPECT_EQ(found.model.order(), c.order);
-    EXPECT_LT(testing::pole_distance(found.model, truth), 1e-5) << c.order;
-    EXPECT_LT(testing::markov_distance(found.model, truth), 1e-5) << c.order;
+    EXPECT_LT(test::pole_distance(found.model, truth), 1e-5) << c.order;
+    EXPECT_LT(test::markov_distance(found.model, truth), 1e-5) << c.order;
     EXPECT_LT(run_error(found, record).mrse(), 1e-3);
     EXPECT_LT(found.held_out_error.value(), 1e-5);
     EXPECT_NEAR(found.spectral_radius, spectral_radius(truth), 1e-5);
@@ -47,13 +48,13 @@ TEST(Identify, WithoutNoiseTheModelIsTheSystem) {
 }
 
 TEST(Identify, AModelThatIsTooSlowGivesWayToOneThatIsNot) {
-  testing::Noise noise(14);
-  StateSpaceModel truth = testing::random_system(noise, 2, 1, 1);
+  test::Noise noise(14);
+  StateSpaceModel truth = test::random_system(noise, 2, 1, 1);
   truth.A << std::exp(-1.0 / 20'000), 0, 0, 0.5;
   truth.B << 0.02, 1;
   truth.C << 1, 1;
   truth.D << 0;
-  const Record record = testing::excited(truth, noise, 2000, 0.05);
+  const Record record = test::excited(truth, noise, 2000, 0.05);
   IdentifyOptions options;
   options.max_order = 3;
   EXPECT_GT(slowest_time_constant_s(expect_model(record, record.all(), options).model), 2000);
@@ -70,8 +71,8 @@ TEST(Identify, AModelThatIsTooSlowGivesWayToOneThatIsNot) {
 }
 
 TEST(Identify, AModelThatIsTooSlowDoesNotGiveWayToOneThatExplainsNothing) {
-  testing::Noise noise(15);
-  StateSpaceModel truth = testing::random_system(noise, 1, 1, 1);
+  test::Noise noise(15);
+  StateSpaceModel truth = test::random_system(noise, 1, 1, 1);
   truth.A << std::exp(-1.0 / 20'000);
   truth.B << 0.02;
   truth.C << 1;
@@ -79,30 +80,28 @@ TEST(Identify, AModelThatIsTooSlowDoesNotGiveWayToOneThatExplainsNothing) {
   IdentifyOptions options;
   options.longest_time_constant_s = 20;
   const Identified found =
-      expect_model(testing::excited(truth, noise, 2000, 0.05), {0, 2000}, options);
+      expect_model(test::excited(truth, noise, 2000, 0.05), {0, 2000}, options);
   EXPECT_GT(slowest_time_constant_s(found.model), 2000);
 }
 
 TEST(Identify, WithNoiseTheErrorFallsWithTheRows) {
-  testing::Noise noise(12);
-  const StateSpaceModel truth = testing::random_system(noise, 3, 2, 1, 0.9);
+  test::Noise noise(12);
+  const StateSpaceModel truth = test::random_system(noise, 3, 2, 1, 0.9);
   IdentifyOptions options;
   options.order = 3;
-  const Record few = testing::excited(truth, noise, 500, 0.2);
-  const Record many = testing::excited(truth, noise, 20000, 0.2);
-  const double coarse =
-      testing::markov_distance(expect_model(few, few.all(), options).model, truth);
-  const double fine =
-      testing::markov_distance(expect_model(many, many.all(), options).model, truth);
+  const Record few = test::excited(truth, noise, 500, 0.2);
+  const Record many = test::excited(truth, noise, 20000, 0.2);
+  const double coarse = test::markov_distance(expect_model(few, few.all(), options).model, truth);
+  const double fine = test::markov_distance(expect_model(many, many.all(), options).model, truth);
   EXPECT_LT(coarse, 0.25);
   EXPECT_LT(fine, 0.03);
   EXPECT_LT(fine, coarse);
 }
 
 TEST(Identify, ReadsNothingOutsideTheRowsAsked) {
-  testing::Noise noise(13);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 1, 1);
-  Record record = testing::excited(truth, noise, 900, 0.05);
+  test::Noise noise(13);
+  const StateSpaceModel truth = test::random_system(noise, 2, 1, 1);
+  Record record = test::excited(truth, noise, 900, 0.05);
   const Identified before = expect_model(record, {200, 700});
   const double nan = std::nan("");
   record.u.topRows(200).setConstant(nan);
@@ -116,9 +115,9 @@ TEST(Identify, ReadsNothingOutsideTheRowsAsked) {
 }
 
 TEST(Identify, FitsNothingToTheRowsThatItChoosesBy) {
-  testing::Noise noise(31);
-  const StateSpaceModel truth = testing::random_system(noise, 3, 2, 1, 0.9);
-  Record record = testing::excited(truth, noise, 1600, 0.1);
+  test::Noise noise(31);
+  const StateSpaceModel truth = test::random_system(noise, 3, 2, 1, 0.9);
+  Record record = test::excited(truth, noise, 1600, 0.1);
   IdentifyOptions options;
   options.tune_rows = 600;
   const Identified chosen = expect_model(record, record.all(), options);
@@ -147,9 +146,9 @@ TEST(Identify, FitsNothingToTheRowsThatItChoosesBy) {
 }
 
 TEST(Identify, GivesTheSameBitsEveryTime) {
-  testing::Noise noise(14);
-  const StateSpaceModel truth = testing::random_system(noise, 3, 2, 2);
-  const Record record = testing::excited(truth, noise, 800, 0.1);
+  test::Noise noise(14);
+  const StateSpaceModel truth = test::random_system(noise, 3, 2, 2);
+  const Record record = test::excited(truth, noise, 800, 0.1);
   const Identified first = expect_model(record, record.all());
   const Identified second = expect_model(record, record.all());
   EXPECT_EQ(first.model.A, second.model.A);
@@ -158,9 +157,9 @@ TEST(Identify, GivesTheSameBitsEveryTime) {
 }
 
 TEST(Identify, AnOperatingPointAMillionTimesTheSignalChangesNothing) {
-  testing::Noise noise(15);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
-  const Record centred = testing::excited(truth, noise, 1000, 0.02);
+  test::Noise noise(15);
+  const StateSpaceModel truth = test::random_system(noise, 2, 2, 1);
+  const Record centred = test::excited(truth, noise, 1000, 0.02);
   Record offset = centred;
   offset.u.array() += 1e6;
   offset.y.array() -= 3e6;
@@ -168,14 +167,14 @@ TEST(Identify, AnOperatingPointAMillionTimesTheSignalChangesNothing) {
   options.order = 2;
   const Identified a = expect_model(centred, centred.all(), options);
   const Identified b = expect_model(offset, offset.all(), options);
-  EXPECT_LT(testing::markov_distance(b.model, a.model), 1e-6);
+  EXPECT_LT(test::markov_distance(b.model, a.model), 1e-6);
   EXPECT_NEAR(run_error(a, centred).fit(), run_error(b, offset).fit(), 1e-4);
 }
 
 TEST(Identify, UnitsChangeNothing) {
-  testing::Noise noise(16);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 2);
-  const Record si = testing::excited(truth, noise, 800, 0.05);
+  test::Noise noise(16);
+  const StateSpaceModel truth = test::random_system(noise, 2, 2, 2);
+  const Record si = test::excited(truth, noise, 800, 0.05);
   Record milli = si;
   milli.u.col(0) *= 1e3;
   milli.y.col(1) *= 1e-9;
@@ -186,24 +185,24 @@ TEST(Identify, UnitsChangeNothing) {
   b.model.D.col(0) *= 1e3;
   b.model.C.row(1) *= 1e9;
   b.model.D.row(1) *= 1e9;
-  EXPECT_LT(testing::markov_distance(b.model, a.model), 1e-7);
+  EXPECT_LT(test::markov_distance(b.model, a.model), 1e-7);
 }
 
 TEST(Identify, GapsCostRowsAndNotAccuracy) {
-  testing::Noise noise(17);
-  const StateSpaceModel truth = testing::random_system(noise, 3, 1, 1, 0.9);
-  const Record whole = testing::excited(truth, noise, 3000, 0);
-  Record record = testing::with_gap(testing::with_gap(whole, 1000, 1100), 0, 0);
+  test::Noise noise(17);
+  const StateSpaceModel truth = test::random_system(noise, 3, 1, 1, 0.9);
+  const Record whole = test::excited(truth, noise, 3000, 0);
+  Record record = test::with_gap(test::with_gap(whole, 1000, 1100), 0, 0);
   record.segments = {{0, 1000, 0}, {1000, 2900, 1100}};
   const Identified found = expect_model(record, record.all());
-  EXPECT_LT(testing::markov_distance(found.model, truth), 1e-5);
+  EXPECT_LT(test::markov_distance(found.model, truth), 1e-5);
 }
 
 TEST(Identify, TheOrderOfSegmentsDoesNotMatterForAGivenChoice) {
-  testing::Noise noise(18);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 1, 1, 0.9);
-  const Record a = testing::excited(truth, noise, 600, 0.1);
-  const Record b = testing::excited(truth, noise, 600, 0.1);
+  test::Noise noise(18);
+  const StateSpaceModel truth = test::random_system(noise, 2, 1, 1, 0.9);
+  const Record a = test::excited(truth, noise, 600, 0.1);
+  const Record b = test::excited(truth, noise, 600, 0.1);
   const auto join = [](const Record& first, const Record& second) {
     Record joined{1, Matrix(1200, 1), Matrix(1200, 1), {{0, 600, 0}, {600, 1200, 5000}}};
     joined.u << first.u, second.u;
@@ -215,15 +214,15 @@ TEST(Identify, TheOrderOfSegmentsDoesNotMatterForAGivenChoice) {
   options.horizon = 10;
   options.weighting = Weighting::cva;
   const Record ab = join(a, b), ba = join(b, a);
-  EXPECT_LT(testing::markov_distance(expect_model(ab, ab.all(), options).model,
-                                     expect_model(ba, ba.all(), options).model),
+  EXPECT_LT(test::markov_distance(expect_model(ab, ab.all(), options).model,
+                                  expect_model(ba, ba.all(), options).model),
             1e-9);
 }
 
 TEST(Identify, HonoursWhatIsFixed) {
-  testing::Noise noise(19);
-  const StateSpaceModel truth = testing::random_system(noise, 3, 1, 1);
-  const Record record = testing::excited(truth, noise, 800, 0.1);
+  test::Noise noise(19);
+  const StateSpaceModel truth = test::random_system(noise, 3, 1, 1);
+  const Record record = test::excited(truth, noise, 800, 0.1);
   IdentifyOptions options;
   options.order = 5;
   options.horizon = 9;
@@ -235,9 +234,9 @@ TEST(Identify, HonoursWhatIsFixed) {
 }
 
 TEST(Identify, TellsTheRangeAndThePhases) {
-  testing::Noise noise(20);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
-  Record record = testing::excited(truth, noise, 600, 0.1);
+  test::Noise noise(20);
+  const StateSpaceModel truth = test::random_system(noise, 2, 2, 1);
+  Record record = test::excited(truth, noise, 600, 0.1);
   record.u(300, 1) = 17;
   IdentifyOptions options;
   std::vector<std::string> phases;
@@ -249,11 +248,11 @@ TEST(Identify, TellsTheRangeAndThePhases) {
 }
 
 TEST(Identify, ADeadInputIsLeftOutWithAWarning) {
-  testing::Noise noise(21);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 2, 1);
-  Record record = testing::excited(truth, noise, 800, 0);
+  test::Noise noise(21);
+  const StateSpaceModel truth = test::random_system(noise, 2, 2, 1);
+  Record record = test::excited(truth, noise, 800, 0);
   record.u.col(0).setConstant(0.1);
-  record.y = testing::simulated(truth, record.u, Vector::Zero(2));
+  record.y = test::simulated(truth, record.u, Vector::Zero(2));
   const Identified found = expect_model(record, record.all());
   EXPECT_THAT(found.warnings, ::testing::Contains(HasSubstr("input 1 is constant")));
   EXPECT_TRUE(found.model.B.col(0).isZero());
@@ -262,11 +261,11 @@ TEST(Identify, ADeadInputIsLeftOutWithAWarning) {
 }
 
 TEST(Identify, AnInputThatOthersExplainIsNamedAndLeftOut) {
-  testing::Noise noise(22);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 3, 1);
-  Record record = testing::excited(truth, noise, 900, 0);
+  test::Noise noise(22);
+  const StateSpaceModel truth = test::random_system(noise, 2, 3, 1);
+  Record record = test::excited(truth, noise, 900, 0);
   record.u.col(2) = record.u.col(0) + record.u.col(1);  // I_BUS = I_SG2 + I_BDROUT
-  record.y = testing::simulated(truth, record.u, Vector::Zero(2));
+  record.y = test::simulated(truth, record.u, Vector::Zero(2));
   const Identified found = expect_model(record, record.all());
   EXPECT_THAT(
       found.warnings,
@@ -276,9 +275,9 @@ TEST(Identify, AnInputThatOthersExplainIsNamedAndLeftOut) {
 }
 
 TEST(Identify, AnOutputThatDriftsIsMetWhereItIsNow) {
-  testing::Noise noise(23);
-  const StateSpaceModel truth = testing::random_system(noise, 2, 1, 1, 0.8);
-  Record record = testing::excited(truth, noise, 1500, 0.02);
+  test::Noise noise(23);
+  const StateSpaceModel truth = test::random_system(noise, 2, 1, 1, 0.8);
+  Record record = test::excited(truth, noise, 1500, 0.02);
   for (Index k = 0; k < 1500; ++k) record.y(k, 0) += 2e-3 * double(k);
   const Identified found = expect_model(record, {0, 1000});
   const Score later = score_free_run(found.model, record, {0, 1500}, {1000, 1100}, found.x0);
@@ -289,9 +288,9 @@ TEST(Identify, AnOutputThatDriftsIsMetWhereItIsNow) {
 }
 
 TEST(Identify, SurvivesHardRecords) {
-  testing::Noise noise(24);
-  const StateSpaceModel truth = testing::random_system(noise, 4, 2, 1, 0.999);
-  const Record base = testing::excited(truth, noise, 1500, 0.02);
+  test::Noise noise(24);
+  const StateSpaceModel truth = test::random_system(noise, 4, 2, 1, 0.999);
+  const Record base = test::excited(truth, noise, 1500, 0.02);
   const auto expect_a_stable_model_or_a_verdict = [](const Record& record, const char* what) {
     const IdentifyResult result = identify(record, record.all(), {});
     if (const auto* found = std::get_if<Identified>(&result)) {
@@ -308,7 +307,7 @@ TEST(Identify, SurvivesHardRecords) {
   record = base;
   for (Index k = 1; k < 1500; ++k)
     record.u.row(k) = 0.99 * record.u.row(k - 1) + 0.01 * base.u.row(k);
-  record.y = testing::simulated(truth, record.u, Vector::Zero(4));
+  record.y = test::simulated(truth, record.u, Vector::Zero(4));
   expect_a_stable_model_or_a_verdict(record, "a strongly coloured input");
   for (Index k = 1; k < 1500; ++k) record.y.row(k) += record.y.row(k - 1);
   expect_a_stable_model_or_a_verdict(record, "an integrator");
@@ -359,9 +358,9 @@ TEST(Identify, AgreesWithOctave) {
   EXPECT_NEAR(std::abs(pole.imag()), 0.3709234501, 1e-4);
   Matrix octave(1, 6);
   octave << -0.0001487125378, 0.9921811789, 2.00434772, 2.309507184, 2.059509326, 1.471788102;
-  EXPECT_LT((testing::markov_parameters(found.model, 6) - octave).norm(), 0.02 * octave.norm())
+  EXPECT_LT((test::markov_parameters(found.model, 6) - octave).norm(), 0.02 * octave.norm())
       << "B and D are fitted to the free run here, to the state equation there";
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::identify_test

@@ -4,12 +4,13 @@
 #include <complex>
 #include <vector>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "identification/search/identify.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::octave_test {
 namespace {
 
 /// filter(b, a, u) with a(1) = 1 and as many coefficients in both.
@@ -38,7 +39,7 @@ void expect_pole(const StateSpaceModel& model, std::complex<double> octave) {
 /// `octave` is [d, c*b, c*a*b, c*a^2*b]. B and D are fitted to the free run here, to the state
 /// equation there.
 void expect_markov_parameters(const StateSpaceModel& model, const Matrix& octave) {
-  EXPECT_LT((testing::markov_parameters(model, 4) - octave).norm(), 0.02 * octave.norm());
+  EXPECT_LT((test::markov_parameters(model, 4) - octave).norm(), 0.02 * octave.norm());
 }
 
 /// pkg load control; z of generated() with 800 rows, 4 columns; u = z(:,1:2);
@@ -50,7 +51,7 @@ void expect_markov_parameters(const StateSpaceModel& model, const Matrix& octave
 /// b = sys.b./su; c = sys.c.*sy'; d = sys.d.*sy'./su;
 /// eig(sys.a), [d, c*b, c*sys.a*b, c*sys.a^2*b]
 TEST(Octave, AgreesOnTwoInputsAndTwoOutputs) {
-  const Matrix z = testing::generated(800, 4);
+  const Matrix z = test::generated(800, 4);
   const Vector x = filter({0, 1}, {1, -0.8}, z.col(1));
   Matrix y(800, 2);
   y.col(0) = filter({0, 1, 0.5}, {1, -1.5, 0.7}, z.col(0)) + 0.3 * x + 0.2 * z.col(2);
@@ -75,9 +76,9 @@ TEST(Octave, AgreesOnTwoInputsAndTwoOutputs) {
 /// sys = n4sid(iddata({y(p); y(q)}, {u(p); u(q)}, 1), 'n', 2, 's', 10, 'alg', 'q');
 /// eig(sys.a), [sys.d, sys.c*sys.b, sys.c*sys.a*sys.b, sys.c*sys.a^2*sys.b]
 TEST(Octave, AgreesOnTwoSegments) {
-  const Matrix z = testing::generated(700, 2);
+  const Matrix z = test::generated(700, 2);
   const Matrix y = filter({0.2, 1, 0.5}, {1, -1.5, 0.7}, z.col(0)) + 0.2 * z.col(1);
-  const Record record = testing::with_gap(contiguous_record(1, z.leftCols(1), y), 300, 350);
+  const Record record = test::with_gap(contiguous_record(1, z.leftCols(1), y), 300, 350);
   const IdentifyResult result = identify(record, record.all(), as_octave(2, 10));
   ASSERT_TRUE(std::holds_alternative<Identified>(result));
   const StateSpaceModel& model = std::get<Identified>(result).model;
@@ -88,4 +89,4 @@ TEST(Octave, AgreesOnTwoSegments) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::octave_test

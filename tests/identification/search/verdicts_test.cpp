@@ -6,7 +6,7 @@
 #include "identification/search/identify.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::verdicts_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -14,8 +14,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 Record driven(Index rows) {
-  testing::Noise noise(1);
-  return testing::excited(testing::random_system(noise, 2, 2, 1), noise, rows, 0.05);
+  test::Noise noise(1);
+  return test::excited(test::random_system(noise, 2, 2, 1), noise, rows, 0.05);
 }
 
 Verdict verdict_of(const Record& record, const IdentifyOptions& options = {}) {
@@ -73,7 +73,7 @@ TEST(Verdicts, ConstantChannels) {
 
 TEST(Verdicts, ASineExcitesNoHighOrder) {
   Record record = driven(600);
-  testing::Noise noise(2);
+  test::Noise noise(2);
   record.u.resize(600, 1);
   for (Index k = 0; k < 600; ++k) record.u(k, 0) = std::sin(0.2 * double(k));
   record.y = record.u + 0.01 * noise.normal(600, 1);
@@ -86,7 +86,7 @@ TEST(Verdicts, ASineExcitesNoHighOrder) {
 
 TEST(Verdicts, InputsThatDoNotExplainTheOutputAreNoBetterThanTheMean) {
   Record record = driven(800);
-  testing::Noise noise(3);
+  test::Noise noise(3);
   record.y = noise.normal(800, 1);
   const Verdict verdict = verdict_of(record);
   EXPECT_EQ(verdict.code, VerdictCode::no_better_than_mean);
@@ -94,12 +94,12 @@ TEST(Verdicts, InputsThatDoNotExplainTheOutputAreNoBetterThanTheMean) {
 }
 
 TEST(Verdicts, AnUnstableSystemIsToldAsUnstable) {
-  testing::Noise noise(4);
-  StateSpaceModel truth = testing::random_system(noise, 1, 1, 1);
+  test::Noise noise(4);
+  StateSpaceModel truth = test::random_system(noise, 1, 1, 1);
   truth.A(0, 0) = 1.02;
   IdentifyOptions options;
   options.order = 1;
-  const Record record = testing::excited(truth, noise, 900, 0);
+  const Record record = test::excited(truth, noise, 900, 0);
   EXPECT_EQ(verdict_of(record, options).code, VerdictCode::unstable);
   options.may_enforce_stability = false;
   const Verdict verdict = verdict_of(record, options);
@@ -122,4 +122,4 @@ TEST(Options, EveryMistakeIsNamed) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::verdicts_test

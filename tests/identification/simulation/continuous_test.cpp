@@ -2,11 +2,12 @@
 
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <gmock/gmock.h>
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::continuous_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -68,7 +69,7 @@ TEST(ContinuousTime, AnOscillatorIsSampledByItsClosedForm) {
 }
 
 TEST(ContinuousTime, SamplesFollowTheDifferentialEquation) {
-  testing::Noise noise(5);
+  test::Noise noise(5);
   const Matrix root = noise.normal(3, 3);
   ContinuousModel model{-root * root.transpose(), noise.normal(3, 2), noise.normal(2, 3),
                         noise.normal(2, 2),       Vector::Zero(2),    Vector::Zero(2)};
@@ -88,8 +89,8 @@ TEST(ContinuousTime, SamplesFollowTheDifferentialEquation) {
 }
 
 /// The square of a system's A has the same moduli and no negative real pole.
-StateSpaceModel convertible(testing::Noise& noise, Index n, Index m, Index p) {
-  StateSpaceModel model = testing::random_system(noise, n, m, p, 0.999);
+StateSpaceModel convertible(test::Noise& noise, Index n, Index m, Index p) {
+  StateSpaceModel model = test::random_system(noise, n, m, p, 0.999);
   const Matrix basis = noise.normal(n, n).householderQr().householderQ();
   model.A = (basis * model.A * model.A * basis.transpose()).eval();
   model.period_s = 8;
@@ -97,7 +98,7 @@ StateSpaceModel convertible(testing::Noise& noise, Index n, Index m, Index p) {
 }
 
 TEST(ContinuousTime, StableSystemsConvertThereAndBack) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   for (Index n = 1; n <= 12; ++n)
     for (int trial = 0; trial < 10; ++trial) {
       const StateSpaceModel model = convertible(noise, n, 1 + n % 4, 1 + n % 2);
@@ -108,7 +109,7 @@ TEST(ContinuousTime, StableSystemsConvertThereAndBack) {
 }
 
 TEST(ContinuousTime, UnitsOfTheInputsCostNoDigits) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   const StateSpaceModel model = convertible(noise, 4, 3, 1);
   StateSpaceModel scaled = model;
   const Vector units = (Vector(3) << 1e9, 1, 1e-9).finished();
@@ -120,7 +121,7 @@ TEST(ContinuousTime, UnitsOfTheInputsCostNoDigits) {
 }
 
 TEST(ContinuousTime, OutputsAndOperatingPointStayAndTheGainIsLeftOut) {
-  testing::Noise noise(3);
+  test::Noise noise(3);
   StateSpaceModel model = convertible(noise, 3, 2, 2);
   model.K = noise.normal(3, 2);
   model.u0 << 4, -7;
@@ -223,4 +224,4 @@ TEST(NoContinuousTime, WhereTheLogarithmIsNotAccurate) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::continuous_test

@@ -11,7 +11,7 @@
 #include "identification/simulation/simulate.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::integral_feedback_test {
 namespace {
 
 /// A model of two inputs, an output and a loop around it with the given further poles.
@@ -21,8 +21,8 @@ struct Loop {
 };
 
 Loop loop(std::uint64_t seed, Index n, Index m, Index p, double limit = 1) {
-  testing::Noise noise(seed);
-  StateSpaceModel model = testing::random_system(noise, n, m, p);
+  test::Noise noise(seed);
+  StateSpaceModel model = test::random_system(noise, n, m, p);
   model.u0.setConstant(2);
   model.y0.setConstant(28);
   Poles wanted = poles_of(model.A);
@@ -46,11 +46,11 @@ struct Runs {
 };
 
 Runs run(const Loop& l, const Matrix& difference) {
-  testing::Noise noise(99);
+  test::Noise noise(99);
   const Index rows = difference.rows();
   Matrix u = noise.normal(rows, l.model.inputs()).array() + 2;
   const Vector x0 = noise.normal(l.model.order(), 1);
-  Runs runs{testing::simulated(l.model, u, x0), Matrix(rows, l.model.outputs()),
+  Runs runs{test::simulated(l.model, u, x0), Matrix(rows, l.model.outputs()),
             Matrix(rows, l.model.inputs())};
   Tracker tracker(l.model, l.gain, x0);
   for (Index k = 0; k < rows; ++k) {
@@ -66,7 +66,7 @@ Runs run(const Loop& l, const Matrix& difference) {
 TEST(Tracking, FollowsTheClosedLoopsEquations) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Loop l = loop(seed, 4, 3, 2, 1e3);
-    testing::Noise noise(seed);
+    test::Noise noise(seed);
     const Matrix difference = noise.normal(200, 2);
     const Runs runs = run(l, difference);
     const Matrix A = closed_loop(l.model, l.gain);
@@ -108,7 +108,7 @@ TEST(Tracking, SaysTheOutputBeforeItSeesIt) {
 TEST(Tracking, IsBoundedWhateverTelemetrySays) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Loop l = loop(seed, 4, 3, 2);
-    testing::Noise noise(seed);
+    test::Noise noise(seed);
     Matrix difference(3000, 2);
     for (Index k = 0; k < 3000; ++k)
       for (Index q = 0; q < 2; ++q) {
@@ -129,7 +129,7 @@ TEST(Tracking, NeverReachesItsLimitsWhileErrorsAreWithinTheirs) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Loop l = loop(seed, 4, 2, 1, 1e9);
     Loop limited = l;
-    testing::Noise noise(seed);
+    test::Noise noise(seed);
     Matrix difference(2000, 1);
     for (Index k = 0; k < 2000; ++k) difference(k) = noise.uniform() < 0.5 ? -1 : 1;
     const Runs wide = run(l, difference);
@@ -177,7 +177,7 @@ TEST(Tracking, ResumesWithoutAJumpWhenTelemetryReturns) {
 
 TEST(Tracking, RestartsAsANewOneAndSaysWhenItHasLetGo) {
   const Loop l = loop(3, 4, 2, 1);
-  testing::Noise noise(5);
+  test::Noise noise(5);
   const Vector x0 = noise.normal(4, 1), u = noise.normal(2, 1), y = Vector::Constant(1, 30);
   Tracker used(l.model, l.gain, Vector::Zero(4)), fresh(l.model, l.gain, x0);
   for (int k = 0; k < 50; ++k) used.step(u, y);
@@ -195,9 +195,9 @@ TEST(Tracking, RestartsAsANewOneAndSaysWhenItHasLetGo) {
 
 TEST(Tracking, OfARecordStartsEachSegmentAnew) {
   const Loop l = loop(6, 3, 2, 1, 10);
-  testing::Noise noise(6);
-  Record record = testing::excited(l.model, noise, 400, 0.3);
-  const Record gapped = testing::with_gap(record, 150, 200);
+  test::Noise noise(6);
+  Record record = test::excited(l.model, noise, 400, 0.3);
+  const Record gapped = test::with_gap(record, 150, 200);
   const Matrix y_hat = tracked_run(l.model, l.gain, gapped, gapped.all());
   const Matrix second = tracked_run(l.model, l.gain, gapped, {150, 350});
   EXPECT_EQ(y_hat.bottomRows(200), second);
@@ -278,4 +278,4 @@ TEST(ContinuousTracking, IsTheLimitOfShortPeriods) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::integral_feedback_test

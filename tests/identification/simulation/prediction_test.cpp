@@ -5,7 +5,7 @@
 #include "identification/simulation/simulate.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::prediction_test {
 namespace {
 
 struct Setting {
@@ -15,12 +15,12 @@ struct Setting {
 
 /// A model of two inputs and two outputs with a K that keeps A - K C stable, and noisy rows.
 Setting setting(std::uint64_t seed) {
-  testing::Noise noise(seed);
-  StateSpaceModel model = testing::random_system(noise, 3, 2, 2, 0.8);
+  test::Noise noise(seed);
+  StateSpaceModel model = test::random_system(noise, 3, 2, 2, 0.8);
   model.K = 0.05 * noise.normal(3, 2);
   model.u0 << 4, -7;
   model.y0 << 28, 3;
-  Record record = testing::excited(model, noise, 80, 0.3);
+  Record record = test::excited(model, noise, 80, 0.3);
   return {std::move(model), std::move(record)};
 }
 
@@ -57,7 +57,7 @@ TEST(Predictor, ForetellsWhatTheObserverAndTheModelDo) {
 
 TEST(Predictor, StartsAgainAfterAGap) {
   Setting s = setting(2);
-  s.record = testing::with_gap(s.record, 30, 40);
+  s.record = test::with_gap(s.record, 30, 40);
   const RowRange run{10, 60};
   const Matrix y_hat = free_run(s.model, s.record, run);
   const Predictor predictor(s.model, s.record, run, y_hat);
@@ -81,4 +81,4 @@ TEST(Predictor, IsTheFreeRunWhereTheGainIsZero) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::prediction_test

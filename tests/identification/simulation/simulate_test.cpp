@@ -8,11 +8,11 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::simulate_test {
 namespace {
 
-StateSpaceModel with_operating_point(testing::Noise& noise) {
-  StateSpaceModel model = testing::random_system(noise, 3, 2, 2);
+StateSpaceModel with_operating_point(test::Noise& noise) {
+  StateSpaceModel model = test::random_system(noise, 3, 2, 2);
   model.u0 << 4, -7;
   model.y0 << 28, 3;
   return model;
@@ -26,21 +26,21 @@ std::vector<Index> record_rows_without(Index begin, Index end, Index rows) {
 }
 
 TEST(FreeRun, FollowsTheEquationsOfTheModel) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   const StateSpaceModel model = with_operating_point(noise);
   const Matrix u = noise.normal(50, 2);
   const Vector x0 = noise.normal(3, 1);
-  const Matrix y = testing::simulated(model, u, x0);
+  const Matrix y = test::simulated(model, u, x0);
   const Record record = contiguous_record(1, u, Matrix::Zero(50, 2));
   EXPECT_LT((free_run(model, record, record.all(), x0) - y).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(FreeRun, EstimatesTheStateOfEverySegment) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   const StateSpaceModel model = with_operating_point(noise);
   const Matrix u = noise.normal(90, 2);
-  const Record record = testing::with_gap(
-      contiguous_record(1, u, testing::simulated(model, u, noise.normal(3, 1))), 40, 55);
+  const Record record = test::with_gap(
+      contiguous_record(1, u, test::simulated(model, u, noise.normal(3, 1))), 40, 55);
   EXPECT_LT((free_run(model, record, record.all()) - record.y).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT((free_run(model, record, {20, 70}) - record.y.middleRows(20, 50)).norm(), 1e-9);
 }
@@ -58,10 +58,9 @@ struct Holed {
   Matrix y;  // without noise
   Record record;
 
-  Holed(testing::Noise& noise, const Matrix& u) {
-    y = testing::simulated(model, u, Vector::Zero(2));
-    record =
-        testing::with_gap(contiguous_record(1, u, y + 0.1 * noise.normal(u.rows(), 1)), 400, 404);
+  Holed(test::Noise& noise, const Matrix& u) {
+    y = test::simulated(model, u, Vector::Zero(2));
+    record = test::with_gap(contiguous_record(1, u, y + 0.1 * noise.normal(u.rows(), 1)), 400, 404);
   }
   double error_behind_the_hole() const {
     const Matrix run = free_run(model, record, record.all(), Vector::Zero(2));
@@ -71,7 +70,7 @@ struct Holed {
 };
 
 TEST(FreeRun, CarriesSlowStatesThroughAHoleAndTakesFastOnesFromTheOutputsBehindIt) {
-  testing::Noise noise(7);
+  test::Noise noise(7);
   const Matrix fast = noise.normal(600, 1);
   EXPECT_LT(Holed(noise, fast).error_behind_the_hole(), 0.05) << "of inputs unknown in the hole";
   Matrix slow(600, 1);
@@ -88,7 +87,7 @@ TEST(FreeRun, CarriesSlowStatesThroughAHoleAndTakesFastOnesFromTheOutputsBehindI
 /// Every seventh row is missing, as where frames get lost, and one of the inputs makes large steps:
 /// the run of a model that errs by the other one must show its error all the same.
 TEST(FreeRun, ShowsThroughManyShortHolesWhatItShowsWithoutThem) {
-  testing::Noise noise(11);
+  test::Noise noise(11);
   StateSpaceModel truth{Matrix::Constant(1, 1, 0.998),
                         (Matrix(1, 2) << 0.01, 0.002).finished(),
                         Matrix::Ones(1, 1),
@@ -102,7 +101,7 @@ TEST(FreeRun, ShowsThroughManyShortHolesWhatItShowsWithoutThem) {
   for (Index k = 0; k < rows; ++k)
     u.row(k) << 10.0 * double(k / 2000 % 2), std::sin(double(k) * 0.001);
   const Record whole = contiguous_record(
-      1, u, testing::simulated(truth, u, Vector::Zero(1)) + 0.01 * noise.normal(rows, 1));
+      1, u, test::simulated(truth, u, Vector::Zero(1)) + 0.01 * noise.normal(rows, 1));
   StateSpaceModel wrong = truth;
   wrong.B(0, 1) *= 1.1;
   Record holed{1, Matrix(rows / 7 * 6, 2), Matrix(rows / 7 * 6, 1), {}};
@@ -131,18 +130,18 @@ TEST(FreeRun, OfAnUnstableModelMayOverflowButEnds) {
 }
 
 TEST(FreeRun, OfNoRowsIsEmpty) {
-  testing::Noise noise(3);
+  test::Noise noise(3);
   const Record record = contiguous_record(1, noise.normal(5, 2), noise.normal(5, 2));
   EXPECT_EQ(free_run(with_operating_point(noise), record, {2, 2}).rows(), 0);
 }
 
 TEST(InitialState, DoesNotRestOnTheFewRowsBeforeAHole) {
-  testing::Noise noise(7);
+  test::Noise noise(7);
   const Matrix u = noise.normal(1500, 1);
   const Holed holed(noise, u);
   Record record = contiguous_record(
       1, u, holed.y + 0.1 * noise.normal(u.rows(), 1));  // six rows, a hole of two, and the rest
-  record = testing::with_gap(record, 6, 8);
+  record = test::with_gap(record, 6, 8);
   const Vector alone =
       estimate_initial_state(holed.model, record, {record.segments.front()}, state_rows);
   const Vector x0 = estimate_initial_state(holed.model, record, record.segments, state_rows);
@@ -155,7 +154,7 @@ TEST(InitialState, DoesNotRestOnTheFewRowsBeforeAHole) {
 
 /// An integrator beside five fast states; no part between the holes has more rows than there are.
 TEST(InitialState, DoesNotRestOnTheFirstRowsWhereEverySeventhIsMissing) {
-  testing::Noise noise(9);
+  test::Noise noise(9);
   StateSpaceModel model{Matrix::Zero(6, 6),
                         Matrix::Ones(6, 1),
                         Matrix::Ones(1, 6),
@@ -170,8 +169,7 @@ TEST(InitialState, DoesNotRestOnTheFirstRowsWhereEverySeventhIsMissing) {
   double of_all = 0, of_the_first = 0;  // sums of squares
   for (int i = 0; i < 20; ++i) {
     const Matrix u = noise.normal(7 * parts, 1);
-    const Matrix y =
-        testing::simulated(model, u, Vector::Zero(6)) + 0.1 * noise.normal(u.rows(), 1);
+    const Matrix y = test::simulated(model, u, Vector::Zero(6)) + 0.1 * noise.normal(u.rows(), 1);
     Record record{1, Matrix(6 * parts, 1), Matrix(6 * parts, 1), {}};
     for (Index part = 0; part < parts; ++part) {
       record.u.middleRows(6 * part, 6) = u.middleRows(7 * part, 6);
@@ -186,10 +184,10 @@ TEST(InitialState, DoesNotRestOnTheFirstRowsWhereEverySeventhIsMissing) {
 }
 
 TEST(InitialState, ComesFromTheOtherOutputsWhereOneIsZero) {
-  testing::Noise noise(10);
+  test::Noise noise(10);
   const Matrix u = noise.normal(600, 1);
   const Holed holed(noise, u);
-  Record record = testing::with_gap(contiguous_record(1, u, holed.y), 100, 102);
+  Record record = test::with_gap(contiguous_record(1, u, holed.y), 100, 102);
   const Vector alone = estimate_initial_state(holed.model, record, record.segments, state_rows);
   StateSpaceModel model = holed.model;
   model.C.conservativeResizeLike(Matrix::Zero(2, 2));
@@ -201,10 +199,10 @@ TEST(InitialState, ComesFromTheOtherOutputsWhereOneIsZero) {
 }
 
 TEST(InitialState, IsThatOfItsOwnRowsBeforeALongHole) {
-  testing::Noise noise(8);
+  test::Noise noise(8);
   const Matrix u = noise.normal(1500, 1);
   const Holed holed(noise, u);
-  const Record record = testing::with_gap(contiguous_record(1, u, holed.y), 100, 300);
+  const Record record = test::with_gap(contiguous_record(1, u, holed.y), 100, 300);
   const std::vector<Segment> first{record.segments.front()};
   EXPECT_EQ(estimate_initial_state(holed.model, record, record.segments, state_rows),
             estimate_initial_state(holed.model, record, first, state_rows));
@@ -264,9 +262,9 @@ TEST(Score, OfANonFiniteRunIsTheWorst) {
 }
 
 TEST(Score, OfAFreeRunCountsTheScoredRowsAlone) {
-  testing::Noise noise(4);
+  test::Noise noise(4);
   const StateSpaceModel model = with_operating_point(noise);
-  Record record = testing::excited(model, noise, 200, 0);
+  Record record = test::excited(model, noise, 200, 0);
   record.y.topRows(100).array() += 5;  // wrong where it is not scored, once the state has settled
   const Score s = score_free_run(model, record, {0, 200}, {180, 200}, Vector::Zero(3));
   EXPECT_EQ(s.rows, 20);
@@ -274,4 +272,4 @@ TEST(Score, OfAFreeRunCountsTheScoredRowsAlone) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::simulate_test

@@ -8,7 +8,7 @@
 #include "identification/samples/verdict.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::state_space_test {
 namespace {
 
 TEST(StateSpace, SpectralRadiusIsTheLargestModulus) {
@@ -38,8 +38,8 @@ TEST(StateSpace, StableMeansInsideTheUnitCircle) {
 }
 
 TEST(StateSpace, WellFormedModelsHaveMatchingSizesAndFiniteNumbers) {
-  testing::Noise noise(1);
-  const StateSpaceModel good = testing::random_system(noise, 3, 2, 1);
+  test::Noise noise(1);
+  const StateSpaceModel good = test::random_system(noise, 3, 2, 1);
   EXPECT_TRUE(is_well_formed(good));
   const auto broken = [&good](auto&& breaking) {
     StateSpaceModel model = good;
@@ -65,4 +65,4 @@ TEST(Verdict, CodesHaveTheirPublishedNames) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::state_space_test

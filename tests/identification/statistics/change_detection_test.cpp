@@ -7,12 +7,12 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::change_detection_test {
 namespace {
 
 constexpr double deviation = 0.3;  // of the logarithm of a block's error
 
-Vector reference(testing::Noise& noise, Index blocks) {
+Vector reference(test::Noise& noise, Index blocks) {
   return deviation * noise.normal(blocks, 1);
 }
 
@@ -22,7 +22,7 @@ TEST(ChangeDetector, RaisesFewFalseAlarms) {
     int most;  // of 500,000 blocks
   } const cases[] = {{8, 250}, {16, 50}, {32, 25}};
   for (const auto& c : cases) {
-    testing::Noise noise(51);
+    test::Noise noise(51);
     int alarms = 0;
     for (int i = 0; i < 500; ++i) {
       ChangeDetector detector(reference(noise, c.reference));
@@ -33,7 +33,7 @@ TEST(ChangeDetector, RaisesFewFalseAlarms) {
 }
 
 TEST(ChangeDetector, FindsErrorsThatDoubleWithinThirtyBlocks) {
-  testing::Noise noise(52);
+  test::Noise noise(52);
   int within_ten = 0, within_thirty = 0;
   for (int i = 0; i < 1000; ++i) {
     ChangeDetector detector(reference(noise, 16));
@@ -47,7 +47,7 @@ TEST(ChangeDetector, FindsErrorsThatDoubleWithinThirtyBlocks) {
 }
 
 TEST(ChangeDetector, NoSingleBlockIsAChange) {
-  testing::Noise noise(53);
+  test::Noise noise(53);
   ChangeDetector detector(reference(noise, 16));
   for (int i = 0; i < 20; ++i) {
     EXPECT_FALSE(detector.add(50));
@@ -57,7 +57,7 @@ TEST(ChangeDetector, NoSingleBlockIsAChange) {
 }
 
 TEST(ChangeDetector, BeginsAnewAfterAChange) {
-  testing::Noise noise(54);
+  test::Noise noise(54);
   ChangeDetector detector(reference(noise, 16));
   int blocks = 1;
   while (!detector.add(5)) ++blocks;
@@ -72,4 +72,4 @@ TEST(ChangeDetector, OfErrorsThatNeverDifferStillNeedsSeveralBlocks) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::change_detection_test

@@ -9,13 +9,13 @@
 #include "identification/simulation/simulate.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::comparison_test {
 namespace {
 
 constexpr double confidence = 0.99;
 constexpr Index rows = 2000;
 
-Vector first_order(testing::Noise& noise, Index count, double coefficient) {
+Vector first_order(test::Noise& noise, Index count, double coefficient) {
   Vector values(count);
   double value = noise.normal() / std::sqrt(1 - coefficient * coefficient);
   for (Index k = 0; k < count; ++k) {
@@ -30,7 +30,7 @@ struct Trial {
   Matrix y, run;
 };
 
-Trial trial(testing::Noise& noise, double coefficient) {
+Trial trial(test::Noise& noise, double coefficient) {
   Trial result;
   result.run = (5 + 4 * first_order(noise, rows, 0.9).array()).matrix();
   result.y = result.run + first_order(noise, rows, coefficient);
@@ -39,8 +39,8 @@ Trial trial(testing::Noise& noise, double coefficient) {
 
 /// Share of 1,000 trials in which the other run is surely better.
 double promoted(double coefficient,
-                const std::function<Matrix(const Trial&, testing::Noise&)>& other) {
-  testing::Noise noise(41);
+                const std::function<Matrix(const Trial&, test::Noise&)>& other) {
+  test::Noise noise(41);
   int count = 0;
   for (int i = 0; i < 1000; ++i) {
     const Trial t = trial(noise, coefficient);
@@ -61,13 +61,13 @@ TEST_P(OfErrors, ARunIsNeverSurelyBetterThanItself) {
 TEST_P(OfErrors, NoiseOnARunIsPromotedInFewerThanOneOfAHundredTrials) {
   for (const double size : {0.01, 0.1, 0.5})
     EXPECT_LT(promoted(GetParam(),
-                       [size](const Trial& t, testing::Noise& noise) -> Matrix {
+                       [size](const Trial& t, test::Noise& noise) -> Matrix {
                          return t.run + size * noise.normal(rows, 1);
                        }),
               0.01)
         << size;
   EXPECT_LT(promoted(GetParam(),
-                     [](const Trial& t, testing::Noise& noise) -> Matrix {
+                     [](const Trial& t, test::Noise& noise) -> Matrix {
                        return t.run + 0.3 * first_order(noise, rows, 0.98);
                      }),
             0.01);
@@ -81,7 +81,7 @@ TEST(PairedComparison, ARunThatErrsByATenthLessIsFoundInMoreThanNineteenOfTwenty
 
 TEST(PairedComparison, OfModelsThatErrByDifferentThingsFindsAnErrorSmallerByATenth) {
   // Half of the error is common to both; the rest is each one's own, coloured.
-  testing::Noise noise(43);
+  test::Noise noise(43);
   int found = 0, wrong = 0;
   for (int i = 0; i < 1000; ++i) {
     const Trial t = trial(noise, 0.5);
@@ -98,7 +98,7 @@ TEST(PairedComparison, OfModelsThatErrByDifferentThingsFindsAnErrorSmallerByATen
 
 TEST(PairedComparison, OfAnEquipmentThatChangesAllTheTimeFindsTheRunThatFollows) {
   // The incumbent's gain is off by more and more; each run has an error of its own.
-  testing::Noise noise(47);
+  test::Noise noise(47);
   const Vector growing = Vector::LinSpaced(rows, 0, 0.3);
   int found = 0, found_as_steady = 0, wrong = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -118,7 +118,7 @@ TEST(PairedComparison, OfAnEquipmentThatChangesAllTheTimeFindsTheRunThatFollows)
 }
 
 TEST(PairedComparison, OfRunsThatErrAlikeAndSlowlySeldomFindsOneBetter) {
-  testing::Noise noise(48);
+  test::Noise noise(48);
   int steady = 0, changing = 0;
   for (int i = 0; i < 1000; ++i) {
     const Trial t = trial(noise, 0.5);
@@ -132,7 +132,7 @@ TEST(PairedComparison, OfRunsThatErrAlikeAndSlowlySeldomFindsOneBetter) {
 }
 
 TEST(PairedComparison, AStuckSensorDoesNotPromoteWhoeverAgreesWithIt) {
-  testing::Noise noise(44);
+  test::Noise noise(44);
   int count = 0;
   for (int i = 0; i < 1000; ++i) {
     Trial t = trial(noise, 0.5);
@@ -149,7 +149,7 @@ TEST(PairedComparison, AStuckSensorDoesNotPromoteWhoeverAgreesWithIt) {
 }
 
 TEST(PairedComparison, TellsTheReductionOfTheErrorAndBoundsItFromBelow) {
-  testing::Noise noise(45);
+  test::Noise noise(45);
   const Trial t = trial(noise, 0.5);
   const Matrix better = 0.4 * t.y + 0.6 * t.run;
   const auto compared = compare_runs(t.y, t.run, better, {{0, rows}}, confidence, Course::steady);
@@ -161,7 +161,7 @@ TEST(PairedComparison, TellsTheReductionOfTheErrorAndBoundsItFromBelow) {
 }
 
 TEST(PairedComparison, WeighsOutputsAsTheErrorDoes) {
-  testing::Noise noise(46);
+  test::Noise noise(46);
   const Matrix run = Matrix::Constant(500, 2, 3) + noise.normal(500, 2);
   Matrix y = run + noise.normal(500, 2) * Eigen::Vector2d(1, 0.01).asDiagonal();
   Matrix other = run;
@@ -172,7 +172,7 @@ TEST(PairedComparison, WeighsOutputsAsTheErrorDoes) {
 }
 
 TEST(PairedComparison, OfARunWithoutErrorIsCertain) {
-  testing::Noise noise(47);
+  test::Noise noise(47);
   const Trial t = trial(noise, 0);
   const auto compared = compare_runs(t.y, t.run, t.y, {{0, rows}}, confidence, Course::steady);
   ASSERT_TRUE(compared);
@@ -180,7 +180,7 @@ TEST(PairedComparison, OfARunWithoutErrorIsCertain) {
 }
 
 TEST(PairedComparison, SaysNothingOfTooFewRowsZerosOrInfinities) {
-  testing::Noise noise(48);
+  test::Noise noise(48);
   const Trial t = trial(noise, 0);
   EXPECT_FALSE(compare_runs(t.y.topRows(49), t.run.topRows(49), t.run.topRows(49), {{0, 49}},
                             confidence, Course::steady));
@@ -192,7 +192,7 @@ TEST(PairedComparison, SaysNothingOfTooFewRowsZerosOrInfinities) {
 }
 
 TEST(NoisePercent, IsWhatChangesFromRowToRow) {
-  testing::Noise noise(43);
+  test::Noise noise(43);
   const Vector run = (5 + 4 * first_order(noise, rows, 0.99).array()).matrix();
   const Vector slow = first_order(noise, rows, 0.999), sensor = 0.1 * first_order(noise, rows, 0);
   const double size = run.norm() / std::sqrt(double(rows));
@@ -201,7 +201,7 @@ TEST(NoisePercent, IsWhatChangesFromRowToRow) {
 }
 
 TEST(NoisePercent, IsNotWhatStepsLeaveNorWhatGapsHide) {
-  testing::Noise noise(44);
+  test::Noise noise(44);
   const Vector sensor = 0.1 * first_order(noise, rows, 0), run = Vector::Constant(rows, 5);
   Vector y = run + sensor;
   for (Index k = 0; k < rows; k += 40) y.segment(k, 2).array() += 3;
@@ -213,7 +213,7 @@ TEST(NoisePercent, IsNotWhatStepsLeaveNorWhatGapsHide) {
 }
 
 TEST(NoisePercent, OfHeldSamplesIsThatOfTheSamples) {
-  testing::Noise noise(45);
+  test::Noise noise(45);
   constexpr Index held = 16;
   const Vector run = (5 + 4 * first_order(noise, rows * 4, 0.999).array()).matrix();
   const Vector sensor = 0.1 * first_order(noise, rows * 4, 0);
@@ -224,7 +224,7 @@ TEST(NoisePercent, OfHeldSamplesIsThatOfTheSamples) {
 }
 
 TEST(NoisePercent, LooksAtNoDifferenceOverAGap) {
-  testing::Noise noise(46);
+  test::Noise noise(46);
   const Vector sensor = 0.1 * first_order(noise, rows, 0), run = Vector::Constant(rows, 5);
   Vector y = run + sensor;
   std::vector<RowRange> stretches;
@@ -246,4 +246,4 @@ TEST(NoisePercent, IsTheMeanOfTheOutputs) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::comparison_test

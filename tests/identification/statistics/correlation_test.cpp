@@ -7,11 +7,11 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::correlation_test {
 namespace {
 
 /// First-order noise of deviation 1.
-Vector coloured(testing::Noise& noise, Index rows, double phi) {
+Vector coloured(test::Noise& noise, Index rows, double phi) {
   Vector result(rows);
   double value = noise.normal();
   for (double& entry : result) {
@@ -27,7 +27,7 @@ Series whole(Vector values) {
 }
 
 TEST(Series, HasTheAutocorrelationOfItsDefinition) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   const Vector x = coloured(noise, 100, 0.5);
   const std::vector<RowRange> stretches{{0, 40}, {40, 47}, {47, 100}};
   Series series(x, stretches);
@@ -60,7 +60,7 @@ TEST(Series, AConstantHasNoCorrelation) {
 }
 
 TEST(Correlogram, HasAsManyLagsAsTheRowsAllow) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   const auto lags = [&noise](std::vector<RowRange> stretches) {
     const Vector values = noise.normal(stretches.back().end, 1);
     Series series(values, std::move(stretches));
@@ -86,7 +86,7 @@ TEST(Correlogram, OfNoLagsSaysNothing) {
 }
 
 TEST(Correlogram, OfAWhiteSeriesStaysWithinItsBoundAtNineteenOfTwentyLags) {
-  testing::Noise noise(3);
+  test::Noise noise(3);
   double outside = 0;
   int not_white = 0;
   for (int trial = 0; trial < 200; ++trial) {
@@ -100,7 +100,7 @@ TEST(Correlogram, OfAWhiteSeriesStaysWithinItsBoundAtNineteenOfTwentyLags) {
 }
 
 TEST(Correlogram, OfACorrelatedSeriesShowsThePowersOfItsCoefficient) {
-  testing::Noise noise(4);
+  test::Noise noise(4);
   Series series = whole(coloured(noise, 20000, 0.7));
   const Correlogram correlogram = autocorrelogram(series, 25);
   for (Index i = 0; i < 5; ++i) EXPECT_NEAR(correlogram.r(i), std::pow(0.7, double(i + 1)), 0.03);
@@ -112,7 +112,7 @@ TEST(Correlogram, OfACorrelatedSeriesShowsThePowersOfItsCoefficient) {
 }
 
 TEST(CrossCorrelogram, IsLargestAtTheDelay) {
-  testing::Noise noise(5);
+  test::Noise noise(5);
   const Vector u = noise.normal(1000, 1);
   for (const Index delay : {7, 0, -4}) {
     Vector e = noise.normal(1000, 1);
@@ -127,7 +127,7 @@ TEST(CrossCorrelogram, IsLargestAtTheDelay) {
 
 TEST(CrossCorrelogram, BoundsAccountForTheColourOfBoth) {
   // Independent, but slow: bounds for white signals would be broken at most lags.
-  testing::Noise noise(6);
+  test::Noise noise(6);
   double outside = 0, broken = 0;
   int significant = 0;
   for (int trial = 0; trial < 200; ++trial) {
@@ -143,7 +143,7 @@ TEST(CrossCorrelogram, BoundsAccountForTheColourOfBoth) {
 }
 
 TEST(BartlettFactor, IsTheSumOfTheProducts) {
-  testing::Noise noise(7);
+  test::Noise noise(7);
   Series a = whole(coloured(noise, 20000, 0.9)), b = whole(coloured(noise, 20000, 0.8));
   Series white = whole(noise.normal(20000, 1));
   const double product = 0.9 * 0.8;
@@ -160,4 +160,4 @@ TEST(CorrelationSummary, ANumberThatIsNoneIsSignificant) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::correlation_test

@@ -7,7 +7,7 @@
 #include "identification/subspace/kalman.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::diagnostics_test {
 namespace {
 
 /// A model of one output with white inputs and the noise of its innovations form; K suits it.
@@ -16,8 +16,8 @@ struct Plant {
   Record record;
 };
 
-Plant innovations(testing::Noise& noise, Index rows, Index inputs = 2) {
-  Plant plant{testing::random_system(noise, 3, inputs, 1, 0.9), {}};
+Plant innovations(test::Noise& noise, Index rows, Index inputs = 2) {
+  Plant plant{test::random_system(noise, 3, inputs, 1, 0.9), {}};
   plant.model.K =
       *kalman_gain(plant.model.A, plant.model.C, Matrix::Identity(4, 4));  // of equal noises
   plant.model.y0 << 10;
@@ -34,7 +34,7 @@ Plant innovations(testing::Noise& noise, Index rows, Index inputs = 2) {
 }
 
 TEST(Diagnostics, OfTheTrueModelFindNothing) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   int not_white = 0, significant = 0, free_significant = 0, pairs = 0;
   for (int trial = 0; trial < 100; ++trial) {
     const Plant plant = innovations(noise, 1000);
@@ -56,7 +56,7 @@ TEST(Diagnostics, OfTheTrueModelFindNothing) {
 }
 
 TEST(Diagnostics, AWrongGainLeavesColouredResiduals) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   Plant plant = innovations(noise, 2000);
   plant.model.K *= 0.2;
   const Diagnostics found = diagnose(plant.model, plant.record, plant.record.all(), {200, 2000});
@@ -65,7 +65,7 @@ TEST(Diagnostics, AWrongGainLeavesColouredResiduals) {
 }
 
 TEST(Diagnostics, WithoutAGainLookAtTheFreeRun) {
-  testing::Noise noise(3);
+  test::Noise noise(3);
   Plant plant = innovations(noise, 2000);
   plant.model.K.resize(0, 0);
   const Diagnostics found = diagnose(plant.model, plant.record, plant.record.all(), {200, 2000});
@@ -78,7 +78,7 @@ TEST(Diagnostics, WithoutAGainLookAtTheFreeRun) {
 }
 
 TEST(Diagnostics, AnInputThatActsLaterThanTheModelSaysShowsAtItsDelay) {
-  testing::Noise noise(4);
+  test::Noise noise(4);
   Plant plant = innovations(noise, 2000);
   for (Index k = 2000 - 1; k >= 9; --k) plant.record.y(k, 0) += 0.8 * plant.record.u(k - 9, 1);
   const Diagnostics found = diagnose(plant.model, plant.record, plant.record.all(), {200, 2000});
@@ -92,7 +92,7 @@ TEST(Diagnostics, AnInputThatActsLaterThanTheModelSaysShowsAtItsDelay) {
 }
 
 TEST(Diagnostics, PredictionErrorsGrowToTheFreeRuns) {
-  testing::Noise noise(5);
+  test::Noise noise(5);
   const Plant plant = innovations(noise, 5000);
   const Diagnostics found = diagnose(plant.model, plant.record, plant.record.all(), {500, 5000});
   ASSERT_EQ(found.predictions.size(), 7u);
@@ -112,7 +112,7 @@ TEST(Diagnostics, PredictionErrorsGrowToTheFreeRuns) {
 }
 
 TEST(Diagnostics, GiveTheScoreOfTheFreeRunWithItsInterval) {
-  testing::Noise noise(6);
+  test::Noise noise(6);
   const Plant plant = innovations(noise, 1500);
   const Vector x0 = Vector::Zero(3);
   const Diagnostics found = diagnose(plant.model, plant.record, {100, 1500}, {700, 1300}, x0);
@@ -126,7 +126,7 @@ TEST(Diagnostics, GiveTheScoreOfTheFreeRunWithItsInterval) {
 }
 
 TEST(Diagnostics, SegmentsDoNotSpeakToEachOther) {
-  testing::Noise noise(7);
+  test::Noise noise(7);
   Plant plant = innovations(noise, 1200, 1);
   plant.record.segments.clear();
   for (Index k = 0; k < 1200; k += 40) plant.record.segments.push_back({k, k + 40, 3 * k});
@@ -150,7 +150,7 @@ TEST(Diagnostics, SegmentsDoNotSpeakToEachOther) {
 }
 
 TEST(Diagnostics, OfOneRowAndOfNoInputsHaveNoCorrelations) {
-  testing::Noise noise(8);
+  test::Noise noise(8);
   const Plant plant = innovations(noise, 100);
   const Diagnostics one = diagnose(plant.model, plant.record, plant.record.all(), {99, 100});
   EXPECT_EQ(one.rows, 1);
@@ -163,7 +163,7 @@ TEST(Diagnostics, OfOneRowAndOfNoInputsHaveNoCorrelations) {
 }
 
 TEST(Diagnostics, OfAnInputThatStandsStillFindNothing) {
-  testing::Noise noise(9);
+  test::Noise noise(9);
   Plant plant = innovations(noise, 500);
   plant.record.u.col(0).setConstant(0.1);
   const Diagnostics found = diagnose(plant.model, plant.record, plant.record.all(), {0, 500});
@@ -172,4 +172,4 @@ TEST(Diagnostics, OfAnInputThatStandsStillFindNothing) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::diagnostics_test

@@ -8,7 +8,7 @@
 #include "identification/simulation/simulate.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::error_confidence_test {
 namespace {
 
 /// Outputs 3 + x and errors, both first-order noises; the error of infinitely many rows is known.
@@ -17,7 +17,7 @@ struct Trial {
   double true_percent;
 };
 
-Trial trial(testing::Noise& noise, Index rows, double phi) {
+Trial trial(test::Noise& noise, Index rows, double phi) {
   const double variance = 1 / (1 - phi * phi), x_variance = 1 / (1 - 0.64);
   Trial result{Matrix(rows, 1), Matrix(rows, 1),
                100 * std::sqrt(variance / (9 + x_variance + variance))};
@@ -32,7 +32,7 @@ Trial trial(testing::Noise& noise, Index rows, double phi) {
 }
 
 double coverage(Index rows, double phi) {
-  testing::Noise noise(17);
+  test::Noise noise(17);
   int covered = 0;
   for (int i = 0; i < 200; ++i) {
     const Trial t = trial(noise, rows, phi);
@@ -50,7 +50,7 @@ TEST(ErrorInterval, CoversTheTrueErrorInAboutNineteenOfTwentyTrials) {
 }
 
 TEST(ErrorInterval, HoldsTheErrorAndIsTheSameEveryTime) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   const Trial t = trial(noise, 1000, 0.5);
   const double error = score(t.y, t.y_hat).mrse();
   const auto first = error_interval(t.y, t.y_hat, {{0, 1000}});
@@ -64,7 +64,7 @@ TEST(ErrorInterval, HoldsTheErrorAndIsTheSameEveryTime) {
 }
 
 TEST(ErrorInterval, NarrowsWithTheRootOfTheRows) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   const auto width = [&noise](Index rows) {
     const Trial t = trial(noise, rows, 0.5);
     const auto interval = error_interval(t.y, t.y_hat, {{0, rows}});
@@ -74,7 +74,7 @@ TEST(ErrorInterval, NarrowsWithTheRootOfTheRows) {
 }
 
 TEST(ErrorInterval, TakesLongerBlocksForLongerCorrelation) {
-  testing::Noise noise(3);
+  test::Noise noise(3);
   const auto block = [&noise](double phi) {
     const Trial t = trial(noise, 5000, phi);
     return error_interval(t.y, t.y_hat, {{0, 5000}})->block_rows;
@@ -85,14 +85,14 @@ TEST(ErrorInterval, TakesLongerBlocksForLongerCorrelation) {
 }
 
 TEST(ErrorInterval, SaysWhenTheRowsAreTooFewForTheCorrelation) {
-  testing::Noise noise(4);
+  test::Noise noise(4);
   const Trial slow = trial(noise, 200, 0.99), quick = trial(noise, 2000, 0.5);
   EXPECT_TRUE(error_interval(slow.y, slow.y_hat, {{0, 200}})->too_few_rows);
   EXPECT_FALSE(error_interval(quick.y, quick.y_hat, {{0, 2000}})->too_few_rows);
 }
 
 TEST(ErrorInterval, OfTwoOutputsHoldsTheMean) {
-  testing::Noise noise(5);
+  test::Noise noise(5);
   const Trial a = trial(noise, 1000, 0.5), b = trial(noise, 1000, 0.9);
   Matrix y(1000, 2), y_hat(1000, 2);
   y << a.y, b.y;
@@ -105,7 +105,7 @@ TEST(ErrorInterval, OfTwoOutputsHoldsTheMean) {
 }
 
 TEST(ErrorInterval, IsAbsentWhereItMeansNothing) {
-  testing::Noise noise(6);
+  test::Noise noise(6);
   const Trial t = trial(noise, 100, 0.5);
   EXPECT_FALSE(error_interval(t.y.topRows(49), t.y_hat.topRows(49), {{0, 49}}));
   EXPECT_FALSE(error_interval(t.y, t.y, {{0, 100}}));
@@ -127,7 +127,7 @@ TEST(ErrorSpread, IsTheErrorOfTenthsOfTheRows) {
 }
 
 TEST(ErrorSpread, OfAPartInWhichTheOutputRestsAtZeroIsFinite) {
-  testing::Noise noise(7);
+  test::Noise noise(7);
   Matrix y = noise.normal(1003, 2), y_hat = y + 0.1 * noise.normal(1003, 2);
   y.topRows(200).setZero();
   const ErrorSpread spread = error_spread(y, y_hat);
@@ -147,4 +147,4 @@ TEST(ErrorSpread, OfFewRowsHasFewerParts) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::error_confidence_test

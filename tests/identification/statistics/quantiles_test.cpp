@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::identification {
+namespace reident::identification::quantiles_test {
 namespace {
 
 TEST(NormalQuantile, InvertsTheDistribution) {
@@ -27,4 +27,4 @@ TEST(StudentQuantile, IsThatOfTheTables) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::quantiles_test

@@ -4,14 +4,14 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::excitation_test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 TEST(Redundancy, ASumOfOtherInputsIsNamedWithThem) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   Matrix u = noise.normal(200, 4);
   u.col(3) = u.col(0) + 2 * u.col(2);
   const auto found = redundant_inputs(u);
@@ -21,7 +21,7 @@ TEST(Redundancy, ASumOfOtherInputsIsNamedWithThem) {
 }
 
 TEST(Redundancy, ASumWithNoiseOfItsOwnIsKept) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   Matrix u = noise.normal(200, 3);
   u.col(2) = u.col(0) + u.col(1) + 1e-4 * noise.normal(200, 1);
   EXPECT_THAT(redundant_inputs(u), IsEmpty());
@@ -36,4 +36,4 @@ TEST(Excitation, CountsBlockRowsUpToTheFirstForetoldInput) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::excitation_test

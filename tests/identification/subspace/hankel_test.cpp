@@ -4,7 +4,7 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::hankel_test {
 namespace {
 
 constexpr TickRange all_ticks{INT64_MIN, INT64_MAX};
@@ -32,13 +32,12 @@ Matrix explicit_hankel(const Record& record, Index s) {
   return H;
 }
 
-Record gapped(testing::Noise& noise) {
-  return testing::with_gap(contiguous_record(1, noise.normal(300, 2), noise.normal(300, 1)), 100,
-                           104);
+Record gapped(test::Noise& noise) {
+  return test::with_gap(contiguous_record(1, noise.normal(300, 2), noise.normal(300, 1)), 100, 104);
 }
 
 TEST(Hankel, FactorsKeepEveryInnerProductOfTheRows) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   const Record record = gapped(noise);
   const Index s = 4;
   const StretchSums sums = sums_of_rows(record, all_ticks, 2 * s);
@@ -56,7 +55,7 @@ TEST(Hankel, FactorsKeepEveryInnerProductOfTheRows) {
 }
 
 TEST(Hankel, SumsOfMoreBlockRowsServeAShorterHorizon) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   const Record record = gapped(noise);
   const StretchSums sums = sums_of_rows(record, all_ticks, 24);
   const Normalisation normalisation = normalisation_of(sums, 2);
@@ -68,7 +67,7 @@ TEST(Hankel, SumsOfMoreBlockRowsServeAShorterHorizon) {
 }
 
 TEST(Hankel, AnOperatingPointAMillionTimesTheSignalCostsNoDigits) {
-  testing::Noise noise(3);
+  test::Noise noise(3);
   const Record small = gapped(noise);
   Record large = small;
   large.u.array() += 1e6;
@@ -83,7 +82,7 @@ TEST(Hankel, AnOperatingPointAMillionTimesTheSignalCostsNoDigits) {
 }
 
 TEST(Hankel, SumsThatLostTooMuchAreRefused) {
-  testing::Noise noise(4);
+  test::Noise noise(4);
   Record record = gapped(noise);
   record.u.col(1) = record.u.col(0) + 1e-7 * record.u.col(1);
   const StretchSums sums = sums_of_rows(record, all_ticks, 8);
@@ -96,4 +95,4 @@ TEST(Hankel, SegmentsShorterThanTheBlockRowsGiveNoColumns) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::hankel_test

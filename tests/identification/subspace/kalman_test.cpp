@@ -1,22 +1,23 @@
 #include "identification/subspace/kalman.hpp"
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::kalman_test {
 namespace {
 
-Matrix covariance(testing::Noise& noise, Index size) {
+Matrix covariance(test::Noise& noise, Index size) {
   const Matrix root = noise.normal(size, size);
   return root * root.transpose();
 }
 
 TEST(Kalman, TheSolutionSatisfiesTheRiccatiEquation) {
-  testing::Noise noise(7);
+  test::Noise noise(7);
   for (Index n = 1; n <= 12; ++n) {
     const Index p = 1 + n % 3;
-    const StateSpaceModel model = testing::random_system(noise, n, 1, p, 0.999);
+    const StateSpaceModel model = test::random_system(noise, n, 1, p, 0.999);
     const Matrix W = covariance(noise, n + p);
     const auto P = riccati_solution(model.A, model.C, W);
     ASSERT_TRUE(P) << n;
@@ -57,4 +58,4 @@ TEST(Kalman, NoMeasurementNoiseGivesNoGain) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::kalman_test

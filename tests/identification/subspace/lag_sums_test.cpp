@@ -5,7 +5,7 @@
 #include "tests/support/same_bits.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::lag_sums_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -20,7 +20,7 @@ Matrix channels(const Record& record) {
 }
 
 Record noise_record(Index rows, double offset = 0) {
-  testing::Noise noise(1);
+  test::Noise noise(1);
   return contiguous_record(1, noise.normal(rows, 2).array() + offset,
                            noise.normal(rows, 1).array() - offset);
 }
@@ -71,15 +71,14 @@ TEST(RunSums, KeepTheirDigitsBesideAnOperatingPointAMillionTimesTheSignal) {
 }
 
 TEST(LagSums, AWindowIsTheSameToTheLastBitHoweverItsSumsCameAbout) {
-  const Record record = testing::with_gap(noise_record(900, 5), 333, 340);
+  const Record record = test::with_gap(noise_record(900, 5), 333, 340);
   const LagSums::Shape shape{3, L, 50};
   LagSums kept(shape);
   const TickRange window{117, 861};
   for (std::int64_t end = 200; end < 900; end += 50) kept.keep_over({end - 200, end}, record);
-  EXPECT_TRUE(
-      testing::same_bits(kept.keep_over(window, record), LagSums(shape).over(window, record)));
+  EXPECT_TRUE(test::same_bits(kept.keep_over(window, record), LagSums(shape).over(window, record)));
   kept.forget({400, 401});
-  EXPECT_TRUE(testing::same_bits(kept.over(window, record), LagSums(shape).over(window, record)));
+  EXPECT_TRUE(test::same_bits(kept.over(window, record), LagSums(shape).over(window, record)));
 }
 
 TEST(LagSums, AgreeWithOneSumOverTheWindow) {
@@ -90,7 +89,7 @@ TEST(LagSums, AgreeWithOneSumOverTheWindow) {
 }
 
 TEST(LagSums, SplitAtGaps) {
-  const Record record = testing::with_gap(noise_record(200), 90, 95);
+  const Record record = test::with_gap(noise_record(200), 90, 95);
   const StretchSums sums = LagSums({3, L, 32}).over({0, 200}, record);
   ASSERT_EQ(sums.runs.size(), 2u);
   EXPECT_EQ(sums.runs[0].ticks(), (TickRange{0, 90}));
@@ -118,7 +117,7 @@ TEST(LagSums, CostWhatTheSamplesCostHoweverLongTheGaps) {
   ASSERT_EQ(sums.runs.size(), 2u);
   EXPECT_EQ(sums.rows(), 400);
   EXPECT_LT(kept.kept_nodes(), 200u);
-  EXPECT_TRUE(testing::same_bits(kept.keep_over({0, far + 200}, record), sums));
+  EXPECT_TRUE(test::same_bits(kept.keep_over({0, far + 200}, record), sums));
 }
 
 TEST(LagSums, WindowsBeforeTheEpochAreCutLikeOthers) {
@@ -130,4 +129,4 @@ TEST(LagSums, WindowsBeforeTheEpochAreCutLikeOthers) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::lag_sums_test

@@ -7,7 +7,7 @@
 #include "tests/support/naive_n4sid.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident::identification {
+namespace reident::identification::subspace_test {
 namespace {
 
 constexpr Weighting weightings[] = {Weighting::n4sid, Weighting::moesp, Weighting::cva};
@@ -43,40 +43,40 @@ TEST(Compression, SegmentsShorterThanTheBlockRowsGiveNothing) {
 }
 
 TEST(Subspace, AgreesWithTheExplicitHankelMatrices) {
-  testing::Noise noise(2);
+  test::Noise noise(2);
   struct {
     Index order, inputs, outputs, horizon;
   } const cases[] = {{2, 1, 1, 5}, {3, 2, 1, 6}, {4, 1, 2, 5}, {3, 3, 2, 4}};
   for (const auto& c : cases) {
-    const StateSpaceModel truth = testing::random_system(noise, c.order, c.inputs, c.outputs);
-    const Record record = testing::with_gap(testing::excited(truth, noise, 400, 0.1), 150, 170);
+    const StateSpaceModel truth = test::random_system(noise, c.order, c.inputs, c.outputs);
+    const Record record = test::with_gap(test::excited(truth, noise, 400, 0.1), 150, 170);
     for (const Weighting weighting : weightings) {
-      const auto naive = testing::naive_n4sid(record, c.order, c.horizon, weighting);
+      const auto naive = test::naive_n4sid(record, c.order, c.horizon, weighting);
       const auto observability = Projection(compressed(record, c.horizon)).observability(weighting);
       const Index count = observability.singular_values.size();
       EXPECT_LT((observability.singular_values - naive.singular_values.head(count)).norm(),
                 1e-7 * naive.singular_values.norm());
       const auto fast = with(identified(record, c.order, c.horizon, weighting));
-      EXPECT_LT(testing::pole_distance(fast, naive.model), 1e-6)
+      EXPECT_LT(test::pole_distance(fast, naive.model), 1e-6)
           << name(weighting) << " of order " << c.order;
     }
   }
 }
 
 TEST(Subspace, WithoutNoiseThePolesAreExact) {
-  testing::Noise noise(3);
+  test::Noise noise(3);
   for (Index n = 1; n <= 6; ++n) {
-    const StateSpaceModel truth = testing::random_system(noise, n, 2, 1 + n % 2);
-    const Record record = testing::excited(truth, noise, 600, 0);
+    const StateSpaceModel truth = test::random_system(noise, n, 2, 1 + n % 2);
+    const Record record = test::excited(truth, noise, 600, 0);
     for (const Weighting weighting : {Weighting::n4sid, Weighting::moesp})
-      EXPECT_LT(testing::pole_distance(with(identified(record, n, 10, weighting)), truth), 1e-6)
+      EXPECT_LT(test::pole_distance(with(identified(record, n, 10, weighting)), truth), 1e-6)
           << name(weighting) << " of order " << n;
   }
 }
 
 TEST(Subspace, FindsTheKalmanGainOfAnInnovationsForm) {
-  testing::Noise noise(4);
-  StateSpaceModel truth = testing::random_system(noise, 2, 1, 1, 0.8);
+  test::Noise noise(4);
+  StateSpaceModel truth = test::random_system(noise, 2, 1, 1, 0.8);
   truth.K = kalman_gain(truth.A, truth.C, Matrix::Identity(3, 3)).value();
   const Index rows = 40000;
   Record record = contiguous_record(1, noise.normal(rows, 1), Matrix(rows, 1));
@@ -96,7 +96,7 @@ TEST(Subspace, FindsTheKalmanGainOfAnInnovationsForm) {
 
 TEST(Subspace, InputInnovationsShowWhereAnInputIsForetold) {
   const Index rows = 500;
-  testing::Noise noise(5);
+  test::Noise noise(5);
   Matrix u(rows, 2);
   for (Index k = 0; k < rows; ++k) u.row(k) << std::sin(0.3 * double(k)), noise.normal();
   const Record record = contiguous_record(1, u, noise.normal(rows, 1));
@@ -107,4 +107,4 @@ TEST(Subspace, InputInnovationsShowWhereAnInputIsForetold) {
 }
 
 }  // namespace
-}  // namespace reident::identification
+}  // namespace reident::identification::subspace_test

@@ -9,7 +9,7 @@
 
 #include <sys/wait.h>
 
-namespace reident::cli::testing {
+namespace reident::cli::test {
 namespace {
 
 std::string text_of(const std::filesystem::path& path) {
@@ -65,4 +65,4 @@ void CliTest::write(const std::string& name, const std::string& text) const {
   std::ofstream(folder_ / name, std::ios::binary) << text;
 }
 
-}  // namespace reident::cli::testing
+}  // namespace reident::cli::test

@@ -11,7 +11,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace reident::cli::testing {
+namespace reident::cli::test {
 
 struct Ran {
   int status = -1;  // exit status, or 128 + the signal that ended it
@@ -32,7 +32,7 @@ class CliTest : public ::testing::Test {
   const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  const test::TemporaryFolder folder_;
+  const reident::test::TemporaryFolder folder_;
 };
 
-}  // namespace reident::cli::testing
+}  // namespace reident::cli::test

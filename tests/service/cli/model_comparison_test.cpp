@@ -7,7 +7,7 @@
 
 #include "identification/simulation/simulate.hpp"
 
-namespace reident::cli {
+namespace reident::cli::model_comparison_test {
 namespace {
 
 using identification::Index;
@@ -126,4 +126,4 @@ TEST(Comparison, names_the_inputs_that_differ_and_keeps_the_common_ones_together
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::model_comparison_test

@@ -6,7 +6,7 @@
 #include "service/dds/dds.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
-namespace reident::cli {
+namespace reident::cli::program_test {
 namespace {
 
 using nlohmann::json;
@@ -17,7 +17,7 @@ using ::testing::MatchesRegex;
 using ::testing::SizeIs;
 using ::testing::StartsWith;
 
-class Program : public testing::CliTest {};
+class Program : public test::CliTest {};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
   EXPECT_THAT(reident({"--help"}).out, HasSubstr("identify"));
@@ -25,7 +25,7 @@ TEST_F(Program, EveryCommandHasHelpWithAnExample) {
        {"identify", "history", "show", "at", "approve", "reject", "withdraw", "hold", "release",
         "rollback", "identify-now", "check-config", "status", "version", "import", "export",
         "completeness", "simulators"}) {
-    const testing::Ran ran = reident({command, "--help"});
+    const test::Ran ran = reident({command, "--help"});
     EXPECT_EQ(ran.status, 0) << command;
     EXPECT_THAT(ran.out, HasSubstr("Example:\n  reident " + command)) << command;
   }
@@ -49,17 +49,17 @@ TEST_F(Program, AFullDiskIsAnError) {
             1 << 8);
 }
 
-class CheckConfig : public testing::CliTest {};
+class CheckConfig : public test::CliTest {};
 
 TEST_F(CheckConfig, ListsEveryMistakeWithFileAndLine) {
   write("bad.toml", "[service]\nworkers = 0\n[dds]\ndomian = 1\n");
-  const testing::Ran ran = reident({"check-config", "bad.toml"});
+  const test::Ran ran = reident({"check-config", "bad.toml"});
   EXPECT_EQ(ran.status, 2);
   EXPECT_THAT(ran.err, HasSubstr("bad.toml:2: [service] workers must be"));
   EXPECT_THAT(ran.err, HasSubstr("bad.toml:4: [dds] domian is not known; did you mean domain?"));
   EXPECT_THAT(ran.err, HasSubstr("bad.toml: there is no spacecraft"));
   EXPECT_THAT(ran.err, HasSubstr("has 3 mistakes"));
-  const testing::Ran in_json = reident({"check-config", "bad.toml", "--json"});
+  const test::Ran in_json = reident({"check-config", "bad.toml", "--json"});
   EXPECT_EQ(in_json.status, 2);
   const json printed = json::parse(in_json.out);
   EXPECT_EQ(printed["valid"], false);
@@ -71,7 +71,7 @@ TEST_F(CheckConfig, SumsUpAGoodFile) {
   write("good.toml",
         "[[spacecraft]]\nname = \"A\"\n[[spacecraft.equipment]]\nname = \"X\"\n"
         "inputs = [\"u\"]\noutputs = [\"y\"]\nsample_period = \"1s\"\nwindow = \"1h\"\n");
-  const testing::Ran ran = reident({"check-config", "good.toml"});
+  const test::Ran ran = reident({"check-config", "good.toml"});
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out, HasSubstr("A/X"));
   EXPECT_THAT(ran.out, HasSubstr("u -> y"));
@@ -88,7 +88,7 @@ TEST_F(CheckConfig, SaysWhichEquipmentARelationChecksAndWhereItIsNone) {
         "inputs = [\"u\"]\noutputs = [\"y\"]\nsample_period = \"1s\"\nwindow = \"1h\"\n" +
             relation + "name = \"two\"\nexpression = \"y - y_b\"\n" + relation +
             "name = \"misspelt\"\nexpression = \"yy - y_b\"\n");
-  const testing::Ran ran = reident({"check-config", "good.toml"});
+  const test::Ran ran = reident({"check-config", "good.toml"});
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out, ContainsRegex("A/two +0.5 +X +y - y_b"));
   EXPECT_THAT(ran.out, ContainsRegex("A/misspelt +0.5 +no equipment +yy - y_b"));
@@ -99,13 +99,13 @@ TEST_F(CheckConfig, SaysWhichEquipmentARelationChecksAndWhereItIsNone) {
 }
 
 TEST_F(CheckConfig, RefusesAFileThatIsNotThere) {
-  const testing::Ran ran = reident({"check-config", "none.toml"});
+  const test::Ran ran = reident({"check-config", "none.toml"});
   EXPECT_EQ(ran.status, 2);
   EXPECT_THAT(ran.err, StartsWith("none.toml: cannot be read"));
 }
 
 /// A service that only beats.
-class Status : public testing::CliTest {
+class Status : public test::CliTest {
  protected:
   const std::uint32_t domain = 1 + static_cast<std::uint32_t>(getpid()) % 200;
   const std::string partition = "cli-" + std::to_string(getpid());
@@ -129,8 +129,8 @@ class Status : public testing::CliTest {
     return status;
   }
   /// Writes beat(0), beat(1), ... while the program runs.
-  testing::Ran run_beside(const std::function<ServiceStatus(int)>& next,
-                          const std::vector<std::string>& arguments) {
+  test::Ran run_beside(const std::function<ServiceStatus(int)>& next,
+                       const std::vector<std::string>& arguments) {
     std::jthread beats([&](const std::stop_token& stop) {
       for (int number = 0; !stop.stop_requested(); ++number) {
         writer.write(next(number));
@@ -148,12 +148,12 @@ TEST_F(Status, IsWhatTheServiceSaidLast) {
   EXPECT_EQ(printed["frames_received"], 4321);
   EXPECT_EQ(printed["newest_telemetry"], "2023-11-14T22:13:20Z");
   EXPECT_EQ(printed["idle"], true);
-  const testing::Ran ran = reident(command({"--timeout", "30"}));
+  const test::Ran ran = reident(command({"--timeout", "30"}));
   EXPECT_THAT(ran.out, StartsWith("service reident (0.1.0), up since 2023-11-14T22:13:20Z, idle"));
 }
 
 TEST_F(Status, WaitsUntilTwoBeatsAreIdleAndAlike) {
-  const testing::Ran ran = run_beside(
+  const test::Ran ran = run_beside(
       [this](int number) {
         ServiceStatus status = beat(number);
         status.windows_pending = number < 4 ? 1 : 0;
@@ -166,7 +166,7 @@ TEST_F(Status, WaitsUntilTwoBeatsAreIdleAndAlike) {
 }
 
 TEST_F(Status, ExitsFourWhenTheServiceStaysBusy) {
-  const testing::Ran ran = run_beside(
+  const test::Ran ran = run_beside(
       [this](int number) {
         ServiceStatus status = beat(number);
         status.queue_length = 17;
@@ -178,7 +178,7 @@ TEST_F(Status, ExitsFourWhenTheServiceStaysBusy) {
 }
 
 TEST_F(Status, ExitsFourWhenNobodyIsHeard) {
-  const testing::Ran ran = reident(command({"--timeout", "0.3"}));
+  const test::Ran ran = reident(command({"--timeout", "0.3"}));
   EXPECT_EQ(ran.status, 4);
   EXPECT_THAT(ran.err, HasSubstr("check that reidentd runs"));
   writer.write(beat(1));
@@ -192,4 +192,4 @@ TEST_F(Status, RefusesWhatItCannotWaitFor) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::program_test

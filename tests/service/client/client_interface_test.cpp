@@ -14,7 +14,7 @@
 #include "tests/service/client/live_telemetry.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::client_interface_test {
 namespace {
 
 using testing::ElementsAre;
@@ -349,4 +349,4 @@ TEST_F(ClientInterface, steps_on_while_versions_rain) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::client_interface_test

@@ -6,7 +6,7 @@
 
 #include "tests/service/client/live_telemetry.hpp"
 
-namespace reident::test {
+namespace reident::test::live_equipment_test {
 namespace {
 
 class LiveBdr : public testing::Test {
@@ -88,4 +88,4 @@ TEST_F(LiveBdr, counts_ticks_outside_the_identified_range) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::live_equipment_test

@@ -19,7 +19,7 @@
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::model_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -296,4 +296,4 @@ TEST(CacheFolder, is_that_of_the_user) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::model_cache_test

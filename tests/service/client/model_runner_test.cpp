@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "identification/simulation/simulate.hpp"
@@ -25,7 +26,7 @@ extern "C" void* malloc(std::size_t size) {
 }
 #endif
 
-namespace reident::test {
+namespace reident::test::model_runner_test {
 namespace {
 
 using identification::Index;
@@ -417,4 +418,4 @@ TEST(ModelRunner, runs_a_static_model) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::model_runner_test

@@ -10,7 +10,7 @@
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::model_subscriber_test {
 namespace {
 
 class Subscriber : public testing::Test {
@@ -298,4 +298,4 @@ TEST_F(SubscriberWithCache, keeps_a_version_only_after_it_was_handed_over) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::model_subscriber_test

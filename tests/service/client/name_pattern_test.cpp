@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::test {
+namespace reident::test::name_pattern_test {
 namespace {
 
 struct Case {
@@ -49,4 +49,4 @@ TEST(NamePattern, takes_no_more_than_the_product_of_the_lengths) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::name_pattern_test

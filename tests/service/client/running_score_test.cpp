@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::test {
+namespace reident::test::running_score_test {
 namespace {
 
 using identification::Matrix;
@@ -50,4 +50,4 @@ TEST(RunningScore, of_a_zero_output_that_is_met_is_zero) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::running_score_test

@@ -10,7 +10,7 @@
 #include "tests/service/dds/child.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::simulator_program_test {
 namespace {
 
 class SimulatorProgram : public testing::Test {
@@ -102,4 +102,4 @@ TEST(SimulatorOptions, that_are_wrong_end_with_status_2) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::simulator_program_test

@@ -9,7 +9,7 @@
 #include "identification/samples/grid.hpp"
 #include "tests/service/client/live_telemetry.hpp"
 
-namespace reident::test {
+namespace reident::test::telemetry_tracker_test {
 namespace {
 
 using storage::Quality;
@@ -245,4 +245,4 @@ TEST(UndescribedTracker, names_the_parameters_of_an_expression) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::telemetry_tracker_test

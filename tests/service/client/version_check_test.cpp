@@ -8,7 +8,7 @@
 #include "identification/correction/integral_feedback_search.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::version_check_test {
 namespace {
 
 struct Case {
@@ -86,4 +86,4 @@ TEST(Succession, follows_the_number_and_lets_a_rollback_go_back) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::version_check_test

@@ -3,7 +3,7 @@
 
 #include "tests/service/config/config_text.hpp"
 
-namespace reident {
+namespace reident::config_relations_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -81,4 +81,4 @@ tolerance = 1
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::config_relations_test

@@ -11,7 +11,7 @@
 #include "tests/service/config/config_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace reident {
+namespace reident::config_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -440,4 +440,4 @@ TEST(ConfigExamples, AreCompleteAndRight) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::config_test

@@ -4,7 +4,7 @@
 
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::archive_keeper_test {
 namespace {
 
 struct Nobody : ArchiveListener {
@@ -89,4 +89,4 @@ TEST_F(Keeper, LeavesWhatTheNextWindowsNeedHoweverLittleRoomThereIs) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::archive_keeper_test

@@ -8,7 +8,7 @@
 
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::archive_writer_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -136,4 +136,4 @@ TEST_F(Writer, GivesUpWhatTheDiskRefusesOnlyWhenItIsToldToAndCountsIt) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::archive_writer_test

@@ -13,6 +13,7 @@ struct QueuedBytes<std::string> {
   std::size_t operator()(const std::string& text) const { return text.size(); }
 };
 
+namespace bounded_queue_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -129,4 +130,5 @@ TEST(BoundedQueue, EndsAWaitWhenItIsWoken) {
 }
 
 }  // namespace
+}  // namespace bounded_queue_test
 }  // namespace reident

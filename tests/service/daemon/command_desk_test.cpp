@@ -7,7 +7,7 @@
 
 #include "tests/service/dds/dds_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::command_desk_test {
 namespace {
 
 using storage::Command;
@@ -103,4 +103,4 @@ TEST_F(Desk, what_a_stopping_service_cannot_execute_gets_no_answer) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::command_desk_test

@@ -13,7 +13,7 @@
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace reident::test {
+namespace reident::test::history_desk_test {
 namespace {
 
 using history::RemoteHistory;
@@ -110,4 +110,4 @@ TEST_F(HistoryDesk, without_a_service_the_console_is_told_in_time) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::history_desk_test

@@ -9,7 +9,7 @@
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::publisher_test {
 namespace {
 
 using storage::DecisionKind;
@@ -131,4 +131,4 @@ TEST_F(PublisherTest, of_decisions_on_two_threads_the_last_one_is_published_last
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::publisher_test

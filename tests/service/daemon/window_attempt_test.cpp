@@ -6,7 +6,7 @@
 
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::window_attempt_test {
 namespace {
 
 class WindowAttempt : public DaemonTest {
@@ -64,4 +64,4 @@ TEST_F(WindowAttempt, IsNotRecordedWithoutAModelEitherOnceTheStandingIsAnotherOn
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::window_attempt_test

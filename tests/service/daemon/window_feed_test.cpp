@@ -4,7 +4,7 @@
 
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::window_feed_test {
 namespace {
 
 class Feed : public DaemonTest {
@@ -234,4 +234,4 @@ TEST_F(Feed, EndsTheWaitWhenItIsStopped) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::window_feed_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident {
+namespace reident::window_scheduler_test {
 namespace {
 
 using Job = WindowScheduler::Job;
@@ -192,4 +192,4 @@ TEST(SchedulerOfSeveral, GivesTheOldestWindowOfAllEquipmentFirst) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::window_scheduler_test

@@ -6,7 +6,7 @@
 #include "tests/service/dds/child.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::back_pressure_test {
 namespace {
 
 using storage::TelemetryFrame;
@@ -101,4 +101,4 @@ TEST(CleanStop, under_a_sender_at_full_speed_that_keeps_history_leaves_nothing_o
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::back_pressure_test

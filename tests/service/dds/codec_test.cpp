@@ -10,7 +10,7 @@
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::codec_test {
 namespace {
 
 using dds::Codec;
@@ -262,4 +262,4 @@ INSTANTIATE_TEST_SUITE_P(
                              "transition are negative"}));
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::codec_test

@@ -8,7 +8,7 @@
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::older_program_test {
 namespace {
 
 class OlderProgram : public testing::Test {
@@ -81,4 +81,4 @@ TEST_F(OlderProgram, is_read_with_what_it_does_not_say_left_empty) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::older_program_test

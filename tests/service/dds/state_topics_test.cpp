@@ -10,7 +10,7 @@
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::state_topics_test {
 namespace {
 
 TEST(StateTopics, a_late_reader_gets_the_last_version_of_each_equipment) {
@@ -165,4 +165,4 @@ TEST(Participants, a_reader_with_an_impossible_bound_names_the_topic) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::state_topics_test

@@ -5,7 +5,7 @@
 #include "service/dds/qos.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::telemetry_test {
 namespace {
 
 using storage::TelemetryFrame;
@@ -216,4 +216,4 @@ TEST(Telemetry, a_reader_that_keeps_the_newest_makes_no_writer_wait) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::telemetry_test

@@ -11,7 +11,7 @@
 #include "storage/registry/registry.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace reident::history {
+namespace reident::history::answer_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -234,4 +234,4 @@ TEST_F(Answers, samples_come_in_order_of_time_each_once) {
 }
 
 }  // namespace
-}  // namespace reident::history
+}  // namespace reident::history::answer_test

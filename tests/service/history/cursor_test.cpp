@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::history {
+namespace reident::history::cursor_test {
 namespace {
 
 HistoryQuery question() {
@@ -52,4 +52,4 @@ TEST(Cursor, is_refused_for_another_question) {
 }
 
 }  // namespace
-}  // namespace reident::history
+}  // namespace reident::history::cursor_test

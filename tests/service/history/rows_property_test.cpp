@@ -9,7 +9,7 @@
 
 #include "service/history/rows.hpp"
 
-namespace reident::history {
+namespace reident::history::rows_property_test {
 namespace {
 
 using storage::Time;
@@ -249,4 +249,4 @@ TEST(HistoryRows, a_row_of_another_kind_is_refused) {
 }
 
 }  // namespace
-}  // namespace reident::history
+}  // namespace reident::history::rows_property_test

@@ -7,7 +7,7 @@
 #include "service/operations/refresh.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::champion_monitor_test {
 namespace {
 
 class Monitor : public DaemonTest {
@@ -144,4 +144,4 @@ TEST_F(Monitor, ThatBeginsLateKnowsOfNoDriftBeforeWhatItLooksAt) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::champion_monitor_test

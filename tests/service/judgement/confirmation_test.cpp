@@ -13,7 +13,7 @@
 #include "tests/service/daemon_fixture.hpp"
 #include "tests/service/judgement/evidence_page.hpp"
 
-namespace reident::test {
+namespace reident::test::confirmation_test {
 namespace {
 
 using storage::DecisionKind;
@@ -404,4 +404,4 @@ TEST_F(Watch, LooksWhereAnOperatorHasReleasedTheEquipment) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::confirmation_test

@@ -8,14 +8,14 @@
 #include "service/judgement/gate.hpp"
 #include "tests/support/systems.hpp"
 
-namespace reident {
+namespace reident::gate_property_test {
 namespace {
 
 using identification::Index;
 using identification::Matrix;
 using identification::Record;
 using identification::StateSpaceModel;
-using testing::Noise;
+using test::Noise;
 
 constexpr Index rows = 1800;
 constexpr int trials = 1000;
@@ -43,8 +43,8 @@ StateSpaceModel perturbed(StateSpaceModel model, Noise& noise, double share) {
 
 Trial trial(Noise& noise) {
   Trial result;
-  const StateSpaceModel plant = testing::random_system(noise, 3, 2, 1, 0.9);
-  result.validation = testing::excited(plant, noise, rows, 0);
+  const StateSpaceModel plant = test::random_system(noise, 3, 2, 1, 0.9);
+  result.validation = test::excited(plant, noise, rows, 0);
   result.champion = perturbed(plant, noise, 0.05);
   const double size = std::sqrt(result.validation.y.squaredNorm() / double(rows));
   result.validation.y += disturbance(noise, 0.1 * size);
@@ -123,4 +123,4 @@ TEST(GateProperty, AModelWhoseErrorIsHalfAsLargeIsPromotedInMoreThanNineteenOfTw
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::gate_property_test

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace reident {
+namespace reident::gate_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -469,4 +469,4 @@ TEST(GateReason, OfAHoldNamesWhoHoldsAndWhy) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::gate_test

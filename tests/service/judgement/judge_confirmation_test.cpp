@@ -7,7 +7,7 @@
 
 #include "service/judgement/confirmation.hpp"
 
-namespace reident::test {
+namespace reident::test::judge_confirmation_test {
 namespace {
 
 using storage::DecisionKind;
@@ -334,4 +334,4 @@ TEST(JudgeProbation, ApprovesNothingInAnUnusualOperation) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::judge_confirmation_test

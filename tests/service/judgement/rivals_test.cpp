@@ -8,7 +8,7 @@
 #include "service/operations/refresh.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::rivals_test {
 namespace {
 
 class Rivals : public DaemonTest {
@@ -264,4 +264,4 @@ TEST(RowsOutside, AreThoseWhereAnInputLeavesItsRangeByMoreThanNoise) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::rivals_test

@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace reident::test {
+namespace reident::test::derived_inputs_test {
 namespace {
 
 using identification::Matrix;
@@ -119,4 +119,4 @@ TEST(DerivedInputs, without_a_mistake_have_none) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::derived_inputs_test

@@ -6,7 +6,7 @@
 
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::diagnostics_json_test {
 namespace {
 
 using identification::Diagnostics;
@@ -87,4 +87,4 @@ TEST(ContinuousJson, has_the_matrices_or_the_reason) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::diagnostics_json_test

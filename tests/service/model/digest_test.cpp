@@ -6,7 +6,7 @@
 #include "service/support/sha256.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::digest_test {
 namespace {
 
 using namespace std::string_literals;
@@ -143,4 +143,4 @@ TEST(Digest, does_not_depend_on_when_and_how_the_model_was_found) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::digest_test

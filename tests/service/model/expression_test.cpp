@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-namespace reident::test {
+namespace reident::test::expression_test {
 namespace {
 
 using testing::ElementsAre;
@@ -161,4 +161,4 @@ TEST(Expression, may_be_as_long_and_deep_as_is_said) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::expression_test

@@ -7,7 +7,7 @@
 
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::test {
+namespace reident::test::model_json_test {
 namespace {
 
 using identification::Matrix;
@@ -160,4 +160,4 @@ TEST(ModelJson, refuses_text_that_is_not_json) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::model_json_test

@@ -10,7 +10,7 @@
 namespace reident::test {
 
 /// Numbers in [-0.5, 0.5) that are the same everywhere.
-using testing::Noise;
+using test::Noise;
 
 struct ModelKind {
   int order, inputs, outputs;
@@ -27,7 +27,7 @@ inline model_export::ExportedVersion random_version(const ModelKind& kind, std::
   EquipmentModel& model = version.model;
   model.spacecraft = "CBERS-4";
   model.equipment = "BAT 1";
-  model.dynamics = testing::random_system(noise, kind.order, kind.inputs, kind.outputs);
+  model.dynamics = test::random_system(noise, kind.order, kind.inputs, kind.outputs);
   model.dynamics.period_s = kind.period_s;
   if (!kind.direct) model.dynamics.D.setZero();
   model.dynamics.u0 = noise.normal(kind.inputs, 1);

@@ -6,7 +6,7 @@
 #include "tests/service/model_export/export_fixture.hpp"
 #include "tests/service/model_export/fmu_host.hpp"
 
-namespace reident::test {
+namespace reident::test::expression_test {
 namespace {
 
 /// Expressions of the whole grammar over a, b and c.
@@ -129,4 +129,4 @@ TEST(FmuExpressions, have_the_bits_of_the_service) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::expression_test

@@ -8,7 +8,7 @@
 #include "tests/service/model_export/export_fixture.hpp"
 #include "tests/service/model_export/fmu_host.hpp"
 
-namespace reident::test {
+namespace reident::test::fmu_test {
 namespace {
 
 using model_export::ExportedVersion;
@@ -411,4 +411,4 @@ TEST(Fmu, is_the_same_to_the_last_byte_when_it_is_exported_again) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::fmu_test

@@ -8,7 +8,7 @@
 #include "service/model_export/units.hpp"
 #include "tests/service/model_export/export_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::model_export_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -77,4 +77,4 @@ TEST(Units, are_known_with_their_prefixes) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::model_export_test

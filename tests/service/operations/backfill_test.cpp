@@ -7,7 +7,7 @@
 #include "service/operations/refresh.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::backfill_test {
 namespace {
 
 TEST_F(DaemonTest, BackfillReachesBackOverNoChampionsBegin) {
@@ -39,4 +39,4 @@ TEST_F(DaemonTest, BackfillReachesBackOverNoChampionsBegin) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::backfill_test

@@ -5,7 +5,7 @@
 
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::commands_test {
 namespace {
 
 using storage::Command;
@@ -308,4 +308,4 @@ TEST_F(Commands, a_command_repeated_after_a_lost_reply_gets_the_same_reply_and_n
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::commands_test

@@ -11,7 +11,7 @@
 #include "storage/care/verify.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::protected_telemetry_test {
 namespace {
 
 using storage::DecisionKind;
@@ -163,4 +163,4 @@ TEST_F(ProtectedTelemetry, VerifyAsksForMistakesInVersions) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::protected_telemetry_test

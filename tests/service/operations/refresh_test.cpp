@@ -7,7 +7,7 @@
 #include "tests/service/daemon_fixture.hpp"
 #include "tests/service/judgement/evidence_page.hpp"
 
-namespace reident::test {
+namespace reident::test::refresh_test {
 namespace {
 
 const auto never = [] { return false; };
@@ -318,4 +318,4 @@ TEST_F(Refresh, StopsWhenItIsAskedTo) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::refresh_test

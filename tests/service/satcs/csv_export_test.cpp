@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::satcs {
+namespace reident::satcs::csv_export_test {
 namespace {
 
 class ThreeRows : public FrameSource {
@@ -62,4 +62,4 @@ TEST(CsvExport, SaysWhyAFileCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace reident::satcs
+}  // namespace reident::satcs::csv_export_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::satcs {
+namespace reident::satcs::pacer_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -53,4 +53,4 @@ TEST(Pacer, WaitsForGapsThatNoClockHolds) {
 }
 
 }  // namespace
-}  // namespace reident::satcs
+}  // namespace reident::satcs::pacer_test

@@ -15,7 +15,7 @@
 #include "tests/service/dds/child.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::program_test {
 namespace {
 
 using storage::ParameterDescriptor;
@@ -378,4 +378,4 @@ TEST_F(Programs, the_hand_written_simulation_is_written_to_a_file) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::program_test

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace reident::csv {
+namespace reident::csv::csv_test {
 namespace {
 
 using testing::ElementsAre;
@@ -287,4 +287,4 @@ TEST_F(CsvFile, WithATimeThatCannotBeReadGivesNoTable) {
 }
 
 }  // namespace
-}  // namespace reident::csv
+}  // namespace reident::csv::csv_test

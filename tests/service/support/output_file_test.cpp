@@ -9,7 +9,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace reident {
+namespace reident::output_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,4 +60,4 @@ TEST_F(OutputFiles, leave_alone_what_came_meanwhile_where_they_are_to_keep_it) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::output_file_test

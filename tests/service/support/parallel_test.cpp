@@ -10,7 +10,7 @@
 
 #include <gmock/gmock.h>
 
-namespace reident {
+namespace reident::parallel_test {
 namespace {
 
 class WorkerPools : public testing::TestWithParam<std::size_t> {
@@ -115,4 +115,4 @@ TEST(UsableCores, AreOneAtLeast) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::parallel_test

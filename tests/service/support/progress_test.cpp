@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident {
+namespace reident::progress_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -66,4 +66,4 @@ TEST_F(ProgressTest, HoldsFractionsToTheBar) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::progress_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident {
+namespace reident::size_text_test {
 namespace {
 
 TEST(ParseSize, ReadsDecimalAndBinaryUnits) {
@@ -39,4 +39,4 @@ TEST(SizeText, HasThreeDigitsInTheLargestUnit) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::size_text_test

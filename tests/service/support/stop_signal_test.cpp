@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident {
+namespace reident::stop_signal_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -43,4 +43,4 @@ TEST(StopSignal, LetsTheSecondSignalEndTheProcess) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::stop_signal_test

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace reident {
+namespace reident::time_text_test {
 namespace {
 
 constexpr std::int64_t second = 1'000'000'000;
@@ -147,4 +147,4 @@ TEST(TimeText, GivesTheExtremesBack) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::time_text_test

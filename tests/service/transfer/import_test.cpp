@@ -8,7 +8,7 @@
 #include "service/satcs/parameter_id.hpp"
 #include "tests/service/transfer/transfer_fixture.hpp"
 
-namespace reident::transfer {
+namespace reident::transfer::import_test {
 namespace {
 
 using satcs::parameter_id;
@@ -27,12 +27,12 @@ constexpr Time t0 = 1'700'000'000 * second;  // 2023-11-14T22:13:20Z
 
 class ImportTest : public ::testing::Test {
  protected:
-  testing::TemporaryFolder folder;
+  test::TemporaryFolder folder;
   storage::Database database{folder / "archive.db", storage::Database::Mode::read_write};
   Archive archive{database};
 
   ImportOptions options(const std::string& text, const std::string& name = "t.csv") {
-    storage::testing::write_file(folder / name, text);
+    storage::test::write_file(folder / name, text);
     ImportOptions chosen;
     chosen.file = folder / name;
     chosen.spacecraft = "SAT-1";
@@ -41,10 +41,10 @@ class ImportTest : public ::testing::Test {
   storage::Series held(const std::string& name, Origin origin = Origin::real) {
     const auto known = archive.parameter("SAT-1", name);
     return archive.read_with_sources("SAT-1", origin, known ? known->id : parameter_id(name),
-                                     testing::everything().range);
+                                     test::everything().range);
   }
   std::string error_of(const ImportOptions& chosen) {
-    const auto result = testing::try_import(database, chosen);
+    const auto result = test::try_import(database, chosen);
     const auto* error = std::get_if<csv::Error>(&result);
     return error ? error->message : "no error";
   }
@@ -65,9 +65,9 @@ class ImportTest : public ::testing::Test {
 };
 
 TEST_F(ImportTest, AColumnIsAParameterAndAnEmptyCellNoSample) {
-  const auto report = testing::import(
-      database, options("unix_s,bus_u_mv,mode\n1700000000,28000.5,1\n1700000001,,2\n"
-                        "2023-11-14T22:13:22Z,nan,\n"));
+  const auto report =
+      test::import(database, options("unix_s,bus_u_mv,mode\n1700000000,28000.5,1\n1700000001,,2\n"
+                                     "2023-11-14T22:13:22Z,nan,\n"));
   EXPECT_TRUE(report.complete);
   EXPECT_EQ(report.total.rows, 3U);
   EXPECT_EQ(report.total.stored, 4U);
@@ -85,8 +85,7 @@ TEST_F(ImportTest, AColumnIsAParameterAndAnEmptyCellNoSample) {
 
 TEST_F(ImportTest, ASecondImportStoresNothingAndSaysSo) {
   const ImportOptions chosen = options(some_telemetry());
-  const auto first = testing::import(database, chosen),
-             second_one = testing::import(database, chosen);
+  const auto first = test::import(database, chosen), second_one = test::import(database, chosen);
   EXPECT_GT(first.total.stored, 1000U);
   EXPECT_EQ(second_one.total.stored, 0U);
   EXPECT_EQ(second_one.total.duplicates, first.total.stored);
@@ -104,12 +103,12 @@ TEST_F(ImportTest, ALongFileSaysWhoseSamplesTheyAre) {
       ",,1700000003,V,gs-1,real,SAT-1,V,no sample\n"
       "invalid,4,1700000000,17,,,SAT-2,,\n");
   chosen.spacecraft.reset();
-  EXPECT_EQ(testing::import(database, chosen).total.stored, 4U);
+  EXPECT_EQ(test::import(database, chosen).total.stored, 4U);
   EXPECT_THAT(held("V").value, ElementsAre(1.5, 2.5));
   EXPECT_THAT(held("V").quality, ElementsAre(Quality::good, Quality::suspect));
   EXPECT_THAT(held("V", Origin::simulated).quality, ElementsAre(Quality::out_of_limits));
   EXPECT_EQ(archive.parameter("SAT-1", "V")->unit, "V");
-  EXPECT_THAT(archive.read("SAT-2", Origin::real, 17, testing::everything().range).value,
+  EXPECT_THAT(archive.read("SAT-2", Origin::real, 17, test::everything().range).value,
               ElementsAre(4));
   EXPECT_THAT(archive.parameters("SAT-2"), IsEmpty()) << "a number is no name";
   const auto names = storage::source_names(database);
@@ -118,9 +117,9 @@ TEST_F(ImportTest, ALongFileSaysWhoseSamplesTheyAre) {
 }
 
 TEST_F(ImportTest, TheParametersOfTheArchiveKeepTheirNumbersAndUnits) {
-  archive.describe({{testing::descriptor("SAT-1", 42, "bus_u", "mV")}});
-  testing::import(database, options("t,bus_u_mv\n1700000000,1\n"));
-  EXPECT_THAT(archive.read("SAT-1", Origin::real, 42, testing::everything().range).value,
+  archive.describe({{test::descriptor("SAT-1", 42, "bus_u", "mV")}});
+  test::import(database, options("t,bus_u_mv\n1700000000,1\n"));
+  EXPECT_THAT(archive.read("SAT-1", Origin::real, 42, test::everything().range).value,
               ElementsAre(1));
   EXPECT_THAT(archive.parameters("SAT-1"), SizeIs(1));
   EXPECT_THAT(error_of(options("t,bus_u_v\n1700000000,1\n")),
@@ -128,12 +127,12 @@ TEST_F(ImportTest, TheParametersOfTheArchiveKeepTheirNumbersAndUnits) {
 }
 
 TEST_F(ImportTest, AnImportHasNoSequenceNumbersToMiss) {
-  storage::TelemetryFrame live = storage::testing::frame(5000, t0, {{1, Quality::good, 1}});
+  storage::TelemetryFrame live = storage::test::frame(5000, t0, {{1, Quality::good, 1}});
   live.spacecraft = "SAT-1";
   archive.append({{live}});
   ImportOptions chosen = options("t,u\n1700000000,1\n1700000001,2\n");
   chosen.source = "station";
-  testing::import(database, chosen);
+  test::import(database, chosen);
   live.sequence = 5001;
   live.generation_time += second;
   archive.append({{live}});
@@ -142,7 +141,7 @@ TEST_F(ImportTest, AnImportHasNoSequenceNumbersToMiss) {
   EXPECT_EQ(source.restarts, 0U);
   EXPECT_EQ(source.last_sequence, 5001U);
   chosen.source = "later";
-  testing::import(database, chosen);
+  test::import(database, chosen);
   live.source = "later";
   live.sequence = 7;
   live.generation_time += second;
@@ -190,7 +189,7 @@ TEST_F(ImportTest, BadLinesAreLeftOutAndCountedWhereAskedFor) {
   ImportOptions chosen = options(
       "t,u\n1700000000\n1700000000,1\n1700000001,on\nnever,3\n1700000003,4,5\n1700000004,5\n");
   chosen.skip_bad_lines = true;
-  const auto report = testing::import(database, chosen);
+  const auto report = test::import(database, chosen);
   EXPECT_EQ(report.total.rows, 2U);
   EXPECT_EQ(report.total.bad_lines, 4U);
   ASSERT_THAT(report.first_bad_lines, SizeIs(4));
@@ -202,7 +201,7 @@ TEST_F(ImportTest, AMendedLineIsWhereTheSameImportGoesOn) {
   EXPECT_THAT(error_of(options("t,u\n1700000000,1\n1700000001,2\n1700000002,x\n1700000003,4\n")),
               HasSubstr("the lines before it are imported, the same command goes on there"));
   EXPECT_THAT(held("u").value, ElementsAre(1, 2));
-  const auto report = testing::import(
+  const auto report = test::import(
       database, options("t,u\n1700000000,1\n1700000001,2\n1700000002,3\n1700000003,4\n"));
   EXPECT_EQ(report.resumed_at, 4U);
   EXPECT_EQ(report.samples, 2U);
@@ -213,7 +212,7 @@ TEST_F(ImportTest, AMendedLineIsWhereTheSameImportGoesOn) {
 TEST_F(ImportTest, AFileThatChangedBeforeThatPlaceIsImportedAnew) {
   error_of(options("t,u\n1700000000,1\n1700000001,2\n1700000002,x\n"));
   const auto report =
-      testing::import(database, options("t,u\n1700000000,1\n1700000001,7\n1700000002,3\n"));
+      test::import(database, options("t,u\n1700000000,1\n1700000001,7\n1700000002,3\n"));
   EXPECT_EQ(report.resumed_at, 0U);
   EXPECT_EQ(report.total.duplicates, 1U);
   EXPECT_EQ(report.total.conflicts, 1U);
@@ -223,8 +222,8 @@ TEST_F(ImportTest, AFileThatChangedBeforeThatPlaceIsImportedAnew) {
 TEST_F(ImportTest, StoppedAnywhereItGoesOnToTheSameContents) {
   const ImportOptions chosen = options(some_telemetry());
   const ImportLimits small{.samples = 50, .frames = 1000};
-  testing::import(database, chosen);
-  const std::string all = testing::exported(database);
+  test::import(database, chosen);
+  const std::string all = test::exported(database);
   std::mt19937 random(9);
   for (int trial = 0; trial < 5; ++trial) {
     storage::Database other(folder / fmt::format("{}.db", trial),
@@ -233,7 +232,7 @@ TEST_F(ImportTest, StoppedAnywhereItGoesOnToTheSameContents) {
     for (bool complete = false; !complete;) {
       std::uint64_t batches = random() % 6;
       const auto result = import_file(
-          other, chosen, testing::fixed_clock, [&](const ImportProgress&) { return batches-- > 0; },
+          other, chosen, test::fixed_clock, [&](const ImportProgress&) { return batches-- > 0; },
           small);
       const auto& report = std::get<ImportReport>(result);
       EXPECT_EQ(report.resumed_at == 0, samples == 0);
@@ -242,7 +241,7 @@ TEST_F(ImportTest, StoppedAnywhereItGoesOnToTheSameContents) {
       EXPECT_EQ(report.total.samples, samples);
       EXPECT_EQ(report.total.stored, samples) << "nothing is read twice";
     }
-    EXPECT_EQ(testing::exported(other), all);
+    EXPECT_EQ(test::exported(other), all);
   }
 }
 
@@ -250,7 +249,7 @@ TEST_F(ImportTest, QuotesLineEndsAndAByteOrderMarkDoNotMatter) {
   ImportOptions chosen = options(
       "\xEF\xBB\xBF"
       "\"t\",\"u, main\"\r\n\"1700000000\",\"1\"\r\n\r\n1700000001,\"2\"\r\n");
-  EXPECT_EQ(testing::import(database, chosen).total.stored, 2U);
+  EXPECT_EQ(test::import(database, chosen).total.stored, 2U);
   EXPECT_THAT(held("u, main").value, ElementsAre(1, 2));
 }
 
@@ -259,7 +258,7 @@ TEST_F(ImportTest, ColumnsAreChosenAndNamed) {
   chosen.only = {"a_mv", "b"};
   chosen.mappings = {{"b", "V_BUS", "V"}};
   chosen.keep_names = true;
-  testing::import(database, chosen);
+  test::import(database, chosen);
   EXPECT_THAT(held("a_mv").time, ElementsAre(t0));
   EXPECT_THAT(held("V_BUS").value, ElementsAre(2));
   EXPECT_THAT(archive.parameters("SAT-1"), SizeIs(2));
@@ -268,7 +267,7 @@ TEST_F(ImportTest, ColumnsAreChosenAndNamed) {
 TEST_F(ImportTest, ColumnsAreLeftOut) {
   ImportOptions chosen = options("t,u,note\n1700000000,1,x\n");
   chosen.leave_out = {"note"};
-  EXPECT_EQ(testing::import(database, chosen).total.stored, 1U);
+  EXPECT_EQ(test::import(database, chosen).total.stored, 1U);
   chosen.leave_out = {"notes"};
   EXPECT_THAT(error_of(chosen), HasSubstr("there is no column 'notes'"));
   chosen.leave_out = {"note", "u"};
@@ -276,4 +275,4 @@ TEST_F(ImportTest, ColumnsAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace reident::transfer
+}  // namespace reident::transfer::import_test

@@ -7,7 +7,7 @@
 
 #include "tests/service/transfer/transfer_fixture.hpp"
 
-namespace reident::transfer {
+namespace reident::transfer::round_trip_property_test {
 namespace {
 
 using storage::Origin;
@@ -47,25 +47,25 @@ std::vector<storage::TelemetryFrame> any_frames() {
 }
 
 RC_GTEST_PROP(RoundTrip, AnImportedExportHoldsTheSameSamples, ()) {
-  const testing::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   storage::Database first(folder / "first.db", storage::Database::Mode::read_write);
   storage::Archive archive(first, {.chunk_samples = 16, .recent_samples = 20});
   for (const char* spacecraft : {"SAT-1", "SAT,2"})
-    archive.describe({{testing::descriptor(spacecraft, 1, "V_BUS", ""),
-                       testing::descriptor(spacecraft, 2, "a, \"quoted\" name", "")}});
+    archive.describe({{test::descriptor(spacecraft, 1, "V_BUS", ""),
+                       test::descriptor(spacecraft, 2, "a, \"quoted\" name", "")}});
   archive.append(any_frames());
   if (*rc::gen::arbitrary<bool>()) archive.compact();
   RC_PRE(archive.sample_count() > 0);
-  const std::string text = testing::exported(first);
-  storage::testing::write_file(folder / "all.csv", text);
+  const std::string text = test::exported(first);
+  storage::test::write_file(folder / "all.csv", text);
 
   storage::Database second(folder / "second.db", storage::Database::Mode::read_write);
   ImportOptions options;
   options.file = folder / "all.csv";
-  const auto report = testing::import(
+  const auto report = test::import(
       second, options, {.samples = *rc::gen::inRange<std::uint64_t>(1, 100), .frames = 50});
   RC_ASSERT(report.total.stored == archive.sample_count());
-  RC_ASSERT(testing::exported(second) == text);
+  RC_ASSERT(test::exported(second) == text);
 
   // Text that is the same could hide values that are not: look at the bits.
   const auto before = storage::all_series(first), after = storage::all_series(second);
@@ -73,7 +73,7 @@ RC_GTEST_PROP(RoundTrip, AnImportedExportHoldsTheSameSamples, ()) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     const auto read = [](const storage::Database& database, const storage::SeriesInfo& one) {
       storage::SampleColumns all;
-      storage::SeriesBatches stretches(database, one.id, testing::everything().range, 1, {});
+      storage::SeriesBatches stretches(database, one.id, test::everything().range, 1, {});
       for (storage::SampleColumns some; stretches.next(some);) all.append(some, 0, some.size());
       return all;
     };
@@ -88,4 +88,4 @@ RC_GTEST_PROP(RoundTrip, AnImportedExportHoldsTheSameSamples, ()) {
 }
 
 }  // namespace
-}  // namespace reident::transfer
+}  // namespace reident::transfer::round_trip_property_test

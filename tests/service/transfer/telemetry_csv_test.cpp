@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace reident::transfer {
+namespace reident::transfer::telemetry_csv_test {
 namespace {
 
 using storage::Quality;
@@ -79,4 +79,4 @@ TEST(TelemetryCsv, TextIsQuotedWhereItHasTo) {
 }
 
 }  // namespace
-}  // namespace reident::transfer
+}  // namespace reident::transfer::telemetry_csv_test

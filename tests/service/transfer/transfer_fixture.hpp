@@ -10,9 +10,9 @@
 #include "service/transfer/import.hpp"
 #include "tests/storage/fixture.hpp"
 
-namespace reident::transfer::testing {
+namespace reident::transfer::test {
 
-using storage::testing::TemporaryFolder;
+using storage::test::TemporaryFolder;
 
 inline storage::ParameterDescriptor descriptor(const std::string& spacecraft, std::uint32_t id,
                                                const std::string& name, const std::string& unit) {
@@ -70,4 +70,4 @@ inline std::string exported(storage::Database& database,
   return text;
 }
 
-}  // namespace reident::transfer::testing
+}  // namespace reident::transfer::test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident {
+namespace reident::caching_source_test {
 namespace {
 
 /// Counts what it is asked for; its samples tell by whom.
@@ -51,4 +51,4 @@ TEST(CachingSource, KeepsSpacecraftAndOriginsApart) {
 }
 
 }  // namespace
-}  // namespace reident
+}  // namespace reident::caching_source_test

@@ -6,7 +6,7 @@
 #include "service/operations/refresh.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::provenance_test {
 namespace {
 
 class Provenance : public DaemonTest {
@@ -114,4 +114,4 @@ TEST_F(Provenance, OfAVersionWithoutOneIsRefused) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::provenance_test

@@ -9,7 +9,7 @@
 #include "service/windows/provenance.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::telemetry_checks_test {
 namespace {
 
 using testing::Contains;
@@ -211,4 +211,4 @@ TEST_F(FaultySensors, AreNoDriftOfTheChampion) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::telemetry_checks_test

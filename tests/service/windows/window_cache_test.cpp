@@ -3,7 +3,7 @@
 #include "service/operations/refresh.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
-namespace reident::test {
+namespace reident::test::window_cache_test {
 namespace {
 
 class WindowCaches : public DaemonTest {
@@ -100,4 +100,4 @@ TEST_F(WindowCaches, AskForDerivedInputsInTheOrderOfTheInputs) {
 }
 
 }  // namespace
-}  // namespace reident::test
+}  // namespace reident::test::window_cache_test

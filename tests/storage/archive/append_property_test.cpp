@@ -13,7 +13,7 @@
 
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::append_property_test {
 namespace {
 
 using Identity = std::tuple<std::string, Origin, std::uint32_t, Time>;
@@ -281,4 +281,4 @@ RC_GTEST_PROP(AppendProperty, SealedTimeCanBeReadAsItWasBeforeAnyBatch, ()) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::append_property_test

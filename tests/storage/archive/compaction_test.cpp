@@ -4,7 +4,7 @@
 #include "storage/database/connection.hpp"
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::compaction_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -181,4 +181,4 @@ TEST_F(CompactionTest, SetsAsideARecentRunThatItCannotRead) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::compaction_test

@@ -4,11 +4,11 @@
 #include <random>
 #include <unistd.h>
 
+#include "tests/storage/archive/writer_session.hpp"
 #include "tests/storage/expected_archive.hpp"
 #include "tests/storage/fixture.hpp"
-#include "tests/storage/archive/writer_session.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::damage_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -344,4 +344,4 @@ TEST(FlippedBits, AreNamedOrChangeNothingAndNeverEndTheProgram) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::damage_test

@@ -8,12 +8,12 @@
 
 #include <sys/wait.h>
 
+#include "tests/storage/archive/writer_session.hpp"
+#include "tests/storage/database/watched_files.hpp"
 #include "tests/storage/expected_archive.hpp"
 #include "tests/storage/fixture.hpp"
-#include "tests/storage/database/watched_files.hpp"
-#include "tests/storage/archive/writer_session.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::kill_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -230,4 +230,4 @@ TEST_F(KillTest, NothingReportedIsLostWhenTheWriterIsKilledAtRandomMoments) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::kill_test

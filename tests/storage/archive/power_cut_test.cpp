@@ -1,13 +1,13 @@
 // The power fails: what was not flushed to the disk is there in part, torn, or not at all.
 #include <random>
 
+#include "tests/storage/archive/unsafe_disk.hpp"
+#include "tests/storage/archive/writer_session.hpp"
+#include "tests/storage/database/watched_files.hpp"
 #include "tests/storage/expected_archive.hpp"
 #include "tests/storage/fixture.hpp"
-#include "tests/storage/archive/unsafe_disk.hpp"
-#include "tests/storage/database/watched_files.hpp"
-#include "tests/storage/archive/writer_session.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::power_cut_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ TEST(PowerCut, TakesTheLastCommitsAloneWhereTheyNeedNotWaitForTheDisk) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::power_cut_test

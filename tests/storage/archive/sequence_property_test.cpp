@@ -10,7 +10,7 @@
 #include "storage/archive/sequence.hpp"
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::sequence_property_test {
 namespace {
 
 RC_GTEST_PROP(SequenceProperty, GapsAreWhatDidNotComeWhateverTheOrder, ()) {
@@ -56,4 +56,4 @@ RC_GTEST_PROP(SequenceProperty, GapsAreWhatDidNotComeWhateverTheOrder, ()) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::sequence_property_test

@@ -5,7 +5,7 @@
 
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 namespace {
 
 using Kind = FileOperation::Kind;
@@ -121,4 +121,4 @@ std::size_t UnsafeDisk::unsynced() const {
   return count;
 }
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

@@ -15,7 +15,7 @@
 
 #include "tests/storage/database/watched_files.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 class UnsafeDisk {
  public:
@@ -49,4 +49,4 @@ class UnsafeDisk {
   std::vector<NameChange> unsynced_names_;
 };
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

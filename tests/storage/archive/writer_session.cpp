@@ -7,7 +7,7 @@
 #include "storage/database/connection.hpp"
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 namespace {
 
 constexpr std::uint64_t frames_of_batch = 8;
@@ -153,4 +153,4 @@ void carry_out_steps(const std::filesystem::path& path, Durability durability, s
   }
 }
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

@@ -9,7 +9,7 @@
 
 #include "storage/archive/archive.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 enum class StepKind { append, compact, checkpoint, reopen };
 
@@ -34,4 +34,4 @@ void carry_out_steps(const std::filesystem::path& path, Durability durability, s
                      std::uint64_t end, const std::function<void(std::uint64_t)>& begins,
                      const std::function<void(std::uint64_t)>& done);
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

@@ -16,7 +16,7 @@
 #include "storage/database/connection.hpp"
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::backup_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -277,4 +277,4 @@ TEST_F(Backup, OfADamagedSourceNamesTheSourceAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::backup_test

@@ -4,7 +4,7 @@
 
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::completeness_test {
 namespace {
 
 constexpr Time second = 1'000'000'000;
@@ -159,4 +159,4 @@ TEST(TimeBins, BeginAtMultiplesOfTheirLengthBefore1970Too) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::completeness_test

@@ -7,7 +7,7 @@
 #include "storage/care/verify.hpp"
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::retention_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -265,4 +265,4 @@ TEST_F(RetentionTest, HoldsEveryInvariantWhileTelemetryComesInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::retention_test

@@ -9,7 +9,7 @@
 
 #include "storage/chunks/chunk.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 struct Columns {
   std::vector<Time> time;
@@ -57,4 +57,4 @@ inline Columns cut(const Columns& columns, TimeRange range) {
   return inside;
 }
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

@@ -13,7 +13,7 @@
 #include "storage/chunks/value_steps.hpp"
 #include "tests/storage/chunks/chunk_fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::chunk_property_test {
 namespace {
 
 constexpr Time second = 1'000'000'000;
@@ -183,4 +183,4 @@ RC_GTEST_PROP(ValueStepsProperty, AFormulaThatIsFoundGivesTheValuesToTheLastBit,
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::chunk_property_test

@@ -16,7 +16,7 @@
 #include "storage/chunks/checksum.hpp"
 #include "tests/storage/chunks/chunk_fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::chunk_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -281,4 +281,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& kind) { return std::string(kind.param.name); });
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::chunk_test

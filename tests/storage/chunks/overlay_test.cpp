@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::storage::testing {
+namespace reident::storage::test::overlay_test {
 namespace {
 
 SampleColumns run_of(const std::vector<Time>& times, double value) {
@@ -76,4 +76,4 @@ TEST(Overlay, IsWhatAMapWouldHold) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::overlay_test

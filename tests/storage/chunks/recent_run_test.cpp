@@ -8,7 +8,7 @@
 
 #include "tests/storage/chunks/chunk_fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::recent_run_test {
 namespace {
 
 constexpr TimeRange always{std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()};
@@ -82,4 +82,4 @@ TEST(RecentRun, TellsEachDamagedByteAndLeavesTheTargetAsItWas) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::recent_run_test

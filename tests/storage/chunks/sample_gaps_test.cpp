@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace reident::storage {
+namespace reident::storage::sample_gaps_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -169,4 +169,4 @@ TEST(SampleGaps, BetweenTwoStretchesTheLargerLimitCounts) {
 }
 
 }  // namespace
-}  // namespace reident::storage
+}  // namespace reident::storage::sample_gaps_test

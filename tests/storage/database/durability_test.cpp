@@ -10,7 +10,7 @@
 #include "storage/database/connection.hpp"
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::durability_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -196,4 +196,4 @@ TEST(Durability, ABatchThatFailsHalfWayLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::durability_test

@@ -2,12 +2,12 @@
 // is in it.
 #include <cmath>
 
-#include "tests/storage/registry/registry_fixture.hpp"
 #include "tests/storage/database/schema_1.hpp"
 #include "tests/storage/database/schema_2.hpp"
 #include "tests/storage/database/schema_3.hpp"
+#include "tests/storage/registry/registry_fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::migration_test {
 namespace {
 
 using ::testing::AllOf;
@@ -198,4 +198,4 @@ INSERT INTO sample VALUES (2, -5, -0.0, 3, 4), (3, 1, NULL, 3, 4), (3, 4, 9e999,
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::migration_test

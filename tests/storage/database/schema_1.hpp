@@ -1,7 +1,7 @@
 // The statements with which programs of schema version 1 made a database file, word for word.
 #pragma once
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 inline constexpr const char* schema_1 = R"sql(
 
@@ -174,4 +174,4 @@ CREATE TRIGGER decision_insert BEFORE insert ON decision WHEN EXISTS (SELECT 1 F
 PRAGMA application_id = 1919248740; PRAGMA user_version = 1;
 )sql";
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

@@ -1,7 +1,7 @@
 // The statements with which programs of schema version 2 made a database file, word for word.
 #pragma once
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 inline constexpr const char* schema_2 = R"sql(
 CREATE TABLE parameter (
@@ -206,4 +206,4 @@ CREATE TRIGGER command_insert BEFORE insert ON command WHEN EXISTS (SELECT 1 FRO
 PRAGMA application_id = 1919248740; PRAGMA user_version = 2;
 )sql";
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

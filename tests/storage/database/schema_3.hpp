@@ -1,7 +1,7 @@
 // The statements with which programs of schema version 3 made a database file, word for word.
 #pragma once
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 inline constexpr const char* schema_3 = R"sql(
 CREATE TABLE parameter (
@@ -281,4 +281,4 @@ CREATE TRIGGER command_insert BEFORE insert ON command WHEN EXISTS (SELECT 1 FRO
 PRAGMA application_id = 1919248740;PRAGMA user_version = 3;
 )sql";
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

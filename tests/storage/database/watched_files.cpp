@@ -7,7 +7,7 @@
 
 #include <sqlite3.h>
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 namespace {
 
 using Kind = FileOperation::Kind;
@@ -183,4 +183,4 @@ WatchedFiles::~WatchedFiles() {
   observer = nullptr;
 }
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

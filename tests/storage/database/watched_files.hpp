@@ -9,7 +9,7 @@
 #include <functional>
 #include <string>
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 /// One request that changes a file, or the lock that a writer takes in the log.
 struct FileOperation {
@@ -35,4 +35,4 @@ class WatchedFiles {
   WatchedFiles& operator=(const WatchedFiles&) = delete;
 };
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

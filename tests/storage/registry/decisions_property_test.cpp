@@ -9,7 +9,7 @@
 
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::decisions_property_test {
 namespace {
 
 using enum DecisionKind;
@@ -129,4 +129,4 @@ RC_GTEST_PROP(DecisionsProperty, FollowTheRulesInWhateverOrderAndWhateverTheCloc
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::decisions_property_test

@@ -3,7 +3,7 @@
 
 #include "tests/storage/registry/registry_fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::operator_decisions_test {
 namespace {
 
 using ::testing::AllOf;
@@ -278,4 +278,4 @@ TEST_F(OperatorDecisions, ACommandAndItsEffectAreKeptBothOrNeither) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::operator_decisions_test

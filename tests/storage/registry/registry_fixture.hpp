@@ -3,7 +3,7 @@
 
 #include "tests/storage/fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 using Mode = Database::Mode;
 
@@ -52,4 +52,4 @@ class RegistryTest : public ::testing::Test {
   }
 };
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

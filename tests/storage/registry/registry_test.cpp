@@ -4,7 +4,7 @@
 
 #include "tests/storage/registry/registry_fixture.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::registry_test {
 namespace {
 
 using ::testing::AllOf;
@@ -311,4 +311,4 @@ TEST_F(RegistryTest, ReadersFollowWhileVersionsAreRecorded) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::registry_test

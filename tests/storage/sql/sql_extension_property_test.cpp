@@ -15,7 +15,7 @@
 #include "tests/storage/fixture.hpp"
 #include "tests/storage/sql/sql_user.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::sql_extension_property_test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -322,4 +322,4 @@ RC_GTEST_PROP(SqlExtensionProperty, SummariesAreThoseOfAPlainTable, ()) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::sql_extension_property_test

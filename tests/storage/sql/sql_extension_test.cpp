@@ -8,7 +8,7 @@
 #include "tests/storage/fixture.hpp"
 #include "tests/storage/sql/sql_user.hpp"
 
-namespace reident::storage::testing {
+namespace reident::storage::test::sql_extension_test {
 namespace {
 
 using ::testing::AllOf;
@@ -361,4 +361,4 @@ TEST_F(SqlExtensionTest, AViewMayBeMadeOfIt) {
 }
 
 }  // namespace
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test::sql_extension_test

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 namespace {
 
 std::string text_of(sqlite3_stmt* statement, int column) {
@@ -61,4 +61,4 @@ std::vector<std::string> SqlUser::ask(const std::string& sql) const {
   return rows;
 }
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

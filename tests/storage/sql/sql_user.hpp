@@ -10,7 +10,7 @@
 
 #include <sqlite3.h>
 
-namespace reident::storage::testing {
+namespace reident::storage::test {
 
 class SqlUser {
  public:
@@ -31,4 +31,4 @@ class SqlUser {
   std::unique_ptr<sqlite3, decltype(&sqlite3_close)> handle_{nullptr, &sqlite3_close};
 };
 
-}  // namespace reident::storage::testing
+}  // namespace reident::storage::test

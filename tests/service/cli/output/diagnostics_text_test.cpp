@@ -4,7 +4,7 @@
 
 #include "service/cli/output/model_text.hpp"
 
-namespace reident::cli {
+namespace reident::cli::diagnostics_text_test {
 namespace {
 
 using identification::Diagnostics;
@@ -105,4 +105,4 @@ TEST(ContinuousText, HasThePolesOrTheReason) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::diagnostics_text_test

@@ -8,7 +8,7 @@
 #include "service/cli/output/svg.hpp"
 #include "service/cli/output/trace.hpp"
 
-namespace reident::cli {
+namespace reident::cli::picture_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -179,4 +179,4 @@ TEST(Picture, of_outputs_that_do_not_move_and_a_static_model_is_whole) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::picture_test

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace reident::cli {
+namespace reident::cli::simulator_list_test {
 namespace {
 
 constexpr storage::Time second = 1'000'000'000;
@@ -97,12 +97,13 @@ TEST(SimulatorList, is_sorted_and_selected_by_equipment) {
       found.push_back(one.said.simulator + " " + one.said.spacecraft + "/" + one.said.equipment);
     return found;
   };
-  EXPECT_THAT(names({}), testing::ElementsAre("a OLD/BDR", "a OLD/MEA", "a SAT/BDR", "a SAT/MEA",
-                                              "b OLD/BDR", "b OLD/MEA", "b SAT/BDR", "b SAT/MEA"));
+  EXPECT_THAT(names({}),
+              ::testing::ElementsAre("a OLD/BDR", "a OLD/MEA", "a SAT/BDR", "a SAT/MEA",
+                                     "b OLD/BDR", "b OLD/MEA", "b SAT/BDR", "b SAT/MEA"));
   EXPECT_THAT(names({"", "BDR"}),
-              testing::ElementsAre("a OLD/BDR", "a SAT/BDR", "b OLD/BDR", "b SAT/BDR"));
-  EXPECT_THAT(names({"SAT", "BDR"}), testing::ElementsAre("a SAT/BDR", "b SAT/BDR"));
+              ::testing::ElementsAre("a OLD/BDR", "a SAT/BDR", "b OLD/BDR", "b SAT/BDR"));
+  EXPECT_THAT(names({"SAT", "BDR"}), ::testing::ElementsAre("a SAT/BDR", "b SAT/BDR"));
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::simulator_list_test

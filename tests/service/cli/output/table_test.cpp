@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::cli {
+namespace reident::cli::table_test {
 namespace {
 
 TEST(DisplayWidth, CountsCodePoints) {
@@ -47,4 +47,4 @@ TEST(Table, GivesALongWordALineOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::table_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::cli {
+namespace reident::cli::throughput_test {
 namespace {
 
 using std::chrono::seconds;
@@ -27,4 +27,4 @@ TEST(Throughput, TellsTheTimeLeftFromWhatThisRunDid) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::throughput_test

@@ -4,7 +4,7 @@
 #include "storage/archive/archive.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
-namespace reident::cli {
+namespace reident::cli::care_test {
 namespace {
 
 using nlohmann::json;
@@ -15,7 +15,7 @@ constexpr std::int64_t start = 1'700'000'000 * second;  // 2023-11-14T22:13:20Z
 
 constexpr auto first_chunk = storage::ArchiveOptions().chunk_samples;
 
-class Care : public testing::CliTest {
+class Care : public test::CliTest {
  protected:
   Care() { append(0, 600); }
 
@@ -55,7 +55,7 @@ class Care : public testing::CliTest {
 };
 
 TEST_F(Care, BackupSaysWhatItCopied) {
-  const testing::Ran ran = reident({"backup", "reident.db", "copy.db"});
+  const test::Ran ran = reident({"backup", "reident.db", "copy.db"});
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.err, "");
   EXPECT_EQ(ran.out, (folder() / "copy.db").string() + ": " +
@@ -89,7 +89,7 @@ TEST_F(Care, BackupWorksWhileAServiceHoldsTheFile) {
 }
 
 TEST_F(Care, VerifySaysThatASoundFileIsSound) {
-  const testing::Ran ran = reident({"verify", "reident.db"});
+  const test::Ran ran = reident({"verify", "reident.db"});
   EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
   EXPECT_EQ(ran.out,
             "reident.db: sound; looked at 2 series, 0 chunks with 1200 samples and 0 versions\n");
@@ -105,13 +105,13 @@ TEST_F(Care, VerifyNamesWhatItFindsAndTheRemedyAndExitsWith1) {
     storage::Archive(database).compact();
   }
   change("UPDATE chunk SET samples = 601 WHERE series = 1");
-  const testing::Ran ran = reident({"verify", "reident.db"});
+  const test::Ran ran = reident({"verify", "reident.db"});
   EXPECT_EQ(ran.status, 1);
   EXPECT_THAT(
       ran.out,
       HasSubstr("chunk: V_BUS of CB4 (real), 2023-11-14T22:13:20Z to 2023-11-14T22:23:19Z: "
                 "its row says 601 samples, there are 600\n  remedy: restore these samples"));
-  const testing::Ran again = reident({"verify", "reident.db", "--json"});
+  const test::Ran again = reident({"verify", "reident.db", "--json"});
   EXPECT_EQ(again.status, 1);
   const json object = json::parse(again.out);
   EXPECT_EQ(object["sound"], false);
@@ -133,7 +133,7 @@ TEST_F(Care, RetainRemovesByAgeAndSaysSoBeforehand) {
   EXPECT_EQ(done["first"], "2023-11-14T22:13:20Z");
   EXPECT_LE(plan["samples"], done["samples"]);
   EXPECT_EQ(json_of({"verify", "reident.db"})["samples"], 2 * (20000 - first_chunk));
-  const testing::Ran again = reident({"retain", "reident.db", "--keep", "1h"});
+  const test::Ran again = reident({"retain", "reident.db", "--keep", "1h"});
   EXPECT_EQ(again.status, 0);
   EXPECT_THAT(again.out, HasSubstr("removed nothing; "));
 }
@@ -160,4 +160,4 @@ TEST_F(Care, RetainRefusesInOneLineWithTheRemedy) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::care_test

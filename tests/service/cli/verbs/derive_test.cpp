@@ -5,7 +5,7 @@
 
 #include "tests/service/cli/cli_fixture.hpp"
 
-namespace reident::cli {
+namespace reident::cli::derive_test {
 namespace {
 
 using nlohmann::json;
@@ -29,7 +29,7 @@ std::string converter_csv(int rows, int off_begin = 0, int off_end = 0) {
   return text;
 }
 
-class Derive : public testing::CliTest {
+class Derive : public test::CliTest {
  protected:
   Strings command(const Strings& more) const {
     Strings words = {"identify", "converter.csv", "--output", "i_out"};
@@ -100,4 +100,4 @@ TEST_F(Derive, RefusesWhatCannotBeWithTheRemedy) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::derive_test

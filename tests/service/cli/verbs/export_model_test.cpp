@@ -8,18 +8,18 @@
 #include "tests/service/cli/cli_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
-namespace reident::cli {
+namespace reident::cli::export_model_test {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-class ExportModel : public testing::CliTest {
+class ExportModel : public test::CliTest {
  protected:
   ExportModel() {
     storage::Database database(folder() / "reident.db", storage::Database::Mode::read_write);
     storage::Registry registry(database);
-    const EquipmentModel model = test::full_example_model();
+    const EquipmentModel model = reident::test::full_example_model();
     EquipmentModel damaged = model;
     damaged.dynamics.A(0, 0) = 0.8;
     for (const EquipmentModel& stored : {model, damaged}) {
@@ -41,7 +41,7 @@ class ExportModel : public testing::CliTest {
     words.insert(words.begin(), {"export-model", subject, "--database", "reident.db"});
     return words;
   }
-  void expect_failure(const testing::Ran& ran, const std::string& says) const {
+  void expect_failure(const test::Ran& ran, const std::string& says) const {
     EXPECT_EQ(ran.status, 1);
     EXPECT_THAT(ran.err, StartsWith("reident: " + says));
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
@@ -52,19 +52,19 @@ class ExportModel : public testing::CliTest {
 };
 
 TEST_F(ExportModel, WritesAllFilesAtOnceAndSaysWhat) {
-  const testing::Ran ran =
+  const test::Ran ran =
       reident(command("BDR@1", {"--fmu", "a.fmu", "--mat", "a.mat", "--json", "a.json"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.out,
             "a.fmu: FMU of CBERS4/BDR version 1\na.mat: MATLAB file of CBERS4/BDR version 1\n"
             "a.json: JSON of CBERS4/BDR version 1\n");
   for (const char* name : {"a.fmu", "a.mat", "a.json"}) EXPECT_TRUE(exists(name)) << name;
-  const testing::Ran again = reident(command("CBERS4/BDR@1", {"--json", "a.json", "--force"}));
+  const test::Ran again = reident(command("CBERS4/BDR@1", {"--json", "a.json", "--force"}));
   EXPECT_EQ(again.status, 0) << again.err;
 }
 
 TEST_F(ExportModel, PrintsJsonWithTheDecision) {
-  const testing::Ran ran = reident(command("BDR@1", {"--json", "-"}));
+  const test::Ran ran = reident(command("BDR@1", {"--json", "-"}));
   ASSERT_EQ(ran.status, 0) << ran.err;
   const auto object = nlohmann::json::parse(ran.out);
   EXPECT_EQ(object["version"], 1);
@@ -93,8 +93,7 @@ TEST_F(ExportModel, RefusesWhatCannotBeWritten) {
 
 TEST_F(ExportModel, LeavesNothingBehindWhereAFileCannotBeWritten) {
   for (const char* path : {"nowhere/a.mat", "/dev/full"}) {
-    const testing::Ran ran =
-        reident(command("BDR@1", {"--fmu", "a.fmu", "--mat", path, "--force"}));
+    const test::Ran ran = reident(command("BDR@1", {"--fmu", "a.fmu", "--mat", path, "--force"}));
     expect_failure(ran, path);
   }
 }
@@ -105,10 +104,10 @@ TEST_F(ExportModel, LeavesNothingBehindOnAFullDisk) {
   getrlimit(RLIMIT_FSIZE, &before);
   const rlimit less_than_an_fmu{36'000, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &less_than_an_fmu);
-  const testing::Ran ran = reident(command("BDR@1", {"--mat", "a.mat", "--fmu", "a.fmu"}));
+  const test::Ran ran = reident(command("BDR@1", {"--mat", "a.mat", "--fmu", "a.fmu"}));
   setrlimit(RLIMIT_FSIZE, &before);
   expect_failure(ran, "a.fmu cannot be written, there is no room");
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::export_model_test

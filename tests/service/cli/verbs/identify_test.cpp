@@ -8,7 +8,7 @@
 
 #include "tests/service/cli/cli_fixture.hpp"
 
-namespace reident::cli {
+namespace reident::cli::identify_test {
 namespace {
 
 using ::testing::Contains;
@@ -99,7 +99,7 @@ void expect_errors(const json& printed, const std::string& part, const MatrixXd&
   }
 }
 
-class Identify : public testing::CliTest {
+class Identify : public test::CliTest {
  protected:
   Strings command(Strings more = {}) const {
     Strings words = {"identify", "plant.csv", "--input", "u1", "u2", "--output", "y1", "y2"};
@@ -263,7 +263,7 @@ TEST_F(Identify, PrintsNullForAFitThatIsNotFinite) {
 
 TEST_F(Identify, ReportsInWordsWithoutJson) {
   write("plant.csv", csv_of(plant(600)));
-  const testing::Ran ran = reident(command({"--order", "2"}));
+  const test::Ran ran = reident(command({"--order", "2"}));
   EXPECT_EQ(ran.status, 0);
   EXPECT_THAT(ran.out, StartsWith("order 2, horizon"));
   EXPECT_THAT(ran.out, HasSubstr("poles 0.8"));
@@ -309,19 +309,19 @@ TEST_F(Identify, GivesTheReasonWhenTheDataGiveNoModel) {
   Plant data = plant(600);
   data.y.setConstant(28);
   write("plant.csv", csv_of(data));
-  const testing::Ran ran = reident(command({"--json"}));
+  const test::Ran ran = reident(command({"--json"}));
   EXPECT_EQ(ran.status, 3);
   const json printed = json::parse(ran.out);
   EXPECT_EQ(printed["rejected"], "constant_outputs");
   EXPECT_THAT(printed["reason"].get<std::string>(), Not(IsEmpty()));
-  const testing::Ran words = reident(command());
+  const test::Ran words = reident(command());
   EXPECT_EQ(words.status, 3);
   EXPECT_THAT(words.err, StartsWith("reident: no model (constant_outputs): "));
 }
 
 TEST_F(Identify, RejectsAFileOfFewRows) {
   write("plant.csv", csv_of(plant(6)));
-  const testing::Ran ran = reident(command({"--json"}));
+  const test::Ran ran = reident(command({"--json"}));
   EXPECT_EQ(ran.status, 3);
   EXPECT_EQ(json::parse(ran.out)["rejected"], "too_few_samples");
 }
@@ -335,7 +335,7 @@ std::ostream& operator<<(std::ostream& out, const Impossible& request) {
   return out << request.name;
 }
 
-class ImpossibleRequests : public testing::CliTest,
+class ImpossibleRequests : public test::CliTest,
                            public ::testing::WithParamInterface<Impossible> {};
 
 TEST_P(ImpossibleRequests, ExitTwoWithOneLineThatSaysWhatWouldMendThem) {
@@ -417,4 +417,4 @@ INSTANTIATE_TEST_SUITE_P(Table, ImpossibleRequests, ::testing::ValuesIn(requests
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::identify_test

@@ -4,7 +4,7 @@
 #include "storage/registry/registry.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
-namespace reident::cli {
+namespace reident::cli::operators_test {
 namespace {
 
 using nlohmann::json;
@@ -18,7 +18,7 @@ using ::testing::SizeIs;
 constexpr std::int64_t second = 1'000'000'000;
 constexpr std::int64_t start = 1'700'000'000 * second;  // 2023-11-14T22:13:20Z
 
-class OperatorCommands : public testing::CliTest {
+class OperatorCommands : public test::CliTest {
  protected:
   /// BDR: version 1 superseded, 2 champion, 3 and 4 wait.
   OperatorCommands() {
@@ -50,7 +50,7 @@ class OperatorCommands : public testing::CliTest {
 };
 
 TEST_F(OperatorCommands, AreCarriedOutOnTheFileAndSaySo) {
-  const testing::Ran ran = reident(on_file({"approve", "BDR", "3", "--reason", "seen"}));
+  const test::Ran ran = reident(on_file({"approve", "BDR", "3", "--reason", "seen"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.out,
             "version 3 of CBERS-4/BDR is approved and champion now, after version 2 (no service "
@@ -81,7 +81,7 @@ TEST_F(OperatorCommands, ThatAreRefusedExitWithTheReason) {
     EXPECT_THAT(refusal_of(on_file({command, "BDR", "3"})), HasSubstr("--reason is required"));
     EXPECT_THAT(refusal_of(on_file({command, "BDR", "0", "--reason", "x"})), HasSubstr("version"));
   }
-  const testing::Ran ran = reident(on_file({"release", "BDR", "--json"}));
+  const test::Ran ran = reident(on_file({"release", "BDR", "--json"}));
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(json::parse(ran.out)["reply"], "CBERS-4/BDR is not held");
 }
@@ -100,7 +100,7 @@ TEST_F(OperatorCommands, ARollbackNamesTheVersionThatItFound) {
 
 TEST_F(OperatorCommands, WithoutAServiceBehindTheLockTheyTimeOutAndNothingIsDone) {
   const storage::Database holder(path(), storage::Database::Mode::read_write);
-  const testing::Ran ran =
+  const test::Ran ran =
       reident(on_file({"hold", "BDR", "--timeout", "0.2", "--domain",
                        std::to_string(1 + getpid() % 200), "--partition", "nobody"}));
   EXPECT_EQ(ran.status, 4);
@@ -118,7 +118,7 @@ TEST_F(OperatorCommands, NeedAPlaceToGo) {
 TEST_F(OperatorCommands, HistoryAndShowTellWhatWasDecided) {
   reident(on_file({"withdraw", "BDR", "2", "--reason", "wrong sensor"}));
   reident(on_file({"hold", "BDR", "--reason", "training"}));
-  const testing::Ran history = reident({"history", "--database", "reident.db"});
+  const test::Ran history = reident({"history", "--database", "reident.db"});
   EXPECT_THAT(history.out, HasSubstr("  2x  "));
   EXPECT_THAT(history.out, HasSubstr("approved: Good. Then withdraw by Ana at 2"));
   EXPECT_THAT(history.out, HasSubstr("roll_back by Ana at 2"));
@@ -145,7 +145,7 @@ TEST_F(OperatorCommands, AtTellsTheChampionOfATimeAndWhoDecidedSo) {
   EXPECT_EQ(at("2200-01-01")["version"], 1);
   EXPECT_EQ(at("2200-01-01")["kind"], "roll_back");
   EXPECT_EQ(at("2200-01-01")["reason"], "odd");
-  const testing::Ran table = reident({"at", "1700000010", "--database", "reident.db"});
+  const test::Ran table = reident({"at", "1700000010", "--database", "reident.db"});
   EXPECT_THAT(table.out, HasSubstr("CBERS-4/BDR        2  2023-11-14T22:13:30Z  gate  approve: "
                                    "Good.\n"));
   EXPECT_THAT(refusal_of({"at", "yesterday", "--database", "reident.db"}),
@@ -155,4 +155,4 @@ TEST_F(OperatorCommands, AtTellsTheChampionOfATimeAndWhoDecidedSo) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::operators_test

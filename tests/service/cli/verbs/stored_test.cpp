@@ -5,7 +5,7 @@
 #include "storage/registry/registry.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
-namespace reident::cli {
+namespace reident::cli::stored_test {
 namespace {
 
 using nlohmann::json;
@@ -58,7 +58,7 @@ storage::NewAttempt attempt_of(const std::string& equipment, int slide, const st
   return attempt;
 }
 
-class Stored : public testing::CliTest {
+class Stored : public test::CliTest {
  protected:
   Stored() : registry_(database_) {}
 
@@ -91,7 +91,7 @@ class Stored : public testing::CliTest {
 
 TEST_F(Stored, HistoryListsEveryAttemptWithItsOutcomeAndTheChampion) {
   fill();
-  const testing::Ran ran = reident(command({"history"}));
+  const test::Ran ran = reident(command({"history"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out, HasSubstr("CBERS-4/BDR  2023-11-14T22:13:20Z  100min        -      -       "
                                  "-      -  too_few_samples: The reason of too_few_samples.\n"));
@@ -153,7 +153,7 @@ TEST_F(Stored, AnUnknownEquipmentIsAnsweredWithWhatExists) {
 
 TEST_F(Stored, ShowTellsTheWholeStoryOfTheChampion) {
   fill();
-  const testing::Ran ran = reident(command({"show", "CBERS-4/BDR"}));
+  const test::Ran ran = reident(command({"show", "CBERS-4/BDR"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out,
               AllOf(HasSubstr("CBERS-4/BDR version 3: approved"),
@@ -258,7 +258,7 @@ TEST_F(Stored, AVersionFromBeforeProvenanceCannotBeReproduced) {
                         "schema 2 and does not say where it comes from"));
 }
 
-class WithoutDatabase : public testing::CliTest {};
+class WithoutDatabase : public test::CliTest {};
 
 TEST_F(WithoutDatabase, TheRemedyIsNamed) {
   EXPECT_THAT(refusal_of({"history"}), HasSubstr("--database FILE or --config FILE"));
@@ -293,4 +293,4 @@ window = "1h"
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::stored_test

@@ -12,7 +12,7 @@
 #include "storage/archive/archive.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
-namespace reident::cli {
+namespace reident::cli::transfer_test {
 namespace {
 
 using nlohmann::json;
@@ -32,7 +32,7 @@ storage::ParameterDescriptor descriptor(const std::string& spacecraft, std::uint
   return made;
 }
 
-class Transfer : public testing::CliTest {
+class Transfer : public test::CliTest {
  protected:
   /// A row a second from 2023-11-14T22:13:20Z on, without the rows in `lost`.
   void write_telemetry(int rows, int lost_from = 0, int lost_to = 0) const {
@@ -78,17 +78,17 @@ TEST_F(Transfer, AFileIsImportedAndExportedAsItWas) {
   EXPECT_EQ(counts["rows"], 5000);
   EXPECT_EQ(counts["stored"], 15000);
   EXPECT_EQ(counts["new_parameters"], 3);
-  const testing::Ran again = reident(import_of("t.csv", "a.db"));
+  const test::Ran again = reident(import_of("t.csv", "a.db"));
   EXPECT_THAT(again.out, AllOf(HasSubstr("15000 samples in 5000 rows: 0 stored, 15000 there"),
                                HasSubstr("all of it was in the archive already")));
-  const testing::Ran exported = reident({"export", "a.db", "-o", "long.csv"});
+  const test::Ran exported = reident({"export", "a.db", "-o", "long.csv"});
   EXPECT_EQ(exported.status, 0) << exported.err;
   EXPECT_EQ(exported.out, "long.csv: 15000 samples of 3 series in 15000 rows\n");
   EXPECT_EQ(reident({"import", "long.csv", "--db", "b.db"}).status, 0);
   EXPECT_EQ(reident({"export", "b.db"}).out, text_of("long.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "long.csv.part"));
-  const testing::Ran wide = reident({"export", "a.db", "--wide", "--parameter", "mode", "bus_u",
-                                     "--from", "1700000003", "--to", "1700000005"});
+  const test::Ran wide = reident({"export", "a.db", "--wide", "--parameter", "mode", "bus_u",
+                                  "--from", "1700000003", "--to", "1700000005"});
   EXPECT_EQ(wide.out,
             "time,mode,bus_u\n2023-11-14T22:13:23Z,0,28075\n2023-11-14T22:13:24Z,0,28100\n");
 }
@@ -114,7 +114,7 @@ TEST_F(Transfer, AMistakeNamesFileLineAndRemedyAndCanBePassedOver) {
                          "out the column"));
   auto command = import_of("t.csv", "a.db");
   command.push_back("--skip-bad-lines");
-  const testing::Ran ran = reident(command);
+  const test::Ran ran = reident(command);
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out, HasSubstr("1 bad lines left out"));
   EXPECT_THAT(ran.err, HasSubstr("reident: left out: t.csv:3: 'off'"));
@@ -164,7 +164,7 @@ TEST_F(Transfer, AnOutputThatCannotBeWrittenIsAClearError) {
 TEST_F(Transfer, CompletenessShowsEachDayWithItsBar) {
   write_telemetry(20'000, 7'000, 10'000);  // from 22:13:20 on; 0:10:00 to 1:00:00 is lost
   reident(import_of("t.csv", "a.db"));
-  const testing::Ran ran = reident({"completeness", "a.db", "--parameters"});
+  const test::Ran ran = reident({"completeness", "a.db", "--parameters"});
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out, StartsWith("SAT-1 (real), 3 parameters, samples by day (UTC)\n"));
   EXPECT_THAT(ran.out,
@@ -219,4 +219,4 @@ TEST_F(Transfer, CompletenessCountsFramesAndKnowsTheParametersOfAnEquipment) {
 }
 
 }  // namespace
-}  // namespace reident::cli
+}  // namespace reident::cli::transfer_test

@@ -9,7 +9,7 @@
 
 #include "tests/service/satcs/faults/faults_fixture.hpp"
 
-namespace reident::satcs {
+namespace reident::satcs::fault_injector_test {
 namespace {
 
 using namespace test;
@@ -243,4 +243,4 @@ TEST(ParameterFaults, FlagRightSamplesInvalidAndWrongOnesGood) {
 }
 
 }  // namespace
-}  // namespace reident::satcs
+}  // namespace reident::satcs::fault_injector_test

@@ -6,7 +6,7 @@
 #include "service/satcs/faults/fault_injector.hpp"
 #include "tests/service/satcs/faults/faults_fixture.hpp"
 
-namespace reident::satcs {
+namespace reident::satcs::fault_text_test {
 namespace {
 
 using namespace test;
@@ -76,4 +76,4 @@ TEST(FaultText, RefusesWhatCannotBeTold) {
 }
 
 }  // namespace
-}  // namespace reident::satcs
+}  // namespace reident::satcs::fault_text_test

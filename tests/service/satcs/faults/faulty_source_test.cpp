@@ -7,7 +7,7 @@
 #include "service/satcs/reference/reference_source.hpp"
 #include "tests/service/satcs/faults/faults_fixture.hpp"
 
-namespace reident::satcs {
+namespace reident::satcs::faulty_source_test {
 namespace {
 
 using namespace test;
@@ -78,4 +78,4 @@ TEST(ReferenceSource, NumbersItsFramesAndReceivesThemWhenTheyAreGenerated) {
 }
 
 }  // namespace
-}  // namespace reident::satcs
+}  // namespace reident::satcs::faulty_source_test

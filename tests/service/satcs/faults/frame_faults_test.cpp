@@ -8,7 +8,7 @@
 #include "service/satcs/reference/reference_orbit.hpp"
 #include "tests/service/satcs/faults/faults_fixture.hpp"
 
-namespace reident::satcs {
+namespace reident::satcs::frame_faults_test {
 namespace {
 
 using namespace test;
@@ -151,4 +151,4 @@ TEST(FrameFaults, SendTheSimulatorAsRealBeforeTheSpacecraft) {
 }
 
 }  // namespace
-}  // namespace reident::satcs
+}  // namespace reident::satcs::frame_faults_test

@@ -10,7 +10,7 @@
 #include "service/satcs/parameter_id.hpp"
 #include "service/satcs/reference/reference_spacecraft.hpp"
 
-namespace reident::satcs {
+namespace reident::satcs::handwritten_eps_test {
 namespace {
 
 constexpr storage::Time start = 1'498'867'200'000'000'000;
@@ -134,4 +134,4 @@ TEST(HandwrittenEps, IsOfTheSizeOfTheSpacecraftButNotLikeIt) {
 }
 
 }  // namespace
-}  // namespace reident::satcs
+}  // namespace reident::satcs::handwritten_eps_test

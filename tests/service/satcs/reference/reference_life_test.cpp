@@ -10,7 +10,7 @@
 #include "service/satcs/reference/life_text.hpp"
 #include "service/satcs/reference/reference_spacecraft.hpp"
 
-namespace reident::satcs::reference {
+namespace reident::satcs::reference::reference_life_test {
 namespace {
 
 constexpr storage::Time second = 1'000'000'000;
@@ -225,4 +225,4 @@ TEST(LifeText, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace reident::satcs::reference
+}  // namespace reident::satcs::reference::reference_life_test

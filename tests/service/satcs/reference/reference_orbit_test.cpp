@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::satcs::reference {
+namespace reident::satcs::reference::reference_orbit_test {
 namespace {
 
 constexpr storage::Time second = 1'000'000'000;
@@ -116,4 +116,4 @@ TEST(ReferenceOrbit, NoonIsInTheMiddleOfTheSunlitPart) {
 }
 
 }  // namespace
-}  // namespace reident::satcs::reference
+}  // namespace reident::satcs::reference::reference_orbit_test

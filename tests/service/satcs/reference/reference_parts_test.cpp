@@ -11,7 +11,7 @@
 #include "service/satcs/reference/reference_converter.hpp"
 #include "service/satcs/reference/reference_loads.hpp"
 
-namespace reident::satcs::reference {
+namespace reident::satcs::reference::reference_parts_test {
 namespace {
 
 constexpr storage::Time second = 1'000'000'000;
@@ -235,4 +235,4 @@ TEST(ReferenceLoads, HeatersKeepTheBatteryBetweenTheirThresholds) {
 }
 
 }  // namespace
-}  // namespace reident::satcs::reference
+}  // namespace reident::satcs::reference::reference_parts_test

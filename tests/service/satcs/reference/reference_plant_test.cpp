@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace reident::satcs::reference {
+namespace reident::satcs::reference::reference_plant_test {
 namespace {
 
 constexpr storage::Time second = 1'000'000'000;
@@ -205,4 +205,4 @@ TEST(ReferencePlant, LosesOneSixthOfTheArrayWithAChannel) {
 }
 
 }  // namespace
-}  // namespace reident::satcs::reference
+}  // namespace reident::satcs::reference::reference_plant_test

@@ -10,7 +10,7 @@
 #include "service/satcs/parameter_id.hpp"
 #include "service/satcs/reference/reference_spacecraft.hpp"
 
-namespace reident::satcs::reference {
+namespace reident::satcs::reference::reference_relations_test {
 namespace {
 
 struct Relation {
@@ -70,4 +70,4 @@ TEST(ReferenceRelations, HoldBetweenTheLastSamplesInEverySecond) {
 }
 
 }  // namespace
-}  // namespace reident::satcs::reference
+}  // namespace reident::satcs::reference::reference_relations_test

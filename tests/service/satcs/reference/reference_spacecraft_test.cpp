@@ -10,7 +10,7 @@
 
 #include "service/satcs/parameter_id.hpp"
 
-namespace reident::satcs::reference {
+namespace reident::satcs::reference::reference_spacecraft_test {
 namespace {
 
 constexpr storage::Time second = 1'000'000'000;
@@ -196,4 +196,4 @@ TEST(ReferenceSensor, HoldsToItsRangeAndHasItsNoise) {
 }
 
 }  // namespace
-}  // namespace reident::satcs::reference
+}  // namespace reident::satcs::reference::reference_spacecraft_test

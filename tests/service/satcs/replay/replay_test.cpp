@@ -13,7 +13,7 @@
 #include "service/satcs/parameter_id.hpp"
 #include "service/satcs/replay/replay_columns.hpp"
 
-namespace reident::satcs {
+namespace reident::satcs::replay_test {
 namespace {
 
 using testing::ElementsAre;
@@ -287,4 +287,4 @@ TEST_F(Replay, FailsWhenTheFileChangesUnderIt) {
 }
 
 }  // namespace
-}  // namespace reident::satcs
+}  // namespace reident::satcs::replay_test
