@@ -30,8 +30,8 @@
 
 #include <variant>
 
-#include "identification/simulation/state_space.hpp"
 #include "identification/samples/verdict.hpp"
+#include "identification/simulation/state_space.hpp"
 
 namespace reident::identification {
 

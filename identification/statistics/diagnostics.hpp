@@ -18,11 +18,11 @@
 #include <optional>
 #include <vector>
 
-#include "identification/statistics/correlation.hpp"
-#include "identification/statistics/error_confidence.hpp"
 #include "identification/samples/record.hpp"
 #include "identification/simulation/simulate.hpp"
 #include "identification/simulation/state_space.hpp"
+#include "identification/statistics/correlation.hpp"
+#include "identification/statistics/error_confidence.hpp"
 
 namespace reident::identification {
 

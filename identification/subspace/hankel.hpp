@@ -3,10 +3,10 @@
 
 #include <optional>
 
+#include "identification/numerics/matrix.hpp"
+#include "identification/samples/record.hpp"
 #include "identification/subspace/lag_sums.hpp"
 #include "identification/subspace/normalise.hpp"
-#include "identification/samples/record.hpp"
-#include "identification/numerics/matrix.hpp"
 
 namespace reident::identification {
 

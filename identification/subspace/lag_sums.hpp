@@ -12,8 +12,8 @@
 #include <map>
 #include <vector>
 
-#include "identification/samples/record.hpp"
 #include "identification/numerics/matrix.hpp"
+#include "identification/samples/record.hpp"
 
 namespace reident::identification {
 

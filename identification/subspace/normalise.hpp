@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "identification/subspace/lag_sums.hpp"
 #include "identification/samples/record.hpp"
 #include "identification/simulation/state_space.hpp"
+#include "identification/subspace/lag_sums.hpp"
 
 namespace reident::identification {
 

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "identification/subspace/hankel.hpp"
 #include "identification/simulation/state_space.hpp"
+#include "identification/subspace/hankel.hpp"
 
 namespace reident::identification {
 

@@ -14,8 +14,8 @@
 
 #include "storage/archive/archive.hpp"
 #include "storage/archive/sequence.hpp"
-#include "storage/database/sqlite.hpp"
 #include "storage/archive/writer.hpp"
+#include "storage/database/sqlite.hpp"
 
 namespace reident::storage {
 

@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "storage/database/connection.hpp"
 #include "storage/archive/series_reader.hpp"
 #include "storage/archive/writer.hpp"
+#include "storage/database/connection.hpp"
 
 namespace reident::storage {
 

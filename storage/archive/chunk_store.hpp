@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "storage/chunks/chunk.hpp"
-#include "storage/types/sample_columns.hpp"
 #include "storage/chunks/sample_gaps.hpp"
 #include "storage/database/sqlite.hpp"
+#include "storage/types/sample_columns.hpp"
 
 namespace reident::storage {
 

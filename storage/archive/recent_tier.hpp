@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "storage/types/sample_columns.hpp"
 #include "storage/database/sqlite.hpp"
+#include "storage/types/sample_columns.hpp"
 
 namespace reident::storage {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "storage/types/sample_columns.hpp"
 #include "storage/database/sqlite.hpp"
+#include "storage/types/sample_columns.hpp"
 
 namespace reident::storage {
 

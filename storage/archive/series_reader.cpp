@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "storage/archive/damage.hpp"
+#include "storage/archive/revision.hpp"
 #include "storage/chunks/overlay.hpp"
 #include "storage/chunks/recent_run.hpp"
-#include "storage/archive/revision.hpp"
 
 namespace reident::storage {
 namespace {

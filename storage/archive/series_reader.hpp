@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "storage/types/sample_columns.hpp"
 #include "storage/database/sqlite.hpp"
+#include "storage/types/sample_columns.hpp"
 
 namespace reident::storage {
 

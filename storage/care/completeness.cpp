@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "storage/archive/archive_access.hpp"
-#include "storage/database/connection.hpp"
 #include "storage/archive/damage.hpp"
 #include "storage/chunks/sample_gaps.hpp"
+#include "storage/database/connection.hpp"
 
 namespace reident::storage {
 namespace {

@@ -4,9 +4,9 @@
 #include <limits>
 #include <set>
 
-#include "storage/database/connection.hpp"
 #include "storage/care/verify_series.hpp"
 #include "storage/care/verify_tables.hpp"
+#include "storage/database/connection.hpp"
 
 namespace reident::storage {
 namespace {

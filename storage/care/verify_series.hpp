@@ -10,11 +10,11 @@
 #include <unordered_map>
 #include <vector>
 
+#include "storage/care/verify.hpp"
 #include "storage/chunks/chunk.hpp"
-#include "storage/types/sample_columns.hpp"
 #include "storage/chunks/sample_gaps.hpp"
 #include "storage/database/sqlite.hpp"
-#include "storage/care/verify.hpp"
+#include "storage/types/sample_columns.hpp"
 
 namespace reident::storage {
 

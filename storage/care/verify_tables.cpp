@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "storage/database/schema.hpp"
 #include "storage/archive/sequence.hpp"
+#include "storage/database/schema.hpp"
 
 namespace reident::storage {
 namespace {

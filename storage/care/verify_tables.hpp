@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "storage/database/sqlite.hpp"
 #include "storage/care/verify.hpp"
+#include "storage/database/sqlite.hpp"
 
 namespace reident::storage {
 

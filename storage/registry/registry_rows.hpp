@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "storage/registry/registry.hpp"
 #include "storage/database/sqlite.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident::storage {
 

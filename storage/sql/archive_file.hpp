@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "storage/chunks/chunk.hpp"
-#include "storage/types/sample_columns.hpp"
 #include "storage/sql/selection.hpp"
 #include "storage/sql/sqlite_api.hpp"
+#include "storage/types/sample_columns.hpp"
 #include "storage/types/telemetry.hpp"
 
 namespace reident::storage::sql {

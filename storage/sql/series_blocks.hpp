@@ -6,9 +6,9 @@
 #include <functional>
 #include <optional>
 
-#include "storage/types/sample_columns.hpp"
 #include "storage/sql/archive_file.hpp"
 #include "storage/sql/selection.hpp"
+#include "storage/types/sample_columns.hpp"
 
 namespace reident::storage::sql {
 

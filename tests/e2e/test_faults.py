@@ -1,4 +1,4 @@
-"""What the archive makes of telemetry that faults about times, order, sender and validity."""
+"""What the archive makes of telemetry whose times, order, sender or validity are wrong."""
 
 import csv
 import json
@@ -42,7 +42,7 @@ class Faults(EndToEnd):
         self.start_daemon()
 
     def publish(self, duration, *faults):
-        options = [option for lie in faults for option in ("--fault", fault)]
+        options = [option for fault in faults for option in ("--fault", fault)]
         reference = self.start("satcs-reference", "--duration", duration, "--speed", "max",
                                "--json", *options, *self.endpoint())
         self.assertEqual(reference.wait(), 0, reference.text())

@@ -14,8 +14,9 @@ from pathlib import Path
 
 MAX_FILE_LINES = 500
 MAX_FUNCTION_LINES = 100
-TOP_LEVEL = {"CMakeLists.txt", "CMakePresets.json", "README.md", "service", "idl", "storage",
-             "identification", "tests", "deploy"}
+TOP_LEVEL = {"CMakeLists.txt", "CMakePresets.json", "README.md", "LICENSE", "CHANGELOG.md",
+             "CONTRIBUTING.md", "CITATION.cff", "service", "idl", "storage", "identification", "tests",
+             "deploy"}
 
 FORBIDDEN_INCLUDES = [  # folder, pattern of what it must not include, why
     ("identification/", r"(storage|service|idl)/", "identification sees nobody"),
@@ -26,6 +27,23 @@ FORBIDDEN_INCLUDES = [  # folder, pattern of what it must not include, why
      "DDS types appear under service/dds alone"),
     ("(?!storage/|tests/)", r"sqlite3\.h$", "SQLite appears under storage alone"),
     ("(?!service/support/)", r"spdlog/", "log through service/support/log.hpp"),
+    # The data flow: a folder never includes one that comes after it.
+    ("identification/(numerics|samples|simulation|statistics|screening|subspace|fit|correction)/",
+     r"identification/search/", "what the search is made of does not know the search"),
+    ("identification/(numerics|samples|simulation|statistics|screening)/",
+     r"identification/(subspace|fit|correction)/", "models are fitted by what comes later"),
+    ("storage/types/", r"storage/(?!types/)", "types are what others hold without a database"),
+    ("storage/chunks/", r"storage/(?!types/|chunks/)", "a chunk is bytes, wherever they are kept"),
+    ("storage/database/", r"storage/(archive|registry|care|chunks)/",
+     "a database knows no table's content"),
+    ("storage/registry/", r"storage/archive/", "models and telemetry are kept apart"),
+    ("storage/archive/", r"storage/registry/", "telemetry and models are kept apart"),
+    ("service/windows/", r"service/judgement/", "who makes a candidate does not judge it"),
+    ("service/(config|windows|judgement|operations)/", r"service/daemon/",
+     "no decision depends on threads and queues"),
+    ("service/(config|windows|judgement)/", r"service/dds/", "no decision depends on the middleware"),
+    ("service/cli/", r"service/daemon/", "the command line works without the daemon"),
+    ("service/(client|dds|model)/", r"storage/(?!types/)", "simulators hold no database"),
 ]
 ALLOWED = re.compile(r"service/dds/dds\.hpp$")
 
