@@ -3,7 +3,8 @@
 # time, reidentd archives it, identifies its equipment again and again and publishes what passes
 # the gate, and a simulator swaps to each approved version while it runs.
 #
-#   deploy/demo.sh [FOLDER]     leaves reident.db and reident.toml in FOLDER (default: build/demo)
+#   deploy/demo.sh [FOLDER]     leaves reident.db, reident.toml and a picture in FOLDER (default:
+#                               build/demo)
 #
 # Installs missing packages, builds, runs for about two minutes, stays on 127.0.0.1 and ends by
 # itself. Safe to run again: it starts with a new database.
@@ -15,16 +16,33 @@ mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 cd "$root"
 
+# Ninja's "[done/all] what" as one line that counts, or a line for each tenth where no terminal is.
+progress() {
+  local line shown=-1 tenth
+  while IFS= read -r line; do
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+    tenth=$((10 * BASH_REMATCH[1] / BASH_REMATCH[2]))
+    if [ -t 1 ]; then
+      printf '\rBuilding: step %d of %d ' "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}"
+    elif [ "$tenth" -ne "$shown" ]; then
+      printf 'Building: step %d of %d\n' "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}"
+      shown=$tenth
+    fi
+  done
+  if [ -t 1 ]; then printf '\n'; fi
+}
+
 deploy/install_packages.sh
-echo "Building (the first time takes some minutes)"
+echo "Building in build/release (the first time takes some minutes)"
 cmake --preset release -DBUILD_TESTING=OFF >"$folder/build.log"
-cmake --build --preset release >>"$folder/build.log" || { tail -20 "$folder/build.log"; exit 1; }
+cmake --build --preset release 2>&1 | tee -a "$folder/build.log" | progress ||
+  { tail -20 "$folder/build.log"; exit 1; }
 bin=$root/build/release/service
 
 unset CYCLONEDDS_URI  # the programs then stay on the loopback interface
 domain=$((1 + RANDOM % 200))
 endpoint=(--domain "$domain" --partition demo)
-rm -f "$folder"/reident.db "$folder"/reident.db-wal "$folder"/reident.db-shm
+rm -f "$folder"/reident.db "$folder"/reident.db-wal "$folder"/reident.db-shm "$folder"/*.log
 sed -e "s/^# domain = 0/domain = $domain/" \
     -e 's/^# partition = "operations"/partition = "demo"/' deploy/reident.toml \
     >"$folder/reident.toml"
@@ -42,28 +60,39 @@ pids+=($!)
   --cache "$folder/cache" "${endpoint[@]}" >"$folder/simulator.log" 2>&1 &
 pids+=($!)
 
-echo "A CBERS-4-class power subsystem flies 24 orbits at 1500 times real time."
-echo "What the service decides (<) and what the simulator runs (>):"
-tail -n +1 -F "$folder/reidentd.log" 2>/dev/null |
-  sed -un 's/.*window decided equipment=[^/]*\/\([A-Z0-9]*\) .* outcome=\([a-z_]*\) .*reason="\(.*\)"$/  < \1: \2. \3/p' &
+echo "A CBERS-4-class power subsystem flies 24 orbits at 1500 times real time. What the service"
+echo "publishes (<) and what the simulator runs (>):"
+tail -n +1 -F "$folder/reidentd.log" 2>/dev/null | sed -un \
+  's/.*window decided equipment=[^/]*\/\([A-Z0-9]*\) .* outcome=approved .*reason="\(.*\)"$/  < \1: \2/p' |
+  cut -c -79 &
 pids+=($!)
-tail -n +1 -F "$folder/simulator.log" 2>/dev/null | sed -un 's/^/  > /p' &
+tail -n +1 -F "$folder/simulator.log" 2>/dev/null | sed -un 's/^/  > /p' | cut -c -79 &
 pids+=($!)
 
 flight=(--spacecraft CBERS-4 --duration 2406min --speed 1500 --wait-readers 2 "${endpoint[@]}")
-# What the hand-written simulator says of the same flight: the baseline of the first versions.
-"$bin/satcs/satcs-reference" --simulated "${flight[@]}" 2>"$folder/simulated.log" &
+# The telemetry of the hand-written simulator on the same flight: the baseline of first versions.
+"$bin/satcs/satcs-reference" --simulated "${flight[@]}" >"$folder/simulated.log" 2>&1 &
 pids+=($!)
-"$bin/satcs/satcs-reference" "${flight[@]}" 2>"$folder/reference.log"
+"$bin/satcs/satcs-reference" "${flight[@]}" >"$folder/reference.log" 2>&1
 "$bin/cli/reident" status --wait idle --timeout 60 "${endpoint[@]}" >"$folder/status.log"
 "$bin/cli/reident" simulators "${endpoint[@]}" >"$folder/simulators.log"
 trap - EXIT
 cleanup
 
+reident=(env -C "$folder" "$bin/cli/reident")
+"${reident[@]}" history >"$folder/history.log"
+"${reident[@]}" plot CBERS-4/BDR -o "$folder/bdr.svg" >/dev/null
+where=${folder#"$root"/}
 echo
-"$bin/cli/reident" history --config "$folder/reident.toml"
+echo "The champions, and the error of the simulator's own models on the same data:"
 echo
-echo "Who ran what at the end (reident simulators):"
-cat "$folder/simulators.log"
-echo
-echo "Archive and registry: $folder/reident.db; configuration: $folder/reident.toml"
+"${reident[@]}" overview
+cat <<END
+
+Look further (the simulators at the end: $where/simulators.log):
+  PATH=\$PWD/build/release/service/cli:\$PATH
+  reident history --config $where/reident.toml          # all attempts, and why
+  reident why CBERS-4/BDR --config $where/reident.toml
+Picture of the BDR's champion: $where/bdr.svg
+Archive and registry:          $where/reident.db
+END

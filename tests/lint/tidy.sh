@@ -3,8 +3,8 @@
 # the files that are named. Needs a build of the ci preset: tests/run.sh makes one.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-[ -f build/ci/compile_commands.json ] || cmake --preset ci >/dev/null
+[ -f build/separate/compile_commands.json ] || cmake --preset separate -DBUILD_TESTING=ON >/dev/null
 files=("$@")
 [ ${#files[@]} -gt 0 ] ||
   mapfile -t files < <(git ls-files 'identification/*.cpp' 'storage/*.cpp' 'service/*.cpp')
-printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy -p build/ci --quiet
+printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy -p build/separate --quiet

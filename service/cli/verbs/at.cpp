@@ -109,7 +109,7 @@ std::function<int()> declare(CLI::App& command) {
 }
 
 const VerbRegistration registered({"at",
-                                   "Tell which version was champion at a time, and who decided so",
+                                   "Show which version was champion at a time, and who decided so",
                                    WorksOn::history, declare});
 
 }  // namespace

@@ -1,7 +1,12 @@
 // What concerns the program as a whole, and the commands that need no database.
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <sstream>
+#include <string>
 #include <thread>
 #include <unistd.h>
+#include <vector>
 
 #include "service/dds/dds.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
@@ -19,16 +24,40 @@ using ::testing::StartsWith;
 
 class Program : public test::CliTest {};
 
-TEST_F(Program, EveryCommandHasHelpWithAnExample) {
-  EXPECT_THAT(reident({"--help"}).out, HasSubstr("identify"));
-  for (const std::string command :
-       {"identify", "history", "show", "at", "approve", "reject", "withdraw", "hold", "release",
-        "rollback", "identify-now", "check-config", "status", "version", "import", "export",
-        "completeness", "simulators"}) {
-    const test::Ran ran = reident({command, "--help"});
-    EXPECT_EQ(ran.status, 0) << command;
-    EXPECT_THAT(ran.out, HasSubstr("Example:\n  reident " + command)) << command;
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(Program, EveryVerbHasHelpWithAnExampleAndAPlaceInTheManual) {
+  const std::string all = reident({"--help"}).out, manual = reident({"help", "--man"}).out;
+  const std::vector<std::string> verbs = lines_of(reident({"help"}).out);
+  EXPECT_THAT(verbs, SizeIs(::testing::Ge(28)));
+  for (const std::string& line : verbs) {
+    const std::string verb = line.substr(0, line.find(' '));
+    EXPECT_THAT(all, HasSubstr(verb));
+    EXPECT_THAT(manual, HasSubstr(".B " + verb + "\n"));
+    const test::Ran ran = reident({verb, "--help"});
+    EXPECT_EQ(ran.status, 0) << verb;
+    EXPECT_THAT(ran.out, HasSubstr("Example:\n  reident " + verb)) << verb;
   }
+}
+
+TEST_F(Program, TheTableOfTheReadmeIsThatOfTheProgram) {
+  std::ifstream file(REIDENT_README);
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(page, HasSubstr("<!-- commands -->\n" + reident({"help", "--markdown"}).out +
+                              "<!-- /commands -->\n"))
+      << "put the output of 'reident help --markdown' between the marks";
+}
+
+TEST_F(Program, RemoteIsRefusedByVerbsThatReadNoHistory) {
+  EXPECT_THAT(refusal_of({"--remote", "verify", "x.db"}),
+              HasSubstr("verify works on the database file itself"));
+  EXPECT_THAT(refusal_of({"--remote", "status"}),
+              HasSubstr("status is none of the commands that read a database"));
 }
 
 TEST_F(Program, VersionIsPrinted) {

@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include "service/cli/verb.hpp"
+#include "service/support/version.hpp"
+
+namespace reident::cli::help_verb {
+namespace {
+
+enum class Form { text, markdown, man };
+
+void print_text() {
+  for (const Verb& verb : verbs()) fmt::print("{:<16}{}\n", verb.name, verb.purpose);
+}
+
+/// The rows of README.md between its marks.
+void print_markdown() {
+  fmt::print("| verb | purpose |\n|---|---|\n");
+  for (const Verb& verb : verbs()) fmt::print("| `{}` | {} |\n", verb.name, verb.purpose);
+}
+
+/// A page for man(7).
+void print_man() {
+  fmt::print(
+      ".TH REIDENT 1 \"\" \"reident {}\" \"User commands\"\n"
+      ".SH NAME\nreident \\- keeps the equipment models of satellite simulators true to the "
+      "satellite\n"
+      ".SH SYNOPSIS\n.B reident\n.I VERB\n[\\fIOPTION\\fR]...\n"
+      ".SH DESCRIPTION\nShows, compares, exports and decides about versions of equipment models, "
+      "and works on their database. \\fBreident \\fIVERB\\fB \\-\\-help\\fR has the options of a "
+      "verb and an example.\n",
+      program_version());
+  const Verb* before = nullptr;
+  for (const Verb& verb : verbs()) {
+    if (before == nullptr || before->works_on != verb.works_on)
+      fmt::print(".SH {}\n", group_title(verb.works_on));
+    fmt::print(".TP\n.B {}\n{}.\n", verb.name, verb.purpose);
+    before = &verb;
+  }
+  fmt::print(
+      ".SH EXIT STATUS\n0 done; 1 the machine would not (a file that cannot be written, a full "
+      "disk), or verify found damage; 2 the request cannot be met, with one line that says what "
+      "would mend it; 3 the data give no model; 4 nothing answered in time.\n"
+      ".SH SEE ALSO\nreidentd \\-\\-help, satcs-replay \\-\\-help, satcs-reference \\-\\-help\n");
+}
+
+std::function<int()> declare(CLI::App& command) {
+  const auto form = std::make_shared<Form>(Form::text);
+  command.add_flag_callback(
+      "--markdown", [form] { *form = Form::markdown; }, "as the table of README.md");
+  command.add_flag_callback(
+      "--man", [form] { *form = Form::man; }, "as a page for man");
+  command.footer("Example:\n  reident help --man > reident.1");
+  return [form] {
+    switch (*form) {
+      case Form::text:
+        print_text();
+        break;
+      case Form::markdown:
+        print_markdown();
+        break;
+      case Form::man:
+        print_man();
+        break;
+    }
+    return static_cast<int>(exit_done);
+  };
+}
+
+const VerbRegistration registered({"help", "List the verbs", WorksOn::files, declare});
+
+}  // namespace
+}  // namespace reident::cli::help_verb
