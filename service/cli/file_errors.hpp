@@ -1,5 +1,5 @@
-// How the commands that care for a database file tell a request that cannot be met from a machine
-// that fails.
+// How the commands that work on a database file distinguish a request that cannot be met from a
+// machine that fails.
 #pragma once
 
 #include <functional>

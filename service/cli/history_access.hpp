@@ -18,7 +18,7 @@ struct HistoryAccessOptions {
   std::optional<std::uint32_t> domain;
   std::optional<std::string> partition;
   double timeout_s = 10;
-  /// Of the whole program, for what stands before the command.
+  /// The program's own option, for --remote before the command.
   const CLI::Option* remote_before = nullptr;
 
   bool is_remote() const { return remote || (remote_before && remote_before->count() > 0); }
@@ -29,7 +29,7 @@ void add_remote_options(CLI::App& command, HistoryAccessOptions& options);
 /// Those, --database and --config.
 void add_source_options(CLI::App& command, HistoryAccessOptions& options);
 
-/// The same for a command that takes the database as its first word, and a configuration for the
+/// Options of a command whose first argument is the database and that takes a configuration for the
 /// rest.
 void add_archive_options(CLI::App& command, HistoryAccessOptions& options);
 /// What to say where such a command is given neither a database nor --remote.

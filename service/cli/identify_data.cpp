@@ -18,7 +18,7 @@ using identification::Index;
 using identification::Record;
 using identification::RowRange;
 
-// The same as the daemon's default: a sample serves this many periods.
+// The daemon's default: a sample serves this many periods.
 constexpr std::int64_t hold_periods = 3;
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
@@ -63,7 +63,7 @@ std::variant<std::vector<DerivedInput>, Refusal> parse_derived(
   return derived;
 }
 
-/// What is wrong with the derived inputs beside the columns of the file and of the request.
+/// What is wrong with the derived inputs, given the columns of the file and of the request.
 std::optional<Refusal> refuse_derived(const std::vector<DerivedInput>& derived,
                                       const DataRequest& request, const csv::Reader& reader) {
   for (const DerivedInput& input : derived)

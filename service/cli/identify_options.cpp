@@ -25,7 +25,7 @@ std::optional<Refusal> parse_choice(std::string_view flag, const std::string& te
   return std::nullopt;
 }
 
-/// Of the inputs that are not named the delay is 0.
+/// Inputs that are not named have the delay 0.
 std::optional<Refusal> parse_delays(const std::vector<std::string>& delays,
                                     const std::vector<std::string>& inputs,
                                     IdentifyOptions& options) {

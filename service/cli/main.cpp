@@ -17,7 +17,8 @@ int run(int argc, char** argv) {
   CLI::App app("Keeps the equipment models of satellite simulators true to the satellite",
                "reident");
   app.require_subcommand(1);
-  app.fallthrough();  // --remote may stand behind a command that cannot have it, to be told why
+  app.fallthrough();  // --remote may stand behind a command that cannot have it: the refusal says
+                      // why
   const CLI::Option* remote =
       app.add_flag("--remote")
           ->description(

@@ -27,7 +27,7 @@ struct ModelRun {
   WindowData data;               // at least one row
   identification::Matrix y_hat;  // free run, N x p
   identification::Score score;
-  /// The same while it follows the measured outputs; absent without a tracking gain.
+  /// The run that follows the measured outputs; absent without a tracking gain.
   struct Tracked {
     identification::Matrix y_hat;
     identification::Score score;

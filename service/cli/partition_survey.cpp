@@ -10,7 +10,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto settled = 1s;
-constexpr auto settled_without = 2s;     // that nobody is there takes longer to tell
+constexpr auto settled_without = 2s;     // to conclude that nobody is there
 constexpr auto writers_interval = 20ms;  // for writers: the wait set wakes for samples
 constexpr std::size_t messages_at_most = 1024;
 

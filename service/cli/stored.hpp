@@ -26,8 +26,8 @@ void add_database_options(CLI::App& command, DatabaseOptions& options);
 int with_database(const DatabaseOptions& options,
                   const std::function<int(storage::Database&)>& work);
 
-/// The same with a database opened for writing, and made where there is none. Refused while another
-/// program writes.
+/// Calls `work` with a database opened for writing, and made where there is none. Refused while
+/// another program writes.
 int with_writable_database(const DatabaseOptions& options,
                            const std::function<int(storage::Database&)>& work);
 

@@ -32,7 +32,7 @@ struct Verb {
   std::function<std::function<int()>(CLI::App& command)> declare;
 };
 
-/// Of all verbs that are linked, by what they work on and then by name.
+/// All verbs that are linked, by what they work on and then by name.
 const std::vector<Verb>& verbs();
 
 /// A static object of this type adds a verb to the table.

@@ -164,8 +164,8 @@ void read_signals(TableReader& reader, EquipmentConfig& equipment) {
   read("outputs", equipment.outputs);
 }
 
-/// Derived inputs that are whole, each judged beside the signals of the equipment. Their names are
-/// those of inputs, which are checked there.
+/// Derived inputs that are whole, each checked against the signals of the equipment. Their names
+/// are those of inputs, which are checked there.
 void read_derived(TableReader& reader, ConfigDocument& document, EquipmentConfig& equipment) {
   std::vector<TableReader> readers;  // of the whole ones
   for (const toml::table* table : reader.sections("derived")) {

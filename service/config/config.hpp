@@ -23,7 +23,7 @@ enum class ApprovalPolicy { automatic, by_hand };
 /// no relation binds would show alike.
 enum class UnvouchedPolicy { wait, approve };
 
-/// What binds parameters of a spacecraft as long as their sensors tell the truth: a sum of currents
+/// What binds parameters of a spacecraft as long as their sensors read right: a sum of currents
 /// at a node, two measurements of one voltage.
 struct Relation {
   std::string name;
@@ -46,19 +46,19 @@ struct EquipmentConfig {
   double min_coverage = 0.5;      // least share of the window's ticks with every channel valid
   int min_order = 1;
   int max_order = 10;
-  std::optional<int> horizon;      // absent: chosen
-  double max_mrse_percent = 20;    // limit of the gate
-  double min_fit_percent = 0;      // limit of the gate, at least 0
-  double margin_percent = 15;      // relative reduction of the champion's error that a swap brings:
-                                   // surely, or after probation surely a third of it
-  double confidence_percent = 99;  // how sure: of the lower bound of the reduction
+  std::optional<int> horizon;            // absent: chosen
+  double max_mrse_percent = 20;          // limit of the gate
+  double min_fit_percent = 0;            // limit of the gate, at least 0
+  double margin_percent = 15;            // least relative reduction of the champion's error (lower
+                                         // confidence bound); a third of it after confirmation
+  double confidence_percent = 99;        // of that bound, one-sided
   double max_disagreement_percent = 10;  // from the champion where the window was not, of the
                                          // output's range
   Duration min_interval = 0;             // between the windows of two versions; a quarter of slide
   Duration confirmation = 0;             // telemetry after its window, or twice as much, that may
                                          // yet confirm a candidate; default slide, 0: none
-  std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where its
-                                                // telemetry does not tell it
+  std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where it
+                                                // sends no telemetry
   ApprovalPolicy approval = ApprovalPolicy::automatic;
   UnvouchedPolicy unvouched = UnvouchedPolicy::wait;
   bool screening = true;            // whether sensor faults are looked for
@@ -101,7 +101,7 @@ struct ConfigMistake {
 /// The configuration, or every mistake in it, ordered by line.
 std::variant<Config, std::vector<ConfigMistake>> load_config(const std::filesystem::path& path);
 
-/// The same of a text in hand; `folder` is where a relative database path begins.
+/// Parses a text; `folder` is where a relative database path begins.
 std::variant<Config, std::vector<ConfigMistake>> parse_config(std::string_view text,
                                                               const std::filesystem::path& folder);
 

@@ -36,7 +36,7 @@ class ArchiveKeeper {
   std::optional<storage::Time> last_run_;
   std::atomic<bool> is_running_ = false;
 
-  // Of the run, on the writer's thread.
+  // State of the run, on the writer's thread.
   std::optional<storage::Retention> run_;
   std::int64_t last_decision_ = 0;  // that the run's protection knows of
   bool was_too_large_ = false;

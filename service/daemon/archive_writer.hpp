@@ -25,7 +25,7 @@ struct QueuedBytes<TelemetryEvent> {
   std::size_t operator()(const TelemetryEvent& event) const;
 };
 
-/// Told, on the writer's thread, what has been committed.
+/// Hears, on the writer's thread, what has been committed.
 class ArchiveListener {
  public:
   virtual ~ArchiveListener() = default;

@@ -39,7 +39,7 @@ class BoundedQueue {
     return push_locked(std::move(item));
   }
 
-  /// The same for each of `items`, which is empty afterwards. The consumer is woken once for all of
+  /// Pushes each of `items`, which is empty afterwards. The consumer is woken once for all of
   /// them where there is room.
   bool push(std::vector<T>& items) {
     MutexLock lock(mutex_);

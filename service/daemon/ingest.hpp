@@ -42,7 +42,7 @@ class Ingest {
   void count_rejected();
   /// Once a second: what a hundred simulators leave behind is given back when they have left.
   void watch_simulators();
-  /// Logs what is news: simulators tell their running errors again and again.
+  /// Logs what is news: simulators repeat their running errors.
   void hear(const ModelAcknowledgement& acknowledgement);
 
   dds::Participant& participant_;

@@ -21,7 +21,7 @@ class Publisher {
   /// time the last one publishes the last decision. A model that does not match its digest is not
   /// published, which is logged; returns false.
   bool publish_champion(const storage::Registry& registry, const storage::EquipmentName& equipment);
-  /// The same for every champion, for simulators that start after the service. Returns how many.
+  /// Publishes every champion, for simulators that start after the service. Returns how many.
   std::size_t publish_champions(const storage::Registry& registry);
 
   void report(const IdentificationReport& report) {

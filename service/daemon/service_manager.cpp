@@ -21,7 +21,7 @@ void notify_service_manager(const char* state) {
   if (path[0] == '@') address.sun_path[0] = '\0';  // an abstract socket
   const int handle = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (handle < 0) return;
-  // Nobody can be told if this fails.
+  // A failure has nobody to be reported to.
   (void)sendto(handle, state, std::strlen(state), MSG_NOSIGNAL,
                reinterpret_cast<const sockaddr*>(&address),
                static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length));

@@ -1,5 +1,5 @@
-// Tells systemd how the service is (sd_notify(3): one datagram to $NOTIFY_SOCKET); does nothing
-// where no service manager listens.
+// Reports to systemd how the service is (sd_notify(3): one datagram to $NOTIFY_SOCKET); does
+// nothing where no service manager listens.
 #pragma once
 
 namespace reident {

@@ -22,7 +22,7 @@ struct AttemptContext {
   Clock clock;
   identification::ForEach for_each;  // the search runs on it; absent: on the calling thread
   std::function<bool()> stop;
-  /// Told of each version on probation that was decided; may be empty.
+  /// Called with each version on probation that was decided; may be empty.
   std::function<void(const ProbationDecision&)> decided{};
 };
 

@@ -17,11 +17,11 @@ namespace {
 using identification::Index;
 
 constexpr int reference_blocks = 16;
-/// That are judged together: half as many as before them, so that a fault in all of them still is
-/// the exception.
+/// Blocks that are judged together: half as many as before them, so that a fault in all of them
+/// still is the exception.
 constexpr int most_together = 8;
 constexpr double least_coverage = 0.5;
-/// Of an output's identified range: smaller errors are rounding.
+/// Share of an output's identified range: smaller errors are rounding.
 constexpr double least_error = 1e-9;
 
 Duration period_of(const EquipmentModel& model) {

@@ -1,12 +1,12 @@
-// Scores the champion of an equipment on new telemetry, block by block, and tells when its errors
+// Scores the champion of an equipment on new telemetry, block by block, and finds when its errors
 // have grown for good.
 //
 // A block is a sixteenth of the stretch that the champion was validated on, and as many rows as its
 // initial state needs at least; that stretch's blocks are the reference
 // (identification/statistics/change_detection.hpp). The free run goes on from block to block, as a
 // simulator's does; after a gap its state is the one that agrees with the first telemetry behind.
-// Telemetry that is not believed (plausibility.hpp), judged beside the blocks before and those that
-// came with it, is a gap: a sensor that lies is no drift of the champion.
+// Excluded telemetry (telemetry_checks.hpp), checked together with the blocks before and those that
+// came with it, is a gap: a faulty sensor is no drift of the champion.
 #pragma once
 
 #include <cstdint>
@@ -28,12 +28,12 @@ class ChampionMonitor {
 
   struct Drift {
     std::int64_t version = 0;
-    storage::Time since = 0;  // end of the first block of those that told: it began in there
+    storage::Time since = 0;  // end of the first block that raised the sum: it began in there
     storage::Time end = 0;    // of the block with which it was found
     double error_ratio = 0;   // of that block's error to the usual one
   };
 
-  /// From which to identify what the equipment is since then: telemetry of before tells nothing of
+  /// From which to identify what the equipment is since then: earlier telemetry shows nothing of
   /// that, so that the window begins with the drift, and it ends where that was found, or later,
   /// where half of the configured window, or what a window needs at least, lies behind its begin.
   static storage::TimeRange window_of(const Drift& drift, const EquipmentConfig& equipment);
@@ -53,7 +53,7 @@ class ChampionMonitor {
   /// cover less than half of it. `changes` is the record's, taken at the first gap.
   std::optional<double> log_error(const identification::Record& record, storage::TimeRange block,
                                   std::optional<identification::SquareChanges>& changes);
-  /// Outputs over a segment, from where the run is or, after a gap, anew.
+  /// Outputs over a segment, from where the run is or, after a gap, from a new state.
   identification::Matrix run(const identification::Record& record,
                              const identification::Segment& segment,
                              std::optional<identification::SquareChanges>& changes);

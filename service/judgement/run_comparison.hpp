@@ -23,7 +23,7 @@ struct Run {
   identification::Matrix outputs;  // one row for each of the record
 };
 
-/// The free run of a model beside that of another one: through `record`, what is believed of the
+/// The free runs of a model and of another one: through `record`, what is believed of the
 /// telemetry in `range` that `request` asks for, where it looks at the same parameters, or else
 /// through all telemetry there. Absent where a parameter of it is not described.
 std::optional<Run> run_beside(const storage::Archive& archive, const EquipmentModel& model,
@@ -69,7 +69,7 @@ std::string still_input(const storage::Archive& archive, const EquipmentModel& m
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
                              identification::Course course);
 
-/// The free run of `model` beside the champion's on the part of what validated the champion that
+/// The free runs of `model` and of the champion on the part of what validated the champion that
 /// comes before `end`: where the model's window does not begin before that, telemetry which nothing
 /// of it was fitted to or chosen by, but for the champion's A and C where it has these. Absent
 /// where less than half is left.

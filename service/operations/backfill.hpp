@@ -1,7 +1,7 @@
 // Windows of the past: slides over telemetry that is in the archive already, on all cores.
 //
 // What takes long (identification) is done for several windows side by side; then they are judged
-// one after the other, oldest first, each beside the champion of the windows before it. The result
+// one after the other, oldest first, each against the champion of the windows before it. The result
 // is that of the daemon, had it listened then, and does not depend on the number of threads.
 #pragma once
 

@@ -14,9 +14,9 @@
 
 namespace reident {
 
-/// What commands need beside the registry.
+/// What commands need in addition to the registry.
 struct CommandContext {
-  /// Known beside the equipment that the registry has.
+  /// Equipment that is known in addition to that of the registry.
   std::vector<storage::EquipmentName> configured;
   /// Makes the window of an equipment due that ends where its telemetry ends, and returns that
   /// time; absent where no telemetry of it has come. Empty where no service runs.

@@ -1,5 +1,5 @@
 // Where a version comes from: all that is needed to identify it again from the archive, and the
-// digests that tell whether it came out the same.
+// digests that show whether it came out the same.
 #pragma once
 
 #include <optional>

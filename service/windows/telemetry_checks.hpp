@@ -30,9 +30,9 @@ class PlausibilityChecks {
   /// Relations are evaluated on the grid of `request`.
   PlausibilityChecks(const WindowRequest& request, const Checks& checks);
 
-  /// Of `samples`, the rows at `ticks` with u the parameters that the inputs are computed from and
-  /// `described` what they are. A relation of which telemetry has not described a parameter does
-  /// not apply.
+  /// Checks `samples`: the rows at `ticks` with u the parameters that the inputs are computed from
+  /// and `described` what they are. A relation of which telemetry has not described a parameter
+  /// does not apply.
   Plausibility look(const storage::SampleSource& archive, const WindowData& described,
                     const identification::Record& samples, identification::TickRange ticks);
 
@@ -57,7 +57,7 @@ class PlausibilityChecks {
 /// telemetry or not.
 double fault_share(const Plausibility& plausibility, identification::TickRange ticks);
 
-/// For an attempt's evidence. Of more than 20 stretches the longest are told.
+/// For an attempt's evidence. Of more than 20 stretches the longest are listed.
 nlohmann::ordered_json to_json(const Plausibility& plausibility, Duration period);
 
 /// What an operator has to know: the longest stretch that was left out, by whom and since when.

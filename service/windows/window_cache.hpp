@@ -3,7 +3,7 @@
 //
 // Time is cut into chunks that do not depend on the window, so that what is kept gives the same
 // bits as what is read again. What is not believed of a window depends on all of it: its holes are
-// made anew each time, and sums are kept as long as the holes in them stay the same.
+// found again each time, and sums are kept as long as the holes in them stay the same.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class WindowCache {
 
   const WindowRequest& request() const { return request_; }
 
-  /// The same as load_window without what the checks do not believe; what lies before the window is
+  /// load_window() without what the checks exclude; what lies before the window is
   /// forgotten.
   std::variant<WindowData, UnknownParameter> load(const storage::Archive& archive,
                                                   storage::TimeRange window);
@@ -35,7 +35,7 @@ class WindowCache {
   /// Samples in `range` were stored after the window was loaded.
   void forget(storage::TimeRange range);
 
-  /// Of the rows that load() gave.
+  /// Sums over the rows that load() gave.
   identification::LagSums& sums() { return sums_; }
 
   /// Ticks that load() has read from the archive so far.

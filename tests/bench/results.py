@@ -397,10 +397,10 @@ for equipment in ("MPPT2", "BUS"):
          "Programs and tests are built in one tree, build/release.")
 def build(figures):
     names = {"release_cpu_s": "processor time of building the programs",
-             "tests_cpu_s": "processor time of building the tests after that",
-             "rebuilt_objects": "objects that the tests' build compiles again",
+             "tests_cpu_s": "processor time of building programs and tests",
+             "rebuilt_objects": "objects of the programs that the tests' build compiles again",
              "release_wall_s": "time of building the programs",
-             "tests_wall_s": "time of building the tests after that",
+             "tests_wall_s": "time of building programs and tests",
              "suite_wall_s": "time of running the tests"}
     return [table(["what", "figure"],
                   [[label, figure(figures[key], 4) + (" s" if key.endswith("_s") else "")]

@@ -35,6 +35,9 @@
 #                                         hundred simulators that come late and go a hundred times,
 #                                         the output's jump at a swap.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh build [--suite]    processor and wall time of a build from nothing, without
+#                                         and with the tests; with --suite also of the tests.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh record [--as NAME] WHAT ARGUMENT...
 #                                         runs one of these and stores the object of its last line
 #                                         in tests/bench/results/NAME.json (default: WHAT.json),
@@ -52,6 +55,10 @@ what=${1:-}
 [ $# -gt 0 ] && shift
 targets=(all)
 case $what in
+  build)
+    deploy/install_packages.sh --with-tests
+    exec python3 tests/bench/build.py . "$@"
+    ;;
   record)
     [ $# -gt 0 ] || usage
     exec python3 tests/bench/record.py "$@"

@@ -1,5 +1,5 @@
-// A model stays the same to the last bit wherever it is written and read, and its digest tells it
-// from every other.
+// A model stays the same to the last bit wherever it is written and read, and its digest
+// distinguishes it from every other.
 #include <bit>
 #include <cmath>
 

@@ -96,7 +96,7 @@ class DaemonTest : public testing::Test {
     double noise = 0.001;
     storage::Time since = INT64_MIN;  // from when on the inputs move so
   };
-  /// The same plant, operated otherwise.
+  /// Telemetry of the plant operated otherwise.
   static std::vector<storage::TelemetryFrame> operation(storage::Time begin, int seconds,
                                                         const Operation& now) {
     auto frames = telemetry(begin, seconds, 0, now.noise);

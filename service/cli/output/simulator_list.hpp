@@ -1,4 +1,4 @@
-// Who runs which version: what simulators acknowledge beside what the service publishes.
+// Who runs which version: what simulators acknowledge, and what the service publishes.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How fast a long work goes and when it will be done, for the line beside its progress bar.
+// How fast a long work goes and when it will be done, for the line of its progress bar.
 #pragma once
 
 #include <chrono>

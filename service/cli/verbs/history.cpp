@@ -54,7 +54,7 @@ class Decided {
     VersionSummary summary;
     std::vector<Decision> decisions;
   };
-  /// Of an attempt that gave one.
+  /// The version that an attempt gave.
   const Version& version(const Attempt& attempt) const {
     return versions_.at({{attempt.spacecraft, attempt.equipment}, *attempt.version});
   }

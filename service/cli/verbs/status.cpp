@@ -52,7 +52,7 @@ std::optional<ServiceStatus> listen(const dds::Endpoint& endpoint, const Argumen
   std::optional<ServiceStatus> met;
   const auto look = [&](ServiceStatus&& status) {
     if (!arguments.service.empty() && status.service != arguments.service) return;
-    // Of several services the first that is heard is followed.
+    // The first of several services is followed.
     if (heard && heard->service != status.service) return;
     if (!met && (arguments.wait.empty() || (heard && stayed_idle(*heard, status)))) met = status;
     heard = std::move(status);

@@ -1,4 +1,4 @@
-// What is kept on the disk and comes back; what is wrong there stops nobody and is told.
+// What is kept on the disk and comes back; what is wrong there stops nobody and is reported.
 #include "service/client/model_cache.hpp"
 
 #include <cerrno>

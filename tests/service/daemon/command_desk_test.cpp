@@ -17,7 +17,7 @@ CommandRequest request(std::uint64_t number, const std::string& service = "") {
   return {{"console", number, "hold", "SAT", "PLANT", 3, "Ana", "training"}, service};
 }
 
-/// A desk whose thread runs, and a console beside it.
+/// A desk whose thread runs, and a console.
 class Desk : public testing::Test {
  protected:
   dds::Participant service_{own_endpoint()};

@@ -19,7 +19,7 @@ namespace {
 using history::RemoteHistory;
 using ::testing::HasSubstr;
 
-/// A desk whose thread runs on a database, and a console beside it.
+/// A desk whose thread runs on a database, and a console.
 class HistoryDesk : public testing::Test {
  protected:
   const TemporaryFolder folder_;

@@ -12,7 +12,7 @@ class Feed : public DaemonTest {
   std::unique_ptr<WindowFeed> make_feed() {
     return std::make_unique<WindowFeed>(config_, [this] { return now; });
   }
-  /// Stores the frames and tells the feed, as the archive's writer does.
+  /// Stores the frames and notifies the feed, as the archive's writer does.
   void store(WindowFeed& feed, const std::vector<storage::TelemetryFrame>& frames) {
     feed.stored(frames, archive.append(frames));
   }

@@ -5,7 +5,7 @@
 namespace reident::caching_source_test {
 namespace {
 
-/// Counts what it is asked for; its samples tell by whom.
+/// Counts what it is asked for; its samples show by whom.
 class Counted final : public storage::SampleSource {
  public:
   std::optional<storage::ParameterDescriptor> parameter(const std::string&,
