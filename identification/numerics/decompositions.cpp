@@ -48,6 +48,12 @@ Matrix pseudo_inverse(const Matrix& A) {
   return solve_least_norm(A, Matrix(Matrix::Identity(A.rows(), A.rows())));
 }
 
+Matrix solve_least_norm_on_right(const Matrix& M, const Matrix& A) {
+  return Eigen::CompleteOrthogonalDecomposition<Matrix>(A.transpose())
+      .solve(M.transpose())
+      .transpose();
+}
+
 Matrix solve_lu(const Matrix& A, const Matrix& B) {
   return Eigen::PartialPivLU<Matrix>(A).solve(B);
 }
@@ -71,8 +77,8 @@ std::optional<Matrix> solve_full_lu(const Matrix& A, const Matrix& B, double lea
   return Matrix(lu.solve(B));
 }
 
-Matrix solve_ldlt(const Matrix& A, const Matrix& B) {
-  return Eigen::LDLT<Matrix>(A).solve(B);
+Matrix solve_ldlt_on_right(const Matrix& M, const Matrix& A) {
+  return Eigen::LDLT<Matrix>(A).solve(M.transpose()).transpose();
 }
 
 Matrix solve_lower_on_right(const Matrix& M, const Matrix& L) {
@@ -97,6 +103,13 @@ Vector Cholesky::solve(const Vector& b) const {
 
 Matrix Cholesky::solve(const Matrix& B) const {
   Matrix X = L_.triangularView<Eigen::Lower>().solve(B);
+  L_.triangularView<Eigen::Lower>().adjoint().solveInPlace(X);
+  return X;
+}
+
+Matrix Cholesky::solve_transposed(const Matrix& M) const {
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> X = M.transpose();
+  L_.triangularView<Eigen::Lower>().solveInPlace(X);
   L_.triangularView<Eigen::Lower>().adjoint().solveInPlace(X);
   return X;
 }

@@ -2,8 +2,8 @@
 //
 // Eigen's decompositions are templates that take minutes to compile. They are compiled once, in
 // decompositions.cpp; other files include this header in place of Eigen's. A right-hand side that
-// is a vector and one that is a matrix of one column are solved by different loops, whose results
-// differ in their last bits.
+// is a vector, one that is a matrix of one column and one that is a transposed matrix are solved by
+// different loops, whose results differ in their last bits.
 #pragma once
 
 #include <complex>
@@ -34,6 +34,8 @@ Matrix solve_pivoted_qr(const Matrix& A, const Matrix& B);
 Vector solve_least_norm(const Matrix& A, const Vector& b);
 Matrix solve_least_norm(const Matrix& A, const Matrix& B);
 Matrix pseudo_inverse(const Matrix& A);
+/// The X of least norm with X A = M, in the sense of least squares.
+Matrix solve_least_norm_on_right(const Matrix& M, const Matrix& A);
 
 /// Solution of A X = B for a square, regular A, by LU with row pivoting.
 Matrix solve_lu(const Matrix& A, const Matrix& B);
@@ -43,8 +45,8 @@ Vector solve_full_lu(const Matrix& A, const Vector& b);
 Matrix solve_full_lu(const Matrix& A, const Matrix& B);
 /// Absent where the reciprocal of A's condition number is not above `least_rcond`.
 std::optional<Matrix> solve_full_lu(const Matrix& A, const Matrix& B, double least_rcond);
-/// Solution of A X = B for a symmetric, positive semi-definite A, by LDL'.
-Matrix solve_ldlt(const Matrix& A, const Matrix& B);
+/// The X with X A = M for a symmetric, positive semi-definite A, by LDL'.
+Matrix solve_ldlt_on_right(const Matrix& M, const Matrix& A);
 /// The X with X L = M for a lower triangular, regular L.
 Matrix solve_lower_on_right(const Matrix& M, const Matrix& L);
 
@@ -56,6 +58,8 @@ class Cholesky {
   static std::optional<Cholesky> of(const Matrix& A, double least_pivot, double least_rcond = 0);
   Vector solve(const Vector& b) const;
   Matrix solve(const Matrix& B) const;
+  /// The X with A X = M'.
+  Matrix solve_transposed(const Matrix& M) const;
 
  private:
   Matrix L_;

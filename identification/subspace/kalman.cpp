@@ -23,7 +23,7 @@ Noise parts(const Matrix& noise, Index n) {
 Matrix gain_of(const Matrix& A, const Matrix& C, const Noise& noise, const Matrix& P) {
   const Matrix innovation = C * P * C.transpose() + noise.R;
   const Matrix cross = A * P * C.transpose() + noise.S;
-  return solve_ldlt(innovation, cross.transpose()).transpose();
+  return solve_ldlt_on_right(cross, innovation);
 }
 
 double relative_residual(const Matrix& A, const Matrix& C, const Noise& noise, const Matrix& P) {
@@ -45,7 +45,7 @@ std::optional<Matrix> riccati_solution(const Matrix& A, const Matrix& C, const M
 
   // With the cross covariance removed: P = F P F' - F P C' (C P C' + R)^-1 C P F' + Q_s.
   const Matrix F = A - parted.S * R->solve(C);
-  Matrix H = parted.Q - parted.S * R->solve(Matrix(parted.S.transpose()));
+  Matrix H = parted.Q - parted.S * R->solve_transposed(parted.S);
   Matrix E = F.transpose(), G = C.transpose() * R->solve(C);
   const Matrix identity = Matrix::Identity(n, n);
   for (int i = 0; i < doublings; ++i) {

@@ -37,7 +37,7 @@ Matrix lower_factor(const Matrix& M) {
 Matrix divided(const Matrix& M, const Matrix& L) {
   const auto pivots = L.diagonal().cwiseAbs();
   if (pivots.minCoeff() > 1e-13 * pivots.maxCoeff()) return solve_lower_on_right(M, L);
-  return solve_least_norm(L.transpose(), Matrix(M.transpose())).transpose();
+  return solve_least_norm_on_right(M, L);
 }
 
 }  // namespace
