@@ -32,7 +32,8 @@ struct Line {
 };
 
 Line line_of(const history::HistorySource& history, const EquipmentName& equipment) {
-  Line line{.equipment = equipment};
+  Line line;
+  line.equipment = equipment;
   storage::HistoryFilter filter;
   filter.spacecraft = equipment.spacecraft;
   filter.equipment = equipment.equipment;
