@@ -1,4 +1,4 @@
-// What is kept on the disk and comes back; what is wrong there stops nobody and is told.
+// What is kept on the disk and comes back; what is wrong there stops nobody and is reported.
 #include "service/client/model_cache.hpp"
 
 #include <cerrno>
@@ -16,6 +16,7 @@
 
 #include "identification/correction/integral_feedback_search.hpp"
 #include "service/client/cached_version_file.hpp"
+#include "service/support/sha256.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
 
@@ -95,6 +96,21 @@ TEST_F(Cache, gives_back_the_same_bits_and_all_that_goes_with_them) {
   EXPECT_EQ(versions[0].published, 100);
   EXPECT_EQ(versions[0].received, 200);
   EXPECT_THAT(faults_, testing::IsEmpty());
+}
+
+// Simulators hold such files: the text stays as it is, to the last byte.
+TEST_F(Cache, writes_the_text_that_it_always_wrote) {
+  CachedVersion one = kept(3);
+  one.version.rollback = true;
+  const std::string kept_text =
+      R"({"partition":"operations","number":3,)"
+      R"("digest":"17910f60ef1713b1804a8bb1ac83963863c0cef758d0f6d27535e0d025323a45",)"
+      R"("decided_ns":42,"decided_by":"gate","rollback":true,"program_version":"0.1.0",)"
+      R"("published_ns":100,"received_ns":200,"model":)" +
+      to_json(example_model()).dump() + "}";
+  EXPECT_EQ(
+      kept_version_text(one, "operations"),
+      R"({"format":1,"sha256":")" + sha256_hex(kept_text) + R"(","kept":)" + kept_text + "}\n");
 }
 
 TEST_F(Cache, is_empty_before_the_first_version_and_makes_no_folder_for_that) {

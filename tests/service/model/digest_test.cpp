@@ -107,6 +107,11 @@ TEST(Digest, of_a_model_without_expressions_and_tracking_is_the_one_it_had_befor
             "17910f60ef1713b1804a8bb1ac83963863c0cef758d0f6d27535e0d025323a45");
 }
 
+TEST(Digest, of_a_model_with_expressions_and_tracking_is_the_one_it_always_had) {
+  EXPECT_EQ(model_digest(full_example_model()),
+            "10128ba884ce968e9f617aaa343c60dba711522cf1a4c03e8b2ea8091a2b3960");
+}
+
 TEST(Digest, ends_with_what_not_every_model_has) {
   const auto number = [](double value) {
     return std::string(reinterpret_cast<const char*>(&value), sizeof value);

@@ -154,6 +154,25 @@ INSTANTIATE_TEST_SUITE_P(
                     Damage{"/tracking/validation", nullptr, "\"tracking.validation\" is missing"},
                     Damage{"/validation/rows", nullptr, "\"validation.rows\" is missing"}));
 
+// Registries and simulators' files hold this text: it stays as it is, to the last byte.
+TEST(ModelJson, is_the_text_that_it_always_was) {
+  EXPECT_EQ(to_json(full_example_model()).dump(),
+            R"({"spacecraft":"CBERS4","equipment":"BDR",)"
+            R"("inputs":[{"name":"I_BDRIN1","unit":"A","low":0.0,"high":5.0},)"
+            R"({"name":"P_IN","unit":"W","low":-0.25,"high":4.0,"expression":"V_BUS * I_BDRIN2"}],)"
+            R"("outputs":[{"name":"I_BDROUT","unit":"A","low":0.0,"high":10.0}],)"
+            R"("order":2,"sample_period_s":1.0,"hold_ns":3000000000,"A":[[0.9,0.1],[-0.2,0.7]],)"
+            R"("B":[[0.5,0.25],[0.125,0.3333333333333333]],"C":[[1.0,-0.5]],"D":[[0.1,0.0]],)"
+            R"("K":[[0.3],[0.2]],"input_offset":[2.5,1.5],"output_offset":[4.25],)"
+            R"("identified_from":{"begin_ns":1000,"end_ns":5000},)"
+            R"("validated_on":{"begin_ns":5000,"end_ns":7000},)"
+            R"("validation":{"mrse_percent":[6.9],"fit_percent":[81.5],"rows":2000},)"
+            R"("method":"N4SID, horizon 12, order 2",)"
+            R"("tracking":{"state":[[0.5,-1.0],[0.3333333333333333,0.0]],)"
+            R"("integral":[[0.1,0.2],[-0.3,0.7]],"error_limit":[2.5],)"
+            R"("validation":{"mrse_percent":[0.5],"fit_percent":[99.0],"rows":2000}}})");
+}
+
 TEST(ModelJson, refuses_text_that_is_not_json) {
   EXPECT_THROW(equipment_model_from_json("{\"A\": [1, "), std::invalid_argument);
   EXPECT_THROW(equipment_model_from_json("[]"), std::invalid_argument);
