@@ -5,6 +5,7 @@
 
 #include "service/support/sha256.hpp"
 #include "tests/service/model/example_model.hpp"
+#include "tests/support/every_field.hpp"
 
 namespace reident::test::digest_test {
 namespace {
@@ -99,6 +100,15 @@ TEST(Digest, changes_with_the_expressions_and_the_tracking_gain) {
           [](EquipmentModel& m) { m.tracking->gain.state.transposeInPlace(); },
           [](EquipmentModel& m) { m.tracking->gain.integral(0, 1) += 1e-16; },
           [](EquipmentModel& m) { m.tracking->gain.error_limit(0) = 2; },
+      });
+}
+
+TEST(Digest, covers_every_field_that_says_so_and_no_other) {
+  const EquipmentModel model = distinct_version().model;
+  for_each_change(
+      model, [&](const std::string& path, const Field& field, const EquipmentModel& changed) {
+        EXPECT_EQ(model_digest(changed) != model_digest(model), field.digest == Digest::digested)
+            << path;
       });
 }
 
