@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/client/version_check.hpp"
+#include "service/model/model_fields.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/sha256.hpp"
 
@@ -53,33 +54,27 @@ std::string hash_of(const Json& kept) {
 /// Throws Json::exception and std::invalid_argument where a field is missing or wrong.
 CachedVersion decode(const Json& json) {
   CachedVersion kept;
-  ModelVersion& version = kept.version;
-  version.number = json.at("number").get<std::int64_t>();
-  version.digest = json.at("digest").get<std::string>();
-  version.decided = json.at("decided_ns").get<std::int64_t>();
-  version.decided_by = json.at("decided_by").get<std::string>();
-  version.rollback = json.at("rollback").get<bool>();
-  version.program_version = json.at("program_version").get<std::string>();
+  visit_fields(kept.version, [&json](const Field& field, auto& member) {
+    const std::string key(field.name);
+    if (field.presence != Presence::optional || json.contains(key)) json.at(key).get_to(member);
+  });
   kept.published = json.at("published_ns").get<std::int64_t>();
   kept.received = json.at("received_ns").get<std::int64_t>();
-  version.model = equipment_model_from_json(json.at("model").dump());
+  kept.version.model = equipment_model_from_json(json.at("model").dump());
   return kept;
 }
 
 }  // namespace
 
 std::string kept_version_text(const CachedVersion& kept, const std::string& partition) {
-  const ModelVersion& version = kept.version;
-  const Json json = {{"partition", partition},
-                     {"number", version.number},
-                     {"digest", version.digest},
-                     {"decided_ns", version.decided},
-                     {"decided_by", version.decided_by},
-                     {"rollback", version.rollback},
-                     {"program_version", version.program_version},
-                     {"published_ns", kept.published},
-                     {"received_ns", kept.received},
-                     {"model", to_json(version.model)}};
+  Json json = {{"partition", partition}};
+  visit_fields(kept.version, [&json](const Field& field, const auto& member) {
+    if (field.presence != Presence::optional || !is_absent(member))
+      json[std::string(field.name)] = member;
+  });
+  json["published_ns"] = kept.published;
+  json["received_ns"] = kept.received;
+  json["model"] = to_json(kept.version.model);
   const Json file = {{"format", file_format}, {"sha256", hash_of(json)}, {"kept", json}};
   return file.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

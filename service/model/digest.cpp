@@ -1,28 +1,44 @@
+#include <algorithm>
 #include <bit>
 #include <concepts>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "service/model/model_fields.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/sha256.hpp"
 
 namespace reident {
 namespace {
 
-/// Appends the fields in the canonical encoding of idl/README.md.
+/// Appends the fields that it visits in the canonical encoding of idl/README.md, but for optional
+/// ones.
 class CanonicalEncoder {
  public:
+  template <class Member>
+  void operator()(const Field& field, const Member& member) {
+    if (field.digest == Digest::undigested || field.presence == Presence::optional) return;
+    if constexpr (std::same_as<Member, identification::Matrix>)
+      if (field.name == "A") put(static_cast<std::uint32_t>(member.rows()));  // the order
+    if (field.presence == Presence::may_be_empty)
+      put(static_cast<std::uint32_t>(!is_absent(member)));
+    put(member);
+  }
+
   template <std::unsigned_integral T>
   void put(T value) {
     for (std::size_t byte = 0; byte < sizeof(T); ++byte) {
       bytes_.push_back(static_cast<char>((value >> (8 * byte)) & 0xffU));
     }
   }
+  void put(std::int64_t value) { put(static_cast<std::uint64_t>(value)); }
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
   void put(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size()));
     bytes_ += text;
   }
+  void put(const std::string& text) { put(std::string_view(text)); }
   void put(const identification::Matrix& matrix) {
     for (identification::Index row = 0; row < matrix.rows(); ++row) {
       for (identification::Index column = 0; column < matrix.cols(); ++column) {
@@ -35,57 +51,50 @@ class CanonicalEncoder {
   }
   void put(const std::vector<Signal>& signals) {
     put(static_cast<std::uint32_t>(signals.size()));
-    for (const Signal& signal : signals) {
-      put(std::string_view(signal.name));
-      put(std::string_view(signal.unit));
-      put(signal.low);
-      put(signal.high);
-    }
+    for (const Signal& signal : signals) put(signal);
   }
+  template <class Value>
+  void put(const std::optional<Value>& value) {
+    if (value) put(*value);
+  }
+  template <class Record>
+  requires std::is_class_v<Record>
+  void put(const Record& record) { visit_fields(record, *this); }
   const std::string& bytes() const { return bytes_; }
 
  private:
   std::string bytes_;
 };
 
-// What older programs do not know comes last, under a tag, and only where there is any: the digests
-// of models without it stay as they are.
-void put_expressions(const std::vector<Signal>& inputs, CanonicalEncoder& encoder) {
-  if (!has_expressions(inputs)) return;
-  encoder.put(std::string_view("expressions"));
-  for (const Signal& input : inputs) encoder.put(std::string_view(input.expression));
+bool is_digested_under_a_tag(const Field& field) {
+  return field.digest == Digest::digested && field.presence == Presence::optional;
 }
 
-void put_tracking(const identification::TrackingGain& gain, CanonicalEncoder& encoder) {
-  encoder.put(std::string_view("tracking"));
-  encoder.put(gain.state);
-  encoder.put(gain.integral);
-  encoder.put(gain.error_limit);
+// What older programs do not know comes last, under a tag, and only where there is any: the digests
+// of models without it stay as they are. The tag of what inputs have is a plural.
+void put_optional_fields(const EquipmentModel& model, CanonicalEncoder& encoder) {
+  visit_signal_members([&](const Field& field, const auto member) {
+    const auto absent = [member](const Signal& input) { return is_absent(input.*member); };
+    if (!is_digested_under_a_tag(field) ||
+        std::all_of(model.inputs.begin(), model.inputs.end(), absent))
+      return;
+    encoder.put(std::string(field.name) + "s");
+    for (const Signal& input : model.inputs) encoder.put(input.*member);
+  });
+  visit_fields(model, [&](const Field& field, const auto& member) {
+    if (!is_digested_under_a_tag(field) || is_absent(member)) return;
+    encoder.put(field.name);
+    encoder.put(member);
+  });
 }
 
 }  // namespace
 
 std::string model_digest(const EquipmentModel& model) {
-  const identification::StateSpaceModel& dynamics = model.dynamics;
   CanonicalEncoder encoder;
   encoder.put(std::string_view("reident model 1"));
-  encoder.put(std::string_view(model.spacecraft));
-  encoder.put(std::string_view(model.equipment));
-  encoder.put(model.inputs);
-  encoder.put(model.outputs);
-  encoder.put(dynamics.period_s);
-  encoder.put(static_cast<std::uint64_t>(model.hold_ns));
-  encoder.put(static_cast<std::uint32_t>(dynamics.order()));
-  for (const identification::Matrix* matrix :
-       {&dynamics.A, &dynamics.B, &dynamics.C, &dynamics.D}) {
-    encoder.put(*matrix);
-  }
-  encoder.put(static_cast<std::uint32_t>(dynamics.K.size() > 0));
-  encoder.put(dynamics.K);
-  encoder.put(dynamics.u0);
-  encoder.put(dynamics.y0);
-  put_expressions(model.inputs, encoder);
-  if (model.tracking) put_tracking(model.tracking->gain, encoder);
+  visit_fields(model, encoder);
+  put_optional_fields(model, encoder);
   return sha256_hex(encoder.bytes());
 }
 

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
+
+#include "service/model/model_fields.hpp"
 
 namespace reident {
 namespace {
@@ -16,34 +19,46 @@ Json number_to_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json to_json(const std::vector<Signal>& signals) {
+template <class Record>
+Json object_of(const Record& record);
+
+template <class Value>
+Json json_of(const Value& value) {
+  if constexpr (std::is_same_v<Value, double>)
+    return number_to_json(value);
+  else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>)
+    return value;
+  else
+    return object_of(value);
+}
+
+Json json_of(const Matrix& matrix) {
+  return to_json(matrix);
+}
+
+Json json_of(const Vector& vector) {
+  return to_json(vector);
+}
+
+Json json_of(const std::vector<Signal>& signals) {
   Json array = Json::array();
-  for (const Signal& signal : signals) {
-    Json entry = {{"name", signal.name},
-                  {"unit", signal.unit},
-                  {"low", number_to_json(signal.low)},
-                  {"high", number_to_json(signal.high)}};
-    if (!signal.expression.empty()) entry["expression"] = signal.expression;
-    array.push_back(std::move(entry));
-  }
+  for (const Signal& signal : signals) array.push_back(object_of(signal));
   return array;
 }
 
-Json to_json(const identification::Score& score) {
-  return {{"mrse_percent", reident::to_json(score.mrse_percent)},
-          {"fit_percent", reident::to_json(score.fit_percent)},
-          {"rows", score.rows}};
+template <class Value>
+Json json_of(const std::optional<Value>& value) {
+  return value ? json_of(*value) : Json(nullptr);
 }
 
-Json to_json(const EquipmentModel::Tracking& tracking) {
-  return {{"state", reident::to_json(tracking.gain.state)},
-          {"integral", reident::to_json(tracking.gain.integral)},
-          {"error_limit", reident::to_json(tracking.gain.error_limit)},
-          {"validation", to_json(tracking.validation)}};
-}
-
-Json to_json(const storage::TimeRange& range) {
-  return {{"begin_ns", range.begin}, {"end_ns", range.end}};
+template <class Record>
+Json object_of(const Record& record) {
+  Json object = Json::object();
+  visit_fields(record, [&object](const Field& field, const auto& member) {
+    if (field.presence == Presence::optional && is_absent(member)) return;
+    object[std::string(field.name)] = json_of(member);
+  });
+  return object;
 }
 
 [[noreturn]] void refuse(const std::string& field, const std::string& what) {
@@ -51,11 +66,11 @@ Json to_json(const storage::TimeRange& range) {
 }
 
 /// A value of the document with the path that leads to it, for messages.
-class Field {
+class Entry {
  public:
-  Field(const Json& value, std::string path) : value_(value), path_(std::move(path)) {}
+  Entry(const Json& value, std::string path) : value_(value), path_(std::move(path)) {}
 
-  Field operator[](const std::string& key) const {
+  Entry operator[](const std::string& key) const {
     const std::string path = path_.empty() ? key : path_ + "." + key;
     if (!value_.is_object()) refuse(path_.empty() ? "(document)" : path_, "must be an object");
     const auto found = value_.find(key);
@@ -63,7 +78,7 @@ class Field {
     return {*found, path};
   }
   bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
-  Field operator[](std::size_t index) const {
+  Entry operator[](std::size_t index) const {
     return {value_[index], path_ + "[" + std::to_string(index) + "]"};
   }
   std::size_t array_size() const {
@@ -101,81 +116,99 @@ class Field {
   std::string path_;
 };
 
-Vector vector_from(const Field& field, Index size) {
-  field.require_size(static_cast<std::size_t>(size));
+Vector vector_from(const Entry& entry, Index size) {
+  entry.require_size(static_cast<std::size_t>(size));
   Vector vector(size);
-  for (Index i = 0; i < size; ++i) vector(i) = field[static_cast<std::size_t>(i)].number();
+  for (Index i = 0; i < size; ++i) vector(i) = entry[static_cast<std::size_t>(i)].number();
   return vector;
 }
 
-Matrix matrix_from(const Field& field, Index rows, Index columns) {
-  field.require_size(static_cast<std::size_t>(rows));
+Matrix matrix_from(const Entry& entry, Index rows, Index columns) {
+  entry.require_size(static_cast<std::size_t>(rows));
   Matrix matrix(rows, columns);
   for (Index row = 0; row < rows; ++row) {
-    matrix.row(row) = vector_from(field[static_cast<std::size_t>(row)], columns).transpose();
+    matrix.row(row) = vector_from(entry[static_cast<std::size_t>(row)], columns).transpose();
   }
   return matrix;
 }
 
-std::string expression_from(const Field& signal) {
-  if (!signal.has("expression")) return {};
-  const Field field = signal["expression"];
-  const auto parsed = Expression::parse(field.text());
+void check_expression(const Entry& signal) {
+  if (!signal.has("expression")) return;
+  const Entry entry = signal["expression"];
+  const auto parsed = Expression::parse(entry.text());
   if (const auto* mistake = std::get_if<ExpressionMistake>(&parsed))
-    field.refuse_value(mistake->message);
-  return field.text();
+    entry.refuse_value(mistake->message);
 }
 
-std::vector<Signal> signals_from(const Field& field) {
-  std::vector<Signal> signals;
-  for (std::size_t i = 0; i < field.array_size(); ++i) {
-    const Field entry = field[i];
-    signals.push_back({entry["name"].text(), entry["unit"].text(), entry["low"].number(),
-                       entry["high"].number(), expression_from(entry)});
+/// Sets each field that it visits from the entry of its record.
+class JsonReader {
+ public:
+  JsonReader(const Entry& document, const Entry& record) : document_(document), record_(record) {}
+
+  template <class Member>
+  void operator()(const Field& field, Member& member) const {
+    const std::string key(field.name);
+    if (field.presence == Presence::optional && !record_.has(key)) return;
+    read(record_[key], field, member);
   }
-  return signals;
-}
 
-storage::TimeRange range_from(const Field& field) {
-  return {field["begin_ns"].integer(), field["end_ns"].integer()};
-}
-
-identification::Score score_from(const Field& field, Index outputs) {
-  return {vector_from(field["mrse_percent"], outputs), vector_from(field["fit_percent"], outputs),
-          field["rows"].integer()};
-}
-
-EquipmentModel::Tracking tracking_from(const Field& field,
-                                       const identification::StateSpaceModel& dynamics) {
-  const Index inputs = dynamics.inputs(), outputs = dynamics.outputs();
-  EquipmentModel::Tracking tracking;
-  tracking.gain.state = matrix_from(field["state"], inputs, dynamics.order());
-  tracking.gain.integral = matrix_from(field["integral"], inputs, 2 * outputs);
-  tracking.gain.error_limit = vector_from(field["error_limit"], outputs);
-  tracking.validation = score_from(field["validation"], outputs);
-  return tracking;
-}
-
-identification::StateSpaceModel dynamics_from(const Field& model, Index inputs, Index outputs) {
-  identification::StateSpaceModel dynamics;
-  const Field a = model["A"];
-  const Index order = static_cast<Index>(a.array_size());
-  if (const Field stated = model["order"]; stated.integer() != order) {
-    refuse("order", "is " + std::to_string(stated.integer()) + " and A has " +
-                        std::to_string(order) + " rows");
+ private:
+  Index extent(Extent extent) const {
+    const auto size = [this](const char* key) {
+      return static_cast<Index>(document_[key].array_size());
+    };
+    switch (extent) {
+      case Extent::n:
+        return size("A");
+      case Extent::m:
+        return size("inputs");
+      case Extent::p:
+        return size("outputs");
+      case Extent::two_p:
+        return 2 * size("outputs");
+      case Extent::one:
+        break;
+    }
+    return 1;
   }
-  dynamics.A = matrix_from(a, order, order);
-  dynamics.B = matrix_from(model["B"], order, inputs);
-  dynamics.C = matrix_from(model["C"], outputs, order);
-  dynamics.D = matrix_from(model["D"], outputs, inputs);
-  if (const Field gain = model["K"]; gain.array_size() > 0) {
-    dynamics.K = matrix_from(gain, order, outputs);
+
+  void read(const Entry& entry, const Field&, std::string& text) const { text = entry.text(); }
+  void read(const Entry& entry, const Field&, double& number) const { number = entry.number(); }
+  void read(const Entry& entry, const Field&, std::int64_t& number) const {
+    number = entry.integer();
   }
-  dynamics.u0 = vector_from(model["input_offset"], inputs);
-  dynamics.y0 = vector_from(model["output_offset"], outputs);
-  dynamics.period_s = model["sample_period_s"].number();
-  return dynamics;
-}
+  /// The order, which A has already.
+  void read(const Entry& entry, const Field& field, const Index&) const {
+    if (const Index order = extent(Extent::n); entry.integer() != order) {
+      refuse(std::string(field.name), "is " + std::to_string(entry.integer()) + " and A has " +
+                                          std::to_string(order) + " rows");
+    }
+  }
+  void read(const Entry& entry, const Field& field, Matrix& matrix) const {
+    if (field.presence == Presence::may_be_empty && entry.array_size() == 0) return;
+    matrix = matrix_from(entry, extent(field.rows), extent(field.columns));
+  }
+  void read(const Entry& entry, const Field& field, Vector& vector) const {
+    vector = vector_from(entry, extent(field.rows));
+  }
+  void read(const Entry& entry, const Field& field, std::vector<Signal>& signals) const {
+    for (std::size_t i = 0; i < entry.array_size(); ++i) {
+      read(entry[i], field, signals.emplace_back());
+      check_expression(entry[i]);
+    }
+  }
+  template <class Value>
+  void read(const Entry& entry, const Field& field, std::optional<Value>& value) const {
+    read(entry, field, value.emplace());
+  }
+  template <class Record>
+  void read(const Entry& entry, const Field&, Record& record) const {
+    visit_fields(record, JsonReader(document_, entry));
+  }
+
+  const Entry& document_;
+  const Entry& record_;
+};
 
 }  // namespace
 
@@ -194,29 +227,7 @@ Json to_json(const Vector& vector) {
 }
 
 Json to_json(const EquipmentModel& model) {
-  const identification::StateSpaceModel& dynamics = model.dynamics;
-  Json json = {
-      {"spacecraft", model.spacecraft},
-      {"equipment", model.equipment},
-      {"inputs", to_json(model.inputs)},
-      {"outputs", to_json(model.outputs)},
-      {"order", dynamics.order()},
-      {"sample_period_s", number_to_json(dynamics.period_s)},
-      {"hold_ns", model.hold_ns},
-      {"A", to_json(dynamics.A)},
-      {"B", to_json(dynamics.B)},
-      {"C", to_json(dynamics.C)},
-      {"D", to_json(dynamics.D)},
-      {"K", to_json(dynamics.K)},
-      {"input_offset", to_json(dynamics.u0)},
-      {"output_offset", to_json(dynamics.y0)},
-      {"identified_from", to_json(model.identified_from)},
-      {"validated_on", to_json(model.validated_on)},
-      {"validation", to_json(model.validation)},
-      {"method", model.method},
-  };
-  if (model.tracking) json["tracking"] = to_json(*model.tracking);
-  return json;
+  return object_of(model);
 }
 
 EquipmentModel equipment_model_from_json(const std::string& text) {
@@ -226,20 +237,9 @@ EquipmentModel equipment_model_from_json(const std::string& text) {
   } catch (const Json::parse_error& error) {
     throw std::invalid_argument(std::string("model JSON: ") + error.what());
   }
-  const Field field(document, "");
+  const Entry entry(document, "");
   EquipmentModel model;
-  model.spacecraft = field["spacecraft"].text();
-  model.equipment = field["equipment"].text();
-  model.inputs = signals_from(field["inputs"]);
-  model.outputs = signals_from(field["outputs"]);
-  const Index outputs = static_cast<Index>(model.outputs.size());
-  model.dynamics = dynamics_from(field, static_cast<Index>(model.inputs.size()), outputs);
-  model.hold_ns = field["hold_ns"].integer();
-  model.identified_from = range_from(field["identified_from"]);
-  model.validated_on = range_from(field["validated_on"]);
-  model.validation = score_from(field["validation"], outputs);
-  model.method = field["method"].text();
-  if (field.has("tracking")) model.tracking = tracking_from(field["tracking"], model.dynamics);
+  visit_fields(model, JsonReader(entry, entry));
   return model;
 }
 

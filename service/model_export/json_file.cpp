@@ -1,22 +1,16 @@
 #include "service/model/model_json.hpp"
 #include "service/model_export/model_export.hpp"
-#include "service/support/time_text.hpp"
+#include "service/model_export/version_head.hpp"
 
 namespace reident::model_export {
 
 std::string json_file(const ExportedVersion& exported) {
   using Json = nlohmann::ordered_json;
-  const ModelVersion& version = exported.version;
-  const Json object = {{"format", "reident model version 1"},
-                       {"spacecraft", version.model.spacecraft},
-                       {"equipment", version.model.equipment},
-                       {"version", version.number},
-                       {"digest", version.digest},
-                       {"status", exported.status},
-                       {"decided", time_text(version.decided)},
-                       {"decided_by", version.decided_by},
-                       {"program_version", version.program_version},
-                       {"model", to_json(version.model)}};
+  Json object = Json::object();
+  object["format"] = "reident model version 1";
+  visit_head(exported, [&object](const char* name, const auto& value) { object[name] = value; });
+  object["program_version"] = exported.version.program_version;
+  object["model"] = to_json(exported.version.model);
   return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

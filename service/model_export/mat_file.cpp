@@ -2,17 +2,19 @@
 #include <cstdint>
 #include <cstdio>
 #include <fcntl.h>
-#include <functional>
+#include <map>
 #include <matio.h>
 #include <memory>
 #include <stdexcept>
+#include <type_traits>
 #include <unistd.h>
 
 #include <fmt/format.h>
 #include <sys/mman.h>
 
+#include "service/model/model_fields.hpp"
 #include "service/model_export/model_export.hpp"
-#include "service/support/time_text.hpp"
+#include "service/model_export/version_head.hpp"
 
 namespace reident::model_export {
 namespace {
@@ -27,64 +29,102 @@ Variable checked(matvar_t* variable) {
 }
 
 // The library copies what it is given.
-Variable matrix(const char* name, Matrix values) {
+Variable variable(const char* name, Matrix values) {
   std::array<std::size_t, 2> sizes = {static_cast<std::size_t>(values.rows()),
                                       static_cast<std::size_t>(values.cols())};
   return checked(
       Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes.data(), values.data(), 0));
 }
 
-Variable number(const char* name, double value) {
-  return matrix(name, Matrix::Constant(1, 1, value));
+Variable variable(const char* name, double value) {
+  return variable(name, Matrix(Matrix::Constant(1, 1, value)));
 }
 
-Variable text(const char* name, std::string value) {
+Variable variable(const char* name, std::int64_t value) {
+  return variable(name, static_cast<double>(value));
+}
+
+Variable variable(const char* name, std::string value) {
   std::array<std::size_t, 2> sizes = {value.empty() ? 0U : 1U, value.size()};
   return checked(Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, sizes.data(), value.data(), 0));
 }
 
 /// A column of texts.
-Variable texts(const char* name, const std::vector<Signal>& signals, std::string Signal::*member) {
+Variable column(const char* name, const std::vector<Signal>& signals, std::string Signal::*member) {
   std::array<std::size_t, 2> sizes = {signals.size(), 1};
   Variable cells =
       checked(Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, sizes.data(), nullptr, 0));
   for (std::size_t i = 0; i < signals.size(); ++i)
-    Mat_VarSetCell(cells.get(), static_cast<int>(i), text(nullptr, signals[i].*member).release());
+    Mat_VarSetCell(cells.get(), static_cast<int>(i),
+                   variable(nullptr, signals[i].*member).release());
   return cells;
 }
 
-std::vector<Variable> variables_of(const ExportedVersion& exported) {
-  const ModelVersion& version = exported.version;
-  const EquipmentModel& model = version.model;
-  const identification::StateSpaceModel& dynamics = model.dynamics;
-  std::vector<Variable> list;
-  list.push_back(matrix("A", dynamics.A));
-  list.push_back(matrix("B", dynamics.B));
-  list.push_back(matrix("C", dynamics.C));
-  list.push_back(matrix("D", dynamics.D));
-  list.push_back(matrix("K", dynamics.K));
-  list.push_back(number("Ts", dynamics.period_s));
-  list.push_back(matrix("u0", dynamics.u0));
-  list.push_back(matrix("y0", dynamics.y0));
-  list.push_back(texts("input_names", model.inputs, &Signal::name));
-  list.push_back(texts("input_units", model.inputs, &Signal::unit));
-  list.push_back(texts("input_expressions", model.inputs, &Signal::expression));
-  list.push_back(texts("output_names", model.outputs, &Signal::name));
-  list.push_back(texts("output_units", model.outputs, &Signal::unit));
-  list.push_back(text("spacecraft", model.spacecraft));
-  list.push_back(text("equipment", model.equipment));
-  list.push_back(number("version", static_cast<double>(version.number)));
-  list.push_back(text("digest", version.digest));
-  list.push_back(text("status", exported.status));
-  list.push_back(text("decided", time_text(version.decided)));
-  list.push_back(text("decided_by", version.decided_by));
-  list.push_back(text("method", model.method));
-  if (model.tracking) {
-    list.push_back(matrix("tracking_state", model.tracking->gain.state));
-    list.push_back(matrix("tracking_integral", model.tracking->gain.integral));
-    list.push_back(matrix("tracking_error_limit", model.tracking->gain.error_limit));
+Variable column(const char* name, const std::vector<Signal>& signals, double Signal::*member) {
+  Matrix values(static_cast<identification::Index>(signals.size()), 1);
+  for (identification::Index i = 0; i < values.rows(); ++i)
+    values(i) = signals[static_cast<std::size_t>(i)].*member;
+  return variable(name, std::move(values));
+}
+
+/// The order of variables in a file. Those of one rank stand in the order of the model's fields.
+enum class Rank { matrix, number, vector, signals, head, other, optional };
+
+template <class Value>
+constexpr Rank rank_of = Rank::other;
+template <>
+constexpr Rank rank_of<Matrix> = Rank::matrix;
+template <>
+constexpr Rank rank_of<double> = Rank::number;
+template <>
+constexpr Rank rank_of<identification::Vector> = Rank::vector;
+
+using Variables = std::multimap<Rank, Variable>;
+
+/// Adds the variables of each field that it visits.
+class VariableMaker {
+ public:
+  explicit VariableMaker(Variables& variables, std::string prefix = "", bool is_optional = false)
+      : variables_(variables), prefix_(std::move(prefix)), is_optional_(is_optional) {}
+
+  template <class Member>
+  void operator()(const Field& field, const Member& member) const {
+    const bool is_optional = is_optional_ || field.presence == Presence::optional;
+    if (field.mat.empty() || (field.presence == Presence::optional && is_absent(member))) return;
+    const std::string name = prefix_ + std::string(field.mat);
+    if constexpr (requires { variable("", member); })
+      variables_.emplace(is_optional ? Rank::optional : rank_of<Member>,
+                         variable(name.c_str(), member));
+    else if constexpr (requires { *member; })
+      VariableMaker(variables_, prefix_, true)(field, *member);
+    else if constexpr (std::is_same_v<Member, std::vector<Signal>>)
+      add_columns(name, member);
+    else
+      visit_fields(member, VariableMaker(variables_, name, is_optional));
   }
-  return list;
+
+ private:
+  void add_columns(const std::string& prefix, const std::vector<Signal>& signals) const {
+    visit_signal_members([&](const Field& field, const auto member) {
+      const bool of_inputs_alone = field.presence == Presence::optional;
+      if (field.mat.empty() || (of_inputs_alone && prefix != "input_")) return;
+      const std::string name = prefix + std::string(field.mat);
+      variables_.emplace(Rank::signals, column(name.c_str(), signals, member));
+    });
+  }
+
+  Variables& variables_;
+  std::string prefix_;
+  bool is_optional_;
+};
+
+Variables variables_of(const ExportedVersion& exported) {
+  Variables variables;
+  visit_fields(exported.version.model, VariableMaker(variables));
+  visit_head(exported, [&variables](const char* name, const auto& value) {
+    variables.emplace(Rank::head, variable(name, value));
+  });
+  return variables;
 }
 
 /// A file in memory, for a library that writes to a path alone.
@@ -120,7 +160,7 @@ std::string mat_file(const ExportedVersion& exported) {
   std::unique_ptr<mat_t, decltype(&Mat_Close)> mat(
       Mat_CreateVer(file.path().c_str(), header.c_str(), MAT_FT_MAT5), &Mat_Close);
   if (mat == nullptr) throw std::runtime_error("the MATLAB file cannot be begun in memory");
-  for (const Variable& variable : variables_of(exported))
+  for (const auto& [rank, variable] : variables_of(exported))
     if (Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_NONE) != 0)
       throw std::runtime_error(
           fmt::format("the variable {} of the MATLAB file cannot be written", variable->name));

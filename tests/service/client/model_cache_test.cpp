@@ -16,8 +16,10 @@
 
 #include "identification/correction/integral_feedback_search.hpp"
 #include "service/client/cached_version_file.hpp"
+#include "service/support/sha256.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/service/model/example_model.hpp"
+#include "tests/support/every_field.hpp"
 
 namespace reident::test::model_cache_test {
 namespace {
@@ -83,18 +85,25 @@ TEST_F(Cache, gives_back_the_same_bits_and_all_that_goes_with_them) {
   store(one);
   const auto versions = load();
   ASSERT_EQ(versions.size(), 1U);
-  const ModelVersion& version = versions[0].version;
-  EXPECT_EQ(version.digest, model_digest(version.model));
-  EXPECT_TRUE(version.model.tracking);
-  EXPECT_EQ(version.number, 3);
-  EXPECT_EQ(version.decided, one.version.decided);
-  EXPECT_EQ(version.decided_by, "gate");
-  EXPECT_TRUE(version.rollback);
-  EXPECT_EQ(version.program_version, "0.1.0");
-  EXPECT_EQ(version.model.method, one.version.model.method);
+  EXPECT_THAT(differing_fields(versions[0].version, one.version), testing::IsEmpty());
   EXPECT_EQ(versions[0].published, 100);
   EXPECT_EQ(versions[0].received, 200);
   EXPECT_THAT(faults_, testing::IsEmpty());
+}
+
+// Simulators hold such files: the text stays as it is, to the last byte.
+TEST_F(Cache, writes_the_text_that_it_always_wrote) {
+  CachedVersion one = kept(3);
+  one.version.rollback = true;
+  const std::string kept_text =
+      R"({"partition":"operations","number":3,)"
+      R"("digest":"17910f60ef1713b1804a8bb1ac83963863c0cef758d0f6d27535e0d025323a45",)"
+      R"("decided_ns":42,"decided_by":"gate","rollback":true,"program_version":"0.1.0",)"
+      R"("published_ns":100,"received_ns":200,"model":)" +
+      to_json(example_model()).dump() + "}";
+  EXPECT_EQ(
+      kept_version_text(one, "operations"),
+      R"({"format":1,"sha256":")" + sha256_hex(kept_text) + R"(","kept":)" + kept_text + "}\n");
 }
 
 TEST_F(Cache, is_empty_before_the_first_version_and_makes_no_folder_for_that) {

@@ -5,6 +5,7 @@
 
 #include "service/support/sha256.hpp"
 #include "tests/service/model/example_model.hpp"
+#include "tests/support/every_field.hpp"
 
 namespace reident::test::digest_test {
 namespace {
@@ -102,9 +103,23 @@ TEST(Digest, changes_with_the_expressions_and_the_tracking_gain) {
       });
 }
 
+TEST(Digest, covers_every_field_that_says_so_and_no_other) {
+  const EquipmentModel model = distinct_version().model;
+  for_each_change(
+      model, [&](const std::string& path, const Field& field, const EquipmentModel& changed) {
+        EXPECT_EQ(model_digest(changed) != model_digest(model), field.digest == Digest::digested)
+            << path;
+      });
+}
+
 TEST(Digest, of_a_model_without_expressions_and_tracking_is_the_one_it_had_before_there_were_any) {
   EXPECT_EQ(model_digest(example_model()),
             "17910f60ef1713b1804a8bb1ac83963863c0cef758d0f6d27535e0d025323a45");
+}
+
+TEST(Digest, of_a_model_with_expressions_and_tracking_is_the_one_it_always_had) {
+  EXPECT_EQ(model_digest(full_example_model()),
+            "10128ba884ce968e9f617aaa343c60dba711522cf1a4c03e8b2ea8091a2b3960");
 }
 
 TEST(Digest, ends_with_what_not_every_model_has) {

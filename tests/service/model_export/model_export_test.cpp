@@ -6,6 +6,7 @@
 
 #include "service/model_export/fmu_text.hpp"
 #include "service/model_export/units.hpp"
+#include "tests/service/model/example_model.hpp"
 #include "tests/service/model_export/export_fixture.hpp"
 
 namespace reident::test::model_export_test {
@@ -36,6 +37,19 @@ TEST(ModelExport, writes_json_that_is_the_model_to_the_last_bit) {
   const EquipmentModel model = equipment_model_from_json(object["model"].dump());
   EXPECT_EQ(model_digest(model), exported.version.digest);
   EXPECT_EQ(object["digest"], exported.version.digest);
+}
+
+TEST(ModelExport, writes_the_json_that_it_always_wrote) {
+  const model_export::ExportedVersion exported{example_version(3), "superseded"};
+  auto object = nlohmann::ordered_json::parse(model_export::json_file(exported));
+  EXPECT_EQ(object["model"].dump(), to_json(exported.version.model).dump());
+  object["model"] = nullptr;
+  EXPECT_EQ(object.dump(),
+            R"({"format":"reident model version 1","spacecraft":"CBERS4","equipment":"BDR",)"
+            R"("version":3,)"
+            R"("digest":"17910f60ef1713b1804a8bb1ac83963863c0cef758d0f6d27535e0d025323a45",)"
+            R"("status":"superseded","decided":"1970-01-01T00:00:00.000000042Z",)"
+            R"("decided_by":"gate","program_version":"0.1.0","model":null})");
 }
 
 TEST(FmuVariables, are_the_parameters_behind_the_inputs) {
