@@ -18,7 +18,7 @@ std::int64_t tick_at_or_after(storage::Time time, storage::Time period) {
 }
 
 bool is_usable(const storage::Sample& sample) {
-  return sample.quality <= storage::Quality::out_of_limits && std::isfinite(sample.value);
+  return storage::is_usable(sample.quality) && std::isfinite(sample.value);
 }
 
 }  // namespace

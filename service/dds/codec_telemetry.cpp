@@ -6,8 +6,20 @@
 namespace reident::dds {
 namespace {
 
-using storage::Quality;
 using storage::TelemetryFrame;
+
+bool may_be_sent(std::uint8_t number) {
+  const auto quality = storage::quality_of_wire(number);
+  return quality && facts(*quality).is_sent;
+}
+
+/// The greatest number of those that a frame may have.
+constexpr std::uint8_t last_sent_quality() {
+  std::uint8_t last = 0;
+  for (const storage::QualityFacts& row : storage::quality_table)
+    if (row.is_sent) last = row.wire;
+  return last;
+}
 
 /// The sizes and the numbers that stand for enumerators; the samples' values are free.
 Fault fault_in_samples(const satcs_TelemetryFrame& wire, const ReaderOptions& options) {
@@ -22,13 +34,11 @@ Fault fault_in_samples(const satcs_TelemetryFrame& wire, const ReaderOptions& op
            std::to_string(options.max_frame_samples) + " are accepted; split it";
   }
   const std::span<const std::uint8_t> qualities(wire.quality._buffer, count);
-  const auto unknown = std::find_if(qualities.begin(), qualities.end(), [](std::uint8_t quality) {
-    return quality > satcs_QUALITY_INVALID;
-  });
+  const auto unknown = std::find_if_not(qualities.begin(), qualities.end(), may_be_sent);
   if (unknown != qualities.end()) {
     return "sample " + std::to_string(unknown - qualities.begin()) + " has quality " +
            std::to_string(*unknown) + "; the last that is known is " +
-           std::to_string(satcs_QUALITY_INVALID);
+           std::to_string(last_sent_quality());
   }
   if (wire.origin > satcs_ORIGIN_SIMULATED) {
     return "the origin is " + std::to_string(wire.origin) + "; send 0 (real) or 1 (simulated)";
@@ -47,7 +57,7 @@ const satcs_TelemetryFrame& Codec<TelemetryFrame>::Encoder::operator()(
   for (std::size_t i = 0; i < count; ++i) {
     parameter_[i] = frame.samples[i].parameter;
     value_[i] = frame.samples[i].value;
-    quality_[i] = static_cast<std::uint8_t>(frame.samples[i].quality);
+    quality_[i] = storage::wire_value(frame.samples[i].quality);
   }
   wire_.spacecraft = borrow(frame.spacecraft);
   wire_.source = borrow(frame.source);
@@ -74,8 +84,8 @@ Fault Codec<TelemetryFrame>::decode(const satcs_TelemetryFrame& wire, const Read
   frame.origin = static_cast<storage::Origin>(wire.origin);
   frame.samples.resize(wire.parameter._length);
   for (std::size_t i = 0; i < frame.samples.size(); ++i) {
-    frame.samples[i] = {wire.parameter._buffer[i], static_cast<Quality>(wire.quality._buffer[i]),
-                        wire.value._buffer[i]};
+    frame.samples[i] = {wire.parameter._buffer[i],
+                        *storage::quality_of_wire(wire.quality._buffer[i]), wire.value._buffer[i]};
   }
   return std::nullopt;
 }

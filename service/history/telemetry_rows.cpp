@@ -127,13 +127,11 @@ Json row_of(const storage::SampleColumns& samples, std::size_t first, std::size_
     times.push_back(samples.time[i]);
     values.push_back(number_value(samples.value[i]));
   }
-  return {
-      {"times_ns", std::move(times)},
-      {"values", std::move(values)},
-      {"quality", column_value(samples.quality, first, last,
-                               [](storage::Quality quality) { return static_cast<int>(quality); })},
-      {"source",
-       column_value(samples.source, first, last, [](std::int64_t source) { return source; })}};
+  return {{"times_ns", std::move(times)},
+          {"values", std::move(values)},
+          {"quality", column_value(samples.quality, first, last, storage::wire_value)},
+          {"source",
+           column_value(samples.source, first, last, [](std::int64_t source) { return source; })}};
 }
 
 void read_row(const Json& row, storage::SampleColumns& samples) {
@@ -144,10 +142,9 @@ void read_row(const Json& row, storage::SampleColumns& samples) {
   if (!row.at("values").is_array()) throw std::invalid_argument("values is not an array");
   append_column(row["values"], size, samples.value, read_number);
   append_column(row.at("quality"), size, samples.quality, [](const Json& value) {
-    const int quality = value.get<int>();
-    if (quality < 0 || quality > static_cast<int>(storage::qualities.back()))
-      throw std::invalid_argument("a quality is none of 0 to 4");
-    return static_cast<storage::Quality>(quality);
+    if (const auto quality = storage::quality_of_wire(value.get<int>())) return *quality;
+    throw std::invalid_argument("a quality is none of 0 to " +
+                                std::to_string(storage::quality_table.back().wire));
   });
   append_column(row.at("source"), size, samples.source,
                 [](const Json& value) { return value.get<std::int64_t>(); });

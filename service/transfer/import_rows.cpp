@@ -244,9 +244,7 @@ std::optional<Error> LongRows::add(const Reader& reader, ImportBatch& batch) {
 std::optional<Error> LongRows::read_quality(const Reader& reader, storage::Quality& quality) const {
   if (!quality_ || trimmed(reader.cells()[*quality_]).empty()) return std::nullopt;
   const auto read = parse_quality(reader.cells()[*quality_]);
-  if (!read)
-    return cell_error(reader, *quality_,
-                      "is no quality; use good, out of limits, suspect, invalid or disputed");
+  if (!read) return cell_error(reader, *quality_, "is no quality; use " + storage::quality_names());
   quality = *read;
   return std::nullopt;
 }

@@ -18,7 +18,7 @@ struct ReadChannel {
   explicit ReadChannel(storage::Series&& read) : series(std::move(read)) {
     usable.reserve(series.quality.size());
     for (const storage::Quality quality : series.quality)
-      usable.push_back(quality <= storage::Quality::out_of_limits);
+      usable.push_back(storage::is_usable(quality));
   }
 };
 

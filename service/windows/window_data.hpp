@@ -87,8 +87,8 @@ identification::Record load_samples(const storage::SampleSource& archive,
 double coverage_of(const identification::Record& record, storage::TimeRange window,
                    Duration period);
 
-/// Samples of quality good or out of limits count; all others are holes, and so are ticks at which
-/// a derived input has no finite value.
+/// Samples of a usable quality count; all others are holes, and so are ticks at which a derived
+/// input has no finite value.
 std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window);

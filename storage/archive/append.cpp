@@ -20,8 +20,7 @@ bool same_value(double a, double b) {
 }
 
 Quality quality_of(const Sample& sample) {
-  const bool is_known = sample.quality <= qualities.back();
-  return is_known && std::isfinite(sample.value) ? sample.quality : Quality::invalid;
+  return std::isfinite(sample.value) ? facts(sample.quality).quality : Quality::invalid;
 }
 
 /// As one value does that a decoder rounds to single precision.
@@ -186,7 +185,8 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head,
           kept->quality = Quality::disputed;
           changed = true;
         }
-        if (kept->quality == Quality::disputed || arrival.quality >= kept->quality) continue;
+        if (kept->quality == Quality::disputed || !is_better(arrival.quality, kept->quality))
+          continue;
       }
       kept = {arrival.value, arrival.quality, source.tracker.source};
       changed = true;

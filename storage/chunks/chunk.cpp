@@ -14,7 +14,6 @@ namespace {
 constexpr std::uint32_t magic = 0x6B686372;  // "rchk"
 constexpr std::uint32_t version = 1;
 constexpr std::size_t checked_bytes = ChunkSummary::bytes - 8;  // before the summary's checksum
-constexpr auto last_quality = static_cast<std::int64_t>(qualities.back());
 
 struct Header {
   ChunkSummary summary;
@@ -169,7 +168,7 @@ std::vector<std::uint8_t> ChunkEncoder::encode(const ChunkSamples& samples) {
   sizes_.value = put_part(body);
   numbers_.resize(count);
   std::transform(samples.quality.begin(), samples.quality.end(), numbers_.begin(),
-                 [](Quality quality) { return static_cast<std::int64_t>(quality); });
+                 [](Quality quality) { return std::int64_t{wire_value(quality)}; });
   integers_.put(numbers_, part_);
   sizes_.quality = put_part(body);
   integers_.put(samples.source, part_);
@@ -278,8 +277,9 @@ bool ChunkDecoder::decode_values(Bytes part, Selection wanted, std::vector<doubl
 bool ChunkDecoder::decode_qualities(Bytes part, Selection wanted, std::vector<Quality>& out) {
   ByteReader in(part);
   if (const auto constant = IntegerDecoder::get_constant(in, wanted.of)) {
-    if (!in.at_end() || *constant < 0 || *constant > last_quality) return false;
-    out.insert(out.end(), wanted.count, static_cast<Quality>(*constant));
+    const auto quality = quality_of_wire(*constant);
+    if (!in.at_end() || !quality) return false;
+    out.insert(out.end(), wanted.count, *quality);
     return true;
   }
   numbers_.resize(wanted.count);
@@ -288,7 +288,7 @@ bool ChunkDecoder::decode_qualities(Bytes part, Selection wanted, std::vector<Qu
   const std::size_t before = out.size();
   out.resize(before + wanted.count);
   for (std::size_t i = 0; i < wanted.count; ++i) {
-    known &= numbers_[i] >= 0 && numbers_[i] <= last_quality;
+    known &= is_wire_value(numbers_[i]);
     out[before + i] = static_cast<Quality>(numbers_[i]);
   }
   return known;

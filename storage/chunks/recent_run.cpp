@@ -76,10 +76,9 @@ std::optional<ChunkError> read_run(Bytes bytes, Run& run) {
     return damaged("has times that do not ascend");
   run.value = in.bytes(count * sizeof(double));
   for (std::size_t i = 0; i < ((flags & one_quality) != 0 ? 1 : samples); ++i) {
-    const std::uint8_t quality = in.byte();
-    if (quality > static_cast<std::uint8_t>(qualities.back()))
-      return damaged("has a quality that is none");
-    run.quality.push_back(static_cast<Quality>(quality));
+    const auto quality = quality_of_wire(in.byte());
+    if (!quality) return damaged("has a quality that is none");
+    run.quality.push_back(*quality);
   }
   for (std::size_t i = 0; i < ((flags & one_source) != 0 ? 1 : samples); ++i)
     run.source.push_back(from_zigzag(in.varint()));
@@ -105,7 +104,7 @@ void encode_run(const ChunkSamples& samples, std::vector<std::uint8_t>& out) {
   writer.bytes(
       {reinterpret_cast<const std::uint8_t*>(samples.value.data()), samples.value.size_bytes()});
   for (const Quality quality : samples.quality.first((flags & one_quality) != 0 ? 1 : count))
-    writer.byte(static_cast<std::uint8_t>(quality));
+    writer.byte(wire_value(quality));
   for (const std::int64_t source : samples.source.first((flags & one_source) != 0 ? 1 : count))
     writer.varint(zigzag(source));
   writer.fixed(xxh64(Bytes(out).subspan(start)), checksum_bytes);

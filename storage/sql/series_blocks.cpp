@@ -156,7 +156,7 @@ void SeriesBlocks::filter() {
   if (!filters()) return;
   std::array<bool, qualities.size()> quality_fits{};
   for (const Quality quality : qualities)
-    quality_fits[static_cast<std::size_t>(quality)] = selection_.quality.has(name(quality));
+    quality_fits[wire_value(quality)] = selection_.quality.has(name(quality));
   std::int64_t source = -1;
   bool source_fits = false;
   std::vector<std::size_t> kept;
@@ -164,8 +164,7 @@ void SeriesBlocks::filter() {
     if (selection_.by_value &&
         !(block_.value[i] >= selection_.least && block_.value[i] <= selection_.greatest))
       continue;
-    if (!selection_.quality.all() && !quality_fits[static_cast<std::size_t>(block_.quality[i])])
-      continue;
+    if (!selection_.quality.all() && !quality_fits[wire_value(block_.quality[i])]) continue;
     if (!selection_.source.all()) {
       if (source != block_.source[i] || i == 0) {
         source = block_.source[i];

@@ -92,10 +92,8 @@ std::optional<std::int64_t> step_argument(sqlite3_value* argument) {
 void narrow_to_quality(TextChoice& quality, sqlite3_value* argument) {
   if (sqlite3_value_type(argument) == SQLITE_NULL) return;
   const std::string text = copied_text(argument);
-  for (const Quality one : qualities)
-    if (text == name(one)) return quality.intersect({text});
-  refuse("quality is '" + text +
-         "': give 'good', 'out of limits', 'suspect', 'invalid' or 'disputed'");
+  if (!quality_named(text)) refuse("quality is '" + text + "': give " + quality_names("'"));
+  quality.intersect({text});
 }
 
 }  // namespace reident::storage::sql

@@ -1,12 +1,13 @@
 // Telemetry as SATCS distributes it and as the archive keeps it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "storage/types/quality.hpp"
 
 namespace reident::storage {
 
@@ -21,20 +22,6 @@ struct TimeRange {
   Time end = 0;
   bool operator==(const TimeRange&) const = default;
 };
-
-/// As telemetry flags a sample, ascending from best to worst: of two values for one identity the
-/// lower wins. `disputed` is the archive's own: good telemetry gave two values for that identity,
-/// and which of them is true cannot be decided.
-enum class Quality : std::uint8_t {
-  good = 0,
-  out_of_limits = 1,
-  suspect = 2,
-  invalid = 3,
-  disputed = 4
-};
-inline constexpr std::array qualities = {Quality::good, Quality::out_of_limits, Quality::suspect,
-                                         Quality::invalid, Quality::disputed};
-std::string_view name(Quality quality);
 
 /// Telemetry of the satellite, or of the simulator under improvement. The same parameter of both
 /// is two series.

@@ -60,7 +60,8 @@ void ExpectedArchive::add(const TelemetryFrame& frame, const Sample& sample, Sou
   if (frame.origin == Origin::real && kept->second.quality == Quality::good &&
       incoming.quality == Quality::good && kept->second.value != incoming.value)
     kept->second.quality = Quality::disputed;
-  if (kept->second.quality != Quality::disputed && incoming.quality < kept->second.quality)
+  if (kept->second.quality != Quality::disputed &&
+      is_better(incoming.quality, kept->second.quality))
     kept->second = incoming;
 }
 

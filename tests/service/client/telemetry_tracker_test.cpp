@@ -70,6 +70,18 @@ TEST_F(Tracker, a_bad_input_ends_the_hold_of_the_good_one_before_it) {
   EXPECT_EQ(numbers(), (std::vector<std::int64_t>{10, 13}));
 }
 
+TEST_F(Tracker, steps_where_the_quality_is_usable) {
+  std::vector<std::int64_t> usable;
+  std::int64_t tick = 10;
+  for (const Quality quality : storage::qualities) {
+    add(tick * second, 1, 2, 3, quality);
+    if (storage::is_usable(quality)) usable.push_back(tick);
+    ++tick;
+  }
+  add(tick * second, 1, 2, 3);
+  EXPECT_EQ(numbers(), usable);
+}
+
 TEST_F(Tracker, a_missing_output_is_not_a_number_and_holds_nothing_up) {
   add(frame_at(10 * second, {{1, Quality::good, 1}, {2, Quality::good, 2}}));
   add(frame_at(11 * second, {}));

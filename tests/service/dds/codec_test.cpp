@@ -1,9 +1,13 @@
 // What a receiver refuses, field by field, from wire samples that no program of ours would send.
 #include "service/dds/codec.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <limits>
+#include <set>
 
 #include <gmock/gmock.h>
 
@@ -90,6 +94,39 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(FrameCodec, refuses_a_frame_above_the_bound_and_takes_one_at_it) {
   expect(make_frame(1, 4), FrameSpoil{"", [](auto&) {}, ""});
   expect(make_frame(1, 5), FrameSpoil{"", [](auto&) {}, "5 samples and at most 4"});
+}
+
+TEST(FrameCodec, takes_each_quality_that_a_frame_may_bring_and_no_other_number) {
+  for (int number = 0; number < 256; ++number) {
+    TelemetryFrame sent = make_frame(1), received;
+    sent.samples[1].quality = static_cast<storage::Quality>(number);
+    Codec<TelemetryFrame>::Encoder encode;
+    const Fault fault = Codec<TelemetryFrame>::decode(encode(sent), {}, received);
+    const auto known = storage::quality_of_wire(number);
+    if (known && facts(*known).is_sent) {
+      EXPECT_FALSE(fault) << *fault;
+      EXPECT_EQ(received.samples[1].quality, *known);
+    } else {
+      EXPECT_THAT(fault.value_or("taken"),
+                  testing::HasSubstr("sample 1 has quality " + std::to_string(number) + ";"));
+    }
+  }
+}
+
+TEST(FrameCodec, takes_the_qualities_that_the_idl_names) {
+  std::set<std::string> constants, expected;
+  std::ifstream idl(SATCS_IDL);
+  for (std::string line; std::getline(idl, line);)
+    if (line.starts_with("const octet QUALITY_")) constants.insert(line);
+  for (const storage::QualityFacts& row : storage::quality_table) {
+    std::string constant(row.name);
+    std::transform(constant.begin(), constant.end(), constant.begin(), [](unsigned char c) {
+      return c == ' ' ? '_' : static_cast<char>(std::toupper(c));
+    });
+    if (row.is_sent)
+      expected.insert("const octet QUALITY_" + constant + " = " + std::to_string(row.wire) + ";");
+  }
+  EXPECT_EQ(constants, expected);
 }
 
 using DescriptorSpoil = Spoil<satcs_ParameterDescriptor>;

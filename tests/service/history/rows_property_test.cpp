@@ -162,16 +162,32 @@ RC_GTEST_PROP(HistoryRows, samples_come_back, ()) {
   storage::SampleColumns samples;
   const auto size = *rc::gen::inRange<std::size_t>(1, 20);
   const bool uniform = *rc::gen::arbitrary<bool>();
+  const storage::Quality quality = *rc::gen::elementOf(storage::qualities);
   for (std::size_t i = 0; i < size; ++i)
-    samples.push_back(
-        any_time(), {any_number(),
-                     uniform ? storage::Quality::suspect : *rc::gen::elementOf(storage::qualities),
-                     uniform ? 7 : *rc::gen::arbitrary<std::int64_t>()});
+    samples.push_back(any_time(),
+                      {any_number(), uniform ? quality : *rc::gen::elementOf(storage::qualities),
+                       uniform ? 7 : *rc::gen::arbitrary<std::int64_t>()});
   const auto again = there_and_back<storage::SampleColumns>(row_of(samples, 0, size));
   RC_ASSERT(again.time == samples.time);
   RC_ASSERT(again.quality == samples.quality);
   RC_ASSERT(again.source == samples.source);
   for (std::size_t i = 0; i < size; ++i) RC_ASSERT(bits(again.value[i]) == bits(samples.value[i]));
+}
+
+TEST(HistoryRows, samples_of_each_quality_come_back_and_other_numbers_are_refused) {
+  const storage::Held held{1.5, storage::Quality::good, 7};
+  Json row;
+  for (const storage::Quality quality : storage::qualities) {
+    storage::SampleColumns samples;
+    samples.push_back(10, {held.value, quality, held.source});
+    row = row_of(samples, 0, 1);
+    EXPECT_EQ(row.at("quality"), storage::wire_value(quality));
+    EXPECT_EQ(there_and_back<storage::SampleColumns>(row).quality.at(0), quality);
+  }
+  for (const int number : {-1, static_cast<int>(storage::qualities.size()), 256}) {
+    row["quality"] = number;
+    EXPECT_THROW(there_and_back<storage::SampleColumns>(row), std::exception) << number;
+  }
 }
 
 RC_GTEST_PROP(HistoryRows, what_describes_telemetry_comes_back, ()) {

@@ -116,6 +116,23 @@ TEST_F(ImportTest, ALongFileSaysWhoseSamplesTheyAre) {
   EXPECT_EQ(names.size(), 4U) << "gs-1 real and simulated, gs-2, import:t.csv";
 }
 
+TEST_F(ImportTest, EachQualityThatAnExportWritesComesBack) {
+  storage::Database other(folder / "other.db", storage::Database::Mode::read_write);
+  std::vector<storage::TelemetryFrame> frames;
+  for (const Quality quality : storage::qualities)
+    frames.push_back(storage::test::frame(frames.size(), t0 + storage::wire_value(quality) * second,
+                                          {{1, quality, 1.5}}));
+  Archive(other).append(frames);
+  const std::string text = test::exported(other);
+  ImportOptions chosen = options(text);
+  chosen.spacecraft.reset();
+  test::import(database, chosen);
+  EXPECT_THAT(archive.read("CB4", Origin::real, 1, test::everything().range).quality,
+              ::testing::ElementsAreArray(storage::qualities));
+  for (const Quality quality : storage::qualities)
+    EXPECT_THAT(text, HasSubstr("," + std::string(storage::name(quality)) + "\n"));
+}
+
 TEST_F(ImportTest, TheParametersOfTheArchiveKeepTheirNumbersAndUnits) {
   archive.describe({{test::descriptor("SAT-1", 42, "bus_u", "mV")}});
   test::import(database, options("t,bus_u_mv\n1700000000,1\n"));
@@ -167,7 +184,7 @@ TEST_F(ImportTest, MistakesAreNamedWithFileLineColumnAndRemedy) {
         Case{"a,b\n1,2\n", "no column looks like a time; name it with --time"},
         Case{"parameter,time,value,quality\nV,1700000000,1,fine\n",
              ":2: 'fine' in column 'quality' is no quality; use good, out of limits, suspect, "
-             "invalid or disputed"},
+             "invalid"},
         Case{"parameter,time,value\n,1700000000,1\n", ":2: '' in column 'parameter' names no"},
         Case{"parameter,time,value\nV,1700000000,high\n", ":2: 'high' in column 'value' is no"},
         Case{"t,u_v,u_mv\n1700000000,1,2\n", "would both be parameter 'u'"}}) {

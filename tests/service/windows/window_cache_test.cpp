@@ -45,6 +45,21 @@ TEST_F(WindowCaches, ReadAChunkAgainOnceItIsForgotten) {
   EXPECT_LE(kept.ticks_read() - before, 4 * 512);
 }
 
+TEST_F(WindowCaches, HaveRowsWhereTheQualityIsUsable) {
+  storage::Time begin = day;
+  for (const storage::Quality quality : storage::qualities) {
+    auto frames = telemetry(begin, 60);
+    for (auto& frame : frames)
+      for (storage::Sample& sample : frame.samples) sample.quality = quality;
+    archive.append(frames);
+    const auto result = kept.load(archive, {begin, begin + minute});
+    EXPECT_EQ(std::get<WindowData>(result).record.rows(), storage::is_usable(quality) ? 60 : 0)
+        << storage::name(quality);
+    expect_as_read_afresh({begin, begin + minute});
+    begin += 10 * minute;
+  }
+}
+
 TEST_F(WindowCaches, WithoutSamplesHaveNoRows) {
   const auto result = kept.load(archive, {day, day + 10 * minute});
   EXPECT_EQ(std::get<WindowData>(result).record.rows(), 0);

@@ -61,7 +61,8 @@ class Model {
     if (origin == Origin::real && kept.quality == Quality::good &&
         incoming.quality == Quality::good && kept.value != incoming.value)
       kept.quality = Quality::disputed;
-    if (kept.quality != Quality::disputed && incoming.quality < kept.quality) kept = incoming;
+    if (kept.quality != Quality::disputed && is_better(incoming.quality, kept.quality))
+      kept = incoming;
   }
 };
 

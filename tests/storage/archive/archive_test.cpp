@@ -235,6 +235,19 @@ TEST_F(ArchiveTest, SettlesTwoSamplesOfOneIdentity) {
   }
 }
 
+TEST_F(ArchiveTest, KeepsTheBetterOfAnyTwoQualitiesOfOneValue) {
+  Time time = 0;
+  for (const Quality first : qualities)
+    for (const Quality second : qualities) {
+      ++time;
+      append({frame(1, time, {{1, first, 5}}), frame(2, time, {{1, second, 5}})});
+      const bool second_wins = first != Quality::disputed && is_better(second, first);
+      EXPECT_THAT(archive.read("CB4", Origin::real, 1, {time, time + 1}).quality,
+                  ElementsAre(second_wins ? second : first))
+          << name(first) << ", then " << name(second);
+    }
+}
+
 TEST_F(ArchiveTest, KeepsADisputedSampleSoWhateverComesAgain) {
   append({frame(1, 1, {{1, Quality::good, 5}}), frame(2, 1, {{1, Quality::good, 6}})});
   for (const double value : {5.0, 6.0, 7.0})

@@ -61,6 +61,26 @@ TEST(Chunk, GivesEverySampleBack) {
   EXPECT_TRUE(same(back, columns));
 }
 
+TEST(Chunk, GivesEachQualityBackAndNoOther) {
+  Columns columns = columns_of(std::vector<double>(qualities.size() + 1, 28.5));
+  const auto decoded = [&] {
+    Columns back;
+    const auto error = ChunkDecoder().decode(encoded(columns), back.target());
+    return error ? error->message : same(back, columns) ? "the same" : "another";
+  };
+  for (const Quality quality : qualities) {
+    columns.quality.assign(columns.time.size(), quality);
+    EXPECT_EQ(decoded(), "the same") << name(quality);
+  }
+  std::copy(qualities.begin(), qualities.end(), columns.quality.begin());
+  EXPECT_EQ(decoded(), "the same");
+  const auto unknown = static_cast<Quality>(qualities.size());
+  columns.quality.back() = unknown;
+  EXPECT_EQ(decoded(), "has qualities that cannot be decoded");
+  columns.quality.assign(columns.time.size(), unknown);
+  EXPECT_EQ(decoded(), "has qualities that cannot be decoded");
+}
+
 // Archives hold chunks for as long as a mission flies: this one was written by format 1.
 TEST(Chunk, OfFormat1IsReadForEver) {
   const std::string_view written =

@@ -50,6 +50,20 @@ TEST(RecentRun, GivesEveryBitBack) {
     }
 }
 
+TEST(RecentRun, GivesEachQualityBackAndNoOther) {
+  Columns columns = columns_of(std::vector<double>(qualities.size(), 28.5));
+  std::copy(qualities.begin(), qualities.end(), columns.quality.begin());
+  EXPECT_TRUE(same(decoded(encoded(columns)), columns));
+  for (const Quality quality : qualities) {
+    columns.quality.assign(columns.time.size(), quality);
+    EXPECT_TRUE(same(decoded(encoded(columns)), columns)) << name(quality);
+  }
+  columns.quality.back() = static_cast<Quality>(qualities.size());
+  Columns target;
+  const auto error = decode_run(encoded(columns), always, target.target());
+  EXPECT_EQ(error ? error->message : "none", "has a quality that is none");
+}
+
 TEST(RecentRun, GivesTheSamplesOfARangeAlone) {
   std::mt19937_64 random(7);
   const Columns columns = any_columns(random, 200, true);

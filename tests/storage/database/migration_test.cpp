@@ -2,6 +2,7 @@
 // is in it.
 #include <cmath>
 
+#include "storage/database/schema.hpp"
 #include "tests/storage/database/schema_1.hpp"
 #include "tests/storage/database/schema_2.hpp"
 #include "tests/storage/database/schema_3.hpp"
@@ -67,7 +68,7 @@ TEST_F(Migration, KeepsEveryRowAndItsMeaning) {
               ElementsAre("BDR|1|approved|NULL|d1|{\"a\":1}||", "BDR|2|superseded|1|d2|{\"a\":2}||",
                           "MEA|1|waiting|NULL|d3|{\"a\":3}||"));
   EXPECT_THAT(rows(path, "PRAGMA user_version; PRAGMA integrity_check; PRAGMA foreign_key_check"),
-              ElementsAre("5", "ok"));
+              ElementsAre(std::to_string(schema::version), "ok"));
 }
 
 TEST_F(Migration, GoesOnWhereTheOldProgramStopped) {
@@ -147,16 +148,19 @@ INSERT INTO decision VALUES
   EXPECT_THAT(rows(path, schema), ElementsAreArray(rows(folder / "new.db", schema)));
 }
 
+// The versions after it differ from it in the qualities that a file may hold.
 TEST(MigrationFrom4, ChangesTheNumberOfTheVersionAlone) {
   const TemporaryFolder folder;
   const auto path = folder / "old.db";
   const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
   { const Database made(path, Mode::read_write); }
   const auto before = rows(path, schema);
-  rows(path, "PRAGMA user_version = 4");
-  { const Database migrated(path, Mode::read_write); }
-  EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
-  EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre("5"));
+  for (std::int64_t old = 4; old < schema::version; ++old) {
+    rows(path, "PRAGMA user_version = " + std::to_string(old));
+    { const Database migrated(path, Mode::read_write); }
+    EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
+    EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre(std::to_string(schema::version)));
+  }
 }
 
 // Three series of several chunks each: a ramp of unusual values, one sample, a long one.

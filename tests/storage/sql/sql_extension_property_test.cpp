@@ -100,6 +100,12 @@ rc::Gen<std::string> condition(const std::string& column, const rc::Gen<std::str
   });
 }
 
+Texts quality_names() {
+  Texts names;
+  for (const Quality quality : qualities) names.emplace_back(name(quality));
+  return names;
+}
+
 rc::Gen<std::string> condition() {
   const Texts compared = {"=", "<", "<=", ">", ">=", "<>", "BETWEEN", "IN", "IS", "IS NOT NULL"};
   const Texts named = {"=", "=", "IN", "IN", "<>", "NOT IN", "<", "LIKE", "IS"};
@@ -108,8 +114,7 @@ rc::Gen<std::string> condition() {
        {4, condition("parameter", text_operand({"V_BUS", "I_BUS", "3", "4"}), named)},
        {2, condition("origin", text_operand({"real", "simulated"}), named)},
        {2, condition("source", text_operand({"a", "b"}), named)},
-       {2,
-        condition("quality", text_operand({"good", "out of limits", "suspect", "invalid"}), named)},
+       {2, condition("quality", text_operand(quality_names()), named)},
        {6, condition("time", operand(), compared)},
        {3, condition("utc", utc_operand(), compared)},
        {3,

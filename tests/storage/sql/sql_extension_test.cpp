@@ -63,6 +63,24 @@ TEST_F(SqlExtensionTest, TelemetryHasARowForEachSample) {
                   "real|2017-11-20T23:58:53.444555666Z"));
 }
 
+TEST_F(SqlExtensionTest, EachQualityIsShownAndAskedForByItsName) {
+  std::vector<TelemetryFrame> frames;
+  for (const Quality quality : qualities)
+    frames.push_back(frame(frames.size(), wire_value(quality), {{1, quality, 28.5}}));
+  append(frames);
+  for (int i = 0; i < 2; ++i, archive.compact())
+    for (const Quality quality : qualities) {
+      const std::string text(name(quality)), time = std::to_string(wire_value(quality));
+      EXPECT_THAT(ask("SELECT time, quality FROM telemetry WHERE quality = '" + text + "'"),
+                  ElementsAre(time + "|" + text));
+      EXPECT_THAT(ask("SELECT first_time, samples FROM telemetry_summary(NULL, NULL, NULL, '" +
+                      text + "')"),
+                  ElementsAre(time + "|1"));
+      EXPECT_THAT(ask("SELECT * FROM telemetry_summary(NULL, NULL, NULL, 'fine')"),
+                  ElementsAre(HasSubstr("'" + text + "'")));
+    }
+}
+
 TEST_F(SqlExtensionTest, EveryValueComesBackAsItIs) {
   append({frame(1, 1, {{1, Quality::good, -0.0}}), frame(2, 2, {{1, Quality::good, infinity}}),
           frame(3, 3, {{1, Quality::good, -infinity}}), frame(4, 4, {{1, Quality::good, 0.1}})});
