@@ -6,7 +6,7 @@
 namespace reident::test::swap_property_test {
 namespace {
 
-TEST(AnySwap, moves_the_output_by_at_most_three_times_the_models_own_step) {
+TEST(AnySwap, MovesTheOutputByAtMostThreeTimesTheModelsOwnStep) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const SwapInMidRun swap = swap_in_mid_run(seed);
     EXPECT_LE(swap.jump, 3) << "seed " << seed;

@@ -45,7 +45,7 @@ Matrix simulated_step(const StateSpaceModel& dynamics, Index input, Index sample
   return free_run(dynamics, record, record.all(), rest).rowwise() - dynamics.y0.transpose();
 }
 
-TEST(Poles, have_the_time_constant_of_their_decay_and_the_frequency_of_their_turn) {
+TEST(Poles, HaveTheTimeConstantOfTheirDecayAndTheFrequencyOfTheirTurn) {
   const auto poles = poles_of(model().dynamics);
   ASSERT_THAT(poles, SizeIs(2)) << "the pair once";
   EXPECT_NEAR(poles[0].value.real(), 0.9, 1e-12);
@@ -57,7 +57,7 @@ TEST(Poles, have_the_time_constant_of_their_decay_and_the_frequency_of_their_tur
   EXPECT_NEAR(poles[1].frequency_hz, 1. / 16, 1e-12);
 }
 
-TEST(Poles, of_a_static_model_are_none_and_of_an_integrator_never_decay) {
+TEST(Poles, OfAStaticModelAreNoneAndOfAnIntegratorNeverDecay) {
   StateSpaceModel dynamics = model().dynamics;
   dynamics.A = Matrix::Identity(3, 3);
   EXPECT_TRUE(std::isinf(poles_of(dynamics)[0].time_constant_s));
@@ -65,7 +65,7 @@ TEST(Poles, of_a_static_model_are_none_and_of_an_integrator_never_decay) {
   EXPECT_THAT(poles_of(dynamics), IsEmpty());
 }
 
-TEST(StepResponse, is_what_the_matrices_give_when_they_are_simulated) {
+TEST(StepResponse, IsWhatTheMatricesGiveWhenTheyAreSimulated) {
   const StateSpaceModel dynamics = model().dynamics;
   const std::vector<double> times = {0, 2, 4, 7, 100};
   for (Index input = 0; input < 2; ++input) {
@@ -80,7 +80,7 @@ TEST(StepResponse, is_what_the_matrices_give_when_they_are_simulated) {
   }
 }
 
-TEST(StaticGain, is_where_the_step_response_ends) {
+TEST(StaticGain, IsWhereTheStepResponseEnds) {
   const StateSpaceModel dynamics = model().dynamics;
   const Matrix gain = static_gain(dynamics);
   for (Index input = 0; input < 2; ++input)
@@ -89,7 +89,7 @@ TEST(StaticGain, is_where_the_step_response_ends) {
         1e-9);
 }
 
-TEST(StepTimes, reach_until_the_slower_model_has_settled) {
+TEST(StepTimes, ReachUntilTheSlowerModelHasSettled) {
   StateSpaceModel slow = model().dynamics, fast = slow;
   fast.A *= 0.1;
   // 0.9^44 < 0.01: 88 s
@@ -98,7 +98,7 @@ TEST(StepTimes, reach_until_the_slower_model_has_settled) {
   EXPECT_EQ(step_times(fast, slow)[1], 1);
 }
 
-TEST(Comparison, of_a_model_with_itself_finds_no_difference) {
+TEST(Comparison, OfAModelWithItselfFindsNoDifference) {
   const ModelComparison comparison = compare_models(model(), 1, model(), 2);
   EXPECT_THAT(comparison.input_differences, IsEmpty());
   ASSERT_THAT(comparison.channels, SizeIs(4));
@@ -109,7 +109,7 @@ TEST(Comparison, of_a_model_with_itself_finds_no_difference) {
   }
 }
 
-TEST(Comparison, names_the_inputs_that_differ_and_keeps_the_common_ones_together) {
+TEST(Comparison, NamesTheInputsThatDifferAndKeepsTheCommonOnesTogether) {
   EquipmentModel a = model(), b = model();
   b.inputs[0] = {"P", "W", 0, 1, "a * i"};
   b.inputs[1].unit = "mA";

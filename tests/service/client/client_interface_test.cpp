@@ -70,7 +70,7 @@ class ClientInterface : public testing::Test {
   static constexpr double u[] = {3.0, 1.5};
 };
 
-TEST_F(ClientInterface, runs_a_version_from_the_step_after_it_came_and_reports_it) {
+TEST_F(ClientInterface, RunsAVersionFromTheStepAfterItCameAndReportsIt) {
   Runner runner(*client_, "CBERS4", "BDR", inputs, outputs);
   double y = 0;
   EXPECT_EQ(runner.step(u, &y), REIDENT_NO_MODEL);
@@ -103,7 +103,7 @@ TEST_F(ClientInterface, runs_a_version_from_the_step_after_it_came_and_reports_i
   EXPECT_EQ(told->running.since, swapped.time_ns);
 }
 
-TEST_F(ClientInterface, swaps_in_mid_run_without_a_jump) {
+TEST_F(ClientInterface, SwapsInMidRunWithoutAJump) {
   versions_->write(example_version(1));
   event(Kind::available);
   Runner runner(*client_, "CBERS4", "BDR", inputs, outputs);
@@ -133,7 +133,7 @@ TEST_F(ClientInterface, swaps_in_mid_run_without_a_jump) {
   EXPECT_EQ(runner.step(u, &y) & REIDENT_IN_TRANSITION, REIDENT_IN_TRANSITION);
 }
 
-TEST_F(ClientInterface, offers_a_version_of_other_inputs_and_takes_it_when_it_is_accepted) {
+TEST_F(ClientInterface, OffersAVersionOfOtherInputsAndTakesItWhenItIsAccepted) {
   std::vector<ClientSignal> more = inputs;
   more.push_back({"V_BUS", "V"});
   Runner runner(*client_, "CBERS4", "BDR", more, outputs);
@@ -157,7 +157,7 @@ TEST_F(ClientInterface, offers_a_version_of_other_inputs_and_takes_it_when_it_is
   EXPECT_EQ(runner.state().offered_version, 0);
 }
 
-TEST_F(ClientInterface, does_not_run_a_version_whose_signals_are_not_declared) {
+TEST_F(ClientInterface, DoesNotRunAVersionWhoseSignalsAreNotDeclared) {
   struct Case {
     std::string equipment;
     std::vector<ClientSignal> inputs, outputs;
@@ -194,7 +194,7 @@ TEST_F(ClientInterface, does_not_run_a_version_whose_signals_are_not_declared) {
   }
 }
 
-TEST_F(ClientInterface, keeps_its_model_when_a_version_must_not_run) {
+TEST_F(ClientInterface, KeepsItsModelWhenAVersionMustNotRun) {
   Runner runner(*client_, "CBERS4", "BDR", inputs, outputs);
   versions_->write(example_version(3));
   step_until(runner, REIDENT_SWAPPED, u);
@@ -210,7 +210,7 @@ TEST_F(ClientInterface, keeps_its_model_when_a_version_must_not_run) {
   EXPECT_EQ(runner.state().version, 3);
 }
 
-TEST_F(ClientInterface, starts_from_the_kept_version_and_goes_on_when_it_is_confirmed) {
+TEST_F(ClientInterface, StartsFromTheKeptVersionAndGoesOnWhenItIsConfirmed) {
   const std::string folder = testing::TempDir() + "client-cache-" + std::to_string(getpid());
   open(folder);
   versions_->write(example_version(7));
@@ -235,7 +235,7 @@ TEST_F(ClientInterface, starts_from_the_kept_version_and_goes_on_when_it_is_conf
   std::filesystem::remove_all(folder);
 }
 
-TEST_F(ClientInterface, says_each_event_to_the_callback_on_its_own_thread) {
+TEST_F(ClientInterface, SaysEachEventToTheCallbackOnItsOwnThread) {
   struct Heard {
     std::mutex mutex;
     std::vector<int> kinds;
@@ -261,7 +261,7 @@ TEST_F(ClientInterface, says_each_event_to_the_callback_on_its_own_thread) {
   EXPECT_EQ(event(Kind::available).version, 2);
 }
 
-TEST_F(ClientInterface, shows_the_newest_version_as_json) {
+TEST_F(ClientInterface, ShowsTheNewestVersionAsJson) {
   EXPECT_EQ(client_->version_json("CBERS4", "BDR"), std::nullopt);
   versions_->write(example_version(5));
   event(Kind::available);
@@ -270,7 +270,7 @@ TEST_F(ClientInterface, shows_the_newest_version_as_json) {
   EXPECT_EQ(json["model"]["inputs"][0]["name"], "I_BDRIN1");
 }
 
-TEST_F(ClientInterface, refuses_what_can_never_be_done_with_the_reason) {
+TEST_F(ClientInterface, RefusesWhatCanNeverBeDoneWithTheReason) {
   const auto said = [](auto&& call) -> std::string {
     try {
       call();
@@ -297,7 +297,7 @@ TEST_F(ClientInterface, refuses_what_can_never_be_done_with_the_reason) {
   reident_runner_close(nullptr);
 }
 
-TEST_F(ClientInterface, fills_in_no_more_than_an_older_callers_structures_have) {
+TEST_F(ClientInterface, FillsInNoMoreThanAnOlderCallersStructuresHave) {
   versions_->write(example_version(1));
   reident_event older;
   std::memset(&older, 0x55, sizeof older);
@@ -308,7 +308,7 @@ TEST_F(ClientInterface, fills_in_no_more_than_an_older_callers_structures_have) 
 }
 
 // Run under TSan, this is the test of the hand-over.
-TEST_F(ClientInterface, steps_on_while_versions_rain) {
+TEST_F(ClientInterface, StepsOnWhileVersionsRain) {
   Runner runner(*client_, "CBERS4", "BDR", inputs, outputs);
   std::atomic<bool> done = false;
   std::uint64_t swaps = 0, wrong = 0;

@@ -20,7 +20,7 @@ class LiveBdr : public testing::Test {
   LiveEquipment live_{example_version(1)};
 };
 
-TEST_F(LiveBdr, meets_a_plant_that_is_the_model) {
+TEST_F(LiveBdr, MeetsAPlantThatIsTheModel) {
   fly(0, 500);
   EXPECT_EQ(live_.score().rows, 499 - 6) << "all ticks but those of the seed and the last";
   EXPECT_LT(live_.score().mrse(), 1e-6);
@@ -29,7 +29,7 @@ TEST_F(LiveBdr, meets_a_plant_that_is_the_model) {
   EXPECT_EQ(live_.ticks_outside(), 0U);
 }
 
-TEST_F(LiveBdr, finds_its_state_again_after_a_gap) {
+TEST_F(LiveBdr, FindsItsStateAgainAfterAGap) {
   fly(0, 100);
   for (std::int64_t k = 100; k < 200; ++k) plant_.frame(k);
   fly(200, 300);
@@ -37,7 +37,7 @@ TEST_F(LiveBdr, finds_its_state_again_after_a_gap) {
   EXPECT_LT(live_.score().mrse(), 0.2) << "the last outputs before the gap are held for two ticks";
 }
 
-TEST_F(LiveBdr, starts_at_the_operating_point_where_no_output_is_measured) {
+TEST_F(LiveBdr, StartsAtTheOperatingPointWhereNoOutputIsMeasured) {
   for (std::int64_t k = 0; k < 200; ++k) {
     auto frame = plant_.frame(k);
     if (k < 150) frame.samples.pop_back();
@@ -47,7 +47,7 @@ TEST_F(LiveBdr, starts_at_the_operating_point_where_no_output_is_measured) {
   EXPECT_LT(live_.score().mrse(), 1e-3) << "the start is forgotten by then";
 }
 
-TEST_F(LiveBdr, goes_on_with_a_new_version_and_counts_its_error_anew) {
+TEST_F(LiveBdr, GoesOnWithANewVersionAndCountsItsErrorAnew) {
   fly(0, 300);
   ModelVersion next = example_version(2);
   next.model.dynamics.B *= 1.1;
@@ -62,7 +62,7 @@ TEST_F(LiveBdr, goes_on_with_a_new_version_and_counts_its_error_anew) {
   EXPECT_EQ(live_.gaps(), 0U);
 }
 
-TEST_F(LiveBdr, starts_over_with_a_version_of_other_inputs) {
+TEST_F(LiveBdr, StartsOverWithAVersionOfOtherInputs) {
   fly(0, 50);
   ModelVersion next = example_version(2);
   std::swap(next.model.inputs[0], next.model.inputs[1]);
@@ -77,7 +77,7 @@ TEST_F(LiveBdr, starts_over_with_a_version_of_other_inputs) {
   EXPECT_LT(live_.score().mrse(), 1e-6);
 }
 
-TEST_F(LiveBdr, counts_ticks_outside_the_identified_range) {
+TEST_F(LiveBdr, CountsTicksOutsideTheIdentifiedRange) {
   fly(0, 50);
   ModelVersion next = example_version(2);
   next.model.inputs[0].high = 1;

@@ -71,7 +71,7 @@ class Cache : public testing::Test {
   std::vector<std::string> faults_;
 };
 
-TEST_F(Cache, gives_back_the_same_bits_and_all_that_goes_with_them) {
+TEST_F(Cache, GivesBackTheSameBitsAndAllThatGoesWithThem) {
   CachedVersion one = kept(3);
   one.version.model = full_example_model();
   const identification::Poles poles = {0.5, 0.6, 0.7, 0.8};
@@ -92,7 +92,7 @@ TEST_F(Cache, gives_back_the_same_bits_and_all_that_goes_with_them) {
 }
 
 // Simulators hold such files: the text stays as it is, to the last byte.
-TEST_F(Cache, writes_the_text_that_it_always_wrote) {
+TEST_F(Cache, WritesTheTextThatItAlwaysWrote) {
   CachedVersion one = kept(3);
   one.version.rollback = true;
   const std::string kept_text =
@@ -106,13 +106,13 @@ TEST_F(Cache, writes_the_text_that_it_always_wrote) {
       R"({"format":1,"sha256":")" + sha256_hex(kept_text) + R"(","kept":)" + kept_text + "}\n");
 }
 
-TEST_F(Cache, is_empty_before_the_first_version_and_makes_no_folder_for_that) {
+TEST_F(Cache, IsEmptyBeforeTheFirstVersionAndMakesNoFolderForThat) {
   EXPECT_EQ(loaded(), 0);
   EXPECT_FALSE(fs::exists(folder_));
   EXPECT_THAT(faults_, testing::IsEmpty());
 }
 
-TEST_F(Cache, keeps_every_legal_name_apart_and_inside_the_folder) {
+TEST_F(Cache, KeepsEveryLegalNameApartAndInsideTheFolder) {
   std::string accents;
   for (int i = 0; i < 85; ++i) accents += "\xe2\x82\xac";  // 255 bytes
   const std::vector<storage::EquipmentName> names = {
@@ -129,13 +129,13 @@ TEST_F(Cache, keeps_every_legal_name_apart_and_inside_the_folder) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(Cache, keeps_partitions_apart) {
+TEST_F(Cache, KeepsPartitionsApart) {
   store(kept(1));
   for (const char* other : {"training", "../operations", "", "operations/"})
     EXPECT_TRUE(cache(other).load([](const CacheFault&) {}).empty()) << other;
 }
 
-TEST_F(Cache, replaces_an_older_version_and_keeps_a_newer_one) {
+TEST_F(Cache, ReplacesAnOlderVersionAndKeepsANewerOne) {
   store(kept(5));
   store(kept(4));
   EXPECT_EQ(loaded(), 5);
@@ -148,7 +148,7 @@ TEST_F(Cache, replaces_an_older_version_and_keeps_a_newer_one) {
   EXPECT_THAT(faults_, testing::IsEmpty());
 }
 
-TEST_F(Cache, does_not_write_what_is_there_already) {
+TEST_F(Cache, DoesNotWriteWhatIsThereAlready) {
   store(kept(5));
   const auto before = fs::last_write_time(file());
   struct stat first {
@@ -160,7 +160,7 @@ TEST_F(Cache, does_not_write_what_is_there_already) {
   EXPECT_EQ(fs::last_write_time(file()), before);
 }
 
-TEST_F(Cache, sets_aside_a_file_that_is_damaged_and_starts_without_it) {
+TEST_F(Cache, SetsAsideAFileThatIsDamagedAndStartsWithoutIt) {
   store(kept(5));
   const std::string good = text();
   std::string flipped = good;
@@ -192,7 +192,7 @@ TEST_F(Cache, sets_aside_a_file_that_is_damaged_and_starts_without_it) {
   EXPECT_EQ(loaded(), 6);
 }
 
-TEST_F(Cache, leaves_what_a_newer_program_wrote_and_says_so) {
+TEST_F(Cache, LeavesWhatANewerProgramWroteAndSaysSo) {
   store(kept(5));
   const std::string newer = R"({"format": 2, "kept": "otherwise"})";
   write(newer);
@@ -204,7 +204,7 @@ TEST_F(Cache, leaves_what_a_newer_program_wrote_and_says_so) {
   EXPECT_THAT(faults_[1], testing::HasSubstr("is not replaced"));
 }
 
-TEST_F(Cache, passes_over_what_is_not_a_file_of_a_version) {
+TEST_F(Cache, PassesOverWhatIsNotAFileOfAVersion) {
   store(kept(5));
   std::ofstream(file().parent_path() / "README") << "hello";
   std::ofstream(file().string() + ".part") << "half";
@@ -215,7 +215,7 @@ TEST_F(Cache, passes_over_what_is_not_a_file_of_a_version) {
                                             testing::HasSubstr("pipe.json is not used")));
 }
 
-TEST_F(Cache, says_once_that_it_cannot_write_and_again_when_that_changes) {
+TEST_F(Cache, SaysOnceThatItCannotWriteAndAgainWhenThatChanges) {
   std::ofstream{folder_} << "a file where the folder should be";
   store(kept(1));
   store(kept(2));
@@ -232,7 +232,7 @@ TEST_F(Cache, says_once_that_it_cannot_write_and_again_when_that_changes) {
   EXPECT_EQ(faults_.size(), 2U) << "it had been mended";
 }
 
-TEST_F(Cache, of_a_read_only_folder_is_read_and_reports_what_it_cannot_write) {
+TEST_F(Cache, OfAReadOnlyFolderIsReadAndReportsWhatItCannotWrite) {
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   store(kept(5));
   chmod_folder(0500);
@@ -242,7 +242,7 @@ TEST_F(Cache, of_a_read_only_folder_is_read_and_reports_what_it_cannot_write) {
   EXPECT_THAT(faults_[0], testing::HasSubstr("ermission"));
 }
 
-TEST_F(Cache, does_not_wait_for_ever_for_a_program_that_holds_the_folder) {
+TEST_F(Cache, DoesNotWaitForEverForAProgramThatHoldsTheFolder) {
   store(kept(5));
   const int other = ::open(file().parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   ASSERT_EQ(::flock(other, LOCK_EX), 0);
@@ -253,7 +253,7 @@ TEST_F(Cache, does_not_wait_for_ever_for_a_program_that_holds_the_folder) {
   ::close(other);
 }
 
-TEST_F(Cache, that_simulators_share_ends_with_the_newest_version_whole) {
+TEST_F(Cache, ThatSimulatorsShareEndsWithTheNewestVersionWhole) {
   constexpr std::int64_t last = 60;
   std::vector<std::thread> simulators;
   for (int s = 0; s < 3; ++s) {
@@ -269,7 +269,7 @@ TEST_F(Cache, that_simulators_share_ends_with_the_newest_version_whole) {
   EXPECT_EQ(std::distance(fs::directory_iterator(file().parent_path()), {}), 1);
 }
 
-TEST_F(Cache, is_whole_after_a_kill_at_any_moment) {
+TEST_F(Cache, IsWholeAfterAKillAtAnyMoment) {
   store(kept(1));
   std::int64_t last = 1;
   for (int round = 0; round < 10; ++round) {
@@ -293,7 +293,7 @@ TEST_F(Cache, is_whole_after_a_kill_at_any_moment) {
   EXPECT_EQ(loaded(), last + 1) << "what the dead left behind is in nobody's way";
 }
 
-TEST(CacheFolder, is_that_of_the_user) {
+TEST(CacheFolder, IsThatOfTheUser) {
   setenv("XDG_CACHE_HOME", "/x/cache", 1);
   EXPECT_EQ(ModelCache::default_folder(), fs::path("/x/cache/reident"));
   setenv("XDG_CACHE_HOME", "relative", 1);

@@ -91,7 +91,7 @@ Matrix inputs(Index rows) {
   return u;
 }
 
-TEST(ModelRunner, steps_are_the_free_run_of_the_identification) {
+TEST(ModelRunner, StepsAreTheFreeRunOfTheIdentification) {
   const EquipmentModel model = example_model();
   const auto record = identification::contiguous_record(1, inputs(100), Matrix::Zero(100, 1));
   const Matrix expected =
@@ -100,7 +100,7 @@ TEST(ModelRunner, steps_are_the_free_run_of_the_identification) {
   for (Index k = 0; k < 100; ++k) EXPECT_NEAR(run.step(example_input(k)), expected(k, 0), 1e-12);
 }
 
-TEST(ModelRunner, starts_from_the_state_of_the_measured_rows) {
+TEST(ModelRunner, StartsFromTheStateOfTheMeasuredRows) {
   ExamplePlant plant;
   Matrix u = inputs(20);
   Matrix y(20, 1);
@@ -111,7 +111,7 @@ TEST(ModelRunner, starts_from_the_state_of_the_measured_rows) {
     EXPECT_NEAR(run.step(example_input(k)), plant.step(example_input(k)), 1e-9);
 }
 
-TEST(ModelRunner, allocates_nothing_while_it_runs_follows_and_changes_to_another_version) {
+TEST(ModelRunner, AllocatesNothingWhileItRunsFollowsAndChangesToAnotherVersion) {
   if (!counts_allocations) GTEST_SKIP() << "the sanitizer owns malloc";
   EquipmentModel model = following_model();
   model.inputs[1] = {"P_IN", "W", -0.25, 4, "max(V_BUS, 1) * I_BDRIN2"};
@@ -133,7 +133,7 @@ TEST(ModelRunner, allocates_nothing_while_it_runs_follows_and_changes_to_another
 #endif
 }
 
-TEST(ModelRunner, flags_inputs_outside_the_identified_range_and_uses_them_as_they_are) {
+TEST(ModelRunner, FlagsInputsOutsideTheIdentifiedRangeAndUsesThemAsTheyAre) {
   Simulation run(example_model());
   run.step((Vector(2) << 5, -0.25).finished());
   EXPECT_EQ(run.flags, 0);
@@ -145,7 +145,7 @@ TEST(ModelRunner, flags_inputs_outside_the_identified_range_and_uses_them_as_the
   EXPECT_EQ(wide.runner.input_flags(1), 0);
 }
 
-TEST(ModelRunner, holds_the_last_value_of_an_input_that_is_missing) {
+TEST(ModelRunner, HoldsTheLastValueOfAnInputThatIsMissing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Simulation run(example_model()), held(example_model());
   EXPECT_EQ(run.step((Vector(2) << nan, 2).finished()), held.step((Vector(2) << 2.5, 2).finished()))
@@ -160,7 +160,7 @@ TEST(ModelRunner, holds_the_last_value_of_an_input_that_is_missing) {
             held.step((Vector(2) << 2, 1).finished()));
 }
 
-TEST(ModelRunner, takes_inputs_by_name_in_any_order_and_computes_derived_ones) {
+TEST(ModelRunner, TakesInputsByNameInAnyOrderAndComputesDerivedOnes) {
   EquipmentModel derived = example_model();
   derived.inputs[1] = {"P_IN", "W", -0.25, 4, "V_BUS * I_BDRIN2"};
   Simulation by_name(derived, {{{"V_BUS", "V"}, {"OTHER", ""}, {"I_BDRIN2", ""}, {"I_BDRIN1", "A"}},
@@ -179,7 +179,7 @@ TEST(ModelRunner, takes_inputs_by_name_in_any_order_and_computes_derived_ones) {
   EXPECT_EQ(by_name.runner.input_flags(2), REIDENT_INPUT_OUTSIDE);
 }
 
-TEST(ModelRunner, says_what_a_declaration_lacks) {
+TEST(ModelRunner, SaysWhatADeclarationLacks) {
   const std::vector<std::pair<Declaration, std::string>> cases = {
       {{{{"I_BDRIN1", ""}}, {{"I_BDROUT", ""}}},
        "it needs I_BDRIN2, which the simulator does not declare"},
@@ -199,7 +199,7 @@ TEST(ModelRunner, says_what_a_declaration_lacks) {
   }
 }
 
-TEST(ModelRunner, follows_what_is_measured_and_lets_go_without_a_jump) {
+TEST(ModelRunner, FollowsWhatIsMeasuredAndLetsGoWithoutAJump) {
   for (const bool integral : {true, false}) {
     EquipmentModel model = integral ? following_model() : example_model();
     Simulation run(model), free(model);
@@ -239,7 +239,7 @@ TEST(ModelRunner, follows_what_is_measured_and_lets_go_without_a_jump) {
   }
 }
 
-TEST(ModelRunner, runs_free_and_says_so_where_it_cannot_follow) {
+TEST(ModelRunner, RunsFreeAndSaysSoWhereItCannotFollow) {
   EquipmentModel model = example_model();
   model.dynamics.K.resize(0, 0);
   Simulation run(model), free(model);
@@ -254,7 +254,7 @@ TEST(ModelRunner, runs_free_and_says_so_where_it_cannot_follow) {
   EXPECT_NEAR(follows.runner.output()[0], silent.runner.output()[0], 1e-12);
 }
 
-TEST(ModelRunner, a_measured_spike_moves_a_following_run_no_further_than_its_clamp) {
+TEST(ModelRunner, AMeasuredSpikeMovesAFollowingRunNoFurtherThanItsClamp) {
   for (const bool integral : {true, false}) {
     EquipmentModel model = integral ? following_model() : example_model();
     Simulation run(model), free(model);
@@ -269,7 +269,7 @@ TEST(ModelRunner, a_measured_spike_moves_a_following_run_no_further_than_its_cla
   }
 }
 
-TEST(ModelRunner, starts_over_at_the_operating_point_when_the_run_is_not_finite) {
+TEST(ModelRunner, StartsOverAtTheOperatingPointWhenTheRunIsNotFinite) {
   Simulation run(example_model());
   EXPECT_DOUBLE_EQ(run.step((Vector(2) << 1e308, 1e308).finished()), 1e307);
   double y = 0;
@@ -284,7 +284,7 @@ TEST(ModelRunner, starts_over_at_the_operating_point_when_the_run_is_not_finite)
   EXPECT_LT(run.swap(other).transition, ModelRunner::most_transition) << "its pace is known again";
 }
 
-TEST(ModelRunner, a_swap_to_the_same_model_in_another_basis_is_not_felt) {
+TEST(ModelRunner, ASwapToTheSameModelInAnotherBasisIsNotFelt) {
   EquipmentModel other = example_model();
   const Matrix T = (Matrix(2, 2) << 3, 1, -2, 5).finished();
   other.dynamics.A = T * other.dynamics.A * T.inverse();
@@ -305,7 +305,7 @@ TEST(ModelRunner, a_swap_to_the_same_model_in_another_basis_is_not_felt) {
     EXPECT_NEAR(swaps.step(example_input(k)), stays.step(example_input(k)), 1e-9);
 }
 
-TEST(ModelRunner, a_swap_to_a_different_model_continues_the_output_and_then_follows_the_new_one) {
+TEST(ModelRunner, ASwapToADifferentModelContinuesTheOutputAndThenFollowsTheNewOne) {
   EquipmentModel other = example_model();
   other.dynamics.A(0, 0) = 0.92;
   other.dynamics.B *= 1.05;
@@ -336,7 +336,7 @@ TEST(ModelRunner, a_swap_to_a_different_model_continues_the_output_and_then_foll
   EXPECT_NEAR(run.runner.output()[0], always_new.runner.output()[0], 1e-4);
 }
 
-TEST(ModelRunner, a_swap_starts_from_measured_outputs_where_they_are_known) {
+TEST(ModelRunner, ASwapStartsFromMeasuredOutputsWhereTheyAreKnown) {
   EquipmentModel wrong = example_model();
   wrong.dynamics.B *= 0.5;
   Simulation run(wrong);
@@ -351,7 +351,7 @@ TEST(ModelRunner, a_swap_starts_from_measured_outputs_where_they_are_known) {
   EXPECT_NEAR(run.swap(example_model()).largest, std::abs(measured - put_out), 1e-9);
 }
 
-TEST(ModelRunner, puts_nothing_out_before_its_first_model) {
+TEST(ModelRunner, PutsNothingOutBeforeItsFirstModel) {
   ModelRunner runner(declaration_of(example_model()));
   double y = 0;
   const Vector u = example_input(0);
@@ -360,7 +360,7 @@ TEST(ModelRunner, puts_nothing_out_before_its_first_model) {
   EXPECT_EQ(runner.input_flags(0), 0);
 }
 
-TEST(ModelRunner, a_swap_to_another_period_goes_from_the_output_to_the_operating_point) {
+TEST(ModelRunner, ASwapToAnotherPeriodGoesFromTheOutputToTheOperatingPoint) {
   Simulation run(example_model());
   for (Index k = 0; k < 100; ++k) run.step(example_input(k));
   const double last = run.runner.output()[0];
@@ -373,7 +373,7 @@ TEST(ModelRunner, a_swap_to_another_period_goes_from_the_output_to_the_operating
   EXPECT_NEAR(y, last, std::abs(4.25 - last) / ModelRunner::least_transition + 1e-12);
 }
 
-TEST(ModelRunner, a_swap_before_the_first_step_starts_at_the_operating_point) {
+TEST(ModelRunner, ASwapBeforeTheFirstStepStartsAtTheOperatingPoint) {
   Simulation run(example_model());
   const ModelRunner::Swap swap = run.swap(example_model());
   EXPECT_EQ(swap.rows, 0);
@@ -381,7 +381,7 @@ TEST(ModelRunner, a_swap_before_the_first_step_starts_at_the_operating_point) {
   EXPECT_EQ(run.runner.output()[0], 4.25);
 }
 
-TEST(ModelRunner, tells_models_with_other_signals_or_period) {
+TEST(ModelRunner, TellsModelsWithOtherSignalsOrPeriod) {
   const EquipmentModel model = example_model();
   EquipmentModel other = example_model();
   other.inputs[0].high = 9;
@@ -401,7 +401,7 @@ TEST(ModelRunner, tells_models_with_other_signals_or_period) {
   EXPECT_FALSE(same_signals(model, other));
 }
 
-TEST(ModelRunner, runs_a_static_model) {
+TEST(ModelRunner, RunsAStaticModel) {
   EquipmentModel model = example_model();
   model.dynamics.A.resize(0, 0);
   model.dynamics.B.resize(0, 2);

@@ -56,7 +56,7 @@ class Subscriber : public testing::Test {
   static inline const storage::EquipmentName mea{"CBERS4", "MEA"};
 };
 
-TEST_F(Subscriber, that_starts_late_gets_the_champion_and_then_each_new_version) {
+TEST_F(Subscriber, ThatStartsLateGetsTheChampionAndThenEachNewVersion) {
   versions_->write(example_version(1));
   versions_->write(example_version(2));
   subscribe();
@@ -68,7 +68,7 @@ TEST_F(Subscriber, that_starts_late_gets_the_champion_and_then_each_new_version)
   EXPECT_EQ(subscriber_->newest(mea), nullptr);
 }
 
-TEST_F(Subscriber, learns_when_a_version_was_sent) {
+TEST_F(Subscriber, LearnsWhenAVersionWasSent) {
   const storage::Time before = utc_now();
   versions_->write(example_version(1));
   const storage::Time after = utc_now();
@@ -79,7 +79,7 @@ TEST_F(Subscriber, learns_when_a_version_was_sent) {
   EXPECT_FALSE(arrivals_[0].from_cache);
 }
 
-TEST_F(Subscriber, does_not_swap_when_a_restarted_service_publishes_the_champion_again) {
+TEST_F(Subscriber, DoesNotSwapWhenARestartedServicePublishesTheChampionAgain) {
   versions_->write(example_version(2));
   ASSERT_TRUE(heard(1, 0));
   versions_.reset();
@@ -96,7 +96,7 @@ TEST_F(Subscriber, does_not_swap_when_a_restarted_service_publishes_the_champion
   EXPECT_THAT(refused_, testing::IsEmpty());
 }
 
-TEST_F(Subscriber, refuses_an_older_version_unless_it_is_a_rollback) {
+TEST_F(Subscriber, RefusesAnOlderVersionUnlessItIsARollback) {
   versions_->write(example_version(5));
   ASSERT_TRUE(heard(1, 0));
   versions_->write(example_version(3));
@@ -110,7 +110,7 @@ TEST_F(Subscriber, refuses_an_older_version_unless_it_is_a_rollback) {
   EXPECT_EQ(subscriber_->newest(bdr)->version.number, 3);
 }
 
-TEST_F(Subscriber, keeps_the_good_version_when_a_damaged_one_comes_and_says_so) {
+TEST_F(Subscriber, KeepsTheGoodVersionWhenADamagedOneComesAndSaysSo) {
   versions_->write(example_version(1));
   ASSERT_TRUE(heard(1, 0));
   ModelVersion damaged = example_version(2);
@@ -125,7 +125,7 @@ TEST_F(Subscriber, keeps_the_good_version_when_a_damaged_one_comes_and_says_so) 
   EXPECT_THAT(answer.reason, testing::HasSubstr("digest"));
 }
 
-TEST_F(Subscriber, refuses_with_an_answer_what_the_middleware_could_hardly_decode) {
+TEST_F(Subscriber, RefusesWithAnAnswerWhatTheMiddlewareCouldHardlyDecode) {
   ModelVersion torn = example_version(2);
   torn.model.dynamics.B.conservativeResize(2, 1);
   versions_->write(torn);
@@ -134,7 +134,7 @@ TEST_F(Subscriber, refuses_with_an_answer_what_the_middleware_could_hardly_decod
   EXPECT_THAT(next_acknowledgement().reason, testing::HasSubstr("B has 2 numbers; 2 x 2"));
 }
 
-TEST_F(Subscriber, tells_two_services_that_publish_different_models_of_one_number) {
+TEST_F(Subscriber, TellsTwoServicesThatPublishDifferentModelsOfOneNumber) {
   versions_->write(example_version(1));
   ASSERT_TRUE(heard(1, 0));
   ModelVersion rival = example_version(1);
@@ -146,7 +146,7 @@ TEST_F(Subscriber, tells_two_services_that_publish_different_models_of_one_numbe
   EXPECT_THAT(refused_[0].reason, testing::HasSubstr("two services"));
 }
 
-TEST_F(Subscriber, passes_over_other_spacecraft_and_equipment) {
+TEST_F(Subscriber, PassesOverOtherSpacecraftAndEquipment) {
   ModelVersion other = example_version(1);
   other.model.spacecraft = "CBERS4A";
   versions_->write(other);
@@ -159,7 +159,7 @@ TEST_F(Subscriber, passes_over_other_spacecraft_and_equipment) {
   EXPECT_THAT(refused_, testing::IsEmpty());
 }
 
-TEST_F(Subscriber, hears_of_every_spacecraft_and_equipment_that_its_patterns_name) {
+TEST_F(Subscriber, HearsOfEverySpacecraftAndEquipmentThatItsPatternsName) {
   subscribe({"trainer", "CBERS*", {"B?R", "MEA"}});
   std::int64_t number = 0;
   for (const auto& [spacecraft, equipment] : std::vector<std::pair<std::string, std::string>>{
@@ -185,7 +185,7 @@ RunningModel running(std::int64_t version, storage::Time since) {
   return model;
 }
 
-TEST_F(Subscriber, acknowledges_what_runs_also_to_a_service_that_starts_later) {
+TEST_F(Subscriber, AcknowledgesWhatRunsAlsoToAServiceThatStartsLater) {
   versions_->write(example_version(4));
   ASSERT_TRUE(heard(1, 0));
   subscriber_->acknowledge(bdr, running(4, 123));
@@ -203,7 +203,7 @@ TEST_F(Subscriber, acknowledges_what_runs_also_to_a_service_that_starts_later) {
   EXPECT_EQ(late.take(10, [](ModelAcknowledgement&&) {}), 0U);
 }
 
-TEST_F(Subscriber, tells_a_refusal_beside_what_runs_until_a_good_version_comes) {
+TEST_F(Subscriber, TellsARefusalBesideWhatRunsUntilAGoodVersionComes) {
   versions_->write(example_version(4));
   ASSERT_TRUE(heard(1, 0));
   subscriber_->acknowledge(bdr, running(4, 123));
@@ -239,7 +239,7 @@ class SubscriberWithCache : public Subscriber {
       std::filesystem::temp_directory_path() / ("subscriber-test-" + std::to_string(getpid()));
 };
 
-TEST_F(SubscriberWithCache, hands_out_what_was_kept_at_once_and_what_is_published_succeeds_it) {
+TEST_F(SubscriberWithCache, HandsOutWhatWasKeptAtOnceAndWhatIsPublishedSucceedsIt) {
   keep(4);
   subscribe(cache());
   EXPECT_EQ(subscriber_->poll(listener_), 1U) << "no service was ever heard";
@@ -253,13 +253,13 @@ TEST_F(SubscriberWithCache, hands_out_what_was_kept_at_once_and_what_is_publishe
   EXPECT_EQ(kept(), 5);
 }
 
-TEST_F(SubscriberWithCache, hands_out_nothing_that_it_did_not_subscribe_to) {
+TEST_F(SubscriberWithCache, HandsOutNothingThatItDidNotSubscribeTo) {
   keep(4);
   subscribe({"trainer", "CBERS4", {"MEA"}}, cache());
   EXPECT_EQ(subscriber_->poll(listener_), 0U);
 }
 
-TEST_F(SubscriberWithCache, says_when_the_service_confirms_what_was_kept) {
+TEST_F(SubscriberWithCache, SaysWhenTheServiceConfirmsWhatWasKept) {
   keep(4);
   subscribe(cache());
   versions_->write(example_version(4));
@@ -271,7 +271,7 @@ TEST_F(SubscriberWithCache, says_when_the_service_confirms_what_was_kept) {
   EXPECT_FALSE(subscriber_->newest(bdr)->arrival.from_cache);
 }
 
-TEST_F(SubscriberWithCache, refuses_an_older_version_than_was_kept_and_names_the_file) {
+TEST_F(SubscriberWithCache, RefusesAnOlderVersionThanWasKeptAndNamesTheFile) {
   keep(6);
   subscribe(cache());
   versions_->write(example_version(4));
@@ -286,7 +286,7 @@ TEST_F(SubscriberWithCache, refuses_an_older_version_than_was_kept_and_names_the
   EXPECT_EQ(kept(), 4);
 }
 
-TEST_F(SubscriberWithCache, keeps_a_version_only_after_it_was_handed_over) {
+TEST_F(SubscriberWithCache, KeepsAVersionOnlyAfterItWasHandedOver) {
   subscribe(cache());
   std::int64_t kept_at_adoption = -1;
   ModelSubscriber::Listener listener = listener_;

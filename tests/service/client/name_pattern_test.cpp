@@ -13,7 +13,7 @@ struct Case {
   bool matches;
 };
 
-TEST(NamePattern, takes_star_for_any_text_and_question_mark_for_one_character) {
+TEST(NamePattern, TakesStarForAnyTextAndQuestionMarkForOneCharacter) {
   for (const Case& one : {Case{"BDR", "BDR", true},
                           {"BDR", "BDR2", false},
                           {"BDR2", "BDR", false},
@@ -42,7 +42,7 @@ TEST(NamePattern, takes_star_for_any_text_and_question_mark_for_one_character) {
   }
 }
 
-TEST(NamePattern, takes_no_more_than_the_product_of_the_lengths) {
+TEST(NamePattern, TakesNoMoreThanTheProductOfTheLengths) {
   std::string pattern;
   for (int i = 0; i < 100; ++i) pattern += "*a";
   EXPECT_FALSE(matches(pattern + "b", std::string(2000, 'a')));

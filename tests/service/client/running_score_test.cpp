@@ -11,7 +11,7 @@ namespace {
 using identification::Matrix;
 using identification::Vector;
 
-TEST(RunningScore, is_the_score_of_the_identification) {
+TEST(RunningScore, IsTheScoreOfTheIdentification) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   Matrix y(500, 2);
@@ -33,7 +33,7 @@ TEST(RunningScore, is_the_score_of_the_identification) {
   }
 }
 
-TEST(RunningScore, does_not_exist_before_the_first_sample_and_leaves_out_what_is_missing) {
+TEST(RunningScore, DoesNotExistBeforeTheFirstSampleAndLeavesOutWhatIsMissing) {
   RunningScore running(1);
   EXPECT_TRUE(std::isnan(running.score().mrse()));
   running.add(Vector::Constant(1, NAN), Vector::Constant(1, 3));
@@ -43,7 +43,7 @@ TEST(RunningScore, does_not_exist_before_the_first_sample_and_leaves_out_what_is
   EXPECT_TRUE(std::isnan(running.score().fit())) << "one value has no variance";
 }
 
-TEST(RunningScore, of_a_zero_output_that_is_met_is_zero) {
+TEST(RunningScore, OfAZeroOutputThatIsMetIsZero) {
   RunningScore running(1);
   running.add(Vector::Zero(1), Vector::Zero(1));
   EXPECT_EQ(running.score().mrse(), 0);

@@ -48,7 +48,7 @@ class SimulatorProgram : public testing::Test {
   dds::Reader<ModelAcknowledgement> acknowledgements_{participant_};
 };
 
-TEST_F(SimulatorProgram, started_late_runs_the_champion_and_swaps_while_it_runs) {
+TEST_F(SimulatorProgram, StartedLateRunsTheChampionAndSwapsWhileItRuns) {
   versions_.write(example_version(1));
   for (const auto& descriptor : example_descriptors()) descriptors_.write(descriptor);
   ExamplePlant plant;
@@ -86,14 +86,14 @@ TEST_F(SimulatorProgram, started_late_runs_the_champion_and_swaps_while_it_runs)
   EXPECT_EQ(said.back(), std::make_pair(std::int64_t{3}, true));
 }
 
-TEST_F(SimulatorProgram, waits_without_a_service_and_stops_cleanly) {
+TEST_F(SimulatorProgram, WaitsWithoutAServiceAndStopsCleanly) {
   Child simulator(command());
   ASSERT_TRUE(eventually([&] { return versions_.matched_readers() == 1; }));
   simulator.signal(SIGINT);
   EXPECT_EQ(simulator.wait(), 0);
 }
 
-TEST(SimulatorOptions, that_are_wrong_end_with_status_2) {
+TEST(SimulatorOptions, ThatAreWrongEndWithStatus2) {
   for (const std::string options : {"", "--spacecraft", "--spacecraft A --domain 999",
                                     "--spacecraft A --report 0", "--spacecraft A --unknown"}) {
     Child simulator({"/bin/sh", "-c", std::string(SIMULATOR) + " " + options + " 2>/dev/null"});

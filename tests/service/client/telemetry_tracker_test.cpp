@@ -37,7 +37,7 @@ class Tracker : public testing::Test {
   std::vector<Tick> ticks_;
 };
 
-TEST_F(Tracker, gives_a_tick_out_once_a_later_frame_has_come) {
+TEST_F(Tracker, GivesATickOutOnceALaterFrameHasCome) {
   add(10 * second, 1, 2, 3);
   EXPECT_THAT(ticks_, testing::IsEmpty());
   add(11 * second, 4, 5, 6);
@@ -47,7 +47,7 @@ TEST_F(Tracker, gives_a_tick_out_once_a_later_frame_has_come) {
   EXPECT_EQ(ticks_[0].y(0), 3);
 }
 
-TEST_F(Tracker, gathers_a_tick_from_several_frames_of_its_time) {
+TEST_F(Tracker, GathersATickFromSeveralFramesOfItsTime) {
   add(frame_at(10 * second, {{1, Quality::good, 1}}));
   add(frame_at(10 * second, {{2, Quality::good, 2}, {3, Quality::good, 3}}));
   add(frame_at(10 * second + 1, {}));
@@ -55,13 +55,13 @@ TEST_F(Tracker, gathers_a_tick_from_several_frames_of_its_time) {
   EXPECT_EQ(ticks_[0].u(1), 2);
 }
 
-TEST_F(Tracker, holds_a_value_for_the_hold_and_no_longer) {
+TEST_F(Tracker, HoldsAValueForTheHoldAndNoLonger) {
   add(10 * second, 1, 2, 3);
   add(frame_at(20 * second, {}));
   EXPECT_EQ(numbers(), (std::vector<std::int64_t>{10, 11, 12}));
 }
 
-TEST_F(Tracker, a_bad_input_ends_the_hold_of_the_good_one_before_it) {
+TEST_F(Tracker, ABadInputEndsTheHoldOfTheGoodOneBeforeIt) {
   add(10 * second, 1, 2, 3);
   add(11 * second, 1, 2, 3, Quality::suspect);
   add(12 * second, std::numeric_limits<double>::quiet_NaN(), 2, 3);
@@ -70,7 +70,7 @@ TEST_F(Tracker, a_bad_input_ends_the_hold_of_the_good_one_before_it) {
   EXPECT_EQ(numbers(), (std::vector<std::int64_t>{10, 13}));
 }
 
-TEST_F(Tracker, steps_where_the_quality_is_usable) {
+TEST_F(Tracker, StepsWhereTheQualityIsUsable) {
   std::vector<std::int64_t> usable;
   std::int64_t tick = 10;
   for (const Quality quality : storage::qualities) {
@@ -82,14 +82,14 @@ TEST_F(Tracker, steps_where_the_quality_is_usable) {
   EXPECT_EQ(numbers(), usable);
 }
 
-TEST_F(Tracker, a_missing_output_is_not_a_number_and_holds_nothing_up) {
+TEST_F(Tracker, AMissingOutputIsNotANumberAndHoldsNothingUp) {
   add(frame_at(10 * second, {{1, Quality::good, 1}, {2, Quality::good, 2}}));
   add(frame_at(11 * second, {}));
   ASSERT_EQ(ticks_.size(), 1U);
   EXPECT_TRUE(std::isnan(ticks_[0].y(0)));
 }
 
-TEST_F(Tracker, a_frame_out_of_order_still_counts_for_ticks_not_given_out) {
+TEST_F(Tracker, AFrameOutOfOrderStillCountsForTicksNotGivenOut) {
   add(10 * second, 1, 2, 3);
   add(11 * second + 2, 7, 8, 9);
   add(11 * second, 4, 5, 6);
@@ -99,7 +99,7 @@ TEST_F(Tracker, a_frame_out_of_order_still_counts_for_ticks_not_given_out) {
   EXPECT_EQ(ticks_[2].u(0), 7) << "the latest sample before tick 12";
 }
 
-TEST_F(Tracker, ignores_other_spacecraft_and_simulated_telemetry) {
+TEST_F(Tracker, IgnoresOtherSpacecraftAndSimulatedTelemetry) {
   auto other = frame_at(10 * second, {{1, Quality::good, 1}, {2, Quality::good, 2}});
   other.spacecraft = "CBERS4A";
   add(other);
@@ -110,14 +110,14 @@ TEST_F(Tracker, ignores_other_spacecraft_and_simulated_telemetry) {
   EXPECT_THAT(ticks_, testing::IsEmpty());
 }
 
-TEST_F(Tracker, a_gap_of_years_costs_nothing_and_is_left_out) {
+TEST_F(Tracker, AGapOfYearsCostsNothingAndIsLeftOut) {
   add(10 * second, 1, 2, 3);
   add(1'000'000'000 * second, 1, 2, 3);
   add(1'000'000'001 * second, 1, 2, 3);
   EXPECT_EQ(numbers(), (std::vector<std::int64_t>{10, 11, 12, 1'000'000'000}));
 }
 
-TEST_F(Tracker, goes_on_after_one_frame_from_the_far_future) {
+TEST_F(Tracker, GoesOnAfterOneFrameFromTheFarFuture) {
   add(10 * second, 1, 2, 3);
   add(500'000 * second, 1, 2, 3);
   ticks_.clear();
@@ -128,7 +128,7 @@ TEST_F(Tracker, goes_on_after_one_frame_from_the_far_future) {
   EXPECT_GE(tracker_.counters().clock_jumps, 1U);
 }
 
-TEST_F(Tracker, a_few_old_frames_among_live_ones_are_late_and_change_nothing) {
+TEST_F(Tracker, AFewOldFramesAmongLiveOnesAreLateAndChangeNothing) {
   for (int i = 1000; i < 1100; ++i) {
     add(i * second, i, 2, 3);
     add((i - 900) * second, -1, -1, -1);
@@ -139,7 +139,7 @@ TEST_F(Tracker, a_few_old_frames_among_live_ones_are_late_and_change_nothing) {
   for (const Tick& tick : ticks_) EXPECT_EQ(tick.u(0), static_cast<double>(tick.number));
 }
 
-TEST_F(Tracker, survives_times_at_the_ends_of_64_bits) {
+TEST_F(Tracker, SurvivesTimesAtTheEndsOf64Bits) {
   add(std::numeric_limits<storage::Time>::max(), 1, 2, 3);
   add(std::numeric_limits<storage::Time>::min(), 1, 2, 3);
   add(10 * second, 1, 2, 3);
@@ -148,7 +148,7 @@ TEST_F(Tracker, survives_times_at_the_ends_of_64_bits) {
   EXPECT_EQ(tracker_.counters().clock_jumps, 2U);
 }
 
-TEST(TrackerNames, follow_the_descriptors) {
+TEST(TrackerNames, FollowTheDescriptors) {
   TelemetryTracker tracker(example_model());
   EXPECT_THAT(tracker.undescribed(), testing::ElementsAre("I_BDRIN1", "I_BDRIN2", "I_BDROUT"));
   describe_all(tracker);
@@ -162,7 +162,7 @@ TEST(TrackerNames, follow_the_descriptors) {
   EXPECT_EQ(ticks[0].u(0), 5);
 }
 
-TEST(TrackerGrid, is_that_of_the_identification) {
+TEST(TrackerGrid, IsThatOfTheIdentification) {
   std::mt19937_64 random(7);
   for (int trial = 0; trial < 50; ++trial) {
     EquipmentModel model = example_model();
@@ -230,7 +230,7 @@ class DerivedTracker : public testing::Test {
   TelemetryTracker tracker_{derived_model()};
 };
 
-TEST_F(DerivedTracker, computes_an_input_from_its_parameters) {
+TEST_F(DerivedTracker, ComputesAnInputFromItsParameters) {
   const auto ticks =
       ticks_of({frame_at(10 * second,
                          {{1, Quality::good, 5}, {9, Quality::good, 28}, {3, Quality::good, 7}}),
@@ -240,7 +240,7 @@ TEST_F(DerivedTracker, computes_an_input_from_its_parameters) {
   EXPECT_EQ(ticks[0].y(0), 7);
 }
 
-TEST_F(DerivedTracker, gives_no_tick_out_at_which_an_operand_is_missing_or_the_value_not_finite) {
+TEST_F(DerivedTracker, GivesNoTickOutAtWhichAnOperandIsMissingOrTheValueNotFinite) {
   const auto good = Quality::good;
   const auto ticks = ticks_of(
       {frame_at(10 * second, {{1, good, 5}}), frame_at(11 * second, {{1, good, 4}, {9, good, 28}}),
@@ -251,7 +251,7 @@ TEST_F(DerivedTracker, gives_no_tick_out_at_which_an_operand_is_missing_or_the_v
   EXPECT_EQ(ticks[0].u(1), 28 * 6 / 2.0);
 }
 
-TEST(UndescribedTracker, names_the_parameters_of_an_expression) {
+TEST(UndescribedTracker, NamesTheParametersOfAnExpression) {
   const TelemetryTracker tracker(derived_model());
   EXPECT_THAT(tracker.undescribed(), testing::ElementsAre("I_BDRIN1", "V_BUS", "I_BDROUT"));
 }

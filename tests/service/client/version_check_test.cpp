@@ -32,7 +32,7 @@ identification::TrackingGain& gain(ModelVersion& version) {
 
 class DamagedVersion : public testing::TestWithParam<Case> {};
 
-TEST_P(DamagedVersion, is_told_with_the_reason) {
+TEST_P(DamagedVersion, IsToldWithTheReason) {
   ModelVersion version = example_version(1);
   GetParam().change(version);
   if (GetParam().signed_again) version.digest = model_digest(version.model);
@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
              true, "tracking gain"},
         Case{"no period", [](auto& v) { v.model.dynamics.period_s = 0; }, true, "fit together"}));
 
-TEST(Succession, follows_the_number_and_lets_a_rollback_go_back) {
+TEST(Succession, FollowsTheNumberAndLetsARollbackGoBack) {
   const ModelVersion running = example_version(5);
   EXPECT_EQ(succession(example_version(6), running), Succession::newer);
   EXPECT_EQ(succession(example_version(5), running), Succession::same);

@@ -62,7 +62,7 @@ class Desk : public testing::Test {
   }
 };
 
-TEST_F(Desk, a_command_arrives_as_it_was_sent_and_gets_its_outcome) {
+TEST_F(Desk, ACommandArrivesAsItWasSentAndGetsItsOutcome) {
   run([](const Command&) { return CommandOutcome{true, "SAT/PLANT keeps version 3"}; });
   const CommandReply reply = ask(request(0xfffffffffffffff0));
   EXPECT_EQ(reply.requester, "console");
@@ -72,7 +72,7 @@ TEST_F(Desk, a_command_arrives_as_it_was_sent_and_gets_its_outcome) {
   EXPECT_THAT(executed_, testing::Each(request(0xfffffffffffffff0).command));
 }
 
-TEST_F(Desk, a_command_to_another_service_is_left_alone) {
+TEST_F(Desk, ACommandToAnotherServiceIsLeftAlone) {
   run([](const Command&) { return CommandOutcome{true, "done"}; });
   commands_.write(request(1, "second"));
   EXPECT_TRUE(ask(request(2, "first")).outcome.ok);
@@ -81,7 +81,7 @@ TEST_F(Desk, a_command_to_another_service_is_left_alone) {
   for (const Command& command : executed_) EXPECT_NE(command.request, 1U);
 }
 
-TEST_F(Desk, a_failure_of_the_database_is_the_answer_and_the_next_command_is_heard) {
+TEST_F(Desk, AFailureOfTheDatabaseIsTheAnswerAndTheNextCommandIsHeard) {
   run([](const Command& command) -> std::optional<CommandOutcome> {
     if (command.request == 1) throw storage::Error(storage::Error::Kind::full, "no room");
     return CommandOutcome{true, "done"};
@@ -92,7 +92,7 @@ TEST_F(Desk, a_failure_of_the_database_is_the_answer_and_the_next_command_is_hea
   EXPECT_TRUE(ask(request(2)).outcome.ok);
 }
 
-TEST_F(Desk, what_a_stopping_service_cannot_execute_gets_no_answer) {
+TEST_F(Desk, WhatAStoppingServiceCannotExecuteGetsNoAnswer) {
   run([](const Command& command) -> std::optional<CommandOutcome> {
     if (command.request == 1) return std::nullopt;
     return CommandOutcome{true, "done"};

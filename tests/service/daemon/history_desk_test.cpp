@@ -62,7 +62,7 @@ class HistoryDesk : public testing::Test {
   }
 };
 
-TEST_F(HistoryDesk, gives_every_row_through_as_many_pages_as_it_takes) {
+TEST_F(HistoryDesk, GivesEveryRowThroughAsManyPagesAsItTakes) {
   add_attempts(100, "{\"why\":\"" + std::string(10'000, 'x') + "\"}");
   run();
   RemoteHistory remote(console_, "first");
@@ -82,7 +82,7 @@ TEST_F(HistoryDesk, gives_every_row_through_as_many_pages_as_it_takes) {
   EXPECT_EQ(last.back().id, 100);
 }
 
-TEST_F(HistoryDesk, says_what_is_wrong_with_a_question_and_hears_the_next) {
+TEST_F(HistoryDesk, SaysWhatIsWrongWithAQuestionAndHearsTheNext) {
   add_attempts(1);
   run();
   RemoteHistory remote(console_);
@@ -96,7 +96,7 @@ TEST_F(HistoryDesk, says_what_is_wrong_with_a_question_and_hears_the_next) {
   EXPECT_EQ(failure(remote.page(about("attempts"), 10s)), "answered");
 }
 
-TEST_F(HistoryDesk, leaves_questions_to_another_service_alone) {
+TEST_F(HistoryDesk, LeavesQuestionsToAnotherServiceAlone) {
   add_attempts(1);
   run();
   RemoteHistory other(console_, "second");
@@ -104,7 +104,7 @@ TEST_F(HistoryDesk, leaves_questions_to_another_service_alone) {
             "no service second answered within 0.3 s");
 }
 
-TEST_F(HistoryDesk, without_a_service_the_console_is_told_in_time) {
+TEST_F(HistoryDesk, WithoutAServiceTheConsoleIsToldInTime) {
   RemoteHistory remote(console_);
   EXPECT_THAT(failure(remote.page(about("attempts"), 200ms)), HasSubstr("within 0.2 s"));
 }

@@ -41,7 +41,7 @@ class PublisherTest : public DaemonTest {
   }
 };
 
-TEST_F(PublisherTest, a_champion_is_published_once_with_who_decided) {
+TEST_F(PublisherTest, AChampionIsPublishedOnceWithWhoDecided) {
   dds::Reader<ModelVersion> reader(simulator_);
   version(approve);
   EXPECT_EQ(publisher_.publish_champions(registry_), 1U);
@@ -56,7 +56,7 @@ TEST_F(PublisherTest, a_champion_is_published_once_with_who_decided) {
   EXPECT_EQ(second.decided, 5);
 }
 
-TEST_F(PublisherTest, an_older_version_on_purpose_says_so) {
+TEST_F(PublisherTest, AnOlderVersionOnPurposeSaysSo) {
   dds::Reader<ModelVersion> reader(simulator_);
   const auto published = [&] {
     publisher_.publish_champion(registry_, bdr_);
@@ -75,7 +75,7 @@ TEST_F(PublisherTest, an_older_version_on_purpose_says_so) {
   EXPECT_TRUE(approved.rollback) << "a simulator that missed the rollback runs version 3";
 }
 
-TEST_F(PublisherTest, after_the_only_champion_was_withdrawn_a_late_simulator_gets_none) {
+TEST_F(PublisherTest, AfterTheOnlyChampionWasWithdrawnALateSimulatorGetsNone) {
   dds::Reader<ModelVersion> early(simulator_);
   version(approve);
   publisher_.publish_champion(registry_, bdr_);
@@ -90,7 +90,7 @@ TEST_F(PublisherTest, after_the_only_champion_was_withdrawn_a_late_simulator_get
   EXPECT_EQ(next(early), 2);
 }
 
-TEST_F(PublisherTest, a_damaged_version_is_not_published) {
+TEST_F(PublisherTest, ADamagedVersionIsNotPublished) {
   storage::NewAttempt attempt;
   attempt.spacecraft = bdr_.spacecraft;
   attempt.equipment = bdr_.equipment;
@@ -100,7 +100,7 @@ TEST_F(PublisherTest, a_damaged_version_is_not_published) {
   EXPECT_EQ(publisher_.publish_champions(registry_), 0U);
 }
 
-TEST_F(PublisherTest, of_decisions_on_two_threads_the_last_one_is_published_last) {
+TEST_F(PublisherTest, OfDecisionsOnTwoThreadsTheLastOneIsPublishedLast) {
   dds::Reader<ModelVersion> reader(simulator_);
   for (int i = 0; i < 3; ++i) version(approve);
   std::mutex one_writer;

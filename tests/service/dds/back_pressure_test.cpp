@@ -35,7 +35,7 @@ std::uint64_t take_in_order(dds::Participant& participant, dds::Reader<Telemetry
 
 class BackPressure : public testing::TestWithParam<int> {};
 
-TEST_P(BackPressure, a_tiny_reader_gets_every_frame_of_a_fast_process_that_ends) {
+TEST_P(BackPressure, ATinyReaderGetsEveryFrameOfAFastProcessThatEnds) {
   constexpr std::uint64_t count = 50'000;
   const dds::Endpoint endpoint = own_endpoint();
   dds::Participant participant(endpoint);
@@ -48,7 +48,7 @@ TEST_P(BackPressure, a_tiny_reader_gets_every_frame_of_a_fast_process_that_ends)
 
 INSTANTIATE_TEST_SUITE_P(with_and_without_history, BackPressure, testing::Values(0, 1, 1000));
 
-TEST(CleanStop, hands_out_all_that_was_acknowledged_and_more_stays_with_the_sender) {
+TEST(CleanStop, HandsOutAllThatWasAcknowledgedAndMoreStaysWithTheSender) {
   const dds::Endpoint endpoint = own_endpoint();
   dds::Participant participant(endpoint);
   dds::Reader<TelemetryFrame> reader(participant, {.max_samples = 16});
@@ -61,7 +61,7 @@ TEST(CleanStop, hands_out_all_that_was_acknowledged_and_more_stays_with_the_send
   EXPECT_EQ(reader.take(10, [](TelemetryFrame&&) {}), 0U);
 }
 
-TEST(CleanStop, a_full_reader_of_several_busy_processes_goes_at_once) {
+TEST(CleanStop, AFullReaderOfSeveralBusyProcessesGoesAtOnce) {
   const dds::Endpoint endpoint = own_endpoint();
   dds::Participant participant(endpoint);
   std::optional<dds::Reader<TelemetryFrame>> reader(std::in_place, participant,
@@ -77,7 +77,7 @@ TEST(CleanStop, a_full_reader_of_several_busy_processes_goes_at_once) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 1s);
 }
 
-TEST(CleanStop, under_a_sender_at_full_speed_that_keeps_history_leaves_nothing_out) {
+TEST(CleanStop, UnderASenderAtFullSpeedThatKeepsHistoryLeavesNothingOut) {
   constexpr std::uint64_t count = 20'000;
   const dds::Endpoint endpoint = own_endpoint();
   dds::Participant participant(endpoint);

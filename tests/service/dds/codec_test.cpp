@@ -59,7 +59,7 @@ void expect(const M& good, const Spoil<typename Codec<M>::Wire>& spoil) {
 
 using FrameSpoil = Spoil<satcs_TelemetryFrame>;
 class FrameCodec : public testing::TestWithParam<FrameSpoil> {};
-TEST_P(FrameCodec, takes_what_keeps_the_contract_and_names_what_breaks_it) {
+TEST_P(FrameCodec, TakesWhatKeepsTheContractAndNamesWhatBreaksIt) {
   expect(make_frame(1), GetParam());
 }
 
@@ -91,12 +91,12 @@ INSTANTIATE_TEST_SUITE_P(
         FrameSpoil{"values short", [](auto& f) { f.value._length = 2; }, "3 parameters, 2 values"},
         FrameSpoil{"qualities missing", [](auto& f) { f.quality._length = 0; }, "0 qualities"}));
 
-TEST(FrameCodec, refuses_a_frame_above_the_bound_and_takes_one_at_it) {
+TEST(FrameCodec, RefusesAFrameAboveTheBoundAndTakesOneAtIt) {
   expect(make_frame(1, 4), FrameSpoil{"", [](auto&) {}, ""});
   expect(make_frame(1, 5), FrameSpoil{"", [](auto&) {}, "5 samples and at most 4"});
 }
 
-TEST(FrameCodec, takes_each_quality_that_a_frame_may_bring_and_no_other_number) {
+TEST(FrameCodec, TakesEachQualityThatAFrameMayBringAndNoOtherNumber) {
   for (int number = 0; number < 256; ++number) {
     TelemetryFrame sent = make_frame(1), received;
     sent.samples[1].quality = static_cast<storage::Quality>(number);
@@ -113,7 +113,7 @@ TEST(FrameCodec, takes_each_quality_that_a_frame_may_bring_and_no_other_number) 
   }
 }
 
-TEST(FrameCodec, takes_the_qualities_that_the_idl_names) {
+TEST(FrameCodec, TakesTheQualitiesThatTheIdlNames) {
   std::set<std::string> constants, expected;
   std::ifstream idl(SATCS_IDL);
   for (std::string line; std::getline(idl, line);)
@@ -131,7 +131,7 @@ TEST(FrameCodec, takes_the_qualities_that_the_idl_names) {
 
 using DescriptorSpoil = Spoil<satcs_ParameterDescriptor>;
 class DescriptorCodec : public testing::TestWithParam<DescriptorSpoil> {};
-TEST_P(DescriptorCodec, takes_what_keeps_the_contract_and_names_what_breaks_it) {
+TEST_P(DescriptorCodec, TakesWhatKeepsTheContractAndNamesWhatBreaksIt) {
   const ParameterDescriptor good{
       "CBERS4", 7, "V_BUS", "V", "bus voltage", storage::ParameterKind::analog, 0., 50.};
   expect(good, GetParam());
@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 using ModelSpoil = Spoil<reident_ModelVersion>;
 class ModelCodec : public testing::TestWithParam<ModelSpoil> {};
-TEST_P(ModelCodec, takes_what_keeps_the_contract_and_names_what_breaks_it) {
+TEST_P(ModelCodec, TakesWhatKeepsTheContractAndNamesWhatBreaksIt) {
   expect(example_version(1), GetParam());
 }
 
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
         ModelSpoil{"digest", [](auto& v) { v.digest = text(""); }, "digest is empty"}));
 
 class FullModelCodec : public testing::TestWithParam<ModelSpoil> {};
-TEST_P(FullModelCodec, takes_what_keeps_the_contract_and_names_what_breaks_it) {
+TEST_P(FullModelCodec, TakesWhatKeepsTheContractAndNamesWhatBreaksIt) {
   ModelVersion version = example_version(1);
   version.model = full_example_model();
   expect(version, GetParam());
@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "tracking_mrse_percent"},
         ModelSpoil{"rows", [](auto& v) { v.tracking_validation_rows = -1; }, "negative"}));
 
-TEST(ModelCodec, states_the_lowest_format_that_describes_the_version) {
+TEST(ModelCodec, StatesTheLowestFormatThatDescribesTheVersion) {
   Codec<ModelVersion>::Encoder encode;
   ModelVersion version = example_version(1);
   EXPECT_EQ(encode(version).format, 1U);
@@ -237,7 +237,7 @@ TEST(ModelCodec, states_the_lowest_format_that_describes_the_version) {
   EXPECT_EQ(encode(version).format, 2U);
 }
 
-TEST(ModelCodec, carries_every_field_to_the_last_bit) {
+TEST(ModelCodec, CarriesEveryFieldToTheLastBit) {
   const ModelVersion version = distinct_version();
   Codec<ModelVersion>::Encoder encode;
   ModelVersion back;
@@ -246,7 +246,7 @@ TEST(ModelCodec, carries_every_field_to_the_last_bit) {
   EXPECT_THAT(differing_fields(back, version), testing::IsEmpty());
 }
 
-TEST(ReportCodec, refuses_negative_orders_and_windows_that_end_before_they_begin) {
+TEST(ReportCodec, RefusesNegativeOrdersAndWindowsThatEndBeforeTheyBegin) {
   IdentificationReport report;
   report.spacecraft = "CBERS4";
   report.equipment = "BDR";
@@ -259,7 +259,7 @@ TEST(ReportCodec, refuses_negative_orders_and_windows_that_end_before_they_begin
   expect(report, S{"", [](auto& r) { r.outcome = null_text; }, "outcome is null"});
 }
 
-TEST(CommandCodec, refuses_what_cannot_be_answered_and_leaves_the_rest_to_the_answer) {
+TEST(CommandCodec, RefusesWhatCannotBeAnsweredAndLeavesTheRestToTheAnswer) {
   const CommandRequest good{{"console", 7, "hold", "SAT", "BDR", 0, "Ana", "training"}, "reident"};
   using S = Spoil<reident_Command>;
   expect(good, S{"", [](auto&) {}, ""});
@@ -276,7 +276,7 @@ TEST(CommandCodec, refuses_what_cannot_be_answered_and_leaves_the_rest_to_the_an
 
 using AcknowledgementSpoil = Spoil<reident_ModelAcknowledgement>;
 class AcknowledgementCodec : public testing::TestWithParam<AcknowledgementSpoil> {};
-TEST_P(AcknowledgementCodec, takes_what_keeps_the_contract_and_names_what_breaks_it) {
+TEST_P(AcknowledgementCodec, TakesWhatKeepsTheContractAndNamesWhatBreaksIt) {
   expect(ModelAcknowledgement{"trainer", "CBERS4", "BDR", 3, "ab", true, "", {}, "console", 7, "1"},
          GetParam());
 }

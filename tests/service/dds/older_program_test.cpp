@@ -32,14 +32,14 @@ class OlderProgram : public testing::Test {
   dds::Endpoint endpoint_ = own_endpoint();
 };
 
-TEST_F(OlderProgram, reads_a_version_that_has_fields_it_does_not_know) {
+TEST_F(OlderProgram, ReadsAVersionThatHasFieldsItDoesNotKnow) {
   dds::Participant participant(endpoint_);
   dds::Writer<ModelVersion> writer(participant);
   writer.write(example_version(3));
   EXPECT_EQ(said("read"), "CBERS4/BDR 3 " + example_version(3).digest + " I_BDRIN1 0.9 1\n");
 }
 
-TEST_F(OlderProgram, hears_which_version_a_newer_simulator_runs) {
+TEST_F(OlderProgram, HearsWhichVersionANewerSimulatorRuns) {
   dds::Participant participant(endpoint_);
   dds::Writer<ModelAcknowledgement> writer(participant);
   ModelAcknowledgement message{"trainer", "CBERS4", "BDR", 3, "ab", true, "", {}, "host", 7, "1.0"};
@@ -49,7 +49,7 @@ TEST_F(OlderProgram, hears_which_version_a_newer_simulator_runs) {
   EXPECT_EQ(said("hear"), "trainer CBERS4/BDR 3 1 2.5\n");
 }
 
-TEST_F(OlderProgram, that_runs_a_version_is_known_to_run_it) {
+TEST_F(OlderProgram, ThatRunsAVersionIsKnownToRunIt) {
   dds::Participant participant(endpoint_);
   dds::Reader<ModelAcknowledgement> reader(participant);
   const Child child(command("acknowledge"));
@@ -64,7 +64,7 @@ TEST_F(OlderProgram, that_runs_a_version_is_known_to_run_it) {
   EXPECT_EQ(messages[0].program_version, "");
 }
 
-TEST_F(OlderProgram, is_read_with_what_it_does_not_say_left_empty) {
+TEST_F(OlderProgram, IsReadWithWhatItDoesNotSayLeftEmpty) {
   dds::Participant participant(endpoint_);
   dds::Reader<ModelVersion> reader(participant);
   const Child child(command("write"));

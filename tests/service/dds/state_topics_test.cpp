@@ -13,7 +13,7 @@
 namespace reident::test::state_topics_test {
 namespace {
 
-TEST(StateTopics, a_late_reader_gets_the_last_version_of_each_equipment) {
+TEST(StateTopics, ALateReaderGetsTheLastVersionOfEachEquipment) {
   dds::Participant service(own_endpoint());
   dds::Participant simulator(own_endpoint());
   dds::Writer<ModelVersion> writer(service);
@@ -30,7 +30,7 @@ TEST(StateTopics, a_late_reader_gets_the_last_version_of_each_equipment) {
   EXPECT_THAT(numbers, testing::ElementsAre(testing::Pair("BDR", 2), testing::Pair("MEA", 5)));
 }
 
-TEST(StateTopics, the_end_of_the_service_disposes_of_no_model) {
+TEST(StateTopics, TheEndOfTheServiceDisposesOfNoModel) {
   dds::Participant simulator(own_endpoint());
   auto service = std::make_unique<dds::Participant>(own_endpoint());
   auto writer = std::make_unique<dds::Writer<ModelVersion>>(*service);
@@ -43,7 +43,7 @@ TEST(StateTopics, the_end_of_the_service_disposes_of_no_model) {
   EXPECT_EQ(take_all(reader, 1).size(), 1U);
 }
 
-TEST(StateTopics, every_message_arrives_as_it_was_sent) {
+TEST(StateTopics, EveryMessageArrivesAsItWasSent) {
   dds::Participant participant(own_endpoint());
   dds::Writer<IdentificationReport> reports(participant);
   dds::Writer<ModelAcknowledgement> acknowledgements(participant);
@@ -86,7 +86,7 @@ TEST(StateTopics, every_message_arrives_as_it_was_sent) {
   EXPECT_EQ(take_all(descriptor_reader, 1).at(0), descriptor);
 }
 
-TEST(StateTopics, a_malformed_message_is_counted_and_the_next_one_arrives) {
+TEST(StateTopics, AMalformedMessageIsCountedAndTheNextOneArrives) {
   dds::Participant participant(own_endpoint());
   dds::Reader<ModelVersion> reader(participant);
   dds::Writer<ModelVersion> writer(participant);
@@ -118,7 +118,7 @@ TEST(StateTopics, a_malformed_message_is_counted_and_the_next_one_arrives) {
   EXPECT_EQ(take_all(reader, 1).at(0).number, 3);
 }
 
-TEST(Processes, sixteen_take_part_in_one_domain_on_one_machine) {
+TEST(Processes, SixteenTakePartInOneDomainOnOneMachine) {
   const dds::Endpoint endpoint = own_endpoint();
   dds::Participant participant(endpoint);
   dds::Reader<storage::TelemetryFrame> reader(participant, {.max_samples = 1});
@@ -130,7 +130,7 @@ TEST(Processes, sixteen_take_part_in_one_domain_on_one_machine) {
   EXPECT_TRUE(eventually([&] { return reader.matched_writers() == 16; }, 30s));
 }
 
-TEST(Participants, of_one_process_share_a_domain_and_leave_it_one_by_one) {
+TEST(Participants, OfOneProcessShareADomainAndLeaveItOneByOne) {
   const dds::Endpoint endpoint = own_endpoint();
   auto first = std::make_unique<dds::Participant>(endpoint);
   dds::Participant second(endpoint);
@@ -144,7 +144,7 @@ TEST(Participants, of_one_process_share_a_domain_and_leave_it_one_by_one) {
   EXPECT_EQ(take_all(reader, 1).size(), 1U);
 }
 
-TEST(Participants, that_cannot_join_say_which_domain_and_what_to_do) {
+TEST(Participants, ThatCannotJoinSayWhichDomainAndWhatToDo) {
   try {
     const dds::Participant participant({.domain = 4'000'000});
     FAIL() << "it joined";
@@ -154,7 +154,7 @@ TEST(Participants, that_cannot_join_say_which_domain_and_what_to_do) {
   }
 }
 
-TEST(Participants, a_reader_with_an_impossible_bound_names_the_topic) {
+TEST(Participants, AReaderWithAnImpossibleBoundNamesTheTopic) {
   dds::Participant participant(own_endpoint());
   try {
     const dds::Reader<storage::TelemetryFrame> reader(participant, {.max_samples = -7});

@@ -10,7 +10,7 @@ namespace {
 
 using storage::TelemetryFrame;
 
-TEST(Telemetry, arrives_as_it_was_sent) {
+TEST(Telemetry, ArrivesAsItWasSent) {
   dds::Participant participant(own_endpoint());
   dds::Reader<TelemetryFrame> reader(participant);
   dds::Writer<TelemetryFrame> writer(participant);
@@ -33,7 +33,7 @@ TEST(Telemetry, arrives_as_it_was_sent) {
   EXPECT_TRUE(std::signbit(received[0].samples[2].value));
 }
 
-TEST(Telemetry, a_late_reader_gets_the_history_that_the_writer_keeps) {
+TEST(Telemetry, ALateReaderGetsTheHistoryThatTheWriterKeeps) {
   dds::Participant ground(own_endpoint());
   dds::Participant service(own_endpoint());
   dds::Writer<TelemetryFrame> writer(ground, {.history = 5});
@@ -42,7 +42,7 @@ TEST(Telemetry, a_late_reader_gets_the_history_that_the_writer_keeps) {
   EXPECT_THAT(sequences(take_all(reader, 5)), testing::ElementsAre(4, 5, 6, 7, 8));
 }
 
-TEST(Telemetry, a_writer_without_history_is_heard_beside_one_with_history) {
+TEST(Telemetry, AWriterWithoutHistoryIsHeardBesideOneWithHistory) {
   dds::Participant ground(own_endpoint());
   dds::Participant service(own_endpoint());
   dds::Writer<TelemetryFrame> keeps(ground, {.history = 3});
@@ -61,7 +61,7 @@ TEST(Telemetry, a_writer_without_history_is_heard_beside_one_with_history) {
   EXPECT_EQ(reader.take(100, [](TelemetryFrame&&) { FAIL() << "a frame came twice"; }), 0U);
 }
 
-TEST(Telemetry, a_wait_set_wakes_for_a_writer_without_history) {
+TEST(Telemetry, AWaitSetWakesForAWriterWithoutHistory) {
   dds::Participant ground(own_endpoint());
   dds::Participant service(own_endpoint());
   dds::Reader<TelemetryFrame> reader(service);
@@ -78,7 +78,7 @@ TEST(Telemetry, a_wait_set_wakes_for_a_writer_without_history) {
   EXPECT_EQ(taken, 1U);
 }
 
-TEST(Telemetry, a_wait_set_sleeps_again_after_each_writer_without_history) {
+TEST(Telemetry, AWaitSetSleepsAgainAfterEachWriterWithoutHistory) {
   dds::Participant ground(own_endpoint());
   dds::Participant service(own_endpoint());
   dds::Reader<TelemetryFrame> reader(service);
@@ -91,7 +91,7 @@ TEST(Telemetry, a_wait_set_sleeps_again_after_each_writer_without_history) {
   }
 }
 
-TEST(Telemetry, a_writer_without_history_is_heard_where_partitions_are_patterns) {
+TEST(Telemetry, AWriterWithoutHistoryIsHeardWherePartitionsArePatterns) {
   struct Case {
     const char* writer;
     const char* reader;
@@ -139,7 +139,7 @@ std::string logged_until_reliable_writer(dds::Reader<TelemetryFrame>& reader,
   return testing::internal::GetCapturedStderr();
 }
 
-TEST(Telemetry, best_effort_writers_are_warned_of_once) {
+TEST(Telemetry, BestEffortWritersAreWarnedOfOnce) {
   dds::Participant ground(own_endpoint());
   dds::Participant service(own_endpoint());
   const CarelessWriter early(ground);
@@ -150,7 +150,7 @@ TEST(Telemetry, best_effort_writers_are_warned_of_once) {
   EXPECT_THAT(log, testing::HasSubstr("make it RELIABLE topic=satcs/TelemetryFrame"));
 }
 
-TEST(Telemetry, a_best_effort_writer_of_another_partition_is_none_of_the_readers_business) {
+TEST(Telemetry, ABestEffortWriterOfAnotherPartitionIsNoneOfTheReadersBusiness) {
   dds::Endpoint training = own_endpoint();
   training.partition += "-training";
   dds::Participant ground(own_endpoint());
@@ -161,7 +161,7 @@ TEST(Telemetry, a_best_effort_writer_of_another_partition_is_none_of_the_readers
   EXPECT_EQ(logged_until_reliable_writer(reader, ground), "");
 }
 
-TEST(Telemetry, partitions_do_not_hear_each_other) {
+TEST(Telemetry, PartitionsDoNotHearEachOther) {
   dds::Endpoint training = own_endpoint();
   training.partition += "-training";
   dds::Participant ground(own_endpoint());
@@ -176,7 +176,7 @@ TEST(Telemetry, partitions_do_not_hear_each_other) {
   EXPECT_EQ(does_not.take(10, [](TelemetryFrame&&) {}), 0U);
 }
 
-TEST(Telemetry, a_full_reader_makes_the_writer_wait_and_loses_nothing) {
+TEST(Telemetry, AFullReaderMakesTheWriterWaitAndLosesNothing) {
   dds::Participant ground(own_endpoint());
   dds::Participant service(own_endpoint());
   dds::Reader<TelemetryFrame> reader(service, {.max_samples = 4});
@@ -190,7 +190,7 @@ TEST(Telemetry, a_full_reader_makes_the_writer_wait_and_loses_nothing) {
   EXPECT_EQ(received, count_to(2000));
 }
 
-TEST(Telemetry, a_writer_that_waits_for_room_stops_when_it_is_asked_to) {
+TEST(Telemetry, AWriterThatWaitsForRoomStopsWhenItIsAskedTo) {
   dds::Participant ground(own_endpoint());
   dds::Participant service(own_endpoint());
   dds::Reader<TelemetryFrame> reader(service, {.max_samples = 2});
@@ -201,7 +201,7 @@ TEST(Telemetry, a_writer_that_waits_for_room_stops_when_it_is_asked_to) {
   EXPECT_EQ(written, 2U);
 }
 
-TEST(Telemetry, a_reader_that_keeps_the_newest_makes_no_writer_wait) {
+TEST(Telemetry, AReaderThatKeepsTheNewestMakesNoWriterWait) {
   dds::Participant ground(own_endpoint());
   dds::Participant simulator(own_endpoint());
   dds::Reader<TelemetryFrame> reader(simulator, {.keep_last = 10});

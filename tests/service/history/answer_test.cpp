@@ -79,7 +79,7 @@ class Answers : public testing::Test {
   storage::Time end_ = 0;
 };
 
-TEST_F(Answers, pages_give_each_attempt_once_while_attempts_are_added) {
+TEST_F(Answers, PagesGiveEachAttemptOnceWhileAttemptsAreAdded) {
   add(25);
   int more = 3;
   const auto all = rows(about("attempts", 4), [&] {
@@ -88,14 +88,14 @@ TEST_F(Answers, pages_give_each_attempt_once_while_attempts_are_added) {
   EXPECT_EQ(ids(all), from_to(1, 31)) << "those added before the last page are on it";
 }
 
-TEST_F(Answers, newest_first_gives_what_was_there_when_the_first_page_was_asked_for) {
+TEST_F(Answers, NewestFirstGivesWhatWasThereWhenTheFirstPageWasAskedFor) {
   add(25);
   HistoryQuery query = about("attempts", 4);
   query.newest_first = true;
   EXPECT_EQ(ids(rows(query, [&] { add(1); })), from_to(25, 1));
 }
 
-TEST_F(Answers, the_last_page_has_no_cursor_also_where_it_is_full) {
+TEST_F(Answers, TheLastPageHasNoCursorAlsoWhereItIsFull) {
   add(8);
   HistoryQuery query = about("attempts", 4);
   query.cursor = page(query).next_cursor;
@@ -104,7 +104,7 @@ TEST_F(Answers, the_last_page_has_no_cursor_also_where_it_is_full) {
   EXPECT_EQ(last.next_cursor, "");
 }
 
-TEST_F(Answers, a_page_is_bounded_in_bytes_and_a_larger_row_is_a_page_alone) {
+TEST_F(Answers, APageIsBoundedInBytesAndALargerRowIsAPageAlone) {
   for (int i = 0; i < 6; ++i) registry_.record(attempt(2, 100'000));
   registry_.record(attempt(2, 1'000'000));
   registry_.record(attempt(2, 100));
@@ -118,7 +118,7 @@ TEST_F(Answers, a_page_is_bounded_in_bytes_and_a_larger_row_is_a_page_alone) {
   EXPECT_THAT(sizes, testing::ElementsAre(2, 2, 2, 1, 1));
 }
 
-TEST_F(Answers, filters_select_by_equipment_time_and_version) {
+TEST_F(Answers, FiltersSelectByEquipmentTimeAndVersion) {
   add(10);
   const auto version = [&](storage::Time end) {
     return registry_.record(attempt(end), {R"({"order":2})", "d"},
@@ -147,7 +147,7 @@ TEST_F(Answers, filters_select_by_equipment_time_and_version) {
   EXPECT_EQ(rows(query).size(), 1U);
 }
 
-TEST_F(Answers, the_champion_is_that_of_the_end_of_the_range) {
+TEST_F(Answers, TheChampionIsThatOfTheEndOfTheRange) {
   for (const storage::Time time : {100, 200})
     registry_.record(attempt(time), {"{}", "d"},
                      {storage::DecisionKind::approve, "gate", "because"});
@@ -165,7 +165,7 @@ TEST_F(Answers, the_champion_is_that_of_the_end_of_the_range) {
   EXPECT_EQ(champion({0, INT64_MAX}), 2);
 }
 
-TEST_F(Answers, equipment_goes_on_behind_the_name_that_the_page_ended_with) {
+TEST_F(Answers, EquipmentGoesOnBehindTheNameThatThePageEndedWith) {
   add(2);
   const auto all = rows(about("equipment", 1));
   ASSERT_EQ(all.size(), 2U);
@@ -174,7 +174,7 @@ TEST_F(Answers, equipment_goes_on_behind_the_name_that_the_page_ended_with) {
   EXPECT_TRUE(all[1]["hold"].is_null());
 }
 
-TEST_F(Answers, a_question_that_cannot_be_answered_gets_a_reason_and_a_remedy) {
+TEST_F(Answers, AQuestionThatCannotBeAnsweredGetsAReasonAndARemedy) {
   add(2);
   EXPECT_THAT(refusal(about("weather")),
               HasSubstr("there is no subject 'weather'; ask for one of equipment, attempts, "));
@@ -207,7 +207,7 @@ TEST_F(Answers, a_question_that_cannot_be_answered_gets_a_reason_and_a_remedy) {
   EXPECT_THAT(refusal(query), HasSubstr("ask for at most 100000"));
 }
 
-TEST_F(Answers, samples_come_in_order_of_time_each_once) {
+TEST_F(Answers, SamplesComeInOrderOfTimeEachOnce) {
   storage::Archive archive(database_);
   constexpr int count = 30'000;
   std::vector<storage::TelemetryFrame> frames;

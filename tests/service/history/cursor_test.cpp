@@ -12,7 +12,7 @@ HistoryQuery question() {
   return query;
 }
 
-TEST(Cursor, gives_back_its_key_for_the_same_question_and_any_size_of_page) {
+TEST(Cursor, GivesBackItsKeyForTheSameQuestionAndAnySizeOfPage) {
   HistoryQuery query = question();
   const Json key = {INT64_MIN, "a \"name\"", 7};
   query.cursor = cursor_after(query, key);
@@ -21,7 +21,7 @@ TEST(Cursor, gives_back_its_key_for_the_same_question_and_any_size_of_page) {
   EXPECT_EQ(*key_of_cursor(query), key);
 }
 
-TEST(Cursor, is_refused_when_any_of_its_characters_is_changed_or_missing) {
+TEST(Cursor, IsRefusedWhenAnyOfItsCharactersIsChangedOrMissing) {
   HistoryQuery query = question();
   const std::string cursor = cursor_after(query, Json::array({123456}));
   for (std::size_t i = 0; i < cursor.size(); ++i) {
@@ -33,7 +33,7 @@ TEST(Cursor, is_refused_when_any_of_its_characters_is_changed_or_missing) {
   }
 }
 
-TEST(Cursor, is_refused_for_another_question) {
+TEST(Cursor, IsRefusedForAnotherQuestion) {
   const HistoryQuery asked = question();
   const std::string cursor = cursor_after(asked, Json::array({1}));
   const auto refuses = [&](const auto& change) {

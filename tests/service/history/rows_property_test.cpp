@@ -97,7 +97,7 @@ storage::Decision any_decision() {
   return decision;
 }
 
-RC_GTEST_PROP(HistoryRows, an_attempt_comes_back, ()) {
+RC_GTEST_PROP(HistoryRows, AnAttemptComesBack, ()) {
   storage::Attempt attempt;
   attempt.id = *rc::gen::arbitrary<std::int64_t>();
   attempt.spacecraft = any_bytes();
@@ -115,7 +115,7 @@ RC_GTEST_PROP(HistoryRows, an_attempt_comes_back, ()) {
   RC_ASSERT(members(again) == members(attempt));
 }
 
-RC_GTEST_PROP(HistoryRows, a_version_comes_back, ()) {
+RC_GTEST_PROP(HistoryRows, AVersionComesBack, ()) {
   storage::Version version;
   version.spacecraft = any_bytes();
   version.equipment = any_bytes();
@@ -137,7 +137,7 @@ RC_GTEST_PROP(HistoryRows, a_version_comes_back, ()) {
   RC_ASSERT(members(summary) == members(version));
 }
 
-RC_GTEST_PROP(HistoryRows, decisions_champions_and_holds_come_back, ()) {
+RC_GTEST_PROP(HistoryRows, DecisionsChampionsAndHoldsComeBack, ()) {
   const storage::Decision decision = any_decision();
   const auto again = there_and_back<storage::Decision>(row_of(decision));
   RC_ASSERT(members(again) == members(decision));
@@ -158,7 +158,7 @@ RC_GTEST_PROP(HistoryRows, decisions_champions_and_holds_come_back, ()) {
               std::tie(equipment.hold->actor, equipment.hold->reason, equipment.hold->since));
 }
 
-RC_GTEST_PROP(HistoryRows, samples_come_back, ()) {
+RC_GTEST_PROP(HistoryRows, SamplesComeBack, ()) {
   storage::SampleColumns samples;
   const auto size = *rc::gen::inRange<std::size_t>(1, 20);
   const bool uniform = *rc::gen::arbitrary<bool>();
@@ -174,7 +174,7 @@ RC_GTEST_PROP(HistoryRows, samples_come_back, ()) {
   for (std::size_t i = 0; i < size; ++i) RC_ASSERT(bits(again.value[i]) == bits(samples.value[i]));
 }
 
-TEST(HistoryRows, samples_of_each_quality_come_back_and_other_numbers_are_refused) {
+TEST(HistoryRows, SamplesOfEachQualityComeBackAndOtherNumbersAreRefused) {
   const storage::Held held{1.5, storage::Quality::good, 7};
   Json row;
   for (const storage::Quality quality : storage::qualities) {
@@ -190,7 +190,7 @@ TEST(HistoryRows, samples_of_each_quality_come_back_and_other_numbers_are_refuse
   }
 }
 
-RC_GTEST_PROP(HistoryRows, what_describes_telemetry_comes_back, ()) {
+RC_GTEST_PROP(HistoryRows, WhatDescribesTelemetryComesBack, ()) {
   const storage::ParameterDescriptor parameter{
       any_bytes(),
       *rc::gen::arbitrary<std::uint32_t>(),
@@ -222,7 +222,7 @@ RC_GTEST_PROP(HistoryRows, what_describes_telemetry_comes_back, ()) {
   RC_ASSERT((there_and_back<std::pair<std::int64_t, std::string>>(row_of(source)) == source));
 }
 
-RC_GTEST_PROP(HistoryRows, counts_and_gaps_come_back, ()) {
+RC_GTEST_PROP(HistoryRows, CountsAndGapsComeBack, ()) {
   CountsRow counts{*rc::gen::arbitrary<std::size_t>(), {}};
   for (int i = *rc::gen::inRange(0, 9); i > 0; --i)
     counts.counts.push_back({*rc::gen::arbitrary<std::uint64_t>(),
@@ -250,13 +250,13 @@ RC_GTEST_PROP(HistoryRows, counts_and_gaps_come_back, ()) {
                                              gap.last, gap.before, gap.after));
 }
 
-TEST(HistoryRows, a_document_that_json_writes_the_same_stands_as_an_object) {
+TEST(HistoryRows, ADocumentThatJsonWritesTheSameStandsAsAnObject) {
   storage::Attempt attempt;
   attempt.evidence_json = R"({"mrse_percent":2.5})";
   EXPECT_EQ(row_of(attempt)["evidence"]["mrse_percent"], 2.5);
 }
 
-TEST(HistoryRows, a_row_of_another_kind_is_refused) {
+TEST(HistoryRows, ARowOfAnotherKindIsRefused) {
   const Json source = row_of(std::pair<std::int64_t, std::string>(1, "station"));
   storage::Attempt attempt;
   EXPECT_ANY_THROW(read_row(source, attempt));

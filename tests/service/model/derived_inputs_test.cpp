@@ -20,12 +20,12 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<DerivedInput> power = {{"P", "u * i", "W"}};
 
-TEST(InputExpressions, need_each_parameter_once_in_the_order_of_its_use) {
+TEST(InputExpressions, NeedEachParameterOnceInTheOrderOfItsUse) {
   const InputExpressions expressions({"i", "P", "v"}, {{"P", "u * i / v", "A"}});
   EXPECT_THAT(expressions.parameters(), ElementsAre("i", "u", "v"));
 }
 
-TEST(InputExpressions, without_derived_inputs_are_the_inputs_themselves) {
+TEST(InputExpressions, WithoutDerivedInputsAreTheInputsThemselves) {
   InputExpressions expressions({"b", "a"}, {});
   EXPECT_THAT(expressions.parameters(), ElementsAre("b", "a"));
   Vector inputs(2);
@@ -34,14 +34,14 @@ TEST(InputExpressions, without_derived_inputs_are_the_inputs_themselves) {
   EXPECT_TRUE(std::isnan(inputs(1)));
 }
 
-TEST(InputExpressions, put_each_value_in_the_place_of_its_input) {
+TEST(InputExpressions, PutEachValueInThePlaceOfItsInput) {
   InputExpressions expressions({"i", "P", "Q"}, {{"Q", "u / i", ""}, {"P", "u * i", "W"}});
   Vector inputs(3);
   expressions.evaluate(Vector{{2, 10}}, inputs);
   EXPECT_EQ(inputs, (Vector{{2, 20, 5}}));
 }
 
-TEST(InputExpressions, refuse_what_is_no_expression) {
+TEST(InputExpressions, RefuseWhatIsNoExpression) {
   try {
     InputExpressions({"P"}, {{"P", "u *", "W"}});
     FAIL() << "it was taken";
@@ -50,7 +50,7 @@ TEST(InputExpressions, refuse_what_is_no_expression) {
   }
 }
 
-TEST(InputExpressions, split_a_record_where_an_input_has_no_finite_value) {
+TEST(InputExpressions, SplitARecordWhereAnInputHasNoFiniteValue) {
   Record record;
   record.u = Matrix{{1, 1}, {2, 1}, {3, 0}, {4, 2}, {5, 2}, {6, 0}};
   record.y = Matrix{{10}, {20}, {30}, {40}, {50}, {60}};
@@ -62,7 +62,7 @@ TEST(InputExpressions, split_a_record_where_an_input_has_no_finite_value) {
             (std::vector<identification::Segment>{{0, 2, 7}, {2, 3, 10}, {3, 4, 20}}));
 }
 
-TEST(InputExpressions, leave_a_record_without_derived_inputs_as_it_is) {
+TEST(InputExpressions, LeaveARecordWithoutDerivedInputsAsItIs) {
   const Record record = identification::contiguous_record(2, Matrix{{1}, {2}}, Matrix{{3}, {4}});
   const Record result = InputExpressions({"u"}, {}).evaluate(record);
   EXPECT_EQ(result.u, record.u);
@@ -70,7 +70,7 @@ TEST(InputExpressions, leave_a_record_without_derived_inputs_as_it_is) {
   EXPECT_EQ(result.period_s, 2);
 }
 
-TEST(InputExpressions, may_leave_no_row) {
+TEST(InputExpressions, MayLeaveNoRow) {
   const Record record = identification::contiguous_record(1, Matrix{{0}, {0}}, Matrix{{3}, {4}});
   const Record result = InputExpressions({"q"}, {{"q", "1 / u", ""}}).evaluate(record);
   EXPECT_EQ(result.rows(), 0);
@@ -90,7 +90,7 @@ void PrintTo(const Case& one, std::ostream* out) {
 
 class DerivedInputMistakes : public testing::TestWithParam<Case> {};
 
-TEST_P(DerivedInputMistakes, are_told_with_their_remedy) {
+TEST_P(DerivedInputMistakes, AreToldWithTheirRemedy) {
   const auto mistakes = mistakes_in(GetParam().derived, {"P", "v"}, {"y"});
   ASSERT_EQ(mistakes.size(), 1U);
   EXPECT_EQ(mistakes[0].index, GetParam().derived.size() - 1);
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
              "expression",
              "uses P, which is derived itself; write its expression in its place"}));
 
-TEST(DerivedInputs, without_a_mistake_have_none) {
+TEST(DerivedInputs, WithoutAMistakeHaveNone) {
   EXPECT_THAT(mistakes_in(power, {"P"}, {"y"}), IsEmpty());
   EXPECT_THAT(mistakes_in(power, {"P", "u", "i"}, {"y"}), IsEmpty());
 }

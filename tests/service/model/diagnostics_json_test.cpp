@@ -33,7 +33,7 @@ Diagnostics example_diagnostics() {
   return diagnostics;
 }
 
-TEST(DiagnosticsJson, names_inputs_and_outputs_beside_their_figures) {
+TEST(DiagnosticsJson, NamesInputsAndOutputsBesideTheirFigures) {
   const ordered_json json = to_json(example_diagnostics(), {"I_1", "I_2"}, {"V"});
   EXPECT_EQ(json["rows"], 500);
   EXPECT_EQ(json["residuals"], "prediction");
@@ -59,7 +59,7 @@ TEST(DiagnosticsJson, names_inputs_and_outputs_beside_their_figures) {
   EXPECT_EQ(json["mrse_of_parts_percent"]["median"][0], 6.25);
 }
 
-TEST(DiagnosticsJson, writes_null_for_what_is_not_there_or_not_finite) {
+TEST(DiagnosticsJson, WritesNullForWhatIsNotThereOrNotFinite) {
   Diagnostics diagnostics = example_diagnostics();
   diagnostics.predicted = false;
   diagnostics.prediction_inputs.clear();
@@ -75,7 +75,7 @@ TEST(DiagnosticsJson, writes_null_for_what_is_not_there_or_not_finite) {
   EXPECT_TRUE(json["whiteness"][0]["largest"].is_null());
 }
 
-TEST(ContinuousJson, has_the_matrices_or_the_reason) {
+TEST(ContinuousJson, HasTheMatricesOrTheReason) {
   identification::StateSpaceModel model = example_model().dynamics;
   const ordered_json matrices = to_json(to_continuous(model));
   EXPECT_EQ(matrices["A"].size(), 2u);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::string_literals;
 
-TEST(Digest, is_the_sha256_of_the_documented_encoding) {
+TEST(Digest, IsTheSha256OfTheDocumentedEncoding) {
   EquipmentModel model;
   model.spacecraft = "S"s;
   model.equipment = "EQ"s;
@@ -60,7 +60,7 @@ void expect_different_digests(const EquipmentModel& base,
   EXPECT_EQ(digests.size(), changes.size());
 }
 
-TEST(Digest, changes_with_everything_that_a_simulator_computes_with) {
+TEST(Digest, ChangesWithEverythingThatASimulatorComputesWith) {
   const std::vector<std::function<void(EquipmentModel&)>> changes = {
       [](EquipmentModel&) {},
       [](EquipmentModel& m) { m.spacecraft = "CBERS4A"s; },
@@ -86,7 +86,7 @@ TEST(Digest, changes_with_everything_that_a_simulator_computes_with) {
   expect_different_digests(example_model(), changes);
 }
 
-TEST(Digest, changes_with_the_expressions_and_the_tracking_gain) {
+TEST(Digest, ChangesWithTheExpressionsAndTheTrackingGain) {
   expect_different_digests(
       full_example_model(),
       {
@@ -103,7 +103,7 @@ TEST(Digest, changes_with_the_expressions_and_the_tracking_gain) {
       });
 }
 
-TEST(Digest, covers_every_field_that_says_so_and_no_other) {
+TEST(Digest, CoversEveryFieldThatSaysSoAndNoOther) {
   const EquipmentModel model = distinct_version().model;
   for_each_change(
       model, [&](const std::string& path, const Field& field, const EquipmentModel& changed) {
@@ -112,17 +112,17 @@ TEST(Digest, covers_every_field_that_says_so_and_no_other) {
       });
 }
 
-TEST(Digest, of_a_model_without_expressions_and_tracking_is_the_one_it_had_before_there_were_any) {
+TEST(Digest, OfAModelWithoutExpressionsAndTrackingIsTheOneItHadBeforeThereWereAny) {
   EXPECT_EQ(model_digest(example_model()),
             "17910f60ef1713b1804a8bb1ac83963863c0cef758d0f6d27535e0d025323a45");
 }
 
-TEST(Digest, of_a_model_with_expressions_and_tracking_is_the_one_it_always_had) {
+TEST(Digest, OfAModelWithExpressionsAndTrackingIsTheOneItAlwaysHad) {
   EXPECT_EQ(model_digest(full_example_model()),
             "10128ba884ce968e9f617aaa343c60dba711522cf1a4c03e8b2ea8091a2b3960");
 }
 
-TEST(Digest, ends_with_what_not_every_model_has) {
+TEST(Digest, EndsWithWhatNotEveryModelHas) {
   const auto number = [](double value) {
     return std::string(reinterpret_cast<const char*>(&value), sizeof value);
   };
@@ -148,7 +148,7 @@ TEST(Digest, ends_with_what_not_every_model_has) {
   EXPECT_EQ(model_digest(model), sha256_hex(encoding));
 }
 
-TEST(Digest, does_not_depend_on_when_and_how_the_model_was_found) {
+TEST(Digest, DoesNotDependOnWhenAndHowTheModelWasFound) {
   EquipmentModel model = example_model();
   model.method = "other"s;
   model.identified_from = {0, 1};

@@ -39,7 +39,7 @@ void PrintTo(const Value& value, std::ostream* out) {
 
 class ExpressionValue : public testing::TestWithParam<Value> {};
 
-TEST_P(ExpressionValue, follows_the_rules_of_arithmetic) {
+TEST_P(ExpressionValue, FollowsTheRulesOfArithmetic) {
   Expression expression = parsed(GetParam().text);
   std::vector<double> values;
   for (const std::string& name : expression.variables())
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Value{"max(1, c / c)", nan}, Value{"c > 0 ? a / c : 0", 0}, Value{"a^1e3", nan},
                     Value{"\t a\t", 3}));
 
-TEST(Expression, names_its_parameters_once_in_the_order_of_their_use) {
+TEST(Expression, NamesItsParametersOnceInTheOrderOfTheirUse) {
   EXPECT_THAT(parsed("V_BUS * I_1 + min(eps.u, V_BUS) - _x9").variables(),
               ElementsAre("V_BUS", "I_1", "eps.u", "_x9"));
   EXPECT_THAT(parsed("2 ^ 3").variables(), ElementsAre());
@@ -75,14 +75,14 @@ TEST(Expression, names_its_parameters_once_in_the_order_of_their_use) {
               ElementsAre("absolute", "maximum", "min_x", "e", "pi"));
 }
 
-TEST(Expression, has_no_value_where_a_parameter_has_none_even_where_it_is_not_asked_for) {
+TEST(Expression, HasNoValueWhereAParameterHasNoneEvenWhereItIsNotAskedFor) {
   Expression expression = parsed("a > 0 ? a : b");
   for (const double value : {nan, infinity, -infinity})
     EXPECT_TRUE(std::isnan(expression.evaluate(std::vector{1., value})));
   EXPECT_EQ(expression.evaluate(std::vector{1., 2.}), 1);
 }
 
-TEST(Expression, reads_numbers_alike_in_every_locale) {
+TEST(Expression, ReadsNumbersAlikeInEveryLocale) {
   const std::locale before;
   struct Comma : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }
@@ -92,7 +92,7 @@ TEST(Expression, reads_numbers_alike_in_every_locale) {
   std::locale::global(before);
 }
 
-TEST(Expression, stays_whole_when_it_moves) {
+TEST(Expression, StaysWholeWhenItMoves) {
   Expression one = parsed("a - b");
   Expression other = parsed("c");
   other = std::move(one);
@@ -109,7 +109,7 @@ void PrintTo(const Mistake& mistake, std::ostream* out) {
 
 class ExpressionMistakes : public testing::TestWithParam<Mistake> {};
 
-TEST_P(ExpressionMistakes, are_told_with_their_place) {
+TEST_P(ExpressionMistakes, AreToldWithTheirPlace) {
   EXPECT_THAT(mistake_in(GetParam().text), HasSubstr(GetParam().says));
 }
 
@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{std::string(101, 'n'), "the name has 101 bytes; at most 100"},
         Mistake{repeated("a+", 500) + "a", "has 1001 bytes; at most 1000"}));
 
-TEST(Expression, may_be_as_long_and_deep_as_is_said) {
+TEST(Expression, MayBeAsLongAndDeepAsIsSaid) {
   EXPECT_EQ(mistake_in(repeated("(", 32) + "a" + repeated(")", 32)), "none");
   EXPECT_EQ(mistake_in("a" + repeated("^a", 32)), "none");
   EXPECT_EQ(mistake_in(repeated("a?a:", 32) + "a"), "none");

@@ -25,7 +25,7 @@ Matrix any_numbers(identification::Index rows, identification::Index columns, st
   return matrix;
 }
 
-TEST(ModelJson, gives_the_same_model_back_to_the_last_bit) {
+TEST(ModelJson, GivesTheSameModelBackToTheLastBit) {
   EquipmentModel model = example_model();
   model.dynamics.A = any_numbers(2, 2, 1);
   model.dynamics.B = any_numbers(2, 2, 2);
@@ -41,7 +41,7 @@ TEST(ModelJson, gives_the_same_model_back_to_the_last_bit) {
   EXPECT_EQ(model_digest(back), model_digest(model));
 }
 
-TEST(ModelJson, keeps_a_static_model_without_gain) {
+TEST(ModelJson, KeepsAStaticModelWithoutGain) {
   EquipmentModel model = example_model();
   model.dynamics.A.resize(0, 0);
   model.dynamics.B.resize(0, 2);
@@ -55,7 +55,7 @@ TEST(ModelJson, keeps_a_static_model_without_gain) {
   EXPECT_EQ(model_digest(back), model_digest(model));
 }
 
-TEST(ModelJson, writes_a_figure_that_does_not_exist_as_null_and_reads_it_as_nan) {
+TEST(ModelJson, WritesAFigureThatDoesNotExistAsNullAndReadsItAsNan) {
   EquipmentModel model = example_model();
   model.validation.fit_percent(0) = -std::numeric_limits<double>::infinity();
   const auto json = to_json(model);
@@ -63,13 +63,13 @@ TEST(ModelJson, writes_a_figure_that_does_not_exist_as_null_and_reads_it_as_nan)
   EXPECT_TRUE(std::isnan(equipment_model_from_json(json.dump()).validation.fit_percent(0)));
 }
 
-TEST(ModelJson, has_no_key_for_what_a_model_does_not_have) {
+TEST(ModelJson, HasNoKeyForWhatAModelDoesNotHave) {
   const auto json = to_json(example_model());
   EXPECT_FALSE(json.contains("tracking"));
   EXPECT_FALSE(json["inputs"][0].contains("expression"));
 }
 
-TEST(ModelJson, keeps_every_field) {
+TEST(ModelJson, KeepsEveryField) {
   const EquipmentModel model = distinct_version().model;
   const EquipmentModel back = equipment_model_from_json(to_json(model).dump());
   EXPECT_THAT(differing_fields(back, model), testing::IsEmpty());
@@ -83,7 +83,7 @@ struct Damage {
 
 class DamagedModelJson : public testing::TestWithParam<Damage> {};
 
-TEST_P(DamagedModelJson, is_refused_with_the_name_of_the_field) {
+TEST_P(DamagedModelJson, IsRefusedWithTheNameOfTheField) {
   auto json = to_json(full_example_model());
   const nlohmann::ordered_json::json_pointer pointer(GetParam().pointer);
   if (GetParam().value == nullptr) {
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Damage{"/validation/rows", nullptr, "\"validation.rows\" is missing"}));
 
 // Registries and simulators' files hold this text: it stays as it is, to the last byte.
-TEST(ModelJson, is_the_text_that_it_always_was) {
+TEST(ModelJson, IsTheTextThatItAlwaysWas) {
   EXPECT_EQ(to_json(full_example_model()).dump(),
             R"({"spacecraft":"CBERS4","equipment":"BDR",)"
             R"("inputs":[{"name":"I_BDRIN1","unit":"A","low":0.0,"high":5.0},)"
@@ -141,7 +141,7 @@ TEST(ModelJson, is_the_text_that_it_always_was) {
             R"("validation":{"mrse_percent":[0.5],"fit_percent":[99.0],"rows":2000}}})");
 }
 
-TEST(ModelJson, refuses_text_that_is_not_json) {
+TEST(ModelJson, RefusesTextThatIsNotJson) {
   EXPECT_THROW(equipment_model_from_json("{\"A\": [1, "), std::invalid_argument);
   EXPECT_THROW(equipment_model_from_json("[]"), std::invalid_argument);
 }

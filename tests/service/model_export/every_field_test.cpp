@@ -36,12 +36,12 @@ void expect_all_but(const NotCarried& not_carried,
   EXPECT_EQ(fields_not_in(write), expected);
 }
 
-TEST(ExportedJson, has_every_field_or_a_reason_not_to) {
+TEST(ExportedJson, HasEveryFieldOrAReasonNotTo) {
   expect_all_but({{"rollback", "says how simulators are to take the version, not what it is"}},
                  model_export::json_file);
 }
 
-TEST(ExportedMatFile, has_every_field_or_a_reason_not_to) {
+TEST(ExportedMatFile, HasEveryFieldOrAReasonNotTo) {
   const std::string of_the_window = "says from which telemetry the model comes: it is in the JSON";
   const std::string for_the_gate = "says how good the model is: it is in the JSON";
   const std::string for_flags = "simulators flag inputs by it; a run does not need it";
@@ -69,7 +69,7 @@ TEST(ExportedMatFile, has_every_field_or_a_reason_not_to) {
 }
 
 // The rest of an FMU is for people and hosts; documentation/model.json in it is the JSON file.
-TEST(FmuResources, have_every_field_or_a_reason_not_to) {
+TEST(FmuResources, HaveEveryFieldOrAReasonNotTo) {
   const std::string for_hosts = "the binary does not need it: it is in modelDescription.xml";
   const std::string for_people = "the binary does not need it: it is in documentation/model.json";
   const std::string free_run = "an FMU is the free run, from inputs alone";

@@ -76,7 +76,7 @@ model_export::ExportedVersion evaluating(const std::vector<std::string>& express
   return exported;
 }
 
-TEST(FmuExpressions, have_the_bits_of_the_service) {
+TEST(FmuExpressions, HaveTheBitsOfTheService) {
   RandomExpressions random(20170717);
   std::vector<std::string> texts;
   std::vector<Expression> expressions;

@@ -65,7 +65,7 @@ const ModelKind with_expressions = {
 
 class FmuAgrees : public ::testing::TestWithParam<ModelKind> {};
 
-TEST_P(FmuAgrees, with_the_runner_of_the_library_also_when_its_sources_are_compiled) {
+TEST_P(FmuAgrees, WithTheRunnerOfTheLibraryAlsoWhenItsSourcesAreCompiled) {
   const Hosted any(random_version(GetParam(), 0));
   const FmuBinary compiled(any.fmu.compiled());
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(sizes, FmuAgrees,
                                            ModelKind{4, 2, 3, false, 0.1}, ModelKind{20, 7, 5},
                                            ModelKind{2, 1, 1, true, 1.0 / 3}, with_expressions));
 
-TEST(Fmu, holds_inputs_over_the_ticks_of_a_long_step_and_outputs_between_ticks) {
+TEST(Fmu, HoldsInputsOverTheTicksOfALongStepAndOutputsBetweenTicks) {
   Hosted run(random_version({3, 2, 2}, 5));
   run.instance->start();
   Noise noise(6);
@@ -148,7 +148,7 @@ struct Steps {
   double ticks;  // that must have run
 };
 
-TEST(Fmu, neither_gains_nor_loses_a_tick_by_the_rounding_of_time) {
+TEST(Fmu, NeitherGainsNorLosesATickByTheRoundingOfTime) {
   const Steps table[] = {
       {"one period, added up", 0.1, 0, 0.1, 1'000'000, 1'000'000},
       {"a third of one", 0.1, 0, 0.1 / 3, 300'000, 100'000},
@@ -167,7 +167,7 @@ TEST(Fmu, neither_gains_nor_loses_a_tick_by_the_rounding_of_time) {
   }
 }
 
-TEST(Fmu, shows_before_its_first_tick_what_that_will_give) {
+TEST(Fmu, ShowsBeforeItsFirstTickWhatThatWillGive) {
   Hosted run(random_version({3, 2, 2}, 8));
   EXPECT_EQ(run.binary.enter_initialization(run.instance->component), fmi2OK);
   const identification::Vector& y0 = run.version.model.dynamics.y0;
@@ -191,7 +191,7 @@ std::vector<double> after_steps(const Hosted& run, FmuInstance& instance, int st
   return instance.outputs();
 }
 
-TEST(Fmu, goes_on_from_a_state_that_was_kept_also_in_another_instance) {
+TEST(Fmu, GoesOnFromAStateThatWasKeptAlsoInAnotherInstance) {
   const Hosted run(random_version(with_expressions, 9));
   const auto& [binary, first] = std::tie(run.binary, *run.instance);
   run.instance->start();
@@ -220,7 +220,7 @@ TEST(Fmu, goes_on_from_a_state_that_was_kept_also_in_another_instance) {
   EXPECT_EQ(state, nullptr);
 }
 
-TEST(Fmu, runs_from_the_start_after_a_reset_and_beside_other_instances) {
+TEST(Fmu, RunsFromTheStartAfterAResetAndBesideOtherInstances) {
   const Hosted run(random_version({4, 2, 1}, 10));
   const auto second = run.another();
   run.instance->start();
@@ -235,7 +235,7 @@ TEST(Fmu, runs_from_the_start_after_a_reset_and_beside_other_instances) {
   EXPECT_EQ(after_steps(run, *second, 40, 3), expected);
 }
 
-TEST(Fmu, keeps_an_inputs_last_value_where_its_expression_has_none) {
+TEST(Fmu, KeepsAnInputsLastValueWhereItsExpressionHasNone) {
   const ExportedVersion version = random_version({2, 1, 1, true, 1, {"U / V_BUS"}}, 11);
   Hosted run(version);
   run.instance->start();
@@ -255,7 +255,7 @@ TEST(Fmu, keeps_an_inputs_last_value_where_its_expression_has_none) {
   EXPECT_EQ(run.instance->outputs(), other.instance->outputs());
 }
 
-TEST(Fmu, refuses_calls_that_must_not_be_made_and_says_why) {
+TEST(Fmu, RefusesCallsThatMustNotBeMadeAndSaysWhy) {
   const Hosted run(random_version({2, 2, 1}, 12));
   const FmuBinary& fmi = run.binary;
   FmuInstance& one = *run.instance;
@@ -316,7 +316,7 @@ TEST(Fmu, refuses_calls_that_must_not_be_made_and_says_why) {
   fmi.free_instance(nullptr);
 }
 
-TEST(Fmu, takes_no_bytes_for_a_state_but_its_own) {
+TEST(Fmu, TakesNoBytesForAStateButItsOwn) {
   const Hosted run(random_version({2, 2, 1}, 13));
   const FmuBinary& fmi = run.binary;
   FmuInstance& one = *run.instance;
@@ -344,7 +344,7 @@ TEST(Fmu, takes_no_bytes_for_a_state_but_its_own) {
   EXPECT_EQ(fmi.free_state(one.component, &state), fmi2OK);
 }
 
-TEST(Fmu, is_not_instantiated_from_resources_that_are_not_its_own) {
+TEST(Fmu, IsNotInstantiatedFromResourcesThatAreNotItsOwn) {
   const Hosted run(random_version(with_expressions, 15));
   const std::string sound = run.fmu.text("resources/model.txt");
   const auto refused = [&run](const std::string& guid, const std::string& uri) {
@@ -369,7 +369,7 @@ TEST(Fmu, is_not_instantiated_from_resources_that_are_not_its_own) {
   }
 }
 
-TEST(Fmu, finds_resources_by_every_form_of_a_file_uri) {
+TEST(Fmu, FindsResourcesByEveryFormOfAFileUri) {
   const Hosted run(random_version({1, 1, 1}, 16));
   run.fmu.write("a folder/é%#/model.txt", run.fmu.text("resources/model.txt"));
   const std::string folder = run.fmu.folder().string();
@@ -382,7 +382,7 @@ TEST(Fmu, finds_resources_by_every_form_of_a_file_uri) {
   }
 }
 
-TEST(Fmu, shows_the_functions_of_the_standard_and_nothing_else) {
+TEST(Fmu, ShowsTheFunctionsOfTheStandardAndNothingElse) {
   const Hosted run(random_version({1, 1, 1}, 17));
   EXPECT_STREQ(run.binary.get_version(), "2.0");
   EXPECT_STREQ(run.binary.get_types_platform(), "default");
@@ -394,7 +394,7 @@ TEST(Fmu, shows_the_functions_of_the_standard_and_nothing_else) {
   pclose(pipe);
 }
 
-TEST(Fmu, has_sources_whose_functions_begin_with_the_identifier) {
+TEST(Fmu, HasSourcesWhoseFunctionsBeginWithTheIdentifier) {
   const Hosted run(random_version({1, 1, 1}, 18));
   const std::string folder = run.fmu.folder().string();
   const std::string command = "cd " + folder +
@@ -405,7 +405,7 @@ TEST(Fmu, has_sources_whose_functions_begin_with_the_identifier) {
   EXPECT_EQ(run.fmu.text("count"), "34\n");
 }
 
-TEST(Fmu, is_the_same_to_the_last_byte_when_it_is_exported_again) {
+TEST(Fmu, IsTheSameToTheLastByteWhenItIsExportedAgain) {
   EXPECT_EQ(fmu_of(random_version(with_expressions, 19)),
             fmu_of(random_version(with_expressions, 19)));
 }

@@ -50,7 +50,7 @@ std::string content_of(const std::string& bytes) {
   return text;
 }
 
-TEST(MatFile, holds_the_variables_that_it_always_held) {
+TEST(MatFile, HoldsTheVariablesThatItAlwaysHeld) {
   model_export::ExportedVersion exported{example_version(3), "superseded"};
   exported.version.model = full_example_model();
   exported.version.digest = model_digest(exported.version.model);
@@ -82,7 +82,7 @@ tracking_error_limit 1x1 2.5
 )");
 }
 
-TEST(MatFile, of_a_model_without_gains_has_an_empty_K_and_no_tracking) {
+TEST(MatFile, OfAModelWithoutGainsHasAnEmptyKAndNoTracking) {
   model_export::ExportedVersion exported{example_version(3), "approved"};
   exported.version.model.dynamics.K.resize(0, 0);
   const std::string content = content_of(model_export::mat_file(exported));

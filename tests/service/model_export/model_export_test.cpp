@@ -15,7 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-TEST(ModelExport, needs_a_model_that_is_whole) {
+TEST(ModelExport, NeedsAModelThatIsWhole) {
   const ModelVersion sound = random_version({2, 2, 1}, 1).version;
   EXPECT_EQ(model_export::obstacle(sound), std::nullopt);
   ModelVersion damaged = sound;
@@ -29,7 +29,7 @@ TEST(ModelExport, needs_a_model_that_is_whole) {
   EXPECT_THAT(model_export::obstacle(ambiguous).value_or(""), HasSubstr("are called I_1"));
 }
 
-TEST(ModelExport, writes_json_that_is_the_model_to_the_last_bit) {
+TEST(ModelExport, WritesJsonThatIsTheModelToTheLastBit) {
   const auto exported = random_version({4, 3, 2, true, 0.1, {"U * I_2"}}, 2);
   const auto object = nlohmann::ordered_json::parse(model_export::json_file(exported));
   EXPECT_EQ(object["version"], 7);
@@ -39,7 +39,7 @@ TEST(ModelExport, writes_json_that_is_the_model_to_the_last_bit) {
   EXPECT_EQ(object["digest"], exported.version.digest);
 }
 
-TEST(ModelExport, writes_the_json_that_it_always_wrote) {
+TEST(ModelExport, WritesTheJsonThatItAlwaysWrote) {
   const model_export::ExportedVersion exported{example_version(3), "superseded"};
   auto object = nlohmann::ordered_json::parse(model_export::json_file(exported));
   EXPECT_EQ(object["model"].dump(), to_json(exported.version.model).dump());
@@ -52,7 +52,7 @@ TEST(ModelExport, writes_the_json_that_it_always_wrote) {
             R"("decided_by":"gate","program_version":"0.1.0","model":null})");
 }
 
-TEST(FmuVariables, are_the_parameters_behind_the_inputs) {
+TEST(FmuVariables, AreTheParametersBehindTheInputs) {
   auto version = random_version({1, 3, 2, true, 1, {"U * I_2"}}, 3).version;
   version.model.dynamics.D << 0, 1, 0, 2, 0, 0;
   const auto variables = model_export::fmu_variables(version.model);
@@ -67,7 +67,7 @@ TEST(FmuVariables, are_the_parameters_behind_the_inputs) {
   EXPECT_THAT(variables.direct, ElementsAre(ElementsAre(2U), ElementsAre(0U, 1U)));
 }
 
-TEST(FmuText, names_a_model_as_c_can) {
+TEST(FmuText, NamesAModelAsCCan) {
   ModelVersion version;
   version.number = 12;
   version.model.spacecraft = "CBERS-4";
@@ -79,7 +79,7 @@ TEST(FmuText, names_a_model_as_c_can) {
   EXPECT_EQ(model_export::xml_text("a<b & \"c\">\n"), "a&lt;b &amp; &quot;c&quot;&gt; ");
 }
 
-TEST(Units, are_known_with_their_prefixes) {
+TEST(Units, AreKnownWithTheirPrefixes) {
   EXPECT_EQ(model_export::base_unit("mV")->factor, 1e-3);
   EXPECT_EQ(model_export::base_unit("mV")->powers.size(), 4U);
   EXPECT_EQ(model_export::base_unit("Ah")->factor, 3600);

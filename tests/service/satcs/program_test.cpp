@@ -83,7 +83,7 @@ class Programs : public testing::Test {
   dds::Endpoint endpoint_ = own_endpoint();
 };
 
-TEST_F(Programs, replay_brings_every_row_and_its_descriptors) {
+TEST_F(Programs, ReplayBringsEveryRowAndItsDescriptors) {
   write_rows(1000);
   dds::Participant participant(endpoint_);
   dds::Reader<TelemetryFrame> frames(participant);
@@ -118,7 +118,7 @@ TEST_F(Programs, replay_brings_every_row_and_its_descriptors) {
   EXPECT_EQ(json["last_time"], "2023-11-14T22:29:59Z");
 }
 
-TEST_F(Programs, replay_at_full_speed_loses_nothing_to_a_slow_reader) {
+TEST_F(Programs, ReplayAtFullSpeedLosesNothingToASlowReader) {
   constexpr std::uint64_t rows = 5'000;
   write_rows(rows);
   dds::Participant participant(endpoint_);
@@ -138,7 +138,7 @@ TEST_F(Programs, replay_at_full_speed_loses_nothing_to_a_slow_reader) {
   EXPECT_EQ(summary()["frames"], rows);
 }
 
-TEST_F(Programs, replay_keeps_to_its_speed) {
+TEST_F(Programs, ReplayKeepsToItsSpeed) {
   write_rows(31);
   dds::Participant participant(endpoint_);
   dds::Reader<TelemetryFrame> frames(participant);
@@ -148,7 +148,7 @@ TEST_F(Programs, replay_keeps_to_its_speed) {
   EXPECT_EQ(take_all(frames, 31).size(), 31U);
 }
 
-TEST_F(Programs, replay_writes_nothing_before_its_readers_are_there) {
+TEST_F(Programs, ReplayWritesNothingBeforeItsReadersAreThere) {
   write_rows(10);
   Child child(replay("--speed max --json --wait-readers 2"));
   dds::Participant participant(endpoint_);
@@ -163,7 +163,7 @@ TEST_F(Programs, replay_writes_nothing_before_its_readers_are_there) {
   EXPECT_EQ(child.wait(), 0) << errors();
 }
 
-TEST_F(Programs, replay_pauses_while_its_reader_is_gone) {
+TEST_F(Programs, ReplayPausesWhileItsReaderIsGone) {
   write_rows(2000);
   dds::Participant participant(endpoint_);
   Child child(replay("--speed 1000 --json --history 0"));
@@ -187,7 +187,7 @@ TEST_F(Programs, replay_pauses_while_its_reader_is_gone) {
   EXPECT_EQ(child.wait(), 0) << errors();
 }
 
-TEST_F(Programs, replay_gives_what_it_kept_to_a_reader_that_joins_late) {
+TEST_F(Programs, ReplayGivesWhatItKeptToAReaderThatJoinsLate) {
   write_rows(50);
   Child child(replay("--speed max --wait-readers 0 --history 20 --linger 60s --json"));
   dds::Participant participant(endpoint_);
@@ -202,7 +202,7 @@ TEST_F(Programs, replay_gives_what_it_kept_to_a_reader_that_joins_late) {
   EXPECT_EQ(summary()["outcome"], "complete");
 }
 
-TEST_F(Programs, stop_at_any_point_with_a_summary_and_the_signal_in_the_status) {
+TEST_F(Programs, StopAtAnyPointWithASummaryAndTheSignalInTheStatus) {
   write_rows(100'000);
   const std::map<std::string, int> ways = {{"--speed 1", SIGINT}, {"--speed max", SIGTERM}};
   for (const auto& [speed, signal] : ways) {
@@ -225,7 +225,7 @@ TEST_F(Programs, stop_at_any_point_with_a_summary_and_the_signal_in_the_status) 
   EXPECT_TRUE(summary()["last_time"].is_null());
 }
 
-TEST_F(Programs, say_when_nobody_took_the_telemetry) {
+TEST_F(Programs, SayWhenNobodyTookTheTelemetry) {
   write_rows(10);
   EXPECT_EQ(Child(replay("--speed max --json --wait-timeout 100ms")).wait(), 3);
   EXPECT_EQ(summary()["outcome"], "no_readers");
@@ -240,7 +240,7 @@ TEST_F(Programs, say_when_nobody_took_the_telemetry) {
   EXPECT_EQ(summary()["frames"], 10);
 }
 
-TEST_F(Programs, refuse_impossible_requests_in_one_line) {
+TEST_F(Programs, RefuseImpossibleRequestsInOneLine) {
   write("t,a\n1,2\n");
   struct Case {
     std::string arguments;
@@ -283,7 +283,7 @@ TEST_F(Programs, refuse_impossible_requests_in_one_line) {
             "satcs-reference --help\n");
 }
 
-TEST_F(Programs, help_shows_an_example) {
+TEST_F(Programs, HelpShowsAnExample) {
   for (const char* program : {SATCS_REPLAY, SATCS_REFERENCE}) {
     EXPECT_EQ(Child({"/bin/sh", "-c",
                      std::string(program) + " --help >'" + (folder_ / "out").string() + "'"})
@@ -293,7 +293,7 @@ TEST_F(Programs, help_shows_an_example) {
   }
 }
 
-TEST_F(Programs, reference_publishes_the_same_telemetry_for_the_same_seed) {
+TEST_F(Programs, ReferencePublishesTheSameTelemetryForTheSameSeed) {
   const std::size_t points = satcs::reference::telemetry_points().size();
   const auto run = [&](const std::string& seed) {
     dds::Participant participant(endpoint_);
@@ -327,7 +327,7 @@ TEST_F(Programs, reference_publishes_the_same_telemetry_for_the_same_seed) {
   EXPECT_GT(differ, 3000U);
 }
 
-TEST_F(Programs, reference_written_as_a_file_is_replayed_to_the_same_telemetry) {
+TEST_F(Programs, ReferenceWrittenAsAFileIsReplayedToTheSameTelemetry) {
   const auto received = [&](const std::vector<std::string>& command) {
     dds::Participant participant(endpoint_);
     dds::Reader<TelemetryFrame> frames(participant);
@@ -355,7 +355,7 @@ TEST_F(Programs, reference_written_as_a_file_is_replayed_to_the_same_telemetry) 
   }
 }
 
-TEST_F(Programs, the_hand_written_simulation_is_sent_as_a_simulator) {
+TEST_F(Programs, TheHandWrittenSimulationIsSentAsASimulator) {
   dds::Participant participant(endpoint_);
   dds::Reader<TelemetryFrame> frames(participant);
   Child child(command(SATCS_REFERENCE, "--duration 1min --speed max --simulated"));
@@ -369,7 +369,7 @@ TEST_F(Programs, the_hand_written_simulation_is_sent_as_a_simulator) {
   EXPECT_GT(received[0].samples.size(), 17U);
 }
 
-TEST_F(Programs, the_hand_written_simulation_is_written_to_a_file) {
+TEST_F(Programs, TheHandWrittenSimulationIsWrittenToAFile) {
   ASSERT_EQ(Child(command(SATCS_REFERENCE, "--duration 1min --csv t.csv --simulated")).wait(), 0);
   const std::string text = text_of(folder_ / "t.csv");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 61);

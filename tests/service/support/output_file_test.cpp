@@ -32,7 +32,7 @@ class OutputFiles : public testing::Test {
   const test::TemporaryFolder folder_;
 };
 
-TEST_F(OutputFiles, have_their_name_when_all_of_them_is_there) {
+TEST_F(OutputFiles, HaveTheirNameWhenAllOfThemIsThere) {
   for (const Existing existing : {Existing::kept, Existing::replaced}) {
     OutputFile file(path(), existing);
     file.write("new");
@@ -43,7 +43,7 @@ TEST_F(OutputFiles, have_their_name_when_all_of_them_is_there) {
   }
 }
 
-TEST_F(OutputFiles, leave_alone_what_came_meanwhile_where_they_are_to_keep_it) {
+TEST_F(OutputFiles, LeaveAloneWhatCameMeanwhileWhereTheyAreToKeepIt) {
   {
     OutputFile file(path(), Existing::kept);
     file.write("new");

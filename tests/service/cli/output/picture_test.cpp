@@ -26,7 +26,7 @@ std::vector<std::string> labels(const std::vector<Tick>& ticks) {
   return result;
 }
 
-TEST(Ticks, are_round_and_not_too_many) {
+TEST(Ticks, AreRoundAndNotTooMany) {
   EXPECT_THAT(labels(ticks_of({0, 10, 0, 1}, 6)), ElementsAre("0", "2", "4", "6", "8", "10"));
   EXPECT_THAT(labels(ticks_of({-0.03, 0.06, 0, 1}, 5)),
               ElementsAre("-0.02", "0.00", "0.02", "0.04", "0.06"));
@@ -37,14 +37,14 @@ TEST(Ticks, are_round_and_not_too_many) {
   }
 }
 
-TEST(Scale, around_one_value_has_room) {
+TEST(Scale, AroundOneValueHasRoom) {
   const Scale scale = scale_around(28, 28, 100, 0);
   EXPECT_LT(scale.low, 28);
   EXPECT_NEAR(scale(28), 50, 1e-9);
   EXPECT_TRUE(std::isfinite(scale_around(0, 0, 0, 1)(0)));
 }
 
-TEST(TimeTicks, are_round_times_of_utc_with_the_day_where_it_changes) {
+TEST(TimeTicks, AreRoundTimesOfUtcWithTheDayWhereItChanges) {
   EXPECT_THAT(labels(time_ticks({start, start + 4 * hour}, 8)),
               ElementsAre("2023-11-14 22:30", "23:00", "23:30", "2023-11-15 00:00", "00:30",
                           "01:00", "01:30", "02:00"));
@@ -54,7 +54,7 @@ TEST(TimeTicks, are_round_times_of_utc_with_the_day_where_it_changes) {
   EXPECT_THAT(labels(time_ticks({start, start + 100 * 24 * hour}, 8)), Not(SizeIs(0)));
 }
 
-TEST(Trace, keeps_the_extremes_of_each_column_in_their_order) {
+TEST(Trace, KeepsTheExtremesOfEachColumnInTheirOrder) {
   // Two columns of ten values; a peak, then a trough in the first.
   Stretch stretch;
   for (int k = 0; k < 20; ++k) {
@@ -68,20 +68,20 @@ TEST(Trace, keeps_the_extremes_of_each_column_in_their_order) {
   EXPECT_THAT(y, ElementsAre(1, 19, 10));
 }
 
-TEST(Trace, breaks_at_gaps_that_can_be_seen_and_shows_a_lonely_value) {
+TEST(Trace, BreaksAtGapsThatCanBeSeenAndShowsALonelyValue) {
   const std::vector<Stretch> stretches = {{{0, 1}, {0, 0}}, {{1.5}, {0}}, {{50}, {0}}};
   const auto lines = trace(stretches, {0, 100, 0, 100}, {-1, 1, 1, 0}, 1);
   ASSERT_THAT(lines, SizeIs(2));
   EXPECT_THAT(lines[1], SizeIs(2));
 }
 
-TEST(Trace, stays_within_the_scale) {
+TEST(Trace, StaysWithinTheScale) {
   const auto lines = trace({{{0, 1}, {-1e9, 1e9}}}, {0, 1, 0, 10}, {-1, 1, 100, 0}, 1);
   EXPECT_EQ(lines[0][0].y, 100);
   EXPECT_EQ(lines[0][1].y, 0);
 }
 
-TEST(Svg, escapes_what_a_name_may_hold) {
+TEST(Svg, EscapesWhatANameMayHold) {
   EXPECT_EQ(xml_escaped("a<b> & \"c\"'\n"), "a&lt;b&gt; &amp; &quot;c&quot;&#39;");
   Svg svg(10, 10, "<&>", "");
   svg.text({1, 2}, "<x>", "small");
@@ -131,7 +131,7 @@ struct Example {
   }
 };
 
-TEST(Picture, shows_each_series_the_parts_the_singular_values_and_the_poles) {
+TEST(Picture, ShowsEachSeriesThePartsTheSingularValuesAndThePoles) {
   const std::string picture = Example(2, 600).picture();
   for (const char* id : {"output-1-real", "output-1-simulated", "output-1-error", "output-2-real",
                          "output-2-simulated", "output-2-error", "singular-values", "poles"})
@@ -144,7 +144,7 @@ TEST(Picture, shows_each_series_the_parts_the_singular_values_and_the_poles) {
   EXPECT_THAT(picture, Not(HasSubstr("inf")));
 }
 
-TEST(Picture, of_a_model_that_can_follow_telemetry_shows_that_error_too) {
+TEST(Picture, OfAModelThatCanFollowTelemetryShowsThatErrorToo) {
   Example example(1, 600);
   EXPECT_THAT(example.picture(), Not(HasSubstr("output-1-following")));
   example.run.tracked = ModelRun::Tracked{example.run.data.record.y * 0.99, {}};
@@ -153,12 +153,12 @@ TEST(Picture, of_a_model_that_can_follow_telemetry_shows_that_error_too) {
   EXPECT_THAT(example.picture(), HasSubstr("following telemetry: MRSE 2.5 %"));
 }
 
-TEST(Picture, of_many_rows_and_outputs_stays_small) {
+TEST(Picture, OfManyRowsAndOutputsStaysSmall) {
   EXPECT_LT(Example(1, 200'000).picture().size(), 100'000U);
   EXPECT_LT(Example(12, 20'000).picture().size(), 500'000U);
 }
 
-TEST(Picture, of_a_run_that_goes_far_away_still_shows_what_was_measured) {
+TEST(Picture, OfARunThatGoesFarAwayStillShowsWhatWasMeasured) {
   Example example(1, 600);
   example.run.y_hat *= 1e12;
   const std::string picture = example.picture();
@@ -166,7 +166,7 @@ TEST(Picture, of_a_run_that_goes_far_away_still_shows_what_was_measured) {
   EXPECT_THAT(picture, Not(HasSubstr("e+1")));
 }
 
-TEST(Picture, of_outputs_that_do_not_move_and_a_static_model_is_whole) {
+TEST(Picture, OfOutputsThatDoNotMoveAndAStaticModelIsWhole) {
   Example example(1, 600);
   example.run.data.record.y.setConstant(28);
   example.run.y_hat.setConstant(28);

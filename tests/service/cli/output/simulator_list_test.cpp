@@ -29,7 +29,7 @@ SimulatorRow row(const ModelAcknowledgement& said, std::optional<PublishedVersio
 
 const PublishedVersion champion{7, 3600 * second + 5, "aa"};
 
-TEST(SimulatorState, is_that_of_the_running_version_beside_the_champion) {
+TEST(SimulatorState, IsThatOfTheRunningVersionBesideTheChampion) {
   struct Case {
     std::int64_t version;
     std::optional<PublishedVersion> champion;
@@ -57,7 +57,7 @@ TEST(SimulatorState, is_that_of_the_running_version_beside_the_champion) {
   }
 }
 
-TEST(SimulatorState, says_what_was_kept_offered_and_refused) {
+TEST(SimulatorState, SaysWhatWasKeptOfferedAndRefused) {
   ModelAcknowledgement said = running("a", 6);
   said.running.from_cache = true;
   EXPECT_EQ(row(said, {}, 0).text(), "from file, approved 1970-01-01T00:01:00Z");
@@ -74,14 +74,14 @@ TEST(SimulatorState, says_what_was_kept_offered_and_refused) {
             "old by 1 version: 7 is out since 1970-01-01T01:00:00Z; refused 7: it is unstable");
 }
 
-TEST(SimulatorState, takes_the_digest_of_a_refused_version_for_no_others) {
+TEST(SimulatorState, TakesTheDigestOfARefusedVersionForNoOthers) {
   ModelAcknowledgement said = running("a", 7);
   said.accepted = false;
   said.digest = "bb";
   EXPECT_EQ(row(said, champion).state, SimulatorState::current);
 }
 
-TEST(SimulatorList, is_sorted_and_selected_by_equipment) {
+TEST(SimulatorList, IsSortedAndSelectedByEquipment) {
   PartitionSurvey sight;
   for (const char* simulator : {"b", "a"})
     for (const char* equipment : {"MEA", "BDR"})
