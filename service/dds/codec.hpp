@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include <dds/dds.h>
@@ -69,13 +70,12 @@ struct Codec<ModelVersion> {
     const Wire& operator()(const ModelVersion& version);
 
    private:
+    dds_sequence_double lend(const identification::Matrix& matrix);
     void put_tracking(const EquipmentModel::Tracking& tracking);
 
     Wire wire_{};
     std::vector<reident_Signal> inputs_, outputs_;
-    std::vector<double> a_, b_, c_, d_, k_, u0_, y0_, mrse_, fit_;
-    std::vector<double> tracking_state_, tracking_integral_, tracking_limit_, tracking_mrse_,
-        tracking_fit_;
+    std::deque<std::vector<double>> numbers_;  // one for each matrix that is lent
   };
   static Fault decode(const Wire& wire, const ReaderOptions& options, ModelVersion& version);
 };

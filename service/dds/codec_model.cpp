@@ -12,12 +12,6 @@ using identification::Matrix;
 using identification::Vector;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-dds_sequence_double borrow_matrix(const Matrix& matrix, std::vector<double>& buffer) {
-  buffer.resize(static_cast<std::size_t>(matrix.size()));
-  Eigen::Map<RowMajor>(buffer.data(), matrix.rows(), matrix.cols()) = matrix;
-  return borrow<dds_sequence_double>(buffer);
-}
-
 template <class Sequence>
 Sequence borrow_signals(const std::vector<Signal>& signals, std::vector<reident_Signal>& buffer) {
   buffer.clear();
@@ -145,7 +139,14 @@ Fault fault_in_scalars(const ModelVersion& version) {
 
 }  // namespace
 
+dds_sequence_double Codec<ModelVersion>::Encoder::lend(const Matrix& matrix) {
+  std::vector<double>& buffer = numbers_.emplace_back(static_cast<std::size_t>(matrix.size()));
+  Eigen::Map<RowMajor>(buffer.data(), matrix.rows(), matrix.cols()) = matrix;
+  return borrow<dds_sequence_double>(buffer);
+}
+
 const reident_ModelVersion& Codec<ModelVersion>::Encoder::operator()(const ModelVersion& version) {
+  numbers_.clear();
   const EquipmentModel& model = version.model;
   const identification::StateSpaceModel& dynamics = model.dynamics;
   wire_.spacecraft = borrow(model.spacecraft);
@@ -163,19 +164,19 @@ const reident_ModelVersion& Codec<ModelVersion>::Encoder::operator()(const Model
   wire_.order = static_cast<std::uint32_t>(dynamics.order());
   wire_.inputs = borrow_signals<decltype(wire_.inputs)>(model.inputs, inputs_);
   wire_.outputs = borrow_signals<decltype(wire_.outputs)>(model.outputs, outputs_);
-  wire_.A = borrow_matrix(dynamics.A, a_);
-  wire_.B = borrow_matrix(dynamics.B, b_);
-  wire_.C = borrow_matrix(dynamics.C, c_);
-  wire_.D = borrow_matrix(dynamics.D, d_);
-  wire_.K = borrow_matrix(dynamics.K, k_);
-  wire_.input_offset = borrow_matrix(dynamics.u0, u0_);
-  wire_.output_offset = borrow_matrix(dynamics.y0, y0_);
+  wire_.A = lend(dynamics.A);
+  wire_.B = lend(dynamics.B);
+  wire_.C = lend(dynamics.C);
+  wire_.D = lend(dynamics.D);
+  wire_.K = lend(dynamics.K);
+  wire_.input_offset = lend(dynamics.u0);
+  wire_.output_offset = lend(dynamics.y0);
   wire_.identified_begin_ns = model.identified_from.begin;
   wire_.identified_end_ns = model.identified_from.end;
   wire_.validated_begin_ns = model.validated_on.begin;
   wire_.validated_end_ns = model.validated_on.end;
-  wire_.mrse_percent = borrow_matrix(model.validation.mrse_percent, mrse_);
-  wire_.fit_percent = borrow_matrix(model.validation.fit_percent, fit_);
+  wire_.mrse_percent = lend(model.validation.mrse_percent);
+  wire_.fit_percent = lend(model.validation.fit_percent);
   wire_.validation_rows = model.validation.rows;
   wire_.method = borrow(model.method);
   put_tracking(model.tracking.value_or(EquipmentModel::Tracking{}));
@@ -183,11 +184,11 @@ const reident_ModelVersion& Codec<ModelVersion>::Encoder::operator()(const Model
 }
 
 void Codec<ModelVersion>::Encoder::put_tracking(const EquipmentModel::Tracking& tracking) {
-  wire_.tracking_state = borrow_matrix(tracking.gain.state, tracking_state_);
-  wire_.tracking_integral = borrow_matrix(tracking.gain.integral, tracking_integral_);
-  wire_.tracking_error_limit = borrow_matrix(tracking.gain.error_limit, tracking_limit_);
-  wire_.tracking_mrse_percent = borrow_matrix(tracking.validation.mrse_percent, tracking_mrse_);
-  wire_.tracking_fit_percent = borrow_matrix(tracking.validation.fit_percent, tracking_fit_);
+  wire_.tracking_state = lend(tracking.gain.state);
+  wire_.tracking_integral = lend(tracking.gain.integral);
+  wire_.tracking_error_limit = lend(tracking.gain.error_limit);
+  wire_.tracking_mrse_percent = lend(tracking.validation.mrse_percent);
+  wire_.tracking_fit_percent = lend(tracking.validation.fit_percent);
   wire_.tracking_validation_rows = tracking.validation.rows;
 }
 
