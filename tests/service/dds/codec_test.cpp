@@ -117,7 +117,8 @@ TEST(FrameCodec, TakesTheQualitiesThatTheIdlNames) {
   std::set<std::string> constants, expected;
   std::ifstream idl(SATCS_IDL);
   for (std::string line; std::getline(idl, line);)
-    if (line.starts_with("const octet QUALITY_")) constants.insert(line);
+    if (line.starts_with("const octet QUALITY_"))
+      constants.insert(line.substr(0, line.find(';') + 1));
   for (const storage::QualityFacts& row : storage::quality_table) {
     std::string constant(row.name);
     std::transform(constant.begin(), constant.end(), constant.begin(), [](unsigned char c) {

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include "storage/database/schema.hpp"
 #include "tests/storage/fixture.hpp"
 
 namespace reident::storage::test::database_test {
@@ -46,7 +47,7 @@ TEST(Database, MakesAFileThatIsMarkedAsOurs) {
   EXPECT_THAT(rows(folder / "a.db",
                    "PRAGMA application_id; PRAGMA user_version;"
                    "PRAGMA journal_mode; PRAGMA integrity_check"),
-              ElementsAre("1919248740", "5", "wal", "ok"));
+              ElementsAre("1919248740", std::to_string(schema::version), "wal", "ok"));
 }
 
 TEST(Database, FindsItsContentsAgain) {
