@@ -11,7 +11,6 @@
 //   none                 text
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string_view>
 
@@ -34,7 +33,7 @@ enum class Outcome {
   validation_says_nothing,
   not_finite,
   unstable,
-  slower_than_window,  // a time constant that the window cannot tell
+  slower_than_window,  // a time constant that looks like an integrator's over the window
   error_above_limit,
   fit_below_limit,
   residual_out_of_range,
@@ -54,38 +53,6 @@ struct OutcomeRow {
   /// The version's first decision; absent where there is no version.
   std::optional<storage::DecisionKind> decision;
 };
-
-/// Rows are found by their outcome, in whatever order they and the enumerators are.
-inline constexpr auto outcome_rows = [] {
-  using enum Outcome;
-  using enum storage::DecisionKind;
-  return std::to_array<OutcomeRow>({
-      {approved, "approved", approve},
-      {waiting, "waiting", wait},
-      {unvouched, "unvouched", wait},
-      {held, "held", wait},
-      {on_probation, "on_probation", wait},
-      {unknown_parameter, "unknown_parameter", std::nullopt},
-      {telemetry_damaged, "telemetry_damaged", std::nullopt},
-      {low_coverage, "low_coverage", std::nullopt},
-      {implausible, "implausible", std::nullopt},
-      {validation_says_nothing, "validation_says_nothing", reject},
-      {not_finite, "not_finite", reject},
-      {unstable, "unstable", reject},
-      {slower_than_window, "slower_than_window", reject},
-      {error_above_limit, "error_above_limit", reject},
-      {fit_below_limit, "fit_below_limit", reject},
-      {residual_out_of_range, "residual_out_of_range", reject},
-      {inputs_out_of_range, "inputs_out_of_range", reject},
-      {not_better_than_baseline, "not_better_than_baseline", reject},
-      {older_than_champion, "older_than_champion", reject},
-      {telemetry_in_doubt, "telemetry_in_doubt", reject},
-      {comparison_says_nothing, "comparison_says_nothing", reject},
-      {not_better_than_champion, "not_better_than_champion", reject},
-      {disagrees_with_champion, "disagrees_with_champion", reject},
-      {too_soon, "too_soon", reject},
-  });
-}();
 
 enum class ReasonCode {
   // There is no candidate.
@@ -169,12 +136,41 @@ struct ReasonRow {
   std::string_view sentence;
 };
 
-/// Rows are found by their code (reasons.hpp).
-inline constexpr auto reason_rows = [] {
-  using enum ReasonCode;
+/// Rows are found by their code, in whatever order they and the enumerators are.
+struct Catalogue {
   using O = Outcome;
-  constexpr std::nullopt_t none = std::nullopt;
-  return std::to_array<ReasonRow>({
+  using enum storage::DecisionKind;
+  using enum ReasonCode;
+  static constexpr std::nullopt_t none = std::nullopt;
+
+  static constexpr OutcomeRow outcomes[] = {
+      {O::approved, "approved", approve},
+      {O::waiting, "waiting", wait},
+      {O::unvouched, "unvouched", wait},
+      {O::held, "held", wait},
+      {O::on_probation, "on_probation", wait},
+      {O::unknown_parameter, "unknown_parameter", none},
+      {O::telemetry_damaged, "telemetry_damaged", none},
+      {O::low_coverage, "low_coverage", none},
+      {O::implausible, "implausible", none},
+      {O::validation_says_nothing, "validation_says_nothing", reject},
+      {O::not_finite, "not_finite", reject},
+      {O::unstable, "unstable", reject},
+      {O::slower_than_window, "slower_than_window", reject},
+      {O::error_above_limit, "error_above_limit", reject},
+      {O::fit_below_limit, "fit_below_limit", reject},
+      {O::residual_out_of_range, "residual_out_of_range", reject},
+      {O::inputs_out_of_range, "inputs_out_of_range", reject},
+      {O::not_better_than_baseline, "not_better_than_baseline", reject},
+      {O::older_than_champion, "older_than_champion", reject},
+      {O::telemetry_in_doubt, "telemetry_in_doubt", reject},
+      {O::comparison_says_nothing, "comparison_says_nothing", reject},
+      {O::not_better_than_champion, "not_better_than_champion", reject},
+      {O::disagrees_with_champion, "disagrees_with_champion", reject},
+      {O::too_soon, "too_soon", reject},
+  };
+
+  static constexpr ReasonRow reasons[] = {
       {unknown_parameter, "unknown_parameter", O::unknown_parameter,
        "Parameter {parameter} has not been described by telemetry yet; check its name in the "
        "configuration or wait for its descriptor."},
@@ -358,7 +354,7 @@ inline constexpr auto reason_rows = [] {
        "mode with a time constant of {slowest_rows:.0f} samples may make it for a while; over "
        "{rows:d} samples since the champion was validated the version has {mrse_percent:.3f} % and "
        "the champion {champion_mrse_percent:.3f} %."},
-  });
-}();
+  };
+};
 
 }  // namespace reident

@@ -1,6 +1,6 @@
 #include "service/model/reasons.hpp"
 
-#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,20 +12,19 @@ namespace reident {
 namespace {
 
 constexpr const OutcomeRow& row_of(Outcome outcome) {
-  for (const OutcomeRow& row : outcome_rows)
+  for (const OutcomeRow& row : Catalogue::outcomes)
     if (row.outcome == outcome) return row;
   throw std::logic_error("an outcome that the catalogue does not have");
 }
 
 /// Whether no two rows share a code or a name, and every outcome of a reason has a row.
 constexpr bool is_consistent() {
-  for (const OutcomeRow& row : outcome_rows)
+  for (const OutcomeRow& row : Catalogue::outcomes)
     if (&row_of(row.outcome) != &row) return false;
-  for (const ReasonRow& row : reason_rows) {
+  for (const ReasonRow& row : Catalogue::reasons) {
     if (&row_of(row.code) != &row) return false;
     if (row.outcome) row_of(*row.outcome);
-    for (const ReasonRow* other = &row + 1; other != reason_rows.data() + reason_rows.size();
-         ++other)
+    for (const ReasonRow* other = &row + 1; other != std::end(Catalogue::reasons); ++other)
       if (other->name == row.name) return false;
   }
   return true;

@@ -51,7 +51,7 @@ constexpr std::optional<FigurePlace> next_figure(std::string_view sentence, std:
 }
 
 constexpr const ReasonRow& row_of(ReasonCode code) {
-  for (const ReasonRow& row : reason_rows)
+  for (const ReasonRow& row : Catalogue::reasons)
     if (row.code == code) return row;
   throw std::logic_error("a reason that the catalogue does not have");
 }
@@ -73,7 +73,7 @@ constexpr bool has_format(std::string_view format) {
 template <typename... Types>
 constexpr bool are_figures_of(std::string_view sentence) {
   std::size_t at = 0;
-  const auto is_next = [&]<typename Type>(std::type_identity<Type>) {
+  [[maybe_unused]] const auto is_next = [&]<typename Type>(std::type_identity<Type>) {
     const auto place = next_figure(sentence, at);
     if (place) at = place->end;
     return place && has_format<Type>(place->format);

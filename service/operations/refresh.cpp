@@ -159,7 +159,7 @@ int choose_candidate(const storage::Registry& registry, const RefreshRequest& re
   return 2;
 }
 
-/// Of each comparison, in percent, so that the one which chose among `candidates` has `percent`
+/// The confidence of each comparison, so that the one chosen among `candidates` has `percent`
 /// (Bonferroni's inequality).
 double confidence_of_each(double percent, int candidates) {
   return 100 - (100 - percent) / candidates;

@@ -146,7 +146,7 @@ void identify_window(const RefreshRequest& request, WindowCache& kept,
             : because<ReasonCode::low_coverage_with_derived>(coverage_percent, needed_percent));
   identification::IdentifyOptions options = options_of(request.equipment);
   options.tune_rows = parts.tune.size();
-  // What is slower the gate would turn away: the window cannot tell it.
+  // The gate would turn away what is slower: over the window it looks like an integrator.
   options.longest_time_constant_s = 1e-9 * double(request.window.end - request.window.begin);
   options.for_each = for_each;
   options.on_phase = [&stop, &prepared](std::string_view phase) {

@@ -201,7 +201,7 @@ TEST(Reasons, EachHasItsSentence) {
   expect_worded(against_a_candidate);
   expect_worded(for_a_candidate);
   expect_worded(of_an_evaluation);
-  for (const ReasonRow& row : reason_rows) EXPECT_EQ(examples[row.code], 1) << row.name;
+  for (const ReasonRow& row : Catalogue::reasons) EXPECT_EQ(examples[row.code], 1) << row.name;
 }
 
 TEST(Reasons, FollowOneAnotherInTextAndJson) {
