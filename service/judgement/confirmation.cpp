@@ -7,13 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "identification/simulation/simulate.hpp"
 #include "service/judgement/run_comparison.hpp"
 #include "service/model/model_json.hpp"
-#include "service/support/time_text.hpp"
 #include "service/windows/provenance.hpp"
 #include "service/windows/window_cache.hpp"
 
@@ -22,8 +20,10 @@ namespace {
 
 using identification::Course;
 using identification::RowRange;
+using nlohmann::ordered_json;
 using storage::DecisionKind;
 using storage::NewDecision;
+using Code = ReasonCode;
 
 /// Looks come when so many quarters of `confirmation` have passed since the window's end, the
 /// newest one first: at 8 no telemetry is waited for any more. (By a look at 2 too some versions of
@@ -42,20 +42,31 @@ std::optional<storage::Time> look_time(const storage::Version& version,
   return std::nullopt;
 }
 
-NewDecision rejection(std::string reason) {
-  return {DecisionKind::reject, "gate", "Not confirmed: " + std::move(reason), {}};
+NewDecision decision_of(DecisionKind kind, const std::vector<Reason>& reasons,
+                        ordered_json evidence = {}) {
+  evidence["reasons"] = to_json(reasons);
+  return {kind, "gate", sentences(reasons),
+          evidence.dump(-1, ' ', false, ordered_json::error_handler_t::replace)};
 }
 
-/// What counts of the champion's error, where a sensor that no relation binds could show the rest.
-std::string but_for_offset(const ConfirmationEvidence& look) {
-  if (!look.needs_vouching) return {};
-  return fmt::format(", {:.3f} % but for a constant offset that no relation vouches for",
-                     look.without_offset.rival_mrse_percent);
+NewDecision rejection(Reason reason) {
+  return decision_of(DecisionKind::reject, {std::move(reason)});
 }
 
-NewDecision decision(DecisionKind kind, const ConfirmationEvidence& look,
-                     const std::string& reason) {
-  nlohmann::ordered_json evidence = {
+/// What was compared; of the champion's error also what counts, where a sensor that no relation
+/// binds could show the rest.
+Reason comparison_of(const ConfirmationEvidence& look) {
+  const Evidence::Comparison& found = look.comparison;
+  if (look.needs_vouching)
+    return because<Code::evaluated_beside_offset>(found.mrse_percent, found.rows, look.until,
+                                                  look.champion, found.rival_mrse_percent,
+                                                  look.without_offset.rival_mrse_percent);
+  return because<Code::evaluated>(found.mrse_percent, found.rows, look.until, look.champion,
+                                  found.rival_mrse_percent);
+}
+
+NewDecision decision(DecisionKind kind, const ConfirmationEvidence& look, Reason reason) {
+  ordered_json evidence = {
       {"until_ns", look.until},
       {"champion", look.champion},
       {"champion_validated_mrse_percent", look.champion_validated_mrse_percent},
@@ -73,13 +84,7 @@ NewDecision decision(DecisionKind kind, const ConfirmationEvidence& look,
   if (look.champion_worst_mrse_percent > 0)
     evidence["champion_worst_mrse_percent"] = look.champion_worst_mrse_percent;
   if (look.over_tenure) evidence["over_tenure"] = to_json(*look.over_tenure);
-  const Evidence::Comparison& comparison = look.comparison;
-  return {kind, "gate",
-          fmt::format("MRSE {:.3f} % on {} samples of the validation part and after it, until {}; "
-                      "champion {} has {:.3f} % there{}. {}",
-                      comparison.mrse_percent, comparison.rows, time_text(look.until),
-                      look.champion, comparison.rival_mrse_percent, but_for_offset(look), reason),
-          evidence.dump()};
+  return decision_of(kind, {comparison_of(look), std::move(reason)}, std::move(evidence));
 }
 
 struct Reduction {
@@ -123,32 +128,24 @@ bool as_before(const ConfirmationEvidence& look) {
 }
 
 /// What speaks against the version of all that the champion has run on.
-std::optional<std::string> against_tenure(const ConfirmationEvidence& look,
-                                          const EquipmentConfig& limits) {
+std::optional<Reason> against_tenure(const ConfirmationEvidence& look,
+                                     const EquipmentConfig& limits) {
   constexpr double least_believed = 0.5;
   const double needed = surely_needed_elsewhere(limits);
   if (!left_behind(look) && look.tenure_believed < least_believed)
-    return fmt::format(
-        "the champion had {:.3f} % where it was validated, and of the telemetry that leads from "
-        "then to the version's window {:.0f} % is believed, so that nothing tells of a change.",
-        look.champion_validated_mrse_percent, 100 * look.tenure_believed);
+    return because<Code::unconfirmed_tenure_excluded>(look.champion_validated_mrse_percent,
+                                                      100 * look.tenure_believed);
   if (const auto& all = look.over_tenure;
       all && as_before(look) && !(all->reduction_percent > needed))
-    return fmt::format(
-        "since the champion was validated it had up to {:.3f} % already, so that nothing tells "
-        "of a change; over {} samples of then and now the version has {:.3f} % and the champion "
-        "{:.3f} %.",
-        look.champion_worst_mrse_percent, all->rows, all->mrse_percent, all->rival_mrse_percent);
+    return because<Code::unconfirmed_as_in_tenure>(look.champion_worst_mrse_percent, all->rows,
+                                                   all->mrse_percent, all->rival_mrse_percent);
   if (const auto& all = look.over_tenure;
       all && may_be_excursion(look, limits) &&
       !(all->sure_percent > needed &&
         static_cast<double>(all->rows) >= time_constants * look.slowest_rows))
-    return fmt::format(
-        "but for a constant the champion has {:.3f} %, and a mode with a time constant of {:.0f} "
-        "samples may make it for a while; over {} samples since the champion was validated the "
-        "version has {:.3f} % and the champion {:.3f} %.",
-        look.without_offset.rival_mrse_percent, look.slowest_rows, all->rows, all->mrse_percent,
-        all->rival_mrse_percent);
+    return because<Code::unconfirmed_excursion>(look.without_offset.rival_mrse_percent,
+                                                look.slowest_rows, all->rows, all->mrse_percent,
+                                                all->rival_mrse_percent);
   return std::nullopt;
 }
 
@@ -269,22 +266,13 @@ void add_tenure(ConfirmationEvidence& look, const RunsOfBoth& tenure, const Pair
 std::optional<NewDecision> against_window(const storage::Version& version,
                                           const std::optional<storage::Version>& champion,
                                           const EquipmentConfig& equipment) {
-  if (!champion)
-    return rejection(
-        "the champion that it was to replace was withdrawn; windows that end from now "
-        "on are judged without one.");
-  if (equipment.confirmation == 0)
-    return rejection(
-        "`confirmation` is 0 now, so that no version waits for telemetry after its window.");
+  if (!champion) return rejection(because<Code::unconfirmed_champion_withdrawn>());
+  if (equipment.confirmation == 0) return rejection(because<Code::unconfirmed_confirmation_off>());
   const Duration newer = version.window.end - champion->window.end;
-  if (newer < 0)
-    return rejection(
-        fmt::format("champion {} was identified from newer telemetry.", champion->number));
+  if (newer < 0) return rejection(because<Code::unconfirmed_older>(champion->number));
   if (newer < equipment.min_interval)
     return rejection(
-        fmt::format("the window ends {} after that of champion {}; versions are at "
-                    "least {} apart.",
-                    duration_text(newer), champion->number, duration_text(equipment.min_interval)));
+        because<Code::unconfirmed_too_soon>(newer, champion->number, equipment.min_interval));
   return std::nullopt;
 }
 
@@ -299,13 +287,12 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
   if (!time) return std::nullopt;
   for (const storage::Version* one : {&version, &*champion})
     if (const auto mistake = mistake_in(*one))
-      return rejection(
-          fmt::format("version {} is damaged in the registry: {}.", one->number, *mistake));
+      return rejection(because<Code::unconfirmed_damaged>(one->number, *mistake));
   try {
     const EquipmentModel model = equipment_model_from_json(version.model_json);
     const EquipmentModel incumbent = equipment_model_from_json(champion->model_json);
     if (!same_outputs(model, incumbent))
-      return rejection(fmt::format("champion {} has other outputs.", champion->number));
+      return rejection(because<Code::unconfirmed_other_outputs>(champion->number));
     const bool vouching = needs_vouching(registry, version, equipment);
     const storage::Time confirmed = version.window.end + equipment.confirmation;
     const auto judged = [&](storage::Time until) -> std::optional<NewDecision> {
@@ -327,7 +314,7 @@ std::optional<NewDecision> look_at(const storage::Archive& archive,
       if (auto found = judged(std::min(*time, confirmed))) return found;
     if (*time <= confirmed) return std::nullopt;
     if (auto found = judged(*time)) return found;
-    return rejection("no telemetry to judge it by is left.");
+    return rejection(because<Code::unconfirmed_nothing_left>());
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::corrupt) throw;
     return std::nullopt;
@@ -343,56 +330,37 @@ std::optional<NewDecision> judge_probation(const ConfirmationEvidence& look,
   const bool keeps_up = look.after.mrse_percent < most_growth * look.validated_mrse_percent;
   const double needed = surely_needed_elsewhere(limits);
   const double surely_needed = keeps_up ? needed : limits.margin_percent;
-  const auto against = [&]() -> std::optional<std::string> {
+  const auto against = [&]() -> std::optional<Reason> {
     if (is_in_doubt(look.fault_share))
-      return fmt::format(
-          "with {:.2f} faults of sensors found in 100 ticks any comparison is doubtful.",
-          100 * look.fault_share);
+      return because<Code::unconfirmed_in_doubt>(100 * look.fault_share);
     if (look.comparison.mrse_percent > limits.max_mrse_percent)
-      return fmt::format("that is above the limit of {:g} %.", limits.max_mrse_percent);
-    if (look.after.rows == 0)
-      return "of the telemetry after its window none is believed and says anything.";
+      return because<Code::unconfirmed_above_limit>(limits.max_mrse_percent);
+    if (look.after.rows == 0) return because<Code::unconfirmed_nothing_after>();
     if (!(look.after.reduction_percent > 0))
-      return fmt::format(
-          "on the {} samples after its window alone it has {:.3f} % and the champion "
-          "{:.3f} %.",
-          look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent);
+      return because<Code::unconfirmed_worse_after>(look.after.rows, look.after.mrse_percent,
+                                                    look.after.rival_mrse_percent);
     if (!(look.with_window.reduction_percent > 0))
-      return fmt::format(
-          "over all of its window and what came after it, it has {:.3f} % and the champion {:.3f} "
-          "%.",
-          look.with_window.mrse_percent, look.with_window.rival_mrse_percent);
-    if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > surely_needed))
-      return fmt::format(
-          "that is not {:g} % less, and surely {:g} %{}.", limits.margin_percent, surely_needed,
-          keeps_up ? ""
-                   : fmt::format(", as it has to be of a version that has {:.3f} % after its "
-                                 "window and had {:.3f} % where it was validated",
-                                 look.after.mrse_percent, look.validated_mrse_percent));
+      return because<Code::unconfirmed_worse_with_window>(look.with_window.mrse_percent,
+                                                          look.with_window.rival_mrse_percent);
+    if (!(reduction.percent > limits.margin_percent && reduction.sure_percent > surely_needed)) {
+      if (keeps_up)
+        return because<Code::unconfirmed_not_surely_less>(limits.margin_percent, surely_needed);
+      return because<Code::unconfirmed_not_keeping_up>(limits.margin_percent, surely_needed,
+                                                       look.after.mrse_percent,
+                                                       look.validated_mrse_percent);
+    }
     const bool surely_throughout = !may_be_excursion(look, limits) &&
                                    look.after.sure_percent > 0.0 &&
                                    look.with_window.sure_percent > limits.margin_percent;
     if (!shows_beside_noise(look.comparison,
                             surely_throughout ? lasting_gain_over_noise : least_gain_over_noise))
-      return fmt::format("that is too little less beside the noise of the sensors ({:.3f} %).",
-                         look.comparison.noise_percent);
-    if (!look.still.empty())
-      return fmt::format(
-          "from the begin of its window on {} stands still: it is stuck, or the operation is not "
-          "the usual one.",
-          look.still);
-    if (is_unusual(look.movement))
-      return fmt::format(
-          "there the inputs move over {:.0f} % of the ranges that the champion was "
-          "identified in: an unusual operation, which says little of the usual one.",
-          100 * look.movement);
+      return because<Code::unconfirmed_within_noise>(look.comparison.noise_percent);
+    if (!look.still.empty()) return because<Code::unconfirmed_input_still>(look.still);
+    if (is_unusual(look.movement)) return because<Code::unconfirmed_unusual>(100 * look.movement);
     if (const auto& both = look.with_past;
         both && !(both->reduction_percent > limits.margin_percent))
-      return fmt::format(
-          "the champion had {:.3f} % where it was validated, so that nothing tells of a change; "
-          "over {} samples of then and now the version has {:.3f} % and the champion {:.3f} %.",
-          look.champion_validated_mrse_percent, both->rows, both->mrse_percent,
-          both->rival_mrse_percent);
+      return because<Code::unconfirmed_no_change>(look.champion_validated_mrse_percent, both->rows,
+                                                  both->mrse_percent, both->rival_mrse_percent);
     return against_tenure(look, limits);
   }();
   using Stage = ConfirmationEvidence::Stage;
@@ -404,19 +372,15 @@ std::optional<NewDecision> judge_probation(const ConfirmationEvidence& look,
   const bool lasts_enough =
       look.stage == Stage::last || shows_beside_noise(look.comparison, plain_gain_over_noise);
   if (!against && suffices && lasts_enough)
-    return decision(
-        DecisionKind::approve, look,
-        fmt::format("Confirmed: the reduction is {:.2f} %, and with a confidence of {:g} % at "
-                    "least {:.2f} %.",
-                    reduction.percent, limits.confidence_percent, reduction.sure_percent));
+    return decision(DecisionKind::approve, look,
+                    because<Code::confirmed>(reduction.percent, limits.confidence_percent,
+                                             reduction.sure_percent));
   if (look.stage == Stage::early || (look.stage == Stage::due && !against)) return std::nullopt;
   return decision(
       DecisionKind::reject, look,
-      "Not confirmed: " +
-          against.value_or(fmt::format(
-              "on the {} samples after its window alone it has {:.3f} % and the champion {:.3f} %, "
-              "which is not surely less.",
-              look.after.rows, look.after.mrse_percent, look.after.rival_mrse_percent)));
+      against ? *against
+              : because<Code::unconfirmed_after_not_sure>(look.after.rows, look.after.mrse_percent,
+                                                          look.after.rival_mrse_percent));
 }
 
 std::vector<storage::Version> on_probation(const storage::Registry& registry,

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include "service/support/time_text.hpp"
 
 namespace reident {
 namespace {
@@ -35,80 +34,43 @@ double without_noise(double mrse_percent, double noise_percent) {
   return std::sqrt(std::max(0.0, mrse_percent * mrse_percent - noise_percent * noise_percent));
 }
 
-using Refusal = std::optional<GateDecision>;
+using Refusal = std::optional<Reason>;
+using Code = ReasonCode;
 
 Refusal against_model(const Evidence& e) {
-  if (!e.validation_moves)
-    return GateDecision{Outcome::validation_says_nothing,
-                        "An output does not move in the validation part, so that no score there "
-                        "can tell a good model from a bad one."};
+  if (!e.validation_moves) return because<Code::validation_says_nothing>();
   if (!e.well_formed || !std::isfinite(e.mrse_percent) || std::isnan(e.fit_percent))
-    return GateDecision{Outcome::not_finite,
-                        "The model or its run holds numbers that are not finite."};
-  if (!(e.spectral_radius < 1.0))
-    return GateDecision{
-        Outcome::unstable,
-        fmt::format("The model is unstable: its spectral radius is {:.6f}.", e.spectral_radius)};
+    return because<Code::not_finite>();
+  if (!(e.spectral_radius < 1.0)) return because<Code::unstable>(e.spectral_radius);
   if (e.slowest_over_window > slowest_limit)
-    return GateDecision{
-        Outcome::slower_than_window,
-        fmt::format("Its slowest time constant is {:.3g} times the window's length, which cannot "
-                    "tell it: a long run would drift away.",
-                    e.slowest_over_window)};
+    return because<Code::slower_than_window>(e.slowest_over_window);
   return std::nullopt;
 }
 
 Refusal against_scores(const Evidence& e, const EquipmentConfig& limits) {
   if (e.mrse_percent > limits.max_mrse_percent)
-    return GateDecision{Outcome::error_above_limit,
-                        fmt::format("MRSE {:.3f} % on unseen data is above the limit of {:g} %.",
-                                    e.mrse_percent, limits.max_mrse_percent)};
+    return because<Code::error_above_limit>(e.mrse_percent, limits.max_mrse_percent);
   if (!(e.fit_percent > 0) || e.fit_percent < limits.min_fit_percent)
-    return GateDecision{Outcome::fit_below_limit,
-                        fmt::format("Fit {:.2f} % on unseen data is below the limit of {:g} % "
-                                    "(0 % is a constant at the mean).",
-                                    e.fit_percent, limits.min_fit_percent)};
-  if (!e.mean.sure_percent)
-    return GateDecision{
-        Outcome::fit_below_limit,
-        fmt::format(
-            "Fit {:.2f} % on {} unseen samples may be chance: they are too few, or too much "
-            "of one stretch, to tell.",
-            e.fit_percent, e.mean.rows)};
+    return because<Code::fit_below_limit>(e.fit_percent, limits.min_fit_percent);
+  if (!e.mean.sure_percent) return because<Code::fit_of_few_samples>(e.fit_percent, e.mean.rows);
   if (!(*e.mean.sure_percent > 0))
-    return GateDecision{
-        Outcome::fit_below_limit,
-        fmt::format("Fit {:.2f} % on unseen data may be chance: with a confidence of {:g} % it is "
-                    "not above 0 % (a constant at the mean).",
-                    e.fit_percent, limits.confidence_percent)};
+    return because<Code::fit_not_sure>(e.fit_percent, limits.confidence_percent);
   if (!(e.residual_over_span <= residual_limit))
-    return GateDecision{
-        Outcome::residual_out_of_range,
-        fmt::format("The largest error is {:.2f} times the output's range.", e.residual_over_span)};
+    return because<Code::residual_out_of_range>(e.residual_over_span);
   if (!(e.outside_share <= outside_limit))
-    return GateDecision{
-        Outcome::inputs_out_of_range,
-        fmt::format("On {:.0f} % of the validation part an input is outside the range that the "
-                    "model was identified in: the score there is of an extrapolation.",
-                    100 * e.outside_share)};
+    return because<Code::inputs_out_of_range>(100 * e.outside_share);
   return std::nullopt;
 }
 
 Refusal against_baseline(const Evidence& e, const EquipmentConfig& limits) {
   if (e.baseline) {
     if (!(e.baseline->sure_percent > limits.margin_percent))
-      return GateDecision{
-          Outcome::not_better_than_baseline,
-          fmt::format("MRSE {:.3f} % does not surely undercut the simulator's own telemetry "
-                      "({:.3f} % on the same samples) by {:g} %.",
-                      e.baseline->mrse_percent, e.baseline->rival_mrse_percent,
-                      limits.margin_percent)};
+      return because<Code::not_better_than_simulator>(
+          e.baseline->mrse_percent, e.baseline->rival_mrse_percent, limits.margin_percent);
     return std::nullopt;
   }
   if (limits.baseline_mrse_percent && e.mrse_percent >= *limits.baseline_mrse_percent)
-    return GateDecision{Outcome::not_better_than_baseline,
-                        fmt::format("MRSE {:.3f} % is not below the baseline's {:.3f} %.",
-                                    e.mrse_percent, *limits.baseline_mrse_percent)};
+    return because<Code::not_below_baseline>(e.mrse_percent, *limits.baseline_mrse_percent);
   return std::nullopt;
 }
 
@@ -119,37 +81,22 @@ bool has_run(const std::optional<Evidence::Champion>& champion) {
 
 Refusal against_faults(const Evidence& e) {
   if (!is_in_doubt(e.fault_share)) return std::nullopt;
-  return GateDecision{
-      Outcome::telemetry_in_doubt,
-      fmt::format("{:.2f} faults of sensors were found in 100 ticks: others that go unnoticed "
-                  "make any comparison doubtful, and champion {} stays.",
-                  100 * e.fault_share, e.champion->version)};
+  return because<Code::telemetry_in_doubt>(100 * e.fault_share, e.champion->version);
 }
 
 Refusal against_comparison(const Evidence::Champion& champion, const EquipmentConfig& limits) {
   const Evidence::Comparison& comparison = *champion.comparison;
   if (!comparison.sure_percent)
-    return GateDecision{
-        Outcome::comparison_says_nothing,
-        fmt::format("{} samples compare the candidate with champion {}: too few, or too much of "
-                    "one stretch, to tell.",
-                    comparison.rows, champion.version)};
+    return because<Code::comparison_says_nothing>(comparison.rows, champion.version);
   if (!(*comparison.sure_percent > limits.margin_percent))
-    return GateDecision{
-        Outcome::not_better_than_champion,
-        fmt::format("MRSE {:.3f} % does not surely undercut champion {} ({:.3f} % on the same "
-                    "samples) by {:g} %: the reduction is {:.2f} %, and {:.2f} % with a "
-                    "confidence of {:g} %.",
-                    comparison.mrse_percent, champion.version, comparison.rival_mrse_percent,
-                    limits.margin_percent, comparison.reduction_percent, *comparison.sure_percent,
-                    limits.confidence_percent)};
+    return because<Code::not_surely_better>(comparison.mrse_percent, champion.version,
+                                            comparison.rival_mrse_percent, limits.margin_percent,
+                                            comparison.reduction_percent, *comparison.sure_percent,
+                                            limits.confidence_percent);
   if (!shows_beside_noise(comparison, least_gain_over_noise))
-    return GateDecision{
-        Outcome::not_better_than_champion,
-        fmt::format("MRSE {:.3f} % undercuts champion {} ({:.3f} % on the same samples) by too "
-                    "little beside the noise of the sensors ({:.3f} %).",
-                    comparison.mrse_percent, champion.version, comparison.rival_mrse_percent,
-                    comparison.noise_percent)};
+    return because<Code::gain_within_noise>(comparison.mrse_percent, champion.version,
+                                            comparison.rival_mrse_percent,
+                                            comparison.noise_percent);
   return std::nullopt;
 }
 
@@ -180,20 +127,14 @@ Refusal against_elsewhere(const Evidence::Champion& champion, const EquipmentCon
       elsewhere.mrse_percent < elsewhere.champion_mrse_percent ||
       explains(champion, elsewhere, limits))
     return std::nullopt;
-  return GateDecision{
-      Outcome::disagrees_with_champion,
-      fmt::format("On {} samples of the window of champion {}, with inputs that this one was not "
-                  "validated with, the two differ by {:.1f} % of the output's range, above the "
-                  "limit of {:g} %, and the champion is nearer to the telemetry of that time.",
-                  elsewhere.rows, champion.version, elsewhere.disagreement_percent,
-                  limits.max_disagreement_percent)};
+  return because<Code::disagrees_with_champion>(elsewhere.rows, champion.version,
+                                                elsewhere.disagreement_percent,
+                                                limits.max_disagreement_percent);
 }
 
 Refusal against_older(const Evidence& e) {
   if (e.window_end >= e.champion->window_end) return std::nullopt;
-  return GateDecision{
-      Outcome::older_than_champion,
-      fmt::format("Champion {} was identified from newer telemetry.", e.champion->version)};
+  return because<Code::older_than_champion>(e.champion->version);
 }
 
 Refusal against_succession(const Evidence& e, const EquipmentConfig& limits) {
@@ -201,11 +142,7 @@ Refusal against_succession(const Evidence& e, const EquipmentConfig& limits) {
   if (auto refusal = against_elsewhere(champion, limits)) return refusal;
   const Duration since = e.window_end - champion.window_end;
   if (since < limits.min_interval)
-    return GateDecision{
-        Outcome::too_soon,
-        fmt::format("The window ends {} after that of champion {}; versions are at "
-                    "least {} apart.",
-                    duration_text(since), champion.version, duration_text(limits.min_interval))};
+    return because<Code::too_soon>(since, champion.version, limits.min_interval);
   return std::nullopt;
 }
 
@@ -227,9 +164,8 @@ bool may_wait(const Evidence& e, const EquipmentConfig& limits) {
   return limits.confirmation > 0 && limits.approval == ApprovalPolicy::automatic && !e.hold;
 }
 
-std::string wait_of(const EquipmentConfig& limits) {
-  return fmt::format(" Waits for {} of telemetry after its window, or for twice as much.",
-                     duration_text(limits.confirmation));
+Reason wait_of(const EquipmentConfig& limits) {
+  return because<Code::waits_for_telemetry>(limits.confirmation);
 }
 
 /// Better by the margin, and not surely.
@@ -242,31 +178,29 @@ bool may_become_sure(const Evidence& e, const EquipmentConfig& limits) {
   return reduction > limits.margin_percent;
 }
 
-Refusal against_champion(const Evidence& e, const EquipmentConfig& limits) {
-  if (auto refusal = against_older(e)) return refusal;
+/// Nothing where nothing speaks against it.
+std::vector<Reason> against_champion(const Evidence& e, const EquipmentConfig& limits) {
+  const auto only = [](Refusal refusal) {
+    return refusal ? std::vector{*std::move(refusal)} : std::vector<Reason>();
+  };
+  if (auto refusal = against_older(e)) return only(refusal);
   auto refusal = against_succession(e, limits);
   // A champion that cannot run here, or runs astray, loses to any candidate that holds the rest.
-  if (!has_run(e.champion)) return refusal;
-  if (auto doubt = against_faults(e)) return doubt;
+  if (!has_run(e.champion)) return only(refusal);
+  if (auto doubt = against_faults(e)) return only(doubt);
   auto not_better = against_comparison(*e.champion, limits);
-  if (!not_better) return refusal;
-  if (!refusal && may_become_sure(e, limits)) {
-    not_better->outcome = Outcome::on_probation;
-    not_better->reason += wait_of(limits);
-  }
-  return not_better;
+  if (!not_better) return only(refusal);
+  if (!refusal && may_become_sure(e, limits)) return {*not_better, wait_of(limits)};
+  return only(not_better);
 }
 
-std::string praise(const Evidence& e) {
-  if (!e.champion)
-    return fmt::format("First version: MRSE {:.3f} %, fit {:.1f} % on unseen data.", e.mrse_percent,
-                       e.fit_percent);
+Reason praise(const Evidence& e) {
+  if (!e.champion) return because<Code::first_version>(e.mrse_percent, e.fit_percent);
   if (!e.champion->comparison)
-    return fmt::format("MRSE {:.3f} % on unseen data, on which champion {} cannot run.",
-                       e.mrse_percent, e.champion->version);
-  return fmt::format("MRSE {:.3f} % on unseen data; champion {} has {:.3f} % on the same samples.",
-                     e.champion->comparison->mrse_percent, e.champion->version,
-                     e.champion->comparison->rival_mrse_percent);
+    return because<Code::champion_cannot_run>(e.mrse_percent, e.champion->version);
+  return because<Code::better_than_champion>(e.champion->comparison->mrse_percent,
+                                             e.champion->version,
+                                             e.champion->comparison->rival_mrse_percent);
 }
 
 /// What telemetry after the window had better tell first.
@@ -274,53 +208,39 @@ Refusal against_haste(const Evidence& e, const EquipmentConfig& limits) {
   if (!has_run(e.champion) || !may_wait(e, limits)) return std::nullopt;
   const Evidence::Champion& champion = *e.champion;
   if (gains_a_constant(champion, limits))
-    return GateDecision{
-        Outcome::on_probation,
-        praise(e) +
-            fmt::format(" But for a constant offset the champion has {:.3f} %, which is not "
-                        "surely worse by {:g} %.",
-                        champion.without_offset->rival_mrse_percent,
-                        surely_needed_elsewhere(limits)) +
-            wait_of(limits)};
+    return because<Code::offset_not_sure>(champion.without_offset->rival_mrse_percent,
+                                          surely_needed_elsewhere(limits));
   if (!shows_beside_noise(*champion.comparison, plain_gain_over_noise))
-    return GateDecision{
-        Outcome::on_probation,
-        praise(e) +
-            fmt::format(" That is little less beside the noise of the sensors ({:.3f} %).",
-                        champion.comparison->noise_percent) +
-            wait_of(limits)};
+    return because<Code::gain_near_noise>(champion.comparison->noise_percent);
   if (static_cast<double>(champion.comparison->rows) < champion.slowest_rows)
-    return GateDecision{Outcome::on_probation,
-                        praise(e) +
-                            fmt::format(" But those are fewer than the slowest time constant of "
-                                        "the two lasts ({:.0f}).",
-                                        champion.slowest_rows) +
-                            wait_of(limits)};
-  if (!champion.still.empty())
-    return GateDecision{Outcome::on_probation,
-                        praise(e) +
-                            fmt::format(" But {} stands still all over the window: it is stuck, "
-                                        "or the operation is not the usual one.",
-                                        champion.still) +
-                            wait_of(limits)};
+    return because<Code::shorter_than_slowest>(champion.slowest_rows);
+  if (!champion.still.empty()) return because<Code::input_still>(champion.still);
   if (is_unusual(champion.movement))
-    return GateDecision{
-        Outcome::on_probation,
-        praise(e) +
-            fmt::format(" The inputs move over {:.0f} % of the ranges that the champion was "
-                        "identified in: the operation is not the usual one.",
-                        100 * champion.movement) +
-            wait_of(limits)};
+    return because<Code::operation_unusual>(100 * champion.movement);
   if (!is_left_behind(champion.comparison->rival_mrse_percent, champion.validated_mrse_percent) &&
       !(champion.where_validated && champion.where_validated->sure_percent > limits.margin_percent))
-    return GateDecision{
-        Outcome::on_probation,
-        praise(e) +
-            fmt::format(" It had {:.3f} % where it was validated, so that the equipment has hardly "
-                        "changed.",
-                        champion.validated_mrse_percent) +
-            wait_of(limits)};
+    return because<Code::hardly_changed>(champion.validated_mrse_percent);
   return std::nullopt;
+}
+
+std::vector<Reason> reasons_of(const Evidence& evidence, const EquipmentConfig& limits) {
+  if (auto refusal = against_model(evidence)) return {*refusal};
+  if (auto refusal = against_scores(evidence, limits)) return {*refusal};
+  if (evidence.champion)
+    if (auto refusals = against_champion(evidence, limits); !refusals.empty()) return refusals;
+  if (!has_run(evidence.champion))
+    if (auto refusal = against_baseline(evidence, limits)) return {*refusal};
+  if (evidence.hold)
+    return {praise(evidence), because<Code::held>(evidence.hold->actor, evidence.hold->reason)};
+  if (is_unvouched(evidence, limits))
+    return {praise(evidence), because<Code::offset_unvouched>(
+                                  limits.margin_percent,
+                                  fmt::format("{}", fmt::join(evidence.champion->unbound, ", ")))};
+  if (auto haste = against_haste(evidence, limits))
+    return {praise(evidence), *haste, wait_of(limits)};
+  if (limits.approval == ApprovalPolicy::by_hand)
+    return {praise(evidence), because<Code::waits_for_operator>()};
+  return {praise(evidence)};
 }
 
 }  // namespace
@@ -349,28 +269,9 @@ bool is_left_behind(double mrse_percent, double validated_mrse_percent) {
 }
 
 GateDecision decide(const Evidence& evidence, const EquipmentConfig& limits) {
-  if (auto refusal = against_model(evidence)) return *refusal;
-  if (auto refusal = against_scores(evidence, limits)) return *refusal;
-  if (evidence.champion)
-    if (auto refusal = against_champion(evidence, limits)) return *refusal;
-  if (!has_run(evidence.champion))
-    if (auto refusal = against_baseline(evidence, limits)) return *refusal;
-  if (evidence.hold)
-    return {Outcome::held,
-            praise(evidence) + fmt::format(" Waits: {} holds the equipment ({}).",
-                                           evidence.hold->actor, evidence.hold->reason)};
-  if (is_unvouched(evidence, limits))
-    return {
-        Outcome::unvouched,
-        praise(evidence) +
-            fmt::format(" But for a constant offset the champion is not surely worse by {:g} %, "
-                        "and a sensor of {} would show the same; no relation binds it. Waits "
-                        "for an operator's approval.",
-                        limits.margin_percent, fmt::join(evidence.champion->unbound, ", "))};
-  if (auto haste = against_haste(evidence, limits)) return *haste;
-  if (limits.approval == ApprovalPolicy::by_hand)
-    return {Outcome::waiting, praise(evidence) + " Waits for an operator's approval."};
-  return {Outcome::approved, praise(evidence)};
+  std::vector<Reason> reasons = reasons_of(evidence, limits);
+  const Outcome outcome = outcome_of(reasons);
+  return {outcome, std::move(reasons)};
 }
 
 }  // namespace reident

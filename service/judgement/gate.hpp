@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "service/config/config.hpp"
-#include "service/model/outcome.hpp"
+#include "service/model/reasons.hpp"
 #include "storage/types/telemetry.hpp"
 
 namespace reident {
@@ -83,7 +83,7 @@ struct Evidence {
 
 struct GateDecision {
   Outcome outcome;
-  std::string reason;  // one sentence with the figures that decided
+  std::vector<Reason> reasons;  // the figures that decided; the last one has the outcome
 };
 
 /// What the reduction surely has to be, in percent, with the champion's mean error taken from it,

@@ -159,18 +159,10 @@ int choose_candidate(const storage::Registry& registry, const RefreshRequest& re
   return 2;
 }
 
-/// Of each comparison, in percent, so that the one which chose among `candidates` has `percent`
+/// The confidence of each comparison, so that the one chosen among `candidates` has `percent`
 /// (Bonferroni's inequality).
 double confidence_of_each(double percent, int candidates) {
   return 100 - (100 - percent) / candidates;
-}
-
-storage::DecisionKind kind_of(Outcome outcome) {
-  if (outcome == Outcome::approved) return storage::DecisionKind::approve;
-  if (outcome == Outcome::waiting || outcome == Outcome::held || outcome == Outcome::unvouched ||
-      outcome == Outcome::on_probation)
-    return storage::DecisionKind::wait;
-  return storage::DecisionKind::reject;
 }
 
 }  // namespace
@@ -200,8 +192,10 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
     if (!result.evidence.baseline && request.equipment.baseline_mrse_percent)
       prepared.evidence["baseline_mrse_percent"] = *request.equipment.baseline_mrse_percent;
     prepared.attempt.outcome = name(decision.outcome);
-    prepared.attempt.reason = decision.reason;
-    result.decision = storage::NewDecision{kind_of(decision.outcome), "gate", decision.reason};
+    prepared.attempt.reason = sentences(decision.reasons);
+    prepared.evidence["reasons"] = to_json(decision.reasons);
+    result.decision =
+        storage::NewDecision{kind_of(decision.outcome), "gate", prepared.attempt.reason};
     if (result.decision->kind != storage::DecisionKind::reject) let_follow(prepared);
     result.version = version_of(request, prepared);
     result.candidate = std::move(prepared.candidate->model);
@@ -210,7 +204,8 @@ RefreshResult judge(const storage::Archive& archive, const storage::Registry& re
   for (const auto& [phase, milliseconds] : prepared.timer.phases())
     prepared.evidence["timing_ms"][phase] = milliseconds;
   result.attempt = std::move(prepared.attempt);
-  result.attempt.evidence_json = prepared.evidence.dump();
+  result.attempt.evidence_json =
+      prepared.evidence.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   return result;
 }
 

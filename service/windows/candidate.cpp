@@ -9,7 +9,7 @@
 #include "identification/fit/adaptation.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
-#include "service/model/outcome.hpp"
+#include "service/model/reasons.hpp"
 #include "service/support/version.hpp"
 
 namespace reident {
@@ -108,19 +108,14 @@ void describe_search(const Identified& identified, ordered_json& json) {
   json["warnings"] = identified.warnings;
 }
 
-void refuse(PreparedWindow& prepared, std::string_view outcome, std::string reason) {
+void refuse(PreparedWindow& prepared, std::string_view outcome, const Reason& reason) {
   prepared.attempt.outcome = outcome;
-  prepared.attempt.reason = std::move(reason);
+  prepared.attempt.reason = sentence(reason);
+  prepared.evidence["reasons"] = to_json(std::vector{reason});
 }
 
-/// Where sensors are not believed on so much of the window that too little is left.
-void refuse_implausible(const RefreshRequest& request, PreparedWindow& prepared) {
-  const WindowData& data = prepared.data;
-  refuse(prepared, name(Outcome::implausible),
-         fmt::format("Telemetry is not believed: {}. {:.1f} % of the window is left, {:g} % are "
-                     "needed.",
-                     worst_of(data.plausibility, request.equipment.sample_period),
-                     100 * data.coverage, 100 * request.equipment.min_coverage));
+void refuse(PreparedWindow& prepared, const Reason& reason) {
+  refuse(prepared, name(outcome_of({reason})), reason);
 }
 
 void identify_window(const RefreshRequest& request, WindowCache& kept,
@@ -134,20 +129,24 @@ void identify_window(const RefreshRequest& request, WindowCache& kept,
   prepared.evidence["coverage"] = data.coverage;
   if (!data.plausibility.found.empty() || !data.plausibility.not_applied.empty())
     prepared.evidence["implausible"] = to_json(data.plausibility, request.equipment.sample_period);
+  const double coverage_percent = 100 * data.coverage;
+  const double needed_percent = 100 * request.equipment.min_coverage;
   const bool left_out_too_much = data.read_coverage >= request.equipment.min_coverage &&
                                  data.coverage < request.equipment.min_coverage;
   if (left_out_too_much && !data.plausibility.found.empty())
-    return refuse_implausible(request, prepared);
+    // Sensors are not believed on so much of the window that too little is left.
+    return refuse(prepared, because<ReasonCode::implausible>(
+                                worst_of(data.plausibility, request.equipment.sample_period),
+                                coverage_percent, needed_percent));
   if (data.coverage < request.equipment.min_coverage || parts.validate.size() == 0)
     return refuse(
-        prepared, name(Outcome::low_coverage),
-        fmt::format("Only {:.1f} % of the window has every parameter valid{}; {:g} % are needed.",
-                    100 * data.coverage,
-                    request.equipment.derived.empty() ? "" : " and every derived input finite",
-                    100 * request.equipment.min_coverage));
+        prepared,
+        request.equipment.derived.empty()
+            ? because<ReasonCode::low_coverage>(coverage_percent, needed_percent)
+            : because<ReasonCode::low_coverage_with_derived>(coverage_percent, needed_percent));
   identification::IdentifyOptions options = options_of(request.equipment);
   options.tune_rows = parts.tune.size();
-  // What is slower the gate would turn away: the window cannot tell it.
+  // The gate would turn away what is slower: over the window it looks like an integrator.
   options.longest_time_constant_s = 1e-9 * double(request.window.end - request.window.begin);
   options.for_each = for_each;
   options.on_phase = [&stop, &prepared](std::string_view phase) {
@@ -156,7 +155,7 @@ void identify_window(const RefreshRequest& request, WindowCache& kept,
   };
   const auto result = identify(data.record, parts.fitted(), options, &kept.sums());
   if (const auto* verdict = std::get_if<identification::Verdict>(&result))
-    return refuse(prepared, name(verdict->code), verdict->reason);
+    return refuse(prepared, name(verdict->code), because<ReasonCode::no_model>(verdict->reason));
   prepared.timer.begin("correct");
   const auto& identified = std::get<Identified>(result);
   describe_search(identified, prepared.search);
@@ -261,7 +260,7 @@ WindowCache window_cache_of(const std::string& spacecraft, const EquipmentConfig
 
 void refuse_damaged(PreparedWindow& prepared, const storage::Error& error) {
   prepared.candidate.reset();
-  refuse(prepared, name(Outcome::telemetry_damaged), error.what());
+  refuse(prepared, because<ReasonCode::telemetry_damaged>(error.what()));
 }
 
 PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
@@ -287,10 +286,7 @@ PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequ
     return prepared;
   }
   if (const auto* unknown = std::get_if<UnknownParameter>(&outcome)) {
-    refuse(prepared, name(Outcome::unknown_parameter),
-           fmt::format("Parameter {} has not been described by telemetry yet; check its name in "
-                       "the configuration or wait for its descriptor.",
-                       unknown->name));
+    refuse(prepared, because<ReasonCode::unknown_parameter>(unknown->name));
   } else {
     prepared.data = std::get<WindowData>(std::move(outcome));
     identify_window(request, kept, for_each, stop, prepared);

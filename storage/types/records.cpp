@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <utility>
 
 namespace reident::storage {
@@ -18,7 +19,9 @@ constexpr std::array kinds{
 }  // namespace
 
 std::string_view name(DecisionKind kind) {
-  return kinds[static_cast<std::size_t>(kind)].second;
+  for (const auto& [known, name] : kinds)
+    if (known == kind) return name;
+  throw std::logic_error("a decision without a name");
 }
 
 std::optional<DecisionKind> decision_kind(std::string_view name) {

@@ -12,12 +12,13 @@
 #include "service/operations/refresh.hpp"
 #include "tests/service/daemon_fixture.hpp"
 #include "tests/service/judgement/evidence_page.hpp"
+#include "tests/service/reason_codes.hpp"
 
 namespace reident::test::confirmation_test {
 namespace {
 
 using storage::DecisionKind;
-using testing::HasSubstr;
+using Code = ReasonCode;
 
 /// Champion 1 is of a plant of gain 1; version 2 is on probation.
 class Probation : public DaemonTest {
@@ -183,7 +184,7 @@ TEST_F(ProbationAfterLong, EndsWithARejectionWhereTheChampionHasErredSoAndWasRig
   make_version_after(2);
   const auto found = decided();
   EXPECT_EQ(found.kind, DecisionKind::reject);
-  EXPECT_THAT(found.reason, HasSubstr("so that nothing tells of a change"));
+  EXPECT_EQ(code_in(found.evidence_json), name(Code::unconfirmed_as_in_tenure));
   const auto evidence = nlohmann::json::parse(found.evidence_json);
   EXPECT_EQ(evidence["over_tenure"]["rows"], 2400 + 180 + 300) << "four windows and what is new";
   EXPECT_THAT(not_on_the_page(evidence), testing::IsEmpty());
@@ -202,8 +203,8 @@ TEST_F(Probation, IsNotEndedWithAnApprovalByAnUnusualOperation) {
                            {.u = 0.3, .v = 0.3, .gain = 2, .since = window_end + second}));
   make_version(window_end, "on_probation", DecisionKind::wait);
   EXPECT_TRUE(look(window_end + 4 * minute).empty());
-  EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
-              HasSubstr("an unusual operation, which says little of the usual one"));
+  EXPECT_EQ(code_in(look(window_end + 5 * minute).at(0).decision.evidence_json),
+            name(Code::unconfirmed_unusual));
   EXPECT_EQ(status(2), "rejected");
 }
 
@@ -221,8 +222,8 @@ TEST_F(Probation, WaitsAsLongAgainForTelemetryThatDidNotCome) {
   make_version(window_end, "on_probation", DecisionKind::wait);
   EXPECT_TRUE(look(window_end + 5 * minute).empty());
   EXPECT_TRUE(look(window_end + 10 * minute - 1).empty());
-  EXPECT_THAT(look(window_end + 10 * minute).at(0).decision.reason,
-              HasSubstr("on the 3 samples after its window alone"));
+  EXPECT_EQ(code_in(look(window_end + 10 * minute).at(0).decision.evidence_json),
+            name(Code::unconfirmed_worse_after));
   EXPECT_EQ(status(2), "rejected");
 }
 
@@ -255,8 +256,8 @@ TEST_F(Probation, OfANewerWindowEndsThatOfTheOlder) {
   EXPECT_EQ(status(4), "approved");
   EXPECT_EQ(status(3), "rejected");
   EXPECT_EQ(status(2), "rejected");
-  EXPECT_THAT(registry.decisions("SAT", "PLANT", 3).back().reason,
-              HasSubstr("champion 4 was identified from newer telemetry"));
+  EXPECT_EQ(code_in(registry.decisions("SAT", "PLANT", 3).back().evidence_json),
+            name(Code::unconfirmed_older));
 }
 
 TEST_F(Probation, RestsWhileAnOperatorHoldsTheEquipment) {
@@ -296,8 +297,8 @@ TEST_F(Probation, KnowsAnUnusualOperationAlsoOnceItsHoldIsAnotherOne) {
   EquipmentConfig longer = equipment;
   longer.hold = 5 * second;
   make_version_of(longer, window_end, "on_probation", DecisionKind::wait);
-  EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
-              HasSubstr("an unusual operation"));
+  EXPECT_EQ(code_in(look(window_end + 5 * minute).at(0).decision.evidence_json),
+            name(Code::unconfirmed_unusual));
 }
 
 TEST_F(Probation, IsOverOnceNoneWaitsAnyMore) {
@@ -312,15 +313,15 @@ TEST_F(Probation, IsOverOnceNoneWaitsAnyMore) {
                     });
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].decision.kind, DecisionKind::reject);
-  EXPECT_THAT(found[0].decision.reason, HasSubstr("`confirmation` is 0 now"));
+  EXPECT_EQ(code_in(found[0].decision.evidence_json), name(Code::unconfirmed_confirmation_off));
 }
 
 TEST_F(Probation, ApprovesNoModelThatIsNotTheOneOfItsDigest) {
   change_plant(2);
   run_sql("DROP TRIGGER version_update");
   run_sql("UPDATE version SET digest = 'another' WHERE number = 2");
-  EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
-              HasSubstr("version 2 is damaged in the registry"));
+  EXPECT_EQ(code_in(look(window_end + 5 * minute).at(0).decision.evidence_json),
+            name(Code::unconfirmed_damaged));
   EXPECT_EQ(status(2), "rejected");
 }
 
@@ -330,14 +331,15 @@ TEST_F(Probation, IsOverWhereTheChampionHasOtherOutputs) {
   other.inputs = {"u"};
   other.outputs = {"v", "y"};
   make_version_of(other, window_end - 2 * minute, "approved", DecisionKind::approve);
-  EXPECT_THAT(look(window_end + 5 * minute).at(0).decision.reason,
-              HasSubstr("champion 3 has other outputs"));
+  EXPECT_EQ(code_in(look(window_end + 5 * minute).at(0).decision.evidence_json),
+            name(Code::unconfirmed_other_outputs));
 }
 
 TEST_F(Probation, IsOverWhereTheChampionWasWithdrawn) {
   change_plant(2);
   registry.decide("SAT", "PLANT", 1, {DecisionKind::withdraw, "ana", "bad"}, 1);
-  EXPECT_THAT(look(window_end + minute).at(0).decision.reason, HasSubstr("was withdrawn"));
+  EXPECT_EQ(code_in(look(window_end + minute).at(0).decision.evidence_json),
+            name(Code::unconfirmed_champion_withdrawn));
   EXPECT_EQ(status(2), "rejected");
 }
 

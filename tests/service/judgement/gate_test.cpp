@@ -60,8 +60,7 @@ TEST_P(Gate, Decides) {
   EquipmentConfig config = limits();
   GetParam().change(evidence, config);
   const GateDecision decision = decide(evidence, config);
-  EXPECT_EQ(name(decision.outcome), name(GetParam().expected)) << decision.reason;
-  EXPECT_THAT(decision.reason, testing::EndsWith("."));
+  EXPECT_EQ(name(decision.outcome), name(GetParam().expected)) << sentences(decision.reasons);
 }
 
 // Each reason, and the evidence that just misses it.
@@ -448,24 +447,34 @@ INSTANTIATE_TEST_SUITE_P(BesideItsRivals, Gate, testing::ValuesIn(beside_its_riv
 TEST(GateReason, NamesTheFiguresThatDecided) {
   Evidence evidence = good();
   evidence.champion->comparison = Evidence::Comparison{500, 5, 5.5, 9.09, 3.2};
-  EXPECT_EQ(decide(evidence, limits()).reason,
-            "MRSE 5.000 % does not surely undercut champion 3 (5.500 % on the same samples) by 5 "
-            "%: the reduction is 9.09 %, and 3.20 % with a confidence of 99 %.");
+  EXPECT_EQ(decide(evidence, limits()).reasons,
+            std::vector{because<ReasonCode::not_surely_better>(5.0, 3, 5.5, 5.0, 9.09, 3.2, 99.0)});
 }
 
 TEST(GateReason, OfALittleGainNamesTheNoise) {
   Evidence evidence = good();
   evidence.champion->comparison->noise_percent = 3;
-  EXPECT_EQ(decide(evidence, limits()).reason,
-            "MRSE 5.000 % undercuts champion 3 (8.000 % on the same samples) by too little beside "
-            "the noise of the sensors (3.000 %).");
+  EXPECT_EQ(decide(evidence, limits()).reasons,
+            std::vector{because<ReasonCode::gain_within_noise>(5.0, 3, 8.0, 3.0)});
 }
 
 TEST(GateReason, OfAHoldNamesWhoHoldsAndWhy) {
   Evidence evidence = good();
   evidence.hold = {"ana", "eclipse season"};
-  EXPECT_THAT(decide(evidence, limits()).reason,
-              testing::HasSubstr("ana holds the equipment (eclipse season)"));
+  EXPECT_EQ(decide(evidence, limits()).reasons,
+            (std::vector{because<ReasonCode::better_than_champion>(5.0, 3, 8.0),
+                         because<ReasonCode::held>("ana", "eclipse season")}));
+}
+
+TEST(GateReason, OfAWaitNamesWhatTelemetryIsToTell) {
+  Evidence evidence = good();
+  evidence.champion->movement = 0.5;
+  EquipmentConfig waiting = limits();
+  waiting.confirmation = 60;
+  EXPECT_EQ(decide(evidence, waiting).reasons,
+            (std::vector{because<ReasonCode::better_than_champion>(5.0, 3, 8.0),
+                         because<ReasonCode::operation_unusual>(50.0),
+                         because<ReasonCode::waits_for_telemetry>(60)}));
 }
 
 }  // namespace

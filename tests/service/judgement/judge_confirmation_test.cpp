@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "service/judgement/confirmation.hpp"
+#include "tests/service/reason_codes.hpp"
 
 namespace reident::test::judge_confirmation_test {
 namespace {
 
 using storage::DecisionKind;
-using testing::AllOf;
-using testing::HasSubstr;
+using Code = ReasonCode;
 
 ConfirmationEvidence sure_of(double percent) {
   ConfirmationEvidence look;
@@ -27,11 +27,19 @@ ConfirmationEvidence sure_of(double percent) {
 }
 
 TEST(JudgeProbation, ApprovesOnceTheReductionIsSurelyAThirdOfTheMargin) {
-  const auto found = judge_probation(sure_of(5.1), {});
+  const ConfirmationEvidence look = sure_of(5.1);
+  const auto found = judge_probation(look, {});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->kind, DecisionKind::approve);
   EXPECT_EQ(found->actor, "gate");
-  EXPECT_THAT(found->reason, AllOf(HasSubstr("champion 3 has 8.000 %"), HasSubstr("5.10 %")));
+  const auto reasons = reasons_in(found->evidence_json);
+  EXPECT_EQ(reasons[0]["code"], name(Code::evaluated));
+  EXPECT_EQ(reasons[0]["champion"], 3);
+  EXPECT_EQ(reasons[0]["champion_mrse_percent"], 8);
+  EXPECT_EQ(reasons[1]["code"], name(Code::confirmed));
+  EXPECT_EQ(reasons[1]["sure_reduction_percent"], 5.1);
+  EXPECT_EQ(found->reason, sentences({because<Code::evaluated>(5.0, 500, look.until, 3, 8.0),
+                                      because<Code::confirmed>(37.5, 99.0, 5.1)}));
   EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["comparison"]["rows"], 500);
 }
 
@@ -70,7 +78,7 @@ TEST(JudgeProbation, WaitsAsLongAgainToBeSurelyBetterThanAChampionThatErrsAsEver
   look.stage = ConfirmationEvidence::Stage::last;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("champion 8.000 %, which is not surely less"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_after_not_sure));
   look.with_past = sure_of(5).comparison;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::reject);
   ConfirmationEvidence after = look, with_past = look;
@@ -102,8 +110,9 @@ TEST(JudgeProbation, AsksForMoreThanAnOffsetWhereNoSensorVouchesForIt) {
   EXPECT_FALSE(judge_probation(look, {}));
   look.without_offset.rival_mrse_percent = 5.2;
   look.stage = ConfirmationEvidence::Stage::last;
-  EXPECT_THAT(judge_probation(look, {})->reason,
-              HasSubstr("champion 3 has 8.000 % there, 5.200 % but for a constant offset"));
+  const auto evaluated = reasons_in(judge_probation(look, {})->evidence_json)[0];
+  EXPECT_EQ(evaluated["code"], name(Code::evaluated_beside_offset));
+  EXPECT_EQ(evaluated["without_offset_percent"], 5.2);
 }
 
 /// A constant of twice what the champion ever erred, over two time constants and a half.
@@ -133,7 +142,7 @@ TEST(JudgeProbation, AsksTheTenureWhetherAConstantIsAnExcursionOfASlowMode) {
     speak(look);
     const auto found = judge_probation(look, {});
     EXPECT_EQ(found->kind, DecisionKind::reject);
-    EXPECT_THAT(found->reason, HasSubstr("a mode with a time constant of 200 samples may make it"));
+    EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_excursion));
     for (const auto& change : no_excursion) {
       ConfirmationEvidence other = look;
       change(other);
@@ -154,9 +163,10 @@ TEST(JudgeProbation, SaysThatAnErrorMayBeAnExcursionWhereItHasNotBeenSoLarge) {
   ConfirmationEvidence look = of_a_slow_mode();
   look.champion_worst_mrse_percent = 4;  // half of what it is now
   look.over_tenure->reduction_percent = look.over_tenure->sure_percent.emplace(3);
-  EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("a mode with a time constant"));
+  EXPECT_EQ(code_in(judge_probation(look, {})->evidence_json), name(Code::unconfirmed_excursion));
   look.champion_worst_mrse_percent = 6;
-  EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("it had up to 6.000 % already"));
+  EXPECT_EQ(code_in(judge_probation(look, {})->evidence_json),
+            name(Code::unconfirmed_as_in_tenure));
 }
 
 TEST(JudgeProbation, AsksForAllOfTheMarginWhereTheVersionDoesNotKeepUp) {
@@ -167,8 +177,9 @@ TEST(JudgeProbation, AsksForAllOfTheMarginWhereTheVersionDoesNotKeepUp) {
   look.validated_mrse_percent = 2.5;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("surely 15 %, as it has to be of a version that has 5.000 % "
-                                       "after its window and had 2.500 % where it was validated"));
+  const auto reason = reasons_in(found->evidence_json)[1];
+  EXPECT_EQ(reason["code"], name(Code::unconfirmed_not_keeping_up));
+  EXPECT_EQ(reason["needed_percent"], 15);
   look.comparison.sure_percent = 15.1;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
@@ -185,7 +196,7 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreAfterItsWindow) {
   look.stage = ConfirmationEvidence::Stage::due;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("on the 100 samples after its window alone it has 6.000 %"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_worse_after));
 }
 
 TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverItsWindowToo) {
@@ -199,9 +210,7 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverItsWindowToo) {
   look.stage = ConfirmationEvidence::Stage::due;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason,
-              HasSubstr("over all of its window and what came after it, it has 8.000 "
-                        "% and the champion 8.000 %"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_worse_with_window));
   EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["with_window"]["rows"], 900);
 }
 
@@ -216,7 +225,7 @@ TEST(JudgeProbation, OfAnOperationThatShowsLessThanTheChampionsNeedsTheMarginOve
                     .sure_percent = {}};
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("has 20.000 % and the champion 20.000 %"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_no_change));
   EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["with_past"]["rows"], 100);
   look.with_past->reduction_percent = 15.1;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
@@ -227,7 +236,7 @@ TEST(JudgeProbation, ApprovesNothingAboveTheLimitOfTheError) {
   look.comparison.mrse_percent = 20.1;
   EXPECT_FALSE(judge_probation(look, {}));
   look.stage = ConfirmationEvidence::Stage::due;
-  EXPECT_THAT(judge_probation(look, {})->reason, HasSubstr("above the limit of 20 %"));
+  EXPECT_EQ(code_in(judge_probation(look, {})->evidence_json), name(Code::unconfirmed_above_limit));
 }
 
 TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverTheChampionsTenure) {
@@ -240,7 +249,7 @@ TEST(JudgeProbation, ApprovesNothingThatErrsMoreOverTheChampionsTenure) {
   look.over_tenure->reduction_percent = 5;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("it had up to 6.000 % already"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_as_in_tenure));
   EXPECT_EQ(nlohmann::json::parse(found->evidence_json)["over_tenure"]["rows"], 500);
 }
 
@@ -253,7 +262,7 @@ TEST(JudgeProbation, ApprovesNothingThatGainsLittleBesideTheNoise) {
   look.comparison.noise_percent = 2.2;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("the noise of the sensors (2.200 %)"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_within_noise));
 }
 
 TEST(JudgeProbation, AsksForLessBesideTheNoiseOfWhatGainsSurelyAllOverItsWindowAndAfterIt) {
@@ -294,7 +303,7 @@ TEST(JudgeProbation, ApprovesNothingAmongManyFaultsOfSensors) {
   look.stage = ConfirmationEvidence::Stage::due;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("0.26 faults of sensors found in 100 ticks"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_in_doubt));
 }
 
 TEST(JudgeProbation, ApprovesNothingWhileAnInputStandsStill) {
@@ -304,7 +313,8 @@ TEST(JudgeProbation, ApprovesNothingWhileAnInputStandsStill) {
   look.stage = ConfirmationEvidence::Stage::due;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("V_BUS stands still"));
+  EXPECT_EQ(reasons_in(found->evidence_json)[1],
+            nlohmann::json({{"code", name(Code::unconfirmed_input_still)}, {"input", "V_BUS"}}));
 }
 
 TEST(JudgeProbation, LeavesAChampionOfWhoseTenureHardlyAnythingIsBelievedUnlessItIsLeftBehind) {
@@ -316,7 +326,7 @@ TEST(JudgeProbation, LeavesAChampionOfWhoseTenureHardlyAnythingIsBelievedUnlessI
   look.tenure_believed = 0.49;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("49 % is believed"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_tenure_excluded));
   look.champion_validated_mrse_percent = 5;
   EXPECT_EQ(judge_probation(look, {})->kind, DecisionKind::approve);
 }
@@ -330,7 +340,7 @@ TEST(JudgeProbation, ApprovesNothingInAnUnusualOperation) {
   look.stage = ConfirmationEvidence::Stage::due;
   const auto found = judge_probation(look, {});
   EXPECT_EQ(found->kind, DecisionKind::reject);
-  EXPECT_THAT(found->reason, HasSubstr("move over 52 % of the ranges"));
+  EXPECT_EQ(code_in(found->evidence_json), name(Code::unconfirmed_unusual));
 }
 
 }  // namespace

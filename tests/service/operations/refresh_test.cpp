@@ -6,6 +6,7 @@
 #include "service/model/model_json.hpp"
 #include "tests/service/daemon_fixture.hpp"
 #include "tests/service/judgement/evidence_page.hpp"
+#include "tests/service/reason_codes.hpp"
 
 namespace reident::test::refresh_test {
 namespace {
@@ -73,7 +74,9 @@ TEST_F(Refresh, SaysThatTelemetryIsDamagedAndWhich) {
   damage_chunks(2);
   const RefreshResult result = run(day + 10 * minute);
   EXPECT_EQ(result.attempt.outcome, "telemetry_damaged");
-  EXPECT_THAT(result.attempt.reason, testing::HasSubstr("601 samples of v of SAT"));
+  const auto reason = reasons_in(result.attempt.evidence_json)[0];
+  EXPECT_EQ(reason["code"], name(ReasonCode::telemetry_damaged));
+  EXPECT_THAT(reason["damage"].get<std::string>(), testing::HasSubstr("601 samples of v of SAT"));
   EXPECT_FALSE(result.candidate);
   EXPECT_FALSE(result.decision);
 }
@@ -212,7 +215,7 @@ TEST_F(Refresh, NamesAParameterThatTelemetryHasNotDescribed) {
   equipment.inputs = {"u", "w"};
   const RefreshResult result = run(day + 10 * minute, equipment);
   EXPECT_EQ(result.attempt.outcome, "unknown_parameter");
-  EXPECT_THAT(result.attempt.reason, testing::HasSubstr("w"));
+  EXPECT_EQ(reasons_in(result.attempt.evidence_json)[0]["parameter"], "w");
   EXPECT_FALSE(result.candidate);
 }
 
@@ -228,6 +231,7 @@ TEST_F(Refresh, PassesTheVerdictOfTheIdentificationOn) {
   archive.append(frames);
   const RefreshResult result = run(day + 10 * minute);
   EXPECT_EQ(result.attempt.outcome, "constant_outputs");
+  EXPECT_EQ(code_in(result.attempt.evidence_json), name(ReasonCode::no_model));
   EXPECT_THAT(result.attempt.reason, testing::Not(testing::IsEmpty()));
 }
 

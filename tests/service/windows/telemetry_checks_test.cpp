@@ -8,6 +8,7 @@
 #include "service/operations/refresh.hpp"
 #include "service/windows/provenance.hpp"
 #include "tests/service/daemon_fixture.hpp"
+#include "tests/service/reason_codes.hpp"
 
 namespace reident::test::telemetry_checks_test {
 namespace {
@@ -94,8 +95,9 @@ TEST_F(FaultySensors, OnTooMuchOfAWindowAreAVerdictThatNamesThem) {
   const RefreshResult result = run(day + 20 * minute);
   EXPECT_EQ(result.attempt.outcome, "implausible");
   EXPECT_FALSE(result.candidate);
-  EXPECT_THAT(result.attempt.reason, HasSubstr("relation second sensor (y - y2) does not hold"));
-  EXPECT_THAT(result.attempt.reason, HasSubstr("one of y, y2 is wrong"));
+  const std::string worst = reasons_in(result.attempt.evidence_json)[0]["worst"];
+  EXPECT_THAT(worst, HasSubstr("relation second sensor (y - y2) does not hold"));
+  EXPECT_THAT(worst, HasSubstr("one of y, y2 is wrong"));
 }
 
 TEST_F(FaultySensors, AreNoConcernOfARelationThatNobodyHasDescribed) {
@@ -177,7 +179,7 @@ TEST_F(FaultySensors, ThatNothingVouchesForWaitForAnOperator) {
   equipment.relations.clear();
   const RefreshResult result = run(day + 40 * minute, equipment);
   EXPECT_EQ(result.attempt.outcome, "unvouched") << result.attempt.reason;
-  EXPECT_THAT(result.attempt.reason, HasSubstr("a sensor of y"));
+  EXPECT_EQ(reasons_in(result.attempt.evidence_json).back()["sensors"], "y");
   ASSERT_TRUE(result.decision);
   EXPECT_EQ(result.decision->kind, storage::DecisionKind::wait);
   equipment.unvouched = UnvouchedPolicy::approve;

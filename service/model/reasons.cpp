@@ -1,0 +1,98 @@
+#include "service/model/reasons.hpp"
+
+#include <iterator>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/support/time_text.hpp"
+
+namespace reident {
+namespace {
+
+constexpr const OutcomeRow& row_of(Outcome outcome) {
+  for (const OutcomeRow& row : Catalogue::outcomes)
+    if (row.outcome == outcome) return row;
+  throw std::logic_error("an outcome that the catalogue does not have");
+}
+
+/// Whether no two rows share a code or a name, and every outcome of a reason has a row.
+constexpr bool is_consistent() {
+  for (const OutcomeRow& row : Catalogue::outcomes)
+    if (&row_of(row.outcome) != &row) return false;
+  for (const ReasonRow& row : Catalogue::reasons) {
+    if (&row_of(row.code) != &row) return false;
+    if (row.outcome) row_of(*row.outcome);
+    for (const ReasonRow* other = &row + 1; other != std::end(Catalogue::reasons); ++other)
+      if (other->name == row.name) return false;
+  }
+  return true;
+}
+static_assert(is_consistent());
+
+std::string text_of(const Figure& figure, std::string_view format) {
+  if (format == "time") return time_text(std::get<std::int64_t>(figure));
+  if (format == "duration") return duration_text(std::get<std::int64_t>(figure));
+  const std::string place = fmt::format("{{:{}}}", format);
+  return std::visit([&](const auto& value) { return fmt::format(fmt::runtime(place), value); },
+                    figure);
+}
+
+}  // namespace
+
+std::string_view name(Outcome outcome) {
+  return row_of(outcome).name;
+}
+
+std::string_view name(ReasonCode code) {
+  return row_of(code).name;
+}
+
+storage::DecisionKind kind_of(Outcome outcome) {
+  if (const auto& kind = row_of(outcome).decision) return *kind;
+  throw std::logic_error(fmt::format("the outcome {} gives no version", name(outcome)));
+}
+
+Outcome outcome_of(const std::vector<Reason>& reasons) {
+  if (reasons.empty()) throw std::logic_error("an outcome without a reason");
+  const ReasonRow& last = row_of(reasons.back().code);
+  if (last.outcome) return *last.outcome;
+  throw std::logic_error(fmt::format("the reason {} has no outcome", last.name));
+}
+
+std::string sentence(const Reason& reason) {
+  const std::string_view pattern = row_of(reason.code).sentence;
+  std::string text;
+  std::size_t at = 0;
+  for (const Figure& figure : reason.figures) {
+    const auto place = next_figure(pattern, at);
+    text += pattern.substr(at, place->begin - at);
+    text += text_of(figure, place->format);
+    at = place->end;
+  }
+  return text.append(pattern.substr(at));
+}
+
+std::string sentences(const std::vector<Reason>& reasons) {
+  std::string text;
+  for (const Reason& reason : reasons) text += (text.empty() ? "" : " ") + sentence(reason);
+  return text;
+}
+
+nlohmann::ordered_json to_json(const std::vector<Reason>& reasons) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Reason& reason : reasons) {
+    nlohmann::ordered_json json = {{"code", name(reason.code)}};
+    std::size_t at = 0;
+    for (const Figure& figure : reason.figures) {
+      const auto place = next_figure(row_of(reason.code).sentence, at);
+      std::visit([&](const auto& value) { json[std::string(place->name)] = value; }, figure);
+      at = place->end;
+    }
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace reident
