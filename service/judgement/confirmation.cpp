@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
 #include "service/judgement/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/time_text.hpp"
