@@ -11,6 +11,7 @@
 
 #include "identification/correction/pole_placement_search.hpp"
 #include "identification/numerics/decompositions.hpp"
+#include "identification/simulation/free_run.hpp"
 
 namespace reident::identification {
 namespace {
@@ -56,7 +57,7 @@ std::optional<Verdict> obstacle(const StateSpaceModel& model, const Vector& erro
 }
 
 /// What inputs that are as large as their columns of B do to each output within a sample or two: an
-/// integrator in these units is not lost beside the states.
+/// integrator in these units is not lost against the states.
 Vector output_sizes(const StateSpaceModel& model) {
   Vector inputs = model.B.colwise().norm();
   inputs = (inputs.array() > 0).select(inputs, 1);
@@ -122,8 +123,8 @@ std::vector<TrackingSearch> every_placement(const StateSpaceModel& model,
   return found;
 }
 
-/// Of the consecutive stretches of `first_rows` those rows in which the outputs move most: a
-/// stretch at rest cannot tell one placement from another.
+/// The one of the consecutive stretches of `first_rows` in which the outputs move most: at rest all
+/// placements err alike.
 RowRange liveliest(const Record& record, RowRange rows, const Vector& error_limit) {
   RowRange best{rows.begin, std::min(rows.end, rows.begin + first_rows)};
   double most = -1;

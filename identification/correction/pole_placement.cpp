@@ -85,7 +85,7 @@ class Placement {
 
   void place(Index block);
 
-  /// Of a block of two with two real poles, of which one is given, makes two blocks: single states
+  /// Makes two blocks of a block of two with two real poles, of which one is given: single states
   /// can always be exchanged.
   void separate(Index block, double pole);
 

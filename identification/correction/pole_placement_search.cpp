@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "identification/numerics/decompositions.hpp"
+#include "identification/simulation/free_run.hpp"
 
 namespace reident::identification {
 namespace {

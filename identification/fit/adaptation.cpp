@@ -7,12 +7,12 @@
 #include "identification/fit/output_error_fit.hpp"
 #include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/gram.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
 
 namespace reident::identification {
 namespace {
 
-/// Of a column that does not move, at most this share of its largest value is left by rounding when
+/// At most this share of its largest value is left by rounding of a column that does not move, when
 /// its mean is taken.
 constexpr double rounding = 1e-12;
 
@@ -56,7 +56,9 @@ double carried_on(const Vector& z, const std::vector<Segment>& segments, Index l
   return energy > 0 ? product / energy : 0;
 }
 
-/// Principal components of inputs (N x m) of mean 0 and deviation 1, by columns of unit norm.
+/// Principal components of inputs (N x m) of mean 0 and deviation 1, by columns of unit norm. No
+/// gain is fitted to one that is noise: principal component regression (I. T. Jolliffe, "Principal
+/// Component Analysis", 2nd edition, Springer, 2002, chapter 8).
 struct Components {
   Matrix moving, noise;
 };

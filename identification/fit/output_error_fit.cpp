@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "identification/fit/regression.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
 #include "identification/statistics/correlation.hpp"
 
 namespace reident::identification {

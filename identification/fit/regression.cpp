@@ -11,8 +11,8 @@ namespace reident::identification {
 namespace {
 
 constexpr Index stretch = 64;
-/// That are folded into a triangular factor: fewer cost more for the factor that comes with them,
-/// more leave the cache.
+/// Rows that are folded into a triangular factor at once: fewer cost more for the factor that comes
+/// with them, more leave the cache.
 constexpr Index rows_at_once = 8 * stretch;
 
 /// The dual system of one output: since C A^j B is linear in B, the regressors of a column of B are

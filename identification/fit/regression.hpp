@@ -1,4 +1,6 @@
-// The regression of the measured output on everything that the simulated output is linear in.
+// The regression of the measured output on everything that the simulated output is linear in
+// (METHOD.md, sections 6 and 9). Private to the sources of this folder. Records are of normalised
+// channels; sizes agree with the Columns. Nothing here throws but what a caller's function throws.
 #pragma once
 
 #include <functional>
@@ -20,62 +22,70 @@ struct Columns {
   bool direct = true;
   bool moves = false;
 
+  // First column of each part; of the parts of an output, of the output q.
   Index input_gain() const { return n; }                   // B
   Index dynamics() const { return input_gain() + n * m; }  // L
   Index output(Index q) const { return dynamics() + (moves ? n * p : 0) + q * per_output(); }
   Index offset(Index q) const { return output(q) + direct_inputs(); }
   Index output_map(Index q) const { return offset(q) + 1; }  // dC_q
+  Index target() const { return output(p); }
+  // Sizes of parts.
   Index direct_inputs() const { return direct ? m : 0; }
   Index per_output() const { return direct_inputs() + 1 + (moves && p > 1 ? n : 0); }
-  Index target() const { return output(p); }
   Index count() const { return target() + 1; }
 };
 
-/// A stretch of the rows that belong to one output: column t of `values` holds, for one time, the
+/// A stretch of the rows that belong to one output. Column t of `values` holds, for one time, the
 /// columns before output(0), those of the output, and the target. All others are zero.
 struct RegressionRows {
   Index output;
   Eigen::Ref<const Matrix> values;
 };
 
-/// Walks the regression over a segment in stretches, so that memory does not follow its length.
-/// With `columns.moves`, B, D and y0 of the model and the segment's initial state `x0` give the
-/// trajectory about which the dynamics move.
+/// Walks the regression over a segment of the record in stretches, so that memory does not follow
+/// its length, and hands each to `visit`, output by output. With `columns.moves`, B, D and y0 of
+/// the model and the segment's initial state `x0` (n) give the trajectory about which the dynamics
+/// move. Without, `x0` is not read.
 void walk_regression(const Columns& columns, const StateSpaceModel& model, const Record& record,
                      const Segment& segment, const Vector& x0,
                      const std::function<void(const RegressionRows&)>& visit);
 
-/// B, D, y0 and dynamics' moves (all columns between x0 and the target), and the initial states.
+/// B, D, y0 and the dynamics' moves (all columns between x0 and the target), and the initial
+/// states.
 struct RegressionSolution {
-  Vector theta;            // indexed by Columns; the first n entries are zero
-  std::vector<Vector> x0;  // one for each segment
-  double sum_of_squares = 0;
+  Vector theta;               // indexed by Columns; the first n entries are zero
+  std::vector<Vector> x0;     // one for each segment
+  double sum_of_squares = 0;  // of what is left of the target
 };
 
 /// Least squares by the normal equations: fast, at the price of squaring the condition. The initial
-/// state of each segment is eliminated as the segment ends.
+/// state of each segment is eliminated as the segment ends. Solutions are of the segments that
+/// have ended.
 class NormalEquations {
  public:
   explicit NormalEquations(const Columns& columns);
+  /// Takes rows of the open segment in.
   void add(const RegressionRows& rows);
+  /// Ends the open segment. The next rows begin another one.
   void end_segment();
 
-  /// Weights the moves of the dynamics down by `damping` times their own sums of squares. Absent
-  /// when too few digits are left: when the square of `least_pivot` is more than the share that a
-  /// column has for its own, the others known.
+  /// Solves with the moves of the dynamics weighted down by `damping` times their own sums of
+  /// squares. Absent when too few digits are left: when the square of `least_pivot` is more than
+  /// the share that a column has for its own, the others known.
   std::optional<RegressionSolution> solve(double damping, double least_pivot) const;
 
-  /// Without the combinations of columns, each scaled to size 1, that are smaller than
+  /// Solves without the combinations of columns, each scaled to size 1, that are smaller than
   /// `least_size`; of least norm in this scale. Absent where these would show: where a thousandth
   /// of the target or less is left, or they lower its sum of squares by a hundredth.
   std::optional<RegressionSolution> solve_without_small(double least_size) const;
 
-  /// Of each principal component of the columns, scaled to size 1, the share s / (s + half_at) of
-  /// its coefficient, s being what it explains of the target's sum of squares: none of those that
-  /// are smaller than `least_size`.
+  /// Solves with the share s / (s + half_at) of the coefficient of each principal component of the
+  /// columns, scaled to size 1. s is what the component explains of the target's sum of squares.
+  /// Components smaller than `least_size` are left out. Absent where they are not found.
   std::optional<RegressionSolution> solve_shrunk(double half_at, double least_size) const;
 
  private:
+  /// What eliminated the initial state of a closed segment.
   struct Elimination {
     Matrix inverse;  // of the initial state's own sums
     Matrix coupling;
@@ -87,7 +97,9 @@ class NormalEquations {
     Vector squares;  // of their sizes
     Vector target;   // its products with them
   };
+  /// Absent where the iteration for them does not converge.
   std::optional<Components> components() const;
+  /// The solution with `found` for the columns after x0, and what the initial states are then.
   RegressionSolution solution_of(const Vector& found) const;
 
   Columns columns_;
@@ -96,16 +108,19 @@ class NormalEquations {
   std::vector<Elimination> segments_;
 };
 
-/// The same by orthogonal factors, to full accuracy; solutions are of least norm where the rows do
-/// not determine them.
+/// Least squares by orthogonal factors, to full accuracy; solutions are of least norm where the
+/// rows do not determine them. Used like NormalEquations.
 class OrthogonalFactor {
  public:
   explicit OrthogonalFactor(const Columns& columns);
+  /// Folds rows in batches: fewer at once cost more, more leave the cache.
   void add(const RegressionRows& rows);
   void end_segment();
+  /// Solves for the segments that have ended; there is always a solution.
   RegressionSolution solve() const;
 
  private:
+  /// Takes the waiting rows into the factor of the open segment.
   void fold();
 
   Columns columns_;

@@ -1,11 +1,14 @@
 // For the few functions whose time counts: compiled for the baseline and for AVX2, and chosen by
-// the loader. Both give the same bits. Private to source files: it silences a warning.
+// the loader. Both give the same bits, since no sum is reordered and none is fused (METHOD.md,
+// "Speed"). Private to source files: it silences a warning.
 #pragma once
 
-// Clones need the loader's indirect functions, which sanitizers and clang 14 do not go with.
+// Clones need the loader's indirect functions, which sanitizers and clang 14 do not go with. There,
+// and on other processors, a function is compiled once.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"  // Four never crosses a call: all is inlined
 #endif
+// Marks a function that is compiled once for each processor.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define REIDENT_CLONES __attribute__((target_clones("avx2", "default")))
@@ -13,21 +16,24 @@
 #define REIDENT_CLONES
 #endif
 
-// What a clone calls: inlined, so that each clone has its own.
+// Marks what a clone calls: inlined, so that each clone has its own, compiled for its processor.
 #define REIDENT_INLINE inline __attribute__((always_inline))
 
 namespace reident::identification {
 
-/// Four doubles that the compiler keeps in one register where the machine has one for them, and in
-/// two where it has not.
+/// Four doubles that the compiler keeps in one register where the processor has one for them, and
+/// in two where it has not. Operations are entry by entry, and each rounds as that of a double
+/// does.
 typedef double Four __attribute__((vector_size(32)));
 
+/// Returns the four doubles from `from` on. They need no alignment: the copy becomes one move.
 REIDENT_INLINE Four load(const double* from) {
   Four value;
   __builtin_memcpy(&value, from, sizeof value);
   return value;
 }
 
+/// Writes the four doubles from `to` on, which need no alignment either.
 REIDENT_INLINE void store(double* to, Four value) {
   __builtin_memcpy(to, &value, sizeof value);
 }

@@ -3,7 +3,7 @@
 // Eigen's decompositions are templates that take minutes to compile. They are compiled once, in
 // decompositions.cpp; other files include this header in place of Eigen's. A right-hand side that
 // is a vector, one that is a matrix of one column and one that is a transposed matrix are solved by
-// different loops, whose results differ in their last bits.
+// different loops, whose results differ in their last bits. Sizes have to agree; nothing throws.
 #pragma once
 
 #include <complex>
@@ -40,7 +40,7 @@ Matrix solve_least_norm_on_right(const Matrix& M, const Matrix& A);
 /// Solution of A X = B for a square, regular A, by LU with row pivoting.
 Matrix solve_lu(const Matrix& A, const Matrix& B);
 std::pair<Matrix, Matrix> solve_lu(const Matrix& A, const Matrix& B, const Matrix& C);
-/// The same by LU with full pivoting.
+/// Solution of A X = B for a square A by LU with full pivoting.
 Vector solve_full_lu(const Matrix& A, const Vector& b);
 Matrix solve_full_lu(const Matrix& A, const Matrix& B);
 /// Absent where the reciprocal of A's condition number is not above `least_rcond`.

@@ -94,7 +94,7 @@ REIDENT_INLINE void cholesky_tile(double* A, Index size, Index i, Index j) {
       store(A + (j + Index(c)) * size + i + 4 * Index(q), rest[q][c]);
 }
 
-/// The same for `columns` columns one entry at a time.
+/// Does what cholesky_tile() does for `columns` columns, one entry at a time.
 REIDENT_INLINE void cholesky_entries(double* A, Index size, Index i, Index j, Index columns) {
   for (Index c = 0; c < columns; ++c) {
     double rest = A[(j + c) * size + i];
@@ -185,7 +185,7 @@ REIDENT_INLINE void state_space_steps(const double* M, Index n, Index m, Index p
   __builtin_memcpy(state, next, static_cast<std::size_t>(n) * sizeof(double));
 }
 
-/// The same for any size.
+/// Does what state_space_steps() does for any size.
 REIDENT_INLINE void state_space_steps_of_any_size(const double* M, Index n, Index m, Index p,
                                                   const double* v, Index count, double* state,
                                                   double* work, double* y) {
@@ -228,7 +228,7 @@ REIDENT_INLINE void dual_filter_steps(const double* At, const double* c, Index i
   for (Index j = 0; j < inputs; ++j) __builtin_memcpy(states + j * order, x + j * padded, bytes);
 }
 
-/// The same for any size.
+/// Does what dual_filter_steps() does for any size.
 REIDENT_INLINE void dual_filter_steps_of_any_size(const double* At, const double* c, Index n,
                                                   Index inputs, const double* v, Index count,
                                                   double* states, double* out, Index out_stride) {

@@ -1,6 +1,5 @@
-// The loops that most of the time goes into, over plain pointers: compiled for any x86-64 and again
-// for AVX2, and chosen once when the program starts. No sum is reordered and none is fused, so that
-// both give the same bits.
+// The loops that most of the time goes into, over plain pointers (METHOD.md, "Speed"). A range that
+// is written overlaps no other one. Private to the library. Nothing here throws.
 #pragma once
 
 #include "identification/numerics/matrix.hpp"

@@ -1,4 +1,4 @@
-// Samples on a uniform grid of time, holes left out.
+// Samples on a uniform grid of time, holes left out. Nothing here throws.
 //
 // Row r of `u` (N x m) and `y` (N x p) holds the inputs and outputs at one tick of the grid. Rows
 // are ascending in time; a segment is a stretch of rows whose ticks follow each other without a
@@ -13,7 +13,7 @@
 
 namespace reident::identification {
 
-/// Half-open range of rows [begin, end).
+/// Half-open range of rows [begin, end), counted from the record's first.
 struct RowRange {
   Index begin = 0;
   Index end = 0;
@@ -21,50 +21,55 @@ struct RowRange {
   bool operator==(const RowRange&) const = default;
 };
 
-/// Half-open range of ticks [begin, end).
+/// Half-open range of ticks [begin, end); tick k stands at the time k * period.
 struct TickRange {
   std::int64_t begin = 0;
   std::int64_t end = 0;
   bool operator==(const TickRange&) const = default;
 };
 
-/// Rows [begin, end) stand at the ticks first_tick, first_tick + 1, ...
+/// A stretch without a hole: the rows [begin, end), of which each is a tick behind the one before.
 struct Segment {
   Index begin = 0;
   Index end = 0;
-  std::int64_t first_tick = 0;
+  std::int64_t first_tick = 0;  // of the row `begin`
   Index size() const { return end - begin; }
   bool operator==(const Segment&) const = default;
 };
 
+/// The samples of a stretch of time.
 struct Record {
-  double period_s = 1;
-  Matrix u;
-  Matrix y;
+  double period_s = 1;            // from one tick to the next [s], positive
+  Matrix u;                       // N x m, in the units of the inputs
+  Matrix y;                       // N x p, in the units of the outputs
   std::vector<Segment> segments;  // ascending, disjoint; together they cover all rows
 
+  /// Returns N.
   Index rows() const { return y.rows(); }
+  /// Returns the range of all rows.
   RowRange all() const { return {0, rows()}; }
 };
 
-/// A record of one segment that starts at tick 0.
+/// Returns a record of one segment that starts at tick 0. Requires as many rows in `u` as in `y`.
 Record contiguous_record(double period_s, Matrix u, Matrix y);
 
-/// The parts of the segments that lie in `rows`, ascending.
+/// Returns the parts of the segments that are in `rows`, ascending, with their own ticks.
 std::vector<Segment> segments_within(const std::vector<Segment>& segments, RowRange rows);
 std::vector<Segment> segments_within(const Record& record, RowRange rows);
 
-/// The same, their rows counted from rows.begin.
+/// Returns segments_within() with the rows counted from rows.begin.
 std::vector<Segment> segments_from(const Record& record, RowRange rows);
 
-/// The rows at `ticks`, as a record of their own.
+/// Returns the rows at `ticks` as a record of their own, with their ticks; empty where there are
+/// none.
 Record rows_at(const Record& record, TickRange ticks);
 
-/// One record of the rows of all, which are ascending in time and of the same channels; stretches
-/// that follow each other without a hole become one segment.
+/// Returns one record of the rows of all; stretches that follow each other without a hole become
+/// one segment. Requires at least one part, ascending in time and of the same channels.
 Record joined(const std::vector<const Record*>& parts);
 
-/// First row whose tick is not before `tick` (rows() when there is none).
+/// Returns the first row at or behind the tick; rows() where there is none. The cost is logarithmic
+/// in the segments.
 Index first_row_at(const Record& record, std::int64_t tick);
 
 }  // namespace reident::identification

@@ -13,7 +13,7 @@ constexpr Index level_rows = 121;
 constexpr Index shift_rows = 1201;
 /// Left out on both sides: where the median turns is known to a part of its stretch.
 constexpr Index margin_rows = 60;
-/// Of the tolerance: a shift that counts.
+/// A shift counts from this share of the tolerance on.
 constexpr double shift_share = 0.5;
 
 double median(std::vector<double> sorted) {

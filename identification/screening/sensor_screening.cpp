@@ -13,7 +13,7 @@ constexpr Index least_stuck_rows = 60;
 constexpr double stuck_factor = 5;
 constexpr std::size_t most_stuck = 3;  // stretches of one channel
 constexpr double repeated_share = 1.0 / 3;
-/// Of its range: what another channel moves meanwhile.
+/// What another channel moves meanwhile, as a share of its range.
 constexpr double moving_share = 0.1;
 
 constexpr double spike_steps = 20;
@@ -121,7 +121,7 @@ double least_jump(const Channel& channel) {
   return std::max(spike_steps * usual, spike_range_share * channel.range());
 }
 
-/// Whether another channel jumps beside the spike, so that it may be what the equipment does then.
+/// Whether another channel jumps next to the spike, so that it may be what the equipment does then.
 bool another_jumps(const std::vector<Channel>& channels, std::size_t self, const Run& spike) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (c == self || !(channels[c].range() > 0)) continue;
@@ -179,8 +179,8 @@ double roughness(const Eigen::Ref<const Vector>& values, Index begin) {
   return std::accumulate(bends.begin(), kept, 0.0) / double(kept - bends.begin());
 }
 
-/// Of each channel, the roughness of each block over the usual one; empty where it is not looked
-/// at.
+/// The roughness of each block of each channel over the usual one; empty where the channel is not
+/// judged.
 std::vector<std::vector<double>> rough_ratios(const std::vector<Channel>& channels,
                                               const std::vector<Block>& blocks) {
   std::vector<std::vector<double>> ratios(channels.size());
@@ -212,7 +212,7 @@ std::vector<RowRange> noisy_stretches(const std::vector<std::vector<double>>& ra
     while (end < blocks.size() && blocks[end].segment == blocks[block].segment && is_noisy(end))
       ++end;
     if (end - block >= least_noisy_blocks)
-      // The burst begins and ends within the blocks beside.
+      // The burst begins and ends within the blocks next to these.
       found.push_back({blocks[block].begin - noise_block, blocks[end - 1].begin + 2 * noise_block});
     block = std::max(end, block + 1);
   }

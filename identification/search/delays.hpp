@@ -1,10 +1,6 @@
-// Inputs that act only some samples later.
-//
-// A state-space model of moderate order cannot hold a long pure delay, and fits it with poles that
-// mean nothing. Here the model is identified from inputs that were shifted, and the shift then
-// becomes states of the model, so that what comes out is a plain model of the inputs as they are:
-//   x+ = A x + B v,  y = C x + D v,  v_i[k] = u_i[k - d_i]
-// with the d_i last values of u_i - u0_i as states, the latest first.
+// Inputs that act only some samples later: the model is identified from shifted inputs,
+// v_i[k] = u_i[k - d_i], and the d_i last values of u_i - u0_i become states, the latest first
+// (METHOD.md, section 6, "Delays"). Nothing here throws.
 #pragma once
 
 #include <vector>
@@ -14,12 +10,11 @@
 
 namespace reident::identification {
 
-/// The rows with input i replaced by what it was delays[i] samples before (0 <= delays[i] <=
-/// left_out). The first `left_out` rows of each segment are left out.
+/// Returns the rows with input i replaced by what it was delays[i] samples before, without the
+/// first `left_out` rows of each segment. Requires m delays from 0 to `left_out`.
 Record delayed(const Record& record, RowRange rows, const std::vector<int>& delays, int left_out);
 
-/// The model of the inputs as they are, from one of the delayed inputs. The states of the delays
-/// come last; K does not correct them.
+/// Returns the model of the inputs as they are. Delays' states come last; K does not correct them.
 StateSpaceModel with_delay_states(const StateSpaceModel& model, const std::vector<int>& delays);
 
 }  // namespace reident::identification

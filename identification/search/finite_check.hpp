@@ -1,4 +1,6 @@
-// Samples that no sum of squares can hold.
+// Samples that no sum of squares can hold: those that are not finite, or too large to be squared
+// (METHOD.md, section 1). The sums are looked at first, which costs nothing; the samples only where
+// these are spoilt. Private to the sources of this folder. Nothing here throws.
 #pragma once
 
 #include <optional>
@@ -10,10 +12,11 @@
 
 namespace reident::identification {
 
-/// A sample that is not finite, or too large to be squared, spoils the sums that it is in.
+/// Whether the sums hold no such sample. Requires sums of all channels.
 bool all_finite(const StretchSums& sums);
 
-/// The first such sample in the rows, by channel and row.
+/// Returns the verdict non_finite for the first such sample in the rows, by channel and row, with
+/// the names of the options; absent where there is none.
 std::optional<Verdict> non_finite_values(const Record& record, RowRange rows,
                                          const IdentifyOptions& options);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
 
 namespace reident::identification {
 namespace {
@@ -45,7 +45,7 @@ std::vector<Fold> folds_of(Index rows, double tune_share) {
 }
 
 HeldOutErrors held_out_errors(const Response& response, const Record& record, const Fold& fold) {
-  // Forwards the state is carried on; backwards the run starts anew from its first outputs.
+  // Forwards the state is carried on; backwards the run starts again from its first outputs.
   const bool forwards = fold.is_forwards();
   const RowRange run{fold.fit.begin, forwards ? fold.tune.end : fold.fit.end};
   const Matrix y_hat = free_run(response.model, record, run, response.x0);

@@ -1,4 +1,5 @@
-// Which horizons the rows can feed.
+// Which horizons the rows can feed (METHOD.md, section 7, "Stages"). Private to the sources of this
+// folder. Options have no mistakes; nothing here throws.
 #pragma once
 
 #include <vector>
@@ -9,27 +10,27 @@
 
 namespace reident::identification {
 
-/// What the rows have to feed a Hankel matrix of `width` channels.
+/// What the rows have to feed a Hankel matrix of `width` = m + p channels.
 struct HankelSupply {
   const std::vector<Segment>& segments;
   Index width;
   const std::vector<Fold>& folds;
 
-  /// Columns of the Hankel matrix of 2 * horizon block rows over the rows, 0 where they do not
-  /// determine its factor.
+  /// Returns the columns of the Hankel matrix of 2 * horizon block rows over the rows; 0 where they
+  /// do not determine its factor.
   Index columns(RowRange rows, int horizon) const;
-  /// Of the poorest fold.
+  /// Returns the columns of the poorest fold.
   Index columns(int horizon) const;
 };
 
-/// A smaller horizon than this cannot carry the order asked for.
+/// Returns the least horizon that can carry the order asked for.
 int least_horizon(const IdentifyOptions& options);
 
-/// The longest horizon that these options may lead to.
+/// Returns the longest horizon that these options may lead to.
 int longest_horizon(const IdentifyOptions& options);
 
-/// Horizons of {6, 10, 15, 20, 30} that the rows can feed, ascending. A longer one must leave at
-/// least half of the columns that the shortest one has, since gaps cost columns.
+/// Returns the horizons of {6, 10, 15, 20, 30} that the rows can feed, ascending. A longer one must
+/// leave at least half of the columns that the shortest one has, since gaps cost columns.
 std::vector<int> feasible_horizons(const HankelSupply& supply, const IdentifyOptions& options);
 
 }  // namespace reident::identification

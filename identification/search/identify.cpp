@@ -8,7 +8,7 @@
 #include "identification/search/finite_check.hpp"
 #include "identification/search/horizons.hpp"
 #include "identification/search/pipeline.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/initial_state.hpp"
 
 namespace reident::identification {
 

@@ -8,7 +8,10 @@
 #include <utility>
 
 #include "identification/fit/output_error_fit.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/initial_state.hpp"
+#include "identification/subspace/hankel.hpp"
+#include "identification/subspace/input_response.hpp"
+#include "identification/subspace/projection.hpp"
 
 namespace reident::identification {
 namespace {
@@ -142,7 +145,7 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
       const Dynamics found = shift_invariant(gamma, p_, recipe.order, recipe.stability);
       if (!is_stable(found.A)) continue;
       StateSpaceModel& model = models_[fold_index][place];
-      model = projection.with_response(found.A, found.C, recipe.direct, record.period_s);
+      model = with_response(projection, found.A, found.C, recipe.direct, record.period_s);
       set_operating_point(model, data_.normalisation, mean);
       errors[place] = quick_held_out_errors(model, record, fold);
     }

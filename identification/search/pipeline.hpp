@@ -1,11 +1,13 @@
-// One identification of inputs that act without delay.
+// One identification of inputs that act without delay: its steps in their order (METHOD.md).
+// Private to the sources of this folder. Nothing here throws but what the caller's functions throw.
 #pragma once
 
 #include "identification/search/identify.hpp"
 
 namespace reident::identification {
 
-/// identify() without what its options say of delays.
+/// Does what identify() does, without what its options say of delays. Phases are "prepare",
+/// "choose" and, for each model that is realised, "identify".
 IdentifyResult run_pipeline(const Record& record, RowRange rows, const IdentifyOptions& options,
                             LagSums* kept);
 

@@ -3,7 +3,7 @@
 #include <cassert>
 
 #include "identification/numerics/decompositions.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/initial_state.hpp"
 
 namespace reident::identification {
 namespace {

@@ -1,4 +1,5 @@
-// Integral feedback of the real output: a model that follows live telemetry (the paper's figure 7).
+// Integral feedback of the real output: a model that follows live telemetry (the paper's figure 7;
+// METHOD.md, section 14).
 //
 // A correction input v is added to the inputs. With x_f the state of the free run, the deviation
 // d = x - x_f from it and two chained integrators for each output,
@@ -9,18 +10,12 @@
 //   xi1[k+1] = xi1[k] + e[k],   xi2[k+1] = xi2[k] + xi1[k]
 //   v[k]     = -(state d[k] + integral [xi1[k]; xi2[k]])
 //
-// y[k] acts from tick k + 1 on: yhat[k] was said before y[k] was seen. A steady difference, and one
-// that grows steadily, leave no lasting error.
+// y[k] acts from tick k + 1 on: yhat[k] is given before y[k] is known. v and the integrators are
+// clamped to what differences within error_limit can ask of the loop. So whatever finite telemetry
+// says, yhat stays within a bound of the free run. Where telemetry stops, v fades by rho, the
+// modulus of the loop's slowest pole; where it returns, v goes on without a jump.
 //
-// Bounds. v is clamped to what no difference within error_limit between telemetry and free run
-// could ask of the loop: the sum of |impulse response| times error_limit, for each input; the
-// integrators likewise. As A is stable, d is a stable filter of v, and whatever finite telemetry
-// says, |yhat - y_free| is at most the sum of |C A^k B| and |D| times that clamp.
-//
-// Telemetry that stops. Without y[k] the correction fades, v[k+1] = rho v[k] with rho the modulus
-// of the loop's slowest pole, and the run becomes the free run. When y returns, xi1 = 0 and the xi2
-// of least squares stand for the v in force, and what they miss of it is added to v and fades by
-// rho: there is no jump.
+// Nothing here throws. n, m and p are those of the model.
 #pragma once
 
 #include <optional>
@@ -30,40 +25,42 @@
 
 namespace reident::identification {
 
-/// Gains of the correction input. n, m and p are those of the model.
+/// Gains of the correction input.
 struct TrackingGain {
   Matrix state;        // m x n; of the state less that of the free run
   Matrix integral;     // m x 2p; of the two integrators of each output, chained
   Vector error_limit;  // p, output units; errors beyond it count as it
 };
 
-/// The loop [d; xi1; xi2] of n + 2p states that the gain closes; sizes agree.
+/// Returns the matrix of the loop [d; xi1; xi2] (n + 2p states) that the gain closes. Requires
+/// sizes that agree.
 Matrix closed_loop(const StateSpaceModel& model, const TrackingGain& gain);
 
-/// Sizes agree, every number is finite, the limits are positive, and the model and the loop that
-/// the gain closes are stable.
+/// Whether sizes agree, every number is finite, the limits are positive, and the model and the loop
+/// that the gain closes are stable. Requires a well-formed model; any gain may be asked.
 bool is_stabilising(const StateSpaceModel& model, const TrackingGain& gain);
 
-/// Runs sample by sample. No step allocates memory.
+/// Follows telemetry sample by sample. No step allocates memory.
 class Tracker {
  public:
-  /// Of a well-formed model and a gain that is_stabilising(), from the state x0 (n).
+  /// Begins at the state x0 (n). Requires a well-formed model and a gain that is_stabilising().
   Tracker(const StateSpaceModel& model, const TrackingGain& gain, const Vector& x0);
 
-  /// yhat[k] with the inputs u[k] (m, finite), telemetry missing. Valid until the next step.
+  /// Returns yhat[k] (p) for the inputs u[k] (m, finite), where telemetry is missing. The reference
+  /// is valid until the next step.
   const Vector& step(const Eigen::Ref<const Vector>& u);
 
-  /// The same, followed by y[k] (p); as if missing where any of it is not finite.
+  /// Returns yhat[k], then takes y[k] (p) in; as if missing where any of it is not finite.
   const Vector& step(const Eigen::Ref<const Vector>& u, const Eigen::Ref<const Vector>& y);
 
-  /// Begins a run anew: the free state x0 (n) at the next step, no correction.
+  /// Begins another run: the free state x0 (n) at the next step, no correction.
   void restart(const Eigen::Ref<const Vector>& x0);
-  /// State of the free run at the next step (n).
+  /// Returns the state of the free run at the next step (n).
   const Vector& free_state() const { return x_f_; }
-  /// What is left of the correction is no more than rounding: from here on the run is the free run.
+  /// Whether what is left of the correction is rounding: from here on the run is the free run.
   bool has_let_go() const;
 
-  /// v[k] of the last step, and the most that it can be (m, input units).
+  /// Return v[k] of the last step, and the most that it can be (m, input units).
   const Vector& correction() const { return v_; }
   const Vector& correction_limit() const { return v_limit_; }
 
@@ -87,8 +84,9 @@ class Tracker {
   Vector du_, y_hat_, e_, next_;
 };
 
-/// Outputs (rows.size() x p) of the model that follows the record's outputs. Each segment starts as
-/// free_run() starts it, with v = 0: nothing is carried over a gap.
+/// Returns the outputs (rows.size() x p) of the model that follows the record's outputs. Each
+/// segment starts from the estimated state, the first one from `x0` (n) where it is given, with
+/// v = 0: nothing is carried over a gap. Requires what the Tracker does.
 Matrix tracked_run(const StateSpaceModel& model, const TrackingGain& gain, const Record& record,
                    RowRange rows, const std::optional<Vector>& x0 = std::nullopt);
 

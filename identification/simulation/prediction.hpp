@@ -1,16 +1,6 @@
 // Prediction by the innovations form: the model corrected by the measured outputs up to a row, and
-// run from there on its inputs alone.
-//
-//   xh[k+1] = A xh[k] + B (u[k] - u0) + K (y[k] - yh[k]),   yh[k] = C xh[k] + D (u[k] - u0) + y0
-//
-// Both it and the free run start each segment from the same state. Their difference d = xh - x_free
-// follows from the free run's residual e = y - y_free alone, and gives the prediction for any
-// number of steps without another run:
-//
-//   d[k+1] = (A - K C) d[k] + K e[k],   d = 0 at the first row of a segment
-//   y[t | t - h] = y_free[t] + C A^(h-1) d[t - h + 1]
-//
-// (L. Ljung, "System Identification", 2nd edition, Prentice Hall, 1999, section 3.2).
+// run from there on its inputs alone. It follows from the free run and its residual, without
+// another run for each number of steps (METHOD.md, section 11, "Predictions"). Nothing throws.
 #pragma once
 
 #include <vector>
@@ -20,21 +10,22 @@
 
 namespace reident::identification {
 
+/// The predictions of a model over N rows, all of them from one free run.
 class Predictor {
  public:
-  /// Of a model with K, over the rows of `y_free` (N x p), its free run over `run`. The rows of the
-  /// record are finite there.
+  /// Takes the free run `y_free` (N x p) of the model over the rows `run` of the record. Requires a
+  /// well-formed model with K and finite rows. The cost is linear in the rows.
   Predictor(const StateSpaceModel& model, const Record& record, RowRange run, Matrix y_free);
 
-  /// Outputs (N x p) as they are foretold `steps` >= 1 rows before, from the outputs up to there. A
-  /// row closer than that to the start of its segment is foretold from the segment's initial state,
-  /// so that predictions of any number of steps are of the same rows.
+  /// Returns the outputs (N x p) as predicted `steps` >= 1 rows before, from the outputs up to
+  /// there. A row nearer than that to the start of its segment is predicted from the segment's
+  /// initial state, so that predictions of any number of steps are of the same rows.
   Matrix outputs(Index steps) const;
 
  private:
   Matrix A_, C_;
   Matrix y_free_;
-  Matrix d_;  // n x N
+  Matrix d_;  // n x N: state of the innovations form less that of the free run
   std::vector<RowRange> stretches_;
 };
 

@@ -9,6 +9,9 @@
 namespace reident::identification {
 namespace {
 
+/// With a known reference, a = 0.5 and independent normal z, the mean number of blocks between
+/// false alarms is (exp(2 a b) - 2 a b - 1) / (2 a^2) = 19,000, b = limit + 1.166 (D. Siegmund,
+/// "Sequential Analysis", Springer, 1985).
 constexpr double limit = 8;
 constexpr double most_of_a_block = 3;
 /// Blocks that differ less than this, as a logarithm, differ by rounding.

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/square_changes.hpp"
 #include "identification/statistics/correlation.hpp"
 #include "identification/statistics/error_confidence.hpp"
 #include "identification/statistics/quantiles.hpp"
@@ -73,7 +73,7 @@ struct Deviation {
   double degrees_of_freedom = 0;
 };
 
-/// Of values in the order of time.
+/// The deviation of the mean of values in the order of time.
 Deviation deviation(const Array& values, Course course) {
   const auto n = double(values.size());
   Array left = values - values.mean();

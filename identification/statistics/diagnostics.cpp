@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "identification/simulation/free_run.hpp"
 #include "identification/simulation/prediction.hpp"
 
 namespace reident::identification {

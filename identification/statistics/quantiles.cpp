@@ -20,12 +20,14 @@ double normal_quantile(double p) {
   return z;
 }
 
+/// E. B. Wilson, M. M. Hilferty, PNAS 17(12), 1931.
 double chi_squared_quantile(double p, double degrees) {
   const double spread = 2 / (9 * degrees);
   const double root = 1 - spread + normal_quantile(p) * std::sqrt(spread);
   return degrees * root * root * root;
 }
 
+/// R. A. Fisher, E. A. Cornish, Technometrics 2(2), 1960.
 double student_quantile(double p, double degrees) {
   const double z = normal_quantile(p), z2 = z * z;
   const double first = (z2 + 1) * z / 4;

@@ -30,7 +30,7 @@ std::vector<RedundantInput> redundant_inputs(const Matrix& u) {
 
 bool are_independent(const Matrix& correlation) {
   if (correlation.rows() == 0) return true;
-  // The square of 1e-6 is beyond what a sum of squares tells from rounding.
+  // A sum of squares does not distinguish the square of 1e-6 from rounding.
   constexpr double clearly = 1e-4;
   return Cholesky::of(correlation, clearly).has_value();
 }

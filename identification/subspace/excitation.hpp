@@ -1,5 +1,5 @@
-// What the inputs of a window can tell: which of them say nothing of their own, and up to which
-// order they excite the model.
+// What the inputs of a window can show: which of them follow from others, and up to which order
+// they excite the model (METHOD.md, sections 3 and 5). Nothing here throws.
 #pragma once
 
 #include <vector>
@@ -14,12 +14,12 @@ struct RedundantInput {
   std::vector<Index> explained_by;  // earlier inputs, ascending
 };
 
-/// Inputs (columns of `u`, normalised) of which less than 1e-6 of the deviation is left once the
-/// inputs before them are known, ascending.
+/// Returns the inputs (columns of `u`, N x m, normalised) of which less than 1e-6 of the deviation
+/// is left once the inputs before them are known, ascending.
 std::vector<RedundantInput> redundant_inputs(const Matrix& u);
 
 /// Whether each input has so much of its own, given those before it, that none is redundant; from
-/// their correlations (m x m).
+/// their correlations (m x m). Where not, redundant_inputs() decides.
 bool are_independent(const Matrix& correlation);
 
 /// How many block rows the inputs excite persistently, and the input that ends it.
@@ -28,8 +28,8 @@ struct Excitation {
   Index weakest_input = 0;
 };
 
-/// From the deviations of the input innovations (Projection::input_innovations) of normalised
-/// inputs: a block row counts while each of its innovations is above 1e-7.
+/// Returns the excitation from the deviations of Projection::input_innovations() (horizon x m) of
+/// normalised inputs: a block row counts while each of its innovations is at least 1e-7.
 Excitation excitation_of(const Matrix& input_innovations);
 
 }  // namespace reident::identification

@@ -1,11 +1,13 @@
 // Statistics of stretches of samples that add up: what N4SID needs of a window, at a cost that does
-// not depend on its length.
+// not depend on its length (METHOD.md, section 2).
 //
-// For the samples z[t] = [u[t]; y[t]] (w = m + p channels) of a run (consecutive ticks) the lag
-// products are F(tau) = sum_t z[t+tau] z[t]', 0 <= tau < L. Those of two adjacent runs add up with
-// the products across the seam, which the samples at the ends give; the Hankel matrix's inner
-// products follow from F and the same end samples (hankel.hpp). Sums are of z less a reference near
-// it, so that an operating point far above the signal costs no digits.
+// z[t] = [u[t]; y[t]] are the samples of a run (consecutive ticks), w = m + p channels in their
+// units. The lag products are F(tau) = sum_t z[t+tau] z[t]', 0 <= tau < L. Those of two adjacent
+// runs add up with the products across the seam, which the samples at the ends give. Sums are of z
+// less a reference near it, so that an operating point far above the signal costs no digits.
+//
+// L, the block rows, is 2 s for the horizon s and is the same in all sums that meet. Nothing here
+// throws.
 #pragma once
 
 #include <cstdint>
@@ -20,24 +22,26 @@ namespace reident::identification {
 /// The statistics of one run.
 class RunSums {
  public:
-  /// `z` is w x N, one column a tick, N >= 1.
+  /// Sums the samples `z` (w x N, one column a tick) from `first_tick` on. The reference is their
+  /// mean. Requires N >= 1 and block_rows >= 1.
   RunSums(const Matrix& z, std::int64_t first_tick, Index block_rows);
 
   Index count() const { return count_; }
   TickRange ticks() const { return {first_tick_, first_tick_ + count_}; }
 
-  /// Takes in the run whose first tick is this one's end.
+  /// Takes in a later run, whatever its reference. Requires its first tick to be this one's end.
   void append(RunSums next);
-  /// Moves the sums to another reference (w).
+  /// Moves the sums to another reference (w), exact to rounding.
   void refer_to(const Vector& reference);
 
+  /// Return the sums: of z less the reference but for the least and greatest values.
   const Vector& reference() const { return reference_; }
-  const Vector& sum() const { return sum_; }      // of z - reference
+  const Vector& sum() const { return sum_; }      // w
   const Matrix& products() const { return F_; }   // L w x w: F(0) on top of F(1) ...
   const Vector& least() const { return least_; }  // of z (w)
   const Vector& greatest() const { return greatest_; }
-  const Matrix& first() const { return first_; }  // w x min(N, L - 1): z - reference
-  const Matrix& last() const { return last_; }    // the same of the last samples
+  const Matrix& first() const { return first_; }  // w x min(N, L - 1)
+  const Matrix& last() const { return last_; }    // w x min(N, L - 1)
 
  private:
   Index block_rows_;
@@ -51,23 +55,25 @@ class RunSums {
 struct StretchSums {
   std::vector<RunSums> runs;
 
-  /// Takes in a later stretch; a run that continues the last one is joined to it.
+  /// Takes in a stretch that begins where this one ends, or later; a run that continues the last
+  /// one is joined to it.
   void append(StretchSums later);
+  /// Returns the number of samples of all runs.
   Index rows() const;
-  /// Mean and range of every channel (w); at least one run is there.
+  /// Return the mean and the range of every channel (w). Require at least one run.
   Vector mean() const;
   Vector least() const;
   Vector greatest() const;
 };
 
-/// Statistics of the record's rows at `ticks`, summed as one stretch.
+/// Returns the statistics of the record's rows at `ticks`, summed as one stretch.
 StretchSums sums_of_rows(const Record& record, TickRange ticks, Index block_rows);
 
-/// Statistics kept between windows. Time is cut into chunks [k c, (k + 1) c) ticks, and pairs of
+/// Statistics kept between windows. Time is cut into chunks [k c, (k + 1) c) ticks; pairs of
 /// chunks, pairs of pairs and so on are nodes of a binary tree over time. A stretch is the sum of
-/// the largest nodes in it, in their order: its bits depend on its samples alone, neither on when
-/// they arrived nor on what was kept, and a window that slides by a chunk costs that chunk and a
-/// few additions, however long it is.
+/// the largest nodes in it, in their order. So its bits depend on its samples alone, neither on
+/// when they arrived nor on what was kept. A window that slides by a chunk costs that chunk and a
+/// few additions, however long it is. Memory grows with the ticks kept: L w^2 numbers a node.
 class LagSums {
  public:
   struct Shape {
@@ -76,21 +82,23 @@ class LagSums {
     Index chunk_ticks = 0;  // c
     bool operator==(const Shape&) const = default;
   };
+  /// Keeps nothing yet. Requires positive sizes.
   explicit LagSums(const Shape& shape) : shape_(shape) {}
 
   const Shape& shape() const { return shape_; }
 
-  /// Sums over the ticks. Samples are read from the record where no kept node stands for them.
+  /// Returns the sums over the ticks. Samples are read from the record, which has w channels, where
+  /// no kept node stands for them.
   StretchSums over(TickRange ticks, const Record& record) const;
 
-  /// The same; nodes within `ticks` are kept for later windows.
+  /// Returns what over() does and keeps the nodes within `ticks` for later windows.
   StretchSums keep_over(TickRange ticks, const Record& record);
 
-  /// Chunks [begin, end) in ticks that have to be read for `ticks`: those not kept, with the
-  /// partial ones at both ends. Ascending, adjacent ones joined.
+  /// Returns the ticks that have to be read for `ticks`: chunks not kept, and the partial ones at
+  /// both ends. Ascending, adjacent ones joined.
   std::vector<TickRange> missing(TickRange ticks) const;
 
-  /// Forgets every node that overlaps `ticks`, such as where a late sample landed.
+  /// Forgets every node that overlaps `ticks`, as where a late sample came.
   void forget(TickRange ticks);
 
   std::size_t kept_nodes() const { return nodes_.size(); }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "identification/simulation/free_run.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {

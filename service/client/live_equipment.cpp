@@ -1,6 +1,6 @@
 #include "service/client/live_equipment.hpp"
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/initial_state.hpp"
 #include "service/client/include/reident/client.h"
 
 namespace reident {

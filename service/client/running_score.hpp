@@ -1,8 +1,8 @@
-// Errors of a run that has no end: the scores of identification/simulation/simulate.hpp, sample by
+// Errors of a run that has no end: the scores of identification/simulation/scores.hpp, sample by
 // sample.
 #pragma once
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/scores.hpp"
 
 namespace reident {
 

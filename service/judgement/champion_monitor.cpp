@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/hole_bridging.hpp"
+#include "identification/simulation/initial_state.hpp"
+#include "identification/simulation/square_changes.hpp"
 #include "service/model/model_json.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/support/log.hpp"

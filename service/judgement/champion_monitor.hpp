@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "identification/simulation/square_changes.hpp"
 #include "identification/statistics/change_detection.hpp"
 #include "service/config/config.hpp"
 #include "service/model/model_version.hpp"

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
 #include "service/judgement/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 #include "service/windows/provenance.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "identification/correction/pole_placement_search.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/scores.hpp"
 #include "service/judgement/run_comparison.hpp"
 #include "service/model/model_json.hpp"
 #include "service/windows/provenance.hpp"

@@ -8,7 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/correction/pole_placement_search.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/scores.hpp"
 #include "service/windows/window_cache.hpp"
 #include "service/windows/window_data.hpp"
 

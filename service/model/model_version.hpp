@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "identification/simulation/integral_feedback.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/scores.hpp"
 #include "identification/simulation/state_space.hpp"
 #include "service/model/derived_inputs.hpp"
 #include "storage/types/telemetry.hpp"

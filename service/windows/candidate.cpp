@@ -7,6 +7,8 @@
 #include "identification/correction/integral_feedback_search.hpp"
 #include "identification/correction/pole_placement_search.hpp"
 #include "identification/fit/adaptation.hpp"
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/initial_state.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
 #include "service/model/reasons.hpp"

@@ -10,7 +10,10 @@
 #include "identification/fit/output_error_fit.hpp"
 #include "identification/search/identify.hpp"
 #include "identification/subspace/hankel.hpp"
-#include "identification/subspace/subspace.hpp"
+#include "identification/subspace/input_response.hpp"
+#include "identification/subspace/projection.hpp"
+#include "identification/subspace/shift_invariance.hpp"
+#include "identification/subspace/weighting.hpp"
 #include "tests/properties/any_record.hpp"
 
 namespace reident::identification::identification_property_test {
@@ -68,7 +71,7 @@ RC_GTEST_PROP(Identification, WithoutNoisePolesAndMarkovParametersAreExact, ()) 
   const Weighting weighting = *rc::gen::element(Weighting::n4sid, Weighting::moesp);
   const Dynamics found = shift_invariant(projection.observability(weighting).gamma, p, n);
   const StateSpaceModel by_sums =
-      in_units(projection.with_response(found.A, found.C, true, 1), c.normalisation);
+      in_units(with_response(projection, found.A, found.C, true, 1), c.normalisation);
   const StateSpaceModel by_simulation =
       in_units(fit_response(found.A, found.C, true, c.work, c.work.all(), Accuracy::exact).model,
                c.normalisation);
@@ -120,7 +123,7 @@ RC_GTEST_PROP(Subspace, TheResponseOfTheTruthIsRecoveredFromTheCompression, ()) 
   const Compressed c = compressed(record, horizon);
   const Matrix C = c.normalisation.y_scale.cwiseInverse().asDiagonal() * s.truth.C;
   const StateSpaceModel found =
-      in_units(Projection(c.factor).with_response(s.truth.A, C, direct, 1), c.normalisation);
+      in_units(with_response(Projection(c.factor), s.truth.A, C, direct, 1), c.normalisation);
   // Neighbouring poles share B among them as rounding has it; what they do together is exact to
   // what normal equations of pivots above 1e-5 leave.
   RC_ASSERT(test::markov_distance(found, s.truth) < 1e-6);

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "identification/search/identify.hpp"
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/initial_state.hpp"
 #include "service/satcs/reference/reference_spacecraft.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/windows/candidate.hpp"

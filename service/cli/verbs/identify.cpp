@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "identification/simulation/initial_state.hpp"
+#include "identification/simulation/scores.hpp"
 #include "service/cli/identify_data.hpp"
 #include "service/cli/identify_options.hpp"
 #include "service/cli/identify_result.hpp"

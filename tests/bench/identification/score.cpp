@@ -9,7 +9,7 @@
 #include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/scores.hpp"
 #include "service/model/model_json.hpp"
 #include "tests/bench/identification/modes.hpp"
 #include "tests/bench/identification/samples.hpp"

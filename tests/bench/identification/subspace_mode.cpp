@@ -5,7 +5,9 @@
 
 #include "identification/subspace/hankel.hpp"
 #include "identification/subspace/normalise.hpp"
-#include "identification/subspace/subspace.hpp"
+#include "identification/subspace/projection.hpp"
+#include "identification/subspace/shift_invariance.hpp"
+#include "identification/subspace/weighting.hpp"
 #include "service/model/model_json.hpp"
 #include "tests/bench/identification/modes.hpp"
 

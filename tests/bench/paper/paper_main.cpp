@@ -16,7 +16,8 @@
 #include "identification/correction/integral_feedback_search.hpp"
 #include "identification/correction/pole_placement_search.hpp"
 #include "identification/search/identify.hpp"
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/scores.hpp"
 #include "service/cli/identify_data.hpp"
 #include "tests/bench/paper/paper_picture.hpp"
 

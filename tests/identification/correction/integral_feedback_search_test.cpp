@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A system whose outputs drift as no input tells.
+/// A system whose outputs drift as no input explains.
 Record drifting(const StateSpaceModel& truth, std::uint64_t seed, Index rows) {
   test::Noise noise(seed);
   Record record = test::excited(truth, noise, rows, 0.01);

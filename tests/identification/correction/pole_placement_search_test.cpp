@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/scores.hpp"
 #include "tests/support/systems.hpp"
 
 namespace reident::identification::pole_placement_search_test {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
 #include "tests/support/naive_n4sid.hpp"
 #include "tests/support/systems.hpp"
 
@@ -113,7 +113,7 @@ TEST(Response, SegmentsShorterThanTheOrderDoNoHarm) {
   test::Noise noise(5);
   const StateSpaceModel truth = test::random_system(noise, 5, 1, 1);
   Record record = test::excited(truth, noise, 400, 0);
-  record.segments = {{0, 2, 0}, {2, 3, 50}, {3, 400, 90}};  // starts anew at rows 2 and 3
+  record.segments = {{0, 2, 0}, {2, 3, 50}, {3, 400, 90}};  // starts again at rows 2 and 3
   for (const Accuracy accuracy : {Accuracy::fast, Accuracy::exact})
     EXPECT_LT(
         (fit_response(truth.A, truth.C, true, record, record.all(), accuracy).model.B - truth.B)

@@ -1,5 +1,5 @@
-// The kernels beside the equations that they run, for every size that has a code of its own and for
-// larger ones.
+// The kernels against the equations that they run, for every size that has a code of its own and
+// for larger ones.
 #include "identification/numerics/kernels.hpp"
 
 #include <random>

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "identification/search/identify.hpp"
+#include "identification/simulation/scores.hpp"
 #include "tests/support/systems.hpp"
 
 namespace reident::identification::delays_test {

@@ -1,4 +1,4 @@
-// The same samples and options give the same bits, whatever runs the tasks and in which order.
+// Equal samples and options give equal bits, whatever runs the tasks and in which order.
 #include <algorithm>
 #include <atomic>
 #include <cmath>

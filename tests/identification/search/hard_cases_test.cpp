@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/search/identify.hpp"
+#include "identification/simulation/scores.hpp"
 #include "tests/support/systems.hpp"
 
 namespace reident::identification::hard_cases_test {

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <gmock/gmock.h>
 
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/scores.hpp"
 #include "tests/support/naive_n4sid.hpp"
 #include "tests/support/systems.hpp"
 
@@ -121,7 +123,7 @@ TEST(Identify, FitsNothingToTheRowsThatItChoosesBy) {
   IdentifyOptions options;
   options.tune_rows = 600;
   const Identified chosen = expect_model(record, record.all(), options);
-  // The same choices, given, on the rows before the last 600 alone.
+  // These choices, given, on the rows before the last 600 alone.
   IdentifyOptions given;
   given.order = chosen.recipe.order;
   given.horizon = chosen.recipe.horizon;

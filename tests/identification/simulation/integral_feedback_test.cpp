@@ -8,7 +8,6 @@
 
 #include "identification/correction/integral_feedback_search.hpp"
 #include "identification/simulation/continuous.hpp"
-#include "identification/simulation/simulate.hpp"
 #include "tests/support/systems.hpp"
 
 namespace reident::identification::integral_feedback_test {
@@ -39,7 +38,7 @@ Matrix peak_gain(const StateSpaceModel& model) {
   return sum;
 }
 
-/// Runs the tracker beside the free run; telemetry is the free run plus `difference`, missing where
+/// Runs the tracker and the free run; telemetry is the free run plus `difference`, missing where
 /// that is not a number.
 struct Runs {
   Matrix free, tracked, v;

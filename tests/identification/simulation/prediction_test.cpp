@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/initial_state.hpp"
 #include "tests/support/systems.hpp"
 
 namespace reident::identification::prediction_test {

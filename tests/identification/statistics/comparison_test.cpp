@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/scores.hpp"
 #include "tests/support/systems.hpp"
 
 namespace reident::identification::comparison_test {
@@ -37,7 +37,7 @@ Trial trial(test::Noise& noise, double coefficient) {
   return result;
 }
 
-/// Share of 1,000 trials in which the other run is surely better.
+/// Share of 1,000 trials in which the other run is better with 99 % confidence.
 double promoted(double coefficient,
                 const std::function<Matrix(const Trial&, test::Noise&)>& other) {
   test::Noise noise(41);

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/scores.hpp"
 #include "tests/support/systems.hpp"
 
 namespace reident::identification::error_confidence_test {

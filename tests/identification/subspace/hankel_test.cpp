@@ -36,6 +36,11 @@ Record gapped(test::Noise& noise) {
   return test::with_gap(contiguous_record(1, noise.normal(300, 2), noise.normal(300, 1)), 100, 104);
 }
 
+TEST(Compression, SegmentsShorterThanTheBlockRowsGiveNothing) {
+  EXPECT_EQ(hankel_columns({{0, 5, 0}, {5, 8, 9}, {8, 20, 30}}, 6), 7);
+  EXPECT_EQ(hankel_columns({{0, 5, 0}}, 6), 0);
+}
+
 TEST(Hankel, FactorsKeepEveryInnerProductOfTheRows) {
   test::Noise noise(1);
   const Record record = gapped(noise);

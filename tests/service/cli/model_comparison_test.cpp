@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
 
 namespace reident::cli::model_comparison_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
 #include "service/client/include/reident/client.h"
 #include "tests/service/client/live_telemetry.hpp"
 

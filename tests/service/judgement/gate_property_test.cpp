@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/simulation/simulate.hpp"
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/scores.hpp"
 #include "identification/statistics/comparison.hpp"
 #include "service/judgement/gate.hpp"
 #include "tests/support/systems.hpp"

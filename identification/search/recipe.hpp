@@ -1,0 +1,37 @@
+// What the search chooses: with a recipe and the rows, the model follows (METHOD.md, section 7).
+// The weighting and the stability are those of its sections 5 and 7. A version of the service
+// stores its recipe, so that it can be identified again.
+#pragma once
+
+#include "identification/numerics/matrix.hpp"
+#include "identification/subspace/shift_invariance.hpp"
+#include "identification/subspace/weighting.hpp"
+
+namespace reident::identification {
+
+/// Where the output's operating point is taken from: all rows, or the half of them nearest to the
+/// rows that the model is meant for, which follows an output whose zero drifts.
+enum class OperatingPoint { whole, recent };
+
+/// What B and D are fitted to: the projected future outputs of the compression, or the simulated
+/// output, together with the offset and the initial states.
+enum class ResponseFit { subspace, simulation };
+
+/// The recipe of a model. What is not chosen by a search may be set by hand.
+struct Recipe {
+  /// n, and the block rows s of past and future.
+  int order = 0;
+  int horizon = 0;
+  Weighting weighting = Weighting::n4sid;
+  Stability stability = Stability::as_found;
+  ResponseFit fit = ResponseFit::subspace;
+  /// Whether D is free.
+  bool direct = true;
+  OperatingPoint operating_point = OperatingPoint::whole;
+  /// At most so many Levenberg-Marquardt steps on A and C, from no more than so many rows, those
+  /// nearest to the end.
+  int refinement_steps = 0;
+  Index refined_rows = 0;
+};
+
+}  // namespace reident::identification

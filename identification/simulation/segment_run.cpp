@@ -1,0 +1,30 @@
+#include "identification/simulation/segment_run.hpp"
+
+#include <algorithm>
+
+#include "identification/numerics/kernels.hpp"
+
+namespace reident::identification {
+
+Vector run_segment(const StateSpaceModel& model, const Record& record, const Segment& segment,
+                   Vector x, Matrix& y_hat, Index out) {
+  constexpr Index stretch = 1024;  // of rows at once, so that the work space stays small
+  const Index n = model.order(), m = model.inputs(), p = model.outputs();
+  Matrix M(n + p, n + m);
+  M << model.A, model.B, model.C, model.D;
+  Vector work(n + p);
+  Matrix du(m, stretch), y(p, stretch);
+  for (Index begin = segment.begin; begin < segment.end; begin += stretch) {
+    const Index count = std::min(stretch, segment.end - begin);
+    for (Index i = 0; i < m; ++i)
+      du.row(i).head(count) =
+          record.u.col(i).segment(begin, count).transpose().array() - model.u0(i);
+    run_state_space(M.data(), n, m, p, du.data(), count, x.data(), work.data(), y.data());
+    for (Index q = 0; q < p; ++q)
+      y_hat.col(q).segment(out + (begin - segment.begin), count) =
+          y.row(q).head(count).transpose().array() + model.y0(q);
+  }
+  return x;
+}
+
+}  // namespace reident::identification

@@ -1,0 +1,28 @@
+#include "identification/subspace/shift_invariance.hpp"
+
+#include "identification/numerics/decompositions.hpp"
+
+namespace reident::identification {
+
+Matrix extended_observability(const Matrix& A, const Matrix& C, Index rows) {
+  const Index p = C.rows();
+  Matrix gamma(rows * p, A.rows());
+  gamma.topRows(p) = C;
+  for (Index k = 1; k < rows; ++k)
+    gamma.middleRows(k * p, p).noalias() = gamma.middleRows((k - 1) * p, p) * A;
+  return gamma;
+}
+
+Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order, Stability stability) {
+  const Index rows = gamma.rows() - outputs;
+  const Matrix C = gamma.topLeftCorner(outputs, order);
+  if (stability == Stability::as_found)
+    return {solve_pivoted_qr(gamma.topLeftCorner(rows, order),
+                             Matrix(gamma.bottomLeftCorner(rows, order))),
+            C};
+  Matrix shifted = Matrix::Zero(gamma.rows(), order);
+  shifted.topRows(rows) = gamma.bottomLeftCorner(rows, order);
+  return {solve_pivoted_qr(gamma.leftCols(order), shifted), C};
+}
+
+}  // namespace reident::identification
