@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev cyclonedds-dev cyclonedds-tools libsqlite3-dev libzstd-dev libssl-dev
-  libcli11-dev libfmt-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev libmuparser-dev
+  libcli11-dev libfmt-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev
   libzip-dev libmatio-dev
 )
 for option in "$@"; do

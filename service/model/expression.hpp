@@ -13,14 +13,13 @@
 // and is not abs, min or max.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "service/model/postfix.hpp"
+#include "service/model/postfix.h"
 
 namespace reident {
 
@@ -36,25 +35,21 @@ class Expression {
 
   static std::variant<Expression, ExpressionMistake> parse(std::string_view text);
 
-  Expression(Expression&&) noexcept;
-  Expression& operator=(Expression&&) noexcept;
-  ~Expression();
-
   /// Names of the parameters, each once, in the order of their first use.
-  const std::vector<std::string>& variables() const;
+  const std::vector<std::string>& variables() const { return variables_; }
 
-  /// What evaluate() computes, but for values that are not finite, in postfix order.
-  const PostfixProgram& program() const;
+  /// What evaluate() computes, but for values that are not finite.
+  const std::vector<PostfixStep>& program() const { return program_; }
 
   /// The value for those of variables(). NaN where one of them, or the result, is not finite. The
-  /// same values give the same bits. For one thread at a time.
-  double evaluate(std::span<const double> values);
+  /// same values give the same bits, in the service, in simulators and in an FMU.
+  double evaluate(std::span<const double> values) const;
 
  private:
-  struct Evaluator;
-  explicit Expression(std::unique_ptr<Evaluator> evaluator);
+  Expression(std::vector<std::string> variables, std::vector<PostfixStep> program);
 
-  std::unique_ptr<Evaluator> evaluator_;
+  std::vector<std::string> variables_;
+  std::vector<PostfixStep> program_;
 };
 
 }  // namespace reident

@@ -11,18 +11,16 @@
 namespace reident {
 namespace {
 
-constexpr std::size_t max_name_bytes = 100;  // muParser's bound
-
-using Kind = PostfixStep::Kind;
+constexpr std::size_t max_name_bytes = 100;
 
 struct Function {
   std::string_view name;
   int values;
-  Kind kind;
+  PostfixKind kind;
 };
-constexpr std::array functions = {Function{"abs", 1, Kind::magnitude},
-                                  Function{"min", 2, Kind::least},
-                                  Function{"max", 2, Kind::largest}};
+constexpr std::array functions = {Function{"abs", 1, postfix_magnitude},
+                                  Function{"min", 2, postfix_least},
+                                  Function{"max", 2, postfix_largest}};
 
 const Function* function_of(std::string_view name) {
   const auto found = std::find_if(functions.begin(), functions.end(),
@@ -67,18 +65,17 @@ bool ExpressionGrammar::take(std::string_view token) {
   peek();
   if (!text_.substr(at_).starts_with(token)) return false;
   at_ += token.size();
-  canonical_ += token;
   return true;
 }
 
-std::optional<Kind> ExpressionGrammar::take_any(std::initializer_list<Operator> operators) {
+std::optional<PostfixKind> ExpressionGrammar::take_any(std::initializer_list<Operator> operators) {
   const auto* const found = std::find_if(operators.begin(), operators.end(),
                                          [this](const Operator& one) { return take(one.token); });
   return found == operators.end() ? std::nullopt : std::optional(found->kind);
 }
 
-bool ExpressionGrammar::operate(Kind kind) {
-  program_.push_back({kind});
+bool ExpressionGrammar::operate(PostfixKind kind) {
+  program_.push_back({kind, 0, 0});
   return true;
 }
 
@@ -134,30 +131,30 @@ bool ExpressionGrammar::conditional() {
   if (!comparison()) return false;
   if (!take("?")) return true;
   return nested(&ExpressionGrammar::conditional) && expect(":") &&
-         nested(&ExpressionGrammar::conditional) && operate(Kind::select);
+         nested(&ExpressionGrammar::conditional) && operate(postfix_select);
 }
 
 bool ExpressionGrammar::comparison() {
   if (!sum()) return false;
-  const auto kind = take_any({{"<=", Kind::less_or_equal},
-                              {">=", Kind::greater_or_equal},
-                              {"==", Kind::equal},
-                              {"!=", Kind::not_equal},
-                              {"<", Kind::less},
-                              {">", Kind::greater}});
+  const auto kind = take_any({{"<=", postfix_less_or_equal},
+                              {">=", postfix_greater_or_equal},
+                              {"==", postfix_equal},
+                              {"!=", postfix_not_equal},
+                              {"<", postfix_less},
+                              {">", postfix_greater}});
   return kind ? sum() && operate(*kind) : true;
 }
 
 bool ExpressionGrammar::sum() {
   if (!term()) return false;
-  while (const auto kind = take_any({{"+", Kind::add}, {"-", Kind::subtract}}))
+  while (const auto kind = take_any({{"+", postfix_add}, {"-", postfix_subtract}}))
     if (!term() || !operate(*kind)) return false;
   return true;
 }
 
 bool ExpressionGrammar::term() {
   if (!factor()) return false;
-  while (const auto kind = take_any({{"*", Kind::multiply}, {"/", Kind::divide}}))
+  while (const auto kind = take_any({{"*", postfix_multiply}, {"/", postfix_divide}}))
     if (!factor() || !operate(*kind)) return false;
   return true;
 }
@@ -167,8 +164,8 @@ bool ExpressionGrammar::factor() {
   const bool negative = take("-");
   if (!negative) take("+");
   if (!value()) return false;
-  if (take("^") && !(nested(&ExpressionGrammar::factor) && operate(Kind::power))) return false;
-  return negative ? operate(Kind::negate) : true;
+  if (take("^") && !(nested(&ExpressionGrammar::factor) && operate(postfix_power))) return false;
+  return negative ? operate(postfix_negate) : true;
 }
 
 bool ExpressionGrammar::value() {
@@ -192,8 +189,7 @@ bool ExpressionGrammar::number() {
     return refuse(begin,
                   "a number ends in a letter; write 2*a for a product, and a parameter's "
                   "name begins with a letter or _");
-  canonical_ += token;
-  program_.push_back({Kind::number, parsed});
+  program_.push_back({postfix_number, parsed, 0});
   return true;
 }
 
@@ -202,7 +198,6 @@ bool ExpressionGrammar::name() {
   while (at_ < text_.size() && continues_name(text_[at_])) ++at_;
   const std::string_view token = text_.substr(begin, at_ - begin);
   const Function* const function = function_of(token);
-  canonical_ += token;
   if (peek() == '(') {
     if (function == nullptr)
       return refuse(begin, fmt::format("{} is no function here; abs, min and max are", token));
@@ -222,7 +217,7 @@ bool ExpressionGrammar::name() {
 
 void ExpressionGrammar::parameter(std::string_view token) {
   const auto found = std::find(variables_.begin(), variables_.end(), token);
-  program_.push_back({Kind::variable, 0, static_cast<std::size_t>(found - variables_.begin())});
+  program_.push_back({postfix_variable, 0, static_cast<std::size_t>(found - variables_.begin())});
   if (found == variables_.end()) variables_.emplace_back(token);
 }
 

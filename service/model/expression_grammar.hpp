@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "service/model/postfix.hpp"
+#include "service/model/postfix.h"
 
 namespace reident {
 
@@ -21,12 +21,10 @@ class ExpressionGrammar {
 
   /// Where it is not: the first mistake, with its place.
   const std::string& mistake() const { return mistake_; }
-  /// The text without blanks.
-  const std::string& canonical() const { return canonical_; }
   /// The parameters, each once, in the order of their first use.
   const std::vector<std::string>& variables() const { return variables_; }
-  /// The same in postfix order; its variables are places in variables().
-  const PostfixProgram& program() const { return program_; }
+  /// What the text says to compute; its variables are places in variables().
+  const std::vector<PostfixStep>& program() const { return program_; }
 
  private:
   /// The next byte that is no blank; 0 at the end.
@@ -35,10 +33,10 @@ class ExpressionGrammar {
   bool take(std::string_view token);
   struct Operator {
     std::string_view token;
-    PostfixStep::Kind kind;
+    PostfixKind kind;
   };
   /// The first of them that stands at the next byte.
-  std::optional<PostfixStep::Kind> take_any(std::initializer_list<Operator> operators);
+  std::optional<PostfixKind> take_any(std::initializer_list<Operator> operators);
   bool expect(std::string_view token);
 
   /// Each notes the mistake, where there is none yet, and says false.
@@ -61,15 +59,14 @@ class ExpressionGrammar {
   bool call(int values);
   void parameter(std::string_view token);
   /// Notes an operation whose operands are noted.
-  bool operate(PostfixStep::Kind kind);
+  bool operate(PostfixKind kind);
 
   std::string_view text_;
   std::size_t at_ = 0;
   int depth_ = 0;
-  std::string canonical_;
   std::string mistake_;
   std::vector<std::string> variables_;
-  PostfixProgram program_;
+  std::vector<PostfixStep> program_;
 };
 
 }  // namespace reident

@@ -13,7 +13,6 @@ namespace {
 
 using identification::Index;
 using identification::Matrix;
-using Kind = PostfixStep::Kind;
 
 /// As C writes it by %a, in every locale.
 std::string exact(double value) {
@@ -31,47 +30,6 @@ std::string row_by_row(std::string_view name, const Matrix& matrix) {
   return text + '\n';
 }
 
-std::string_view word_of(Kind kind) {
-  switch (kind) {
-    case Kind::negate:
-      return "neg";
-    case Kind::add:
-      return "+";
-    case Kind::subtract:
-      return "-";
-    case Kind::multiply:
-      return "*";
-    case Kind::divide:
-      return "/";
-    case Kind::power:
-      return "^";
-    case Kind::less:
-      return "<";
-    case Kind::less_or_equal:
-      return "<=";
-    case Kind::greater:
-      return ">";
-    case Kind::greater_or_equal:
-      return ">=";
-    case Kind::equal:
-      return "==";
-    case Kind::not_equal:
-      return "!=";
-    case Kind::magnitude:
-      return "abs";
-    case Kind::least:
-      return "min";
-    case Kind::largest:
-      return "max";
-    case Kind::select:
-      return "select";
-    case Kind::number:
-    case Kind::variable:
-      break;
-  }
-  return "";
-}
-
 /// "input COUNT STEP..."
 std::string input_text(const Signal& input, const std::vector<FmuVariable>& parameters) {
   if (input.expression.empty())
@@ -81,12 +39,12 @@ std::string input_text(const Signal& input, const std::vector<FmuVariable>& para
   std::string text = fmt::format("input {}", expression.program().size());
   for (const PostfixStep& step : expression.program()) {
     text += ' ';
-    if (step.kind == Kind::number)
+    if (step.kind == postfix_number)
       text += exact(step.number);
-    else if (step.kind == Kind::variable)
+    else if (step.kind == postfix_variable)
       text += fmt::format("p{}", place_of(parameters, expression.variables()[step.variable]));
     else
-      text += word_of(step.kind);
+      text += postfix_word(step.kind);
   }
   return text + '\n';
 }

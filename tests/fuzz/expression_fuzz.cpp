@@ -23,7 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(mistake->message.starts_with("at byte "));
     return 0;
   }
-  auto& expression = std::get<reident::Expression>(parsed);
+  const auto& expression = std::get<reident::Expression>(parsed);
+  require(postfix_is_sound(expression.program().data(), expression.program().size()) != 0);
   std::vector<double> values(expression.variables().size(), 2.5);
   for (const double first : {0.0, -1.0, 1e300}) {
     if (!values.empty()) values[0] = first;

@@ -108,7 +108,8 @@ RC_GTEST_PROP(Expression, HasTheBitsOfItsTree, ()) {
            mistake->message.find("at most 1000 are") == std::string::npos);
     RC_FAIL(term.text + ": " + mistake->message);
   }
-  auto& expression = std::get<Expression>(result);
+  const auto& expression = std::get<Expression>(result);
+  RC_ASSERT(postfix_is_sound(expression.program().data(), expression.program().size()) != 0);
   std::vector<double> used;
   for (const std::string& name : expression.variables())
     used.push_back(values[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) -

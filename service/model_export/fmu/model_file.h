@@ -31,6 +31,11 @@ enum {
 };
 
 typedef struct {
+  PostfixStep* steps;
+  size_t count;
+} Program;
+
+typedef struct {
   char digest[model_digest_length + 1];
   double period_s;
   size_t order, inputs, outputs, parameters;
@@ -153,14 +158,14 @@ static double* next_reals(Words* words, const char* name, double* at, size_t cou
   return at;
 }
 
-static void read_step(Words* words, size_t parameters, Step* step) {
+static void read_step(Words* words, size_t parameters, PostfixStep* step) {
   const Word word = next_word(words);
-  step->kind = step_named(word.at, word.length);
-  if (step->kind != step_number) return;
+  step->kind = postfix_kind(word.at, word.length);
+  if (step->kind != postfix_number) return;
   const Word rest = {word.at + 1, word.length - 1};
   if (word.length > 1 && word.at[0] == 'p') {
-    step->kind = step_parameter;
-    if (!whole_of(rest, parameters, &step->parameter) || step->parameter == parameters)
+    step->kind = postfix_variable;
+    if (!whole_of(rest, parameters, &step->variable) || step->variable == parameters)
       words_refuse(words, "an input names a parameter that is none");
   } else if (!real_of(word, &step->number)) {
     words_refuse(words, "an input has a step that is none");
@@ -178,7 +183,7 @@ static void read_program(Words* words, size_t parameters, Program* program) {
   program->count = count;
   for (size_t i = 0; i < count && words->mistake == NULL; ++i)
     read_step(words, parameters, &program->steps[i]);
-  if (words->mistake == NULL && !program_is_sound(program))
+  if (words->mistake == NULL && !postfix_is_sound(program->steps, program->count))
     words_refuse(words, "an input's program does not leave one value");
 }
 

@@ -60,7 +60,8 @@ static void run_copy(const Model* model, const Run* from, Run* to) {
 static size_t inputs_of(const Model* model, const Run* run, double* du) {
   size_t first = model->inputs;
   for (size_t i = 0; i < model->inputs; ++i) {
-    const double value = program_value(&model->programs[i], run->values);
+    const Program* const program = &model->programs[i];
+    const double value = postfix_value(program->steps, program->count, run->values);
     du[i] = isfinite(value) ? value - model->u0[i] : run_inputs(model, run)[i];
     if (!isfinite(value) && first == model->inputs) first = i;
   }
