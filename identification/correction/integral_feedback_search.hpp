@@ -17,6 +17,7 @@
 
 namespace reident::identification {
 
+/// A gain whose loop is stable.
 struct TrackingPlacement {
   TrackingGain gain;
   Poles uncontrollable;  // poles of the model that no input reaches and that stayed
@@ -30,6 +31,7 @@ std::variant<TrackingPlacement, Verdict> place_tracking_poles(const StateSpaceMo
                                                               const Poles& wanted,
                                                               const Vector& error_limit);
 
+/// The best of the gains that were tried.
 struct TrackingSearch {
   TrackingGain gain;
   double scale = 1;          // of the model's poles, as scaled_pole() moves them

@@ -32,6 +32,7 @@ Poles scaled_poles(const Poles& poles, double scale);
 /// Returns C (I - A)^-1 B + D (p x m). Absent where a pole is so near to 1 that it has no meaning.
 std::optional<Matrix> static_gain(const StateSpaceModel& model);
 
+/// A corrected model, how it was made and how well it runs.
 struct Correction {
   StateSpaceModel model;  // without K: that of the plain model belongs to its A and C
   double scale = 1;
@@ -42,6 +43,7 @@ struct Correction {
   Poles uncontrollable;  // poles that no input reaches and that stayed
 };
 
+/// What the search found.
 struct CorrectionSearch {
   Score plain;                     // of the model as it is, over the same rows
   std::optional<Correction> best;  // absent where none lowers the error by more than 1 %

@@ -9,7 +9,7 @@
 
 namespace reident::identification {
 
-/// Ticks at which the relation does not hold, in the unit of the residual.
+/// Ticks at which the relation does not hold, and its residual there, in its unit.
 struct Inconsistency {
   TickRange ticks;
   double residual = 0;    // median of r there; of |r|, with the sign of that, where it is a level

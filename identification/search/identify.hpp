@@ -53,7 +53,8 @@ struct IdentifyOptions {
   /// Runs the independent parts of the search; absent: one after the other. The result does not
   /// depend on it.
   ForEach for_each;
-  /// Called as each phase of the work begins, with a literal such as "compress"; for timing.
+  /// Called as each phase of the work begins, with the literal "prepare", "choose" or
+  /// "identify"; for timing. May be called again for a further model.
   std::function<void(std::string_view phase)> on_phase;
 };
 
@@ -84,15 +85,18 @@ struct Identified {
   std::vector<std::string> warnings;
 };
 
+/// A model, or why there is none.
 using IdentifyResult = std::variant<Identified, Verdict>;
 
-/// Identifies a model from the rows `rows` of the record alone; nothing else of it is read.
+/// Identifies a model from the rows `rows` of the record alone. Its x0 depends on the others too
+/// where holes follow the first row: on their number, and on how much their inputs change.
 /// Requires m >= 0 inputs, p >= 1 outputs, rows within the record and options without mistakes.
 /// With `kept`, sums kept there stand for the samples that they were made of, and new ones are
 /// added; not with input delays. Its shape has m + p channels and at least
 /// block_rows_needed(options) block rows.
 /// Returns a verdict where the rows give no model; whatever values they hold, one of the two comes.
-/// The result is the same to the last bit for any `for_each` and whatever is kept.
+/// The result is the same to the last bit for any `for_each`, and whatever sums of its shape `kept`
+/// holds.
 IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
                         LagSums* kept = nullptr);
 

@@ -1,6 +1,7 @@
 // The search over order, horizon, weighting and the way of B and D, scored on rows that no
 // candidate was fitted to (METHOD.md, section 7). Records are normalised; m and p are the inputs
-// and outputs that take part. Private to the library. Nothing here throws but what `for_each` throws.
+// and outputs that take part. Private to the library. Nothing here throws but what `for_each`
+// throws.
 #pragma once
 
 #include <cstddef>

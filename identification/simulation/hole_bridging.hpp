@@ -21,7 +21,8 @@ namespace reident::identification {
 /// Returns the length of the hole in ticks.
 std::int64_t ticks_between(const Segment& before, const Segment& after);
 
-/// Whether a run goes on through the hole: it has at most 60 ticks, or a hundredth of the rows.
+/// Whether a run goes on through the hole: it has at most 60 ticks, or at most as many as a
+/// hundredth of the record's rows.
 bool is_bridged(const Record& record, const Segment& before, const Segment& after);
 
 /// A state (n) and a root L (n x n) of its covariance L L'.

@@ -1,6 +1,6 @@
 // Whether one run errs less than another on the same rows, and how certain that is (METHOD.md,
-// section 15). Both runs have the same inputs and disturbances, so the pair is resampled.
-// Nothing here throws.
+// section 15). Both runs have the same inputs and disturbances, so they are compared block by
+// block. Nothing here throws.
 #pragma once
 
 #include <optional>

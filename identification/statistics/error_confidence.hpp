@@ -9,7 +9,7 @@
 
 namespace reident::identification {
 
-/// Fewer rows give no interval. Blocks are at most as long as gives so many of them.
+/// Fewer rows give no interval. A block is at most so long that there are as many blocks.
 inline constexpr Index least_rows = 50;
 inline constexpr Index least_blocks = 10;
 

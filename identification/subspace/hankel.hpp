@@ -22,7 +22,7 @@ struct HankelFactor {
   Index horizon = 0;       // s
   Index columns = 0;       // of H
   Matrix L;                // square, 1 + 2 s (m + p)
-  double least_share = 0;  // of a row's square, that is left once the rows before it are known
+  double least_share = 0;  // of a row's square that is left once the rows before it are known
 };
 
 /// Returns the columns of the Hankel matrix with `block_rows` block rows over the segments.

@@ -73,7 +73,7 @@ StretchSums sums_of_rows(const Record& record, TickRange ticks, Index block_rows
 /// chunks, pairs of pairs and so on are nodes of a binary tree over time. A stretch is the sum of
 /// the largest nodes in it, in their order. So its bits depend on its samples alone, neither on
 /// when they arrived nor on what was kept. A window that slides by a chunk costs that chunk and a
-/// few additions, however long it is. Memory grows with the ticks kept: L w^2 numbers a node.
+/// few additions, however long it is. Memory grows with what is kept: L w^2 numbers a run.
 class LagSums {
  public:
   struct Shape {

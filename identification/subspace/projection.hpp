@@ -13,7 +13,7 @@ namespace reident::identification {
 /// The projections of one horizon, for every weighting and order.
 class Projection {
  public:
-  /// Takes the blocks of the factor over. No other call computes them again.
+  /// Copies the blocks of the factor.
   explicit Projection(const HankelFactor& factor);
 
   Index inputs() const { return inputs_; }
