@@ -6,7 +6,7 @@
 
 Code between backticks is not prose: names of outcomes and options stay what they are.
 
-usage: check_words.py ROOT [FILE...]     (all tracked files without FILE)
+usage: check_words.py ROOT [--pages | FILE...]     (all tracked files without FILE)
 """
 
 import re
@@ -112,6 +112,8 @@ def check_comments(name, lines):
 def main():
     root = Path(sys.argv[1])
     names = sys.argv[2:] or tracked_files(root)
+    if names == ["--pages"]:
+        names = [name for name in tracked_files(root) if name.endswith(".md")]
     breaches = []
     for name in names:
         page = name.endswith(".md")
