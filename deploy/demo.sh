@@ -66,7 +66,7 @@ tail -n +1 -F "$folder/reidentd.log" 2>/dev/null | sed -un \
   's/.*window decided equipment=[^/]*\/\([A-Z0-9]*\) .* outcome=approved .*reason="\(.*\)"$/  < \1: \2/p' |
   cut -c -79 &
 pids+=($!)
-tail -n +1 -F "$folder/simulator.log" 2>/dev/null | sed -un 's/^/  > /p' | cut -c -79 &
+tail -n +1 -F "$folder/simulator.log" 2>/dev/null | sed -un '/running MRSE/!s/^/  > /p' | cut -c -79 &
 pids+=($!)
 
 flight=(--spacecraft CBERS-4 --duration 2406min --speed 1500 --wait-readers 2 "${endpoint[@]}")
