@@ -58,7 +58,7 @@ std::optional<Verdict> useless(RecipeChoice& choice, double constant, bool may_e
   const std::vector<ScoredRecipe>& ranked = choice.ranked;
   const bool unstable = ranked.empty() || ranked.front().recipe.stability == Stability::enforced;
   // A system that really is unstable must not pass as a stable one that follows it a little.
-  // Of many candidates, the best beats the mean by a little even on noise.
+  // The best of many candidates beats the mean by a little even on noise.
   choice.acceptable_error = (unstable ? 0.5 : 0.98) * constant;
   if (!ranked.empty() && ranked.front().error < choice.acceptable_error) return std::nullopt;
   if (unstable && !may_enforce_stability)

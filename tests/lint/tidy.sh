@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # clang-tidy over all sources (some ten minutes on two cores, so it is apart from the suite), or over
-# the files that are named. Needs a build of the ci preset: tests/run.sh makes one.
+# the files that are named. Works on the preset separate,
+# which it configures.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 [ -f build/separate/compile_commands.json ] || cmake --preset separate -DBUILD_TESTING=ON >/dev/null
