@@ -1,5 +1,5 @@
-/* Bytes that are the same on every machine: a checksum, and numbers of eight bytes, lowest first.
- */
+/* Bytes that are the same on every machine: a checksum, and numbers of eight bytes, the lowest
+ * byte first. */
 #ifndef REIDENT_BYTES_H
 #define REIDENT_BYTES_H
 
@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* FNV-1a of 64 bits: tells damage by accident, not forgery. */
+/* FNV-1a of 64 bits: finds damage by accident, not forgery. */
 static uint64_t bytes_checksum(const unsigned char* bytes, size_t count) {
   uint64_t sum = 0xcbf29ce484222325u;
   for (size_t i = 0; i < count; ++i) sum = (sum ^ bytes[i]) * 0x100000001b3u;

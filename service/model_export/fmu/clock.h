@@ -16,7 +16,7 @@ typedef struct {
   double rest_s; /* in [-tolerance, period - tolerance) */
 } Clock;
 
-/* How far beside a tick a time counts as on it: a millionth of a period, or what a double near
+/* How far from a tick a time counts as on it: a millionth of a period, or what a double near
  * `time_s` can resolve, but never more than a quarter of a period. */
 static double clock_tolerance(double period_s, double time_s) {
   const double size = fabs(time_s);

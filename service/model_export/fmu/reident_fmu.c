@@ -2,8 +2,8 @@
  *
  * This is the one file to compile; all else is included:
  *
- *   cc -std=c11 -O2 -ffp-contract=off -fPIC -fvisibility=hidden -shared reident_fmu.c -lm -o
- * NAME.so
+ *   cc -std=c11 -O2 -ffp-contract=off -fPIC -fvisibility=hidden -shared reident_fmu.c -lm \
+ *      -o NAME.so
  *
  * A step [t, t + h) runs the ticks in it, each with the inputs that are set. Between ticks the
  * outputs hold. Before the first tick they are those that it would give. A call that is refused
@@ -379,7 +379,7 @@ fmi2Status FMI2(GetIntegerStatus)(fmi2Component component, fmi2StatusKind kind,
   return no_status(component);
 }
 
-/* It never ends a simulation by itself. */
+/* Answers fmi2Terminated alone: this FMU never ends a simulation by itself. */
 fmi2Status FMI2(GetBooleanStatus)(fmi2Component component, fmi2StatusKind kind,
                                   fmi2Boolean* value) {
   const Instance* const instance = component;

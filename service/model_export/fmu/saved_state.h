@@ -1,12 +1,19 @@
 /* The state of a run, kept in memory or as bytes:
  *
- *   8 bytes    "RIDFMU01": what it is, and the version of this form
- *   64 bytes   digest of the model
- *   8 bytes    each: phase, whether a stop time is defined, start and stop time, communication
- * point, whole periods and rest of the clock, ticks that have run 8 bytes    each: parameters, u -
- * u0 of the last tick, x, y 8 bytes    FNV-1a of all before
+ *   bytes            content
+ *   8                "RIDFMU01": what it is, and the version of this form
+ *   64               digest of the model, hexadecimal
+ *   8                phase
+ *   8                1 where a stop time is defined, else 0
+ *   8                stop time [s]
+ *   8                communication point [s]
+ *   8, 8             the clock: whole periods; rest [s]
+ *   8                ticks that have run
+ *   8 (q+m+n+p)      parameters (q), u - u0 of the last tick (m), x (n), y (p)
+ *   8                FNV-1a of all bytes before
  *
- * Lowest byte first, doubles by their bits.
+ * Numbers have their lowest byte first; a double is kept by its bits. The bytes fit any instance of
+ * the same model on any machine.
  */
 #ifndef REIDENT_SAVED_STATE_H
 #define REIDENT_SAVED_STATE_H
@@ -23,12 +30,14 @@ typedef struct {
   Run run;
 } SavedState;
 
+/* Frees the state; NULL is allowed. */
 static void saved_free(SavedState* state) {
   if (state == NULL) return;
   free(state->run.values);
   free(state);
 }
 
+/* Returns a state of the model with all values 0, which saved_free frees; NULL without memory. */
 static SavedState* saved_new(const Model* model) {
   SavedState* const state = calloc(1, sizeof *state);
   if (state == NULL) return NULL;
@@ -46,10 +55,12 @@ static int saved_fits(const SavedState* state, const Model* model) {
          memcmp(state->digest, model->digest, sizeof state->digest) == 0;
 }
 
+/* Returns how many bytes a state of this model takes. */
 static size_t saved_size(const Model* model) {
   return saved_head + 8 * (saved_fields + run_values(model) + 1);
 }
 
+/* Writes the state as saved_size() bytes. */
 static void saved_write(const Model* model, const SavedState* state, unsigned char* bytes) {
   const Run* const run = &state->run;
   unsigned char* at = bytes;
@@ -66,6 +77,9 @@ static void saved_write(const Model* model, const SavedState* state, unsigned ch
   put_whole(at, bytes_checksum(bytes, (size_t)(at - bytes)));
 }
 
+/* Whether numbers that came as bytes can be those of a run. Outputs need not be finite:
+ * before the first tick those of inputs that were discarded may be kept, and they are computed
+ * again before they are read. */
 static int fields_are_sound(const Model* model, const Run* run) {
   const int64_t most = INT64_C(1) << 53;
   int finite =
@@ -76,7 +90,8 @@ static int fields_are_sound(const Model* model, const Run* run) {
          run->ticks <= run->clock.periods + 1;
 }
 
-/* What is wrong with the bytes, or NULL and the state in `state`, which was made for the model. */
+/* Reads `size` bytes into `state`, which was made for the model (saved_new). Returns what is wrong
+ * with them, or NULL. After a mistake the content of `state` is not to be used. */
 static const char* saved_read(const Model* model, const unsigned char* bytes, size_t size,
                               SavedState* state) {
   Run* const run = &state->run;
