@@ -44,8 +44,8 @@ class InputExpressions {
   /// The inputs (m) for values of parameters(); NaN where a derived one has no finite value.
   void evaluate(const identification::Vector& parameters, identification::Vector& inputs);
 
-  /// The same of each row of `record`, whose u holds parameters(). Rows at which an input has no
-  /// finite value are left out as holes are.
+  /// The record with the inputs in the place of its u, which holds parameters(). Rows at which an
+  /// input has no finite value are left out as holes are.
   identification::Record evaluate(identification::Record record);
 
  private:

@@ -30,7 +30,7 @@ inline EquipmentModel example_model() {
   return model;
 }
 
-/// The same with all that not every model has: an input that is computed, and a tracking gain.
+/// example_model() with all that not every model has: a computed input and a tracking gain.
 inline EquipmentModel full_example_model() {
   EquipmentModel model = example_model();
   model.inputs[1] = {"P_IN", "W", -0.25, 4, "V_BUS * I_BDRIN2"};

@@ -55,7 +55,7 @@ inline model_export::ExportedVersion random_version(const ModelKind& kind, std::
   return exported;
 }
 
-/// The same version by the library that simulators link, fed with the FMU's inputs.
+/// The version as the library of simulators runs it, fed with the FMU's inputs.
 class Reference {
  public:
   explicit Reference(const ModelVersion& version)

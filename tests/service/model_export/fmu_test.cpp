@@ -1,4 +1,5 @@
-// The binary of an FMU beside the library that simulators link, and what it does with bad calls.
+// The binary of an FMU compared with the library that simulators link, and its answers to bad
+// calls.
 #include <cmath>
 #include <cstdio>
 #include <limits>
