@@ -17,6 +17,8 @@
 
 namespace reident {
 
+/// A mutex that is not recursive. Lock it by MutexLock; lock() and unlock() are for code that lets
+/// go of it in the middle of a scope.
 class REIDENT_THREAD_ANNOTATION(capability("mutex")) Mutex {
  public:
   void lock() REIDENT_THREAD_ANNOTATION(acquire_capability()) { mutex_.lock(); }
@@ -26,6 +28,7 @@ class REIDENT_THREAD_ANNOTATION(capability("mutex")) Mutex {
   std::mutex mutex_;
 };
 
+/// Holds the mutex, which has to outlive it, for a scope.
 class REIDENT_THREAD_ANNOTATION(scoped_lockable) MutexLock {
  public:
   explicit MutexLock(Mutex& mutex) REIDENT_THREAD_ANNOTATION(acquire_capability(mutex))
@@ -41,10 +44,12 @@ class REIDENT_THREAD_ANNOTATION(scoped_lockable) MutexLock {
 };
 
 /// Waits in a loop at the call site, so that the analysis sees the condition read under the lock.
+/// There is no wait with a predicate: a lambda would be analysed as code without the lock.
 class CondVar {
  public:
+  /// Returns with the mutex held, after a notification or without any.
   void wait(Mutex& mutex) REIDENT_REQUIRES(mutex) { condition_.wait(mutex); }
-  /// False when `timeout` passed.
+  /// Returns with the mutex held; false when `timeout` [ns] passed.
   bool wait_for(Mutex& mutex, std::chrono::nanoseconds timeout) REIDENT_REQUIRES(mutex) {
     return condition_.wait_for(mutex, timeout) == std::cv_status::no_timeout;
   }

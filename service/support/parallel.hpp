@@ -25,7 +25,8 @@ class WorkerPool {
 
   /// Runs task(0), ..., task(count - 1) in any order, and returns when all are done. After a task
   /// throws no further one begins; when those that had begun have ended, the exception that a plain
-  /// loop would have met is rethrown.
+  /// loop would have met is rethrown. `task` is called from several threads at the same time. A
+  /// task must not wait for another one of the same call, since one thread may run them all.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& task);
 
  private:
@@ -44,7 +45,7 @@ class WorkerPool {
   std::vector<std::thread> threads_;
 };
 
-/// Cores that this process may use, at least 1.
+/// Returns how many cores this process may use (its CPU affinity counts), at least 1.
 std::size_t usable_cores();
 
 }  // namespace reident

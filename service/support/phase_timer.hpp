@@ -1,4 +1,5 @@
-// Wall time of the phases of a piece of work, in the order in which they began.
+// Wall time of the phases of a piece of work, in the order in which they began. It is taken from a
+// clock that no adjustment of the system's time moves.
 #pragma once
 
 #include <chrono>
@@ -9,6 +10,7 @@
 
 namespace reident {
 
+/// At most one phase runs at a time. One thread at a time.
 class PhaseTimer {
  public:
   /// Ends the running phase and begins another; a name that came before goes on counting.
@@ -23,6 +25,7 @@ class PhaseTimer {
     since_ = Clock::now();
   }
 
+  /// Ends the running phase; has no effect where none runs.
   void end() {
     if (running_ == none) return;
     phases_[running_].second +=
@@ -30,7 +33,7 @@ class PhaseTimer {
     running_ = none;
   }
 
-  /// Name and milliseconds of each phase.
+  /// Name and time [ms] of each phase; that of the running one is without its current stretch.
   const std::vector<std::pair<std::string, double>>& phases() const { return phases_; }
 
  private:

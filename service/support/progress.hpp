@@ -8,6 +8,8 @@
 
 namespace reident {
 
+/// Does not own its stream, which has to outlive it. One thread at a time. The destructor clears
+/// it.
 class Progress {
  public:
   using Clock = std::chrono::steady_clock;
@@ -20,9 +22,10 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Whether update() would draw: on a terminal, ten times a second.
+  /// Whether update() would draw: on a terminal, ten times a second. `now` is given in tests.
   bool due(Clock::time_point now = Clock::now()) const;
-  /// Draws when it is due. `fraction` is held to [0, 1]; `detail` follows the bar.
+  /// Draws when it is due. `fraction` is held to [0, 1], a NaN is shown as 0; `detail`, one short
+  /// line, follows the bar.
   void update(double fraction, std::string_view detail, Clock::time_point now = Clock::now());
   /// Takes the bar off the terminal, so that other text can be written.
   void clear();

@@ -1,4 +1,4 @@
-// Small work on text.
+// Small work on text. Bytes are compared: no locale plays a part.
 #pragma once
 
 #include <string>
@@ -7,14 +7,15 @@
 
 namespace reident {
 
-/// Without the blanks and tabs around it.
+/// Returns the part of `text` without the blanks and tabs around it; it points into `text`. Line
+/// ends stay.
 constexpr std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// "a, b, c".
+/// Returns the names as in "a, b, c"; empty without names.
 inline std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const auto& name : names) {

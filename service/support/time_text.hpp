@@ -17,7 +17,8 @@ namespace reident {
 /// (1677-09-22 to 2262-04-11).
 std::optional<std::int64_t> parse_time(std::string_view text);
 
-/// Nanoseconds from "250ns", "10us", "500ms", "2.5s", "90min", "2h", "3d" or plain seconds.
+/// Nanoseconds from "250ns", "10us", "500ms", "2.5s", "90min", "2h", "3d" or plain seconds. It may
+/// be negative. Empty when the text is none of these or 64 bits cannot hold it.
 std::optional<std::int64_t> parse_duration(std::string_view text);
 
 /// "2023-04-29T16:22:37.5Z": as many decimals as the time has. parse_time gives the time back.

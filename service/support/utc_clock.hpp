@@ -6,7 +6,8 @@
 
 namespace reident {
 
-/// Nanoseconds since 1970-01-01T00:00:00 UTC.
+/// Returns nanoseconds since 1970-01-01T00:00:00 UTC, without leap seconds. An adjustment of the
+/// system's clock moves it, backwards too: measure durations with std::chrono::steady_clock.
 inline std::int64_t utc_now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())

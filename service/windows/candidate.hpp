@@ -1,9 +1,9 @@
 // From a window to a candidate: load, identify, correct, fit, score. The registry is not looked at,
 // so that windows can be worked on in any order and side by side.
 //
-// Archive, configuration and window determine the candidate to the last bit, timings aside, whatever
-// was kept of earlier windows. A known model that is adapted to the window gives another one, which
-// the known model determines too.
+// Archive, configuration and window determine the candidate to the last bit, timings aside,
+// whatever was kept of earlier windows. A known model that is adapted to the window gives another
+// one, which the known model determines too.
 #pragma once
 
 #include <exception>
