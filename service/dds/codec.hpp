@@ -1,8 +1,12 @@
 // One codec for each message: its wire type, its profile, and the two directions.
 //
 // An Encoder holds the buffers that the wire sample borrows; the reference that it returns is good
-// until its next call and as long as the message lives. `decode` never trusts the wire: it fills
-// `message` as far as it can, identity first, and returns what breaks the contract.
+// until its next call and as long as the message lives. It sends what it is given: whoever writes a
+// message keeps the contract of idl/README.md.
+//
+// `decode` never trusts the wire: it fills `message` as far as it can, identity first, and returns
+// what breaks the contract. What it fills in is a copy, so the loan may end. Neither of the two
+// throws but std::bad_alloc. An encoder is for one thread at a time; `decode` has no state.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +23,8 @@
 
 namespace reident::dds {
 
+/// M is a message of dds.hpp. Each specialisation has Wire, descriptor, profile, Encoder and
+/// decode.
 template <class M>
 struct Codec;
 
@@ -70,6 +76,7 @@ struct Codec<ModelVersion> {
     const Wire& operator()(const ModelVersion& version);
 
    private:
+    /// A copy of the matrix, row by row, in a buffer of its own.
     dds_sequence_double lend(const identification::Matrix& matrix);
     void put_tracking(const EquipmentModel::Tracking& tracking);
 

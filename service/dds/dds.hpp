@@ -25,8 +25,9 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Where a program takes part.
 struct Endpoint {
-  std::uint32_t domain = 0;
+  std::uint32_t domain = 0;              // 0 to 230
   std::string partition = "operations";  // separates operations, training and test
   /// One of many that look for services, sources and consoles and not for each other: on loopback
   /// it takes a port of its own range. A domain's first participant in a process decides for all.
@@ -34,9 +35,12 @@ struct Endpoint {
 };
 
 /// Joins a domain. Without CYCLONEDDS_URI in the environment all traffic stays on 127.0.0.1. Must
-/// outlive its readers, writers and wait sets.
+/// outlive its readers, writers and wait sets. Any number of threads may make these at the same
+/// time.
 class Participant {
  public:
+  /// Throws Error where the domain is not one, or this machine has no port left in it
+  /// (idl/README.md, "On a private network").
   explicit Participant(const Endpoint& endpoint);
   ~Participant();
   Participant(Participant&&) noexcept;
@@ -61,9 +65,12 @@ struct WriterOptions {
   std::int32_t history = 1;  // used for TelemetryFrame alone; 0 keeps nothing for late joiners
 };
 
+/// Writes one topic. One thread at a time: a writer keeps the buffers of its last message. Its end
+/// disposes of what it wrote where the topic's profile says so.
 template <class M>
 class Writer {
  public:
+  /// Throws Error where the topic exists with another type, or memory is short.
   explicit Writer(Participant& participant, const WriterOptions& options = {});
   ~Writer();
   Writer(Writer&&) noexcept;
@@ -79,6 +86,7 @@ class Writer {
   /// Says that what was written for the message's key holds no more: readers that join later get
   /// nothing for it. Throws Error.
   void dispose(const M& message);
+  /// Readers that are matched now, in this process and others.
   std::uint32_t matched_readers() const;
   /// False when `timeout` passed before every matched reader had everything.
   bool wait_for_acknowledgments(std::chrono::nanoseconds timeout);
@@ -97,6 +105,9 @@ struct ReaderOptions {
   std::int32_t keep_last = 0;
 };
 
+/// Reads one topic, from writers that keep history and from those that keep none. One thread at a
+/// time, but for malformed() and last_malformed(). Calls throw Error where the middleware fails.
+/// The end of a reader of a KEEP_ALL topic first empties it, which takes a second at most.
 template <class M>
 class Reader {
  public:
@@ -112,12 +123,15 @@ class Reader {
   using Refused = std::function<void(const M&, const std::string& reason)>;
 
   /// Calls `sink` for each message taken, at most `max`, and `refused` for each malformed one;
-  /// returns how many were taken, malformed ones included. Neither may throw.
+  /// returns how many were taken, malformed ones included. Both are called on this thread, before
+  /// take() returns; neither may throw. Does not wait: 0 where there is nothing.
   std::size_t take(std::size_t max, const Sink& sink, const Refused& refused = {});
   std::size_t take(std::size_t max, const DatedSink& sink, const Refused& refused = {});
   /// For a clean stop, after Participant::stop_hearing(): hands out every message that was
-  /// acknowledged to its writer, those included that the middleware has not handed on yet.
+  /// acknowledged to its writer, those included that the middleware has not handed on yet. Takes
+  /// until nothing came for 150 ms, a second at most. Returns how many were taken.
   std::size_t drain(const Sink& sink, const Refused& refused = {});
+  /// Writers that are matched now, in this process and others.
   std::uint32_t matched_writers() const;
   /// Messages that broke the contract (sizes, ranges, strings) and were not handed out, and why
   /// the last of them was. From any thread.
@@ -134,7 +148,8 @@ class Reader {
 /// the wait earlier.
 inline constexpr std::chrono::milliseconds stop_check_interval{500};
 
-/// Wakes one thread when any attached reader has something to take, or when woken.
+/// Wakes one thread when any attached reader has something to take, or when woken. Readers may end
+/// before it.
 class WaitSet {
  public:
   explicit WaitSet(Participant& participant);
@@ -142,9 +157,11 @@ class WaitSet {
   WaitSet(const WaitSet&) = delete;
   WaitSet& operator=(const WaitSet&) = delete;
 
+  /// Not while another thread waits.
   template <class M>
   void attach(Reader<M>& reader);
-  /// True when something was ready; false when `timeout` passed.
+  /// True when something was ready, which may be nothing to take; false when `timeout` passed.
+  /// Throws Error.
   bool wait(std::chrono::nanoseconds timeout);
   /// From any thread: ends the running or the next wait.
   void wake();

@@ -1,4 +1,5 @@
-// The domain of a process, configured once and shared by its participants.
+// The domain of a process, configured once and shared by its participants. What counts its users
+// and silences is guarded by one mutex of the process: any thread may make and end them.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,9 @@ extern const char* const loopback_traffic;
 /// the domain is the loopback one; with it the middleware reads the configuration itself.
 class DomainUse {
  public:
+  /// Makes the domain where it has none in this process. `simulator` (Endpoint) counts then alone.
+  /// Where another library of the process made the domain before, its configuration holds. Throws
+  /// Error.
   DomainUse(std::uint32_t domain, bool simulator);
   ~DomainUse();
   DomainUse(const DomainUse&) = delete;
@@ -29,7 +33,8 @@ class DomainUse {
 };
 
 /// While one exists, nothing that other processes send in the domain is received, and so nothing
-/// more is acknowledged; reliable writers send it again afterwards.
+/// more is acknowledged; reliable writers send it again afterwards. Several may exist at a time;
+/// the last one to end ends the silence.
 class Silence {
  public:
   explicit Silence(Participant& participant);
@@ -41,13 +46,14 @@ class Silence {
   Participant::Impl& participant_;
 };
 
+/// Members are made in this order and deleted in the reverse one: the domain goes last.
 struct Participant::Impl {
   explicit Impl(const Endpoint& endpoint);
 
   DomainUse domain;
   std::string partition;
   Entity participant;
-  Entity publisher;
+  Entity publisher;  // in the partition, as is the subscriber
   Entity subscriber;
   std::optional<Silence> silence;  // between stop_hearing() and hear_again()
 };

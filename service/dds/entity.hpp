@@ -14,17 +14,20 @@ namespace reident::dds {
 /// and what would mend it.
 [[noreturn]] void fail(dds_return_t code, const std::string& call, const std::string& about);
 
-/// Passes a result that is not an error on.
+/// Returns a result that is not an error; throws Error as fail() does for one that is.
 inline dds_return_t check(dds_return_t result, const char* call, const std::string& about) {
   if (result < 0) fail(result, call, about);
   return result;
 }
 
-/// An entity that is deleted with its owner.
+/// An entity that is deleted with its owner, and what the middleware made within it with it. Empty
+/// where it was made so or moved from.
 class Entity {
  public:
   Entity() = default;
+  /// Owns a handle that was checked already.
   explicit Entity(dds_entity_t handle) : handle_(handle) {}
+  /// Owns what a call returned; throws Error where that is an error, and owns nothing then.
   Entity(dds_entity_t result, const char* call, const std::string& about)
       : handle_(check(result, call, about)) {}
   ~Entity() { reset(); }
@@ -37,6 +40,7 @@ class Entity {
     return *this;
   }
 
+  /// The handle, still owned here; 0 where it is empty.
   dds_entity_t get() const { return handle_; }
   explicit operator bool() const { return handle_ > 0; }
 

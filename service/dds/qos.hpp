@@ -12,11 +12,13 @@
 
 namespace reident::dds {
 
+/// A QoS object of the middleware, owned.
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
+/// In place of a number of samples: none is replaced by a newer one.
 inline constexpr std::int32_t keep_all = 0;
 
 /// What differs between the topics. All are RELIABLE and in the participant's partition. A KEEP_ALL
@@ -52,10 +54,13 @@ inline constexpr std::chrono::milliseconds write_slice{100};
 /// How long a KEEP_LAST writer tries.
 inline constexpr std::chrono::seconds patience{10};
 
+/// Returns the QoS of a publisher and a subscriber. All three functions throw std::bad_alloc alone.
 Qos partition_qos(const std::string& partition);
+/// Returns the QoS of a writer; `options.history` counts for KEEP_ALL topics alone.
 Qos writer_qos(const Profile& profile, const WriterOptions& options);
-/// `transient_local`: whether history of writers that keep some is asked for; such a reader does
-/// not match a volatile writer.
+/// Returns the QoS of a reader. `transient_local`: whether history of writers that keep some is
+/// asked for; such a reader does not match a volatile writer. The bounds of `options` count for
+/// KEEP_ALL topics alone.
 Qos reader_qos(const Profile& profile, const ReaderOptions& options, bool transient_local);
 
 }  // namespace reident::dds

@@ -14,14 +14,17 @@ namespace reident::dds {
 /// A TRANSIENT_LOCAL reader gets the kept history of writers that keep some, and does not match
 /// volatile writers at all; a volatile reader matches both and gets no history. So the first reader
 /// asks for history, and when a writer without any is discovered, a second, volatile one joins it,
-/// whose samples of history-keeping writers are skipped.
+/// whose samples of history-keeping writers are skipped. One thread at a time; calls throw Error.
 class ReaderCore {
  public:
-  /// `sent`: by the writer's clock; 0 where it did not say.
+  /// `wire` is the topic's C type, lent until the visit returns. `sent`: by the writer's clock; 0
+  /// where it did not say. A visit must not throw.
   using Visit = std::function<void(const void* wire, storage::Time sent)>;
 
   ReaderCore(Participant& participant, const Profile& profile,
              const dds_topic_descriptor_t& descriptor, const ReaderOptions& options);
+  /// Empties a bounded reader first, since its deletion would wait for the middleware's thread,
+  /// which waits for room. Takes a second at most; what it throws away was acknowledged.
   ~ReaderCore();
   ReaderCore(const ReaderCore&) = delete;
   ReaderCore& operator=(const ReaderCore&) = delete;
@@ -30,6 +33,7 @@ class ReaderCore {
   std::size_t take(std::size_t max, const Visit& visit);
   /// Takes until nothing more comes, for a second at most.
   std::size_t drain(const Visit& visit);
+  /// Writers that one of the two readers hears now.
   std::uint32_t matched_writers();
 
   /// Lets the wait set wake for this reader: for samples, and for writers that it cannot hear yet.
@@ -46,7 +50,10 @@ class ReaderCore {
 
   Endpoint make_endpoint(bool transient_local) const;
   void attach(dds_entity_t wait_set, const Endpoint& ear) const;
+  /// One loan's worth; returns how many were removed, those that are skipped included.
   std::size_t take_some(const Endpoint& ear, std::size_t max, const Visit& visit);
+  /// Whether the writer keeps history, so that the first reader hears it too. False for one that is
+  /// gone: a sample twice is better than none.
   bool is_heard_by_first(dds_instance_handle_t writer);
   /// Takes until nothing came for `quiet`, or until `limit` has passed.
   std::size_t take_until_quiet(dds_duration_t quiet, dds_duration_t limit, const Visit& visit);
@@ -62,7 +69,7 @@ class ReaderCore {
   bool warned_of_best_effort_ = false;
   Entity topic_;
   Endpoint first_;
-  Endpoint second_;
+  Endpoint second_;                                      // empty until a volatile writer is there
   std::map<dds_instance_handle_t, bool> keeps_history_;  // writers that the second reader met
   std::vector<dds_entity_t> wait_sets_;
 };

@@ -1,3 +1,4 @@
+// What a Reader holds; readers and wait sets share it.
 #pragma once
 
 #include "service/dds/codec.hpp"
@@ -13,6 +14,7 @@ struct Reader<M>::Impl {
         core(std::make_shared<ReaderCore>(participant, Codec<M>::profile, Codec<M>::descriptor,
                                           reader_options)) {}
 
+  /// Hands the message to `sink`, or counts it as malformed and hands it to `refused`.
   void decode(const void* wire, storage::Time sent, const DatedSink& sink, const Refused& refused);
 
   ReaderOptions options;
