@@ -1,4 +1,6 @@
-// Inputs of a model that follow from telemetry parameters by expressions.
+// Inputs of a model that follow from telemetry parameters by expressions, where an equipment is
+// linear in a power or a difference and not in what is measured. The service, the client library
+// and the FMU compute the same bits (postfix.h).
 #pragma once
 
 #include <optional>
@@ -11,25 +13,30 @@
 
 namespace reident {
 
+/// An input of the configuration that is computed.
 struct DerivedInput {
   std::string name;
-  std::string expression;  // over SATCS parameters
+  std::string expression;  // over SATCS parameters (expression.hpp)
   std::string unit;
   bool operator==(const DerivedInput&) const = default;
 };
 
+/// What is wrong with one key of one derived input.
 struct DerivedInputMistake {
   std::size_t index = 0;  // of the derived input
   std::string_view key;   // "name" or "expression"
   std::string message;    // what is wrong and what would mend it
 };
 
-/// All that is wrong with `derived` in a model of these inputs and outputs.
+/// Returns all that is wrong with `derived` in a model of these inputs and outputs: a name that
+/// comes twice, is not among the inputs or is an output's; an expression that cannot be read or
+/// uses no parameter, an output, another derived input or its own name. Empty where all is right.
 std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& derived,
                                              const std::vector<std::string>& inputs,
                                              const std::vector<std::string>& outputs);
 
-/// From values of parameters to those of a model's inputs, tick by tick.
+/// Computes the m inputs of a model from the values of q parameters, tick by tick. Not const where
+/// it computes, since it keeps room for operands: one thread at a time.
 class InputExpressions {
  public:
   /// An input is the derived one of its name, or else the parameter itself. Throws
@@ -37,15 +44,17 @@ class InputExpressions {
   InputExpressions(const std::vector<std::string>& inputs,
                    const std::vector<DerivedInput>& derived);
 
-  /// What the inputs are computed from, each once, in the order of first use; the inputs themselves
-  /// where none is derived.
+  /// The q parameters that the inputs are computed from, each once, in the order of first use; the
+  /// inputs themselves where none is derived.
   const std::vector<std::string>& parameters() const { return parameters_; }
 
-  /// The inputs (m) for values of parameters(); NaN where a derived one has no finite value.
+  /// Sets `inputs` (m) from the values (q) of parameters(); NaN where a derived one has no finite
+  /// value. Requires both vectors to have their sizes. Allocates nothing.
   void evaluate(const identification::Vector& parameters, identification::Vector& inputs);
 
-  /// The record with the inputs in the place of its u, which holds parameters(). Rows at which an
-  /// input has no finite value are left out as holes are.
+  /// Returns the record with the inputs (N x m) in the place of its u (N x q), which holds
+  /// parameters(). Rows at which an input has no finite value are left out as holes are: the record
+  /// may have fewer rows and more segments. Where no input is derived it comes back as it is.
   identification::Record evaluate(identification::Record record);
 
  private:
@@ -54,6 +63,7 @@ class InputExpressions {
     std::optional<Expression> expression;         // absent: the one operand itself
     std::vector<double> values;
   };
+  /// The parameter's place in parameters_, which gets it where it is new.
   identification::Index place_of(const std::string& parameter);
 
   std::vector<std::string> parameters_;

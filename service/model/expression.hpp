@@ -28,11 +28,15 @@ struct ExpressionMistake {
   std::string message;
 };
 
+/// A checked expression, ready to be evaluated. A value type; any number of threads may evaluate
+/// one at the same time.
 class Expression {
  public:
-  static constexpr std::size_t max_bytes = 1000;
+  static constexpr std::size_t max_bytes = 1000;  // of a text: bounds memory and time of evaluate()
   static constexpr int max_depth = 32;  // of brackets, powers and conditions in each other
 
+  /// Reads the whole text. A mistake where it is no expression, is too long or nests too deep.
+  /// Names are not looked up: whoever evaluates knows which parameters there are.
   static std::variant<Expression, ExpressionMistake> parse(std::string_view text);
 
   /// Names of the parameters, each once, in the order of their first use.
@@ -41,8 +45,9 @@ class Expression {
   /// What evaluate() computes, but for values that are not finite.
   const std::vector<PostfixStep>& program() const { return program_; }
 
-  /// The value for those of variables(). NaN where one of them, or the result, is not finite. The
-  /// same values give the same bits, in the service, in simulators and in an FMU.
+  /// Returns the value for those of variables(), in their order and of their number. NaN where one
+  /// of them, or the result, is not finite, also one that a condition does not choose. The same
+  /// values give the same bits, in the service, in simulators and in an FMU. Allocates nothing.
   double evaluate(std::span<const double> values) const;
 
  private:

@@ -1,4 +1,6 @@
-// The grammar of expression.hpp, checked by recursive descent, and what it says to do.
+// The grammar of expression.hpp, checked by recursive descent, and what it says to do. This is the
+// only reader of expressions: service, client and FMU get its postfix program. Nothing throws but
+// std::bad_alloc; the text may be anything (tests/fuzz/expression_fuzz.cpp).
 #pragma once
 
 #include <initializer_list>
@@ -11,7 +13,9 @@
 
 namespace reident {
 
-/// Reads one text.
+/// Reads one text, once. It points into the text, which has to outlive it. Each rule is a function
+/// that reads what it is named after at the next byte, notes its steps in program_ behind those of
+/// its operands, and returns false after the first mistake.
 class ExpressionGrammar {
  public:
   explicit ExpressionGrammar(std::string_view text) : text_(text) {}
@@ -29,7 +33,9 @@ class ExpressionGrammar {
  private:
   /// The next byte that is no blank; 0 at the end.
   char peek();
+  /// Whether blanks alone are left.
   bool at_end();
+  /// Steps over the token, and blanks before it, where it comes next.
   bool take(std::string_view token);
   struct Operator {
     std::string_view token;
@@ -37,6 +43,7 @@ class ExpressionGrammar {
   };
   /// The first of them that stands at the next byte.
   std::optional<PostfixKind> take_any(std::initializer_list<Operator> operators);
+  /// As take(), but a mistake where something else comes.
   bool expect(std::string_view token);
 
   /// Each notes the mistake, where there is none yet, and says false.
@@ -46,7 +53,8 @@ class ExpressionGrammar {
   /// What stands at the next byte, for a message; the bytes of one character or name together.
   std::string found();
 
-  /// What stands within something else: `rule`, one level deeper.
+  /// What stands within something else: `rule`, one level deeper. A mistake below max_depth, so
+  /// that no text exhausts the stack.
   bool nested(bool (ExpressionGrammar::*rule)());
   bool conditional();
   bool comparison();
@@ -56,7 +64,7 @@ class ExpressionGrammar {
   bool value();
   bool number();
   bool name();
-  bool call(int values);
+  bool call(int values);  // the brackets behind abs, min and max, with so many values
   void parameter(std::string_view token);
   /// Notes an operation whose operands are noted.
   bool operate(PostfixKind kind);

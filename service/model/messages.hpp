@@ -1,4 +1,8 @@
 // What the service says on its topics besides telemetry and models; idl/README.md has the table.
+//
+// These types know no DDS: the codec (service/dds/codec.hpp) copies them, and checks names, sizes
+// and constants on the way in. Times are nanoseconds since 1970 UTC. A member that an older program
+// does not send has its default here.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +49,8 @@ struct RunningModel {
   bool operator==(const RunningModel&) const = default;
 };
 
-/// Which version a simulator runs, and the newest that it refused, if it did since.
+/// Which version a simulator runs, and the newest that it refused, if it did since. One for each
+/// simulator and equipment; it lives as long as the simulator does.
 struct ModelAcknowledgement {
   std::string simulator;
   std::string spacecraft;
@@ -66,8 +71,9 @@ struct CommandRequest {
   std::string service;  // instance name of the one that is asked; empty: every one
 };
 
+/// What came of a command; kept with the command, so that each copy of it gets the first reply.
 struct CommandReply {
-  std::string requester;
+  std::string requester;  // with `request`: which command it answers
   std::uint64_t request = 0;
   storage::CommandOutcome outcome;
 };
@@ -84,9 +90,9 @@ struct HistoryQuery {
   std::string cursor;  // empty for the first page
   bool newest_first = false;
   storage::Origin origin = storage::Origin::real;
-  std::uint32_t parameter = 0;
-  storage::Time step = 0;
-  storage::Time until = 0;
+  std::uint32_t parameter = 0;  // id, where the subject is samples or completeness
+  storage::Time step = 0;       // of completeness: a bin's length
+  storage::Time until = 0;      // of completeness: how far the spacecraft's telemetry reaches
 };
 
 /// Rows are JSON objects; the cursor is empty on the last page.
@@ -95,7 +101,7 @@ struct HistoryPage {
   std::string next_cursor;
 };
 
-/// Sent again until its reply comes.
+/// A question on its way, sent again until its reply comes; asking twice changes nothing.
 struct HistoryRequest {
   std::uint16_t slot = 0;  // the key; a program keeps the one that it chose
   std::string requester;   // unique name of the asking program
@@ -104,6 +110,7 @@ struct HistoryRequest {
   HistoryQuery query;
 };
 
+/// One page on its way back. The next page has to be asked of `service`, whose cursor it is.
 struct HistoryReply {
   std::uint16_t slot = 0;
   std::string requester;
@@ -114,7 +121,8 @@ struct HistoryReply {
   HistoryPage page;
 };
 
-/// Heartbeat of a service.
+/// Heartbeat of a service, once a second. Counts are of this run of the service, but those of
+/// missing sequence numbers, which are counted since the archive was made.
 struct ServiceStatus {
   std::string service;  // instance name
   std::string program_version;

@@ -15,6 +15,7 @@
 
 namespace reident {
 
+/// Whether the model's digest covers a field. Scores and windows are evidence, not the model.
 enum class Digest { undigested, digested };
 
 /// The length of a list or of a side of a matrix: n is the order, m and p count inputs and outputs.
@@ -28,6 +29,7 @@ enum class Presence {
   optional
 };
 
+/// What the formats have to know of a field.
 struct Field {
   std::string_view name;  // in JSON
   Digest digest = Digest::undigested;
@@ -50,6 +52,7 @@ bool is_absent(const Value& value) {
     return false;
 }
 
+/// A record to read, or one to set.
 template <class Record, class Type>
 concept RecordOf = std::same_as<std::remove_const_t<Record>, Type>;
 

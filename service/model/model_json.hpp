@@ -9,13 +9,16 @@
 
 namespace reident {
 
-/// Matrices are arrays of rows, vectors arrays; doubles are written so that the same bits come
-/// back. Non-finite numbers (a fit of -inf) are written as null and come back as NaN.
+/// Returns the model's JSON. Matrices are arrays of rows, vectors arrays; doubles are written so
+/// that the same bits come back. Non-finite numbers (a fit of -inf) are written as null and come
+/// back as NaN.
 nlohmann::ordered_json to_json(const identification::Matrix& matrix);
 nlohmann::ordered_json to_json(const identification::Vector& vector);
 nlohmann::ordered_json to_json(const EquipmentModel& model);
 
-/// Throws std::invalid_argument naming the field that is missing or wrong.
+/// Reads what to_json() wrote, of any earlier version of the program too. Throws
+/// std::invalid_argument naming the field that is missing or wrong: sizes have to agree, and
+/// expressions to be readable. Fields that it does not know are ignored.
 EquipmentModel equipment_model_from_json(const std::string& text);
 
 /// SHA-256, hexadecimal, of the model's canonical encoding (README of idl/): names, units, ranges,

@@ -25,8 +25,10 @@
 
 namespace reident {
 
+/// What a sentence shows at one place; which type, its format says (reason_catalogue.hpp).
 using Figure = std::variant<double, std::int64_t, std::string>;
 
+/// Made by because(), which checks the figures when it is compiled.
 struct Reason {
   ReasonCode code;
   std::vector<Figure> figures;  // in the order of the sentence
@@ -40,6 +42,8 @@ struct FigurePlace {
   std::string_view format;
 };
 
+/// Returns the first figure of the sentence at `from` or behind it; absent where none is left.
+/// Requires each bracket to be closed.
 constexpr std::optional<FigurePlace> next_figure(std::string_view sentence, std::size_t from) {
   const std::size_t begin = sentence.find('{', from);
   if (begin == std::string_view::npos) return std::nullopt;
@@ -50,12 +54,15 @@ constexpr std::optional<FigurePlace> next_figure(std::string_view sentence, std:
                      name_end < inside.size() ? inside.substr(name_end + 1) : ""};
 }
 
+/// Returns the code's row. Throws std::logic_error where there is none; a constant expression is
+/// not compiled then.
 constexpr const ReasonRow& row_of(ReasonCode code) {
   for (const ReasonRow& row : Catalogue::reasons)
     if (row.code == code) return row;
   throw std::logic_error("a reason that the catalogue does not have");
 }
 
+/// The type of Figure that a value becomes: real, integer or text.
 template <typename Value>
 using FigureOf =
     std::conditional_t<std::is_floating_point_v<Value>, double,
@@ -70,6 +77,7 @@ constexpr bool has_format(std::string_view format) {
   return format.empty();
 }
 
+/// Whether figures of these types, in this order, are all that the sentence has.
 template <typename... Types>
 constexpr bool are_figures_of(std::string_view sentence) {
   std::size_t at = 0;
@@ -81,6 +89,7 @@ constexpr bool are_figures_of(std::string_view sentence) {
   return (is_next(std::type_identity<Types>()) && ...) && !next_figure(sentence, at);
 }
 
+/// Returns a reason with its figures in the order of its sentence.
 template <ReasonCode code, typename... Values>
 Reason because(Values&&... values) {
   static_assert(are_figures_of<FigureOf<std::remove_cvref_t<Values>>...>(row_of(code).sentence),
@@ -88,6 +97,7 @@ Reason because(Values&&... values) {
   return {code, {FigureOf<std::remove_cvref_t<Values>>(std::forward<Values>(values))...}};
 }
 
+/// Returns the name that JSON, the registry and the topics have.
 std::string_view name(Outcome outcome);
 std::string_view name(ReasonCode code);
 
@@ -99,11 +109,13 @@ storage::DecisionKind kind_of(Outcome outcome);
 /// has none.
 Outcome outcome_of(const std::vector<Reason>& reasons);
 
+/// Returns the sentence with its figures, in the formats of the catalogue.
 std::string sentence(const Reason& reason);
-/// All of them, one after the other.
+/// Returns all sentences, one after the other; empty without reasons.
 std::string sentences(const std::vector<Reason>& reasons);
 
-/// An array of objects: `code`, and each figure under its name.
+/// Returns an array of objects: `code`, and each figure under its name. Figures keep all their
+/// digits; times are nanoseconds.
 nlohmann::ordered_json to_json(const std::vector<Reason>& reasons);
 
 }  // namespace reident
