@@ -12,6 +12,7 @@
 
 namespace reident::history {
 
+/// The largest page_size of a question.
 inline constexpr std::uint32_t max_page_rows = 10'000;
 
 /// Why there are no rows: what is wrong with the question and what would mend it.
@@ -19,7 +20,11 @@ struct BadQuestion {
   std::string reason;
 };
 
-/// Throws storage::Error.
+/// Returns the page behind the query's cursor. A bad question is one of an unknown subject, with a
+/// page size that is not 1 to max_page_rows, a range that ends before it begins, a bad name or
+/// cursor, or about equipment that nobody knows. Telemetry that was never archived gives no rows.
+/// Reads in a transaction of its own: pages are no snapshot. Throws storage::Error where the file
+/// cannot be read or is damaged.
 std::variant<HistoryPage, BadQuestion> answer(storage::Database& database,
                                               const HistoryQuery& query);
 

@@ -11,11 +11,13 @@
 
 namespace reident::history {
 
-/// `key` is an array of integers and texts.
+/// Returns the cursor of the page behind the row of this key. `key` is an array of integers and
+/// texts; which, each subject decides for itself.
 std::string cursor_after(const HistoryQuery& query, const Json& key);
 
-/// The key in the query's cursor; absent where the text is damaged or of another question. The
-/// cursor must not be empty.
+/// Returns the key in the query's cursor; absent where the text is damaged or of another question.
+/// The page size and the service that is asked are not part of the question. Requires a cursor that
+/// is not empty. The seal finds mistakes, not forgery: a key may still be of another form.
 std::optional<Json> key_of_cursor(const HistoryQuery& query);
 
 }  // namespace reident::history

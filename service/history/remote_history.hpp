@@ -20,24 +20,27 @@ class RemoteHistory {
   /// dds::Error.
   explicit RemoteHistory(dds::Participant& participant, std::string service = "");
 
+  /// Why there is no page; the message says what would mend it.
   struct Failure {
     Error::Kind kind = Error::Kind::no_answer;
     std::string message;
   };
-  /// idl/README.md, "History", has the questions and their rows. The page's next_cursor goes into
-  /// the next question.
+  /// Asks one question and waits for its page, at most `timeout`; discovery of the service counts
+  /// too. idl/README.md, "History", has the questions and their rows. The page's next_cursor goes
+  /// into the next question. Throws dds::Error.
   std::variant<HistoryPage, Failure> page(const HistoryQuery& query,
                                           std::chrono::milliseconds timeout);
 
  private:
   void send();
+  /// The reply to the last question, if it has come; a malformed one as a refusal.
   std::optional<HistoryReply> take();
 
   const std::string wanted_service_;
   dds::Writer<HistoryRequest> requests_;
   dds::Reader<HistoryReply> replies_;
   dds::WaitSet ready_;
-  HistoryRequest request_;  // the last one
+  HistoryRequest request_;  // the last one; its service is the one that answered, once one did
 };
 
 }  // namespace reident::history

@@ -1,4 +1,7 @@
-// The sources of a running service. Each throws Error where no answer comes.
+// The sources of a running service. Each throws Error where no answer comes, and dds::Error where
+// the middleware fails. What a call asks for may take several pages: rows that are added meanwhile
+// may be among them, and a row comes once. One thread at a time, also for all that share a
+// RemoteHistory.
 #pragma once
 
 #include <functional>
@@ -9,14 +12,15 @@
 
 namespace reident::history {
 
-/// Every row of a question, page after page.
+/// Every row of a question, page after page. Copies share the RemoteHistory, which has to outlive
+/// them.
 class RemoteRows {
  public:
   /// Each page may take `timeout`.
   RemoteRows(RemoteHistory& history, std::chrono::milliseconds timeout)
       : history_(history), timeout_(timeout) {}
 
-  /// Throws Error. Asks for the rows beyond the query's cursor.
+  /// Asks for the rows beyond the query's cursor. Throws Error.
   HistoryPage page(const HistoryQuery& query) const;
 
   /// Calls `visit` with each row until it answers false. Throws Error, also for a row that is not
@@ -31,6 +35,7 @@ class RemoteRows {
     } while (!query.cursor.empty());
   }
 
+  /// Returns every row; all of them are in memory at once. Throws as each().
   template <typename Row>
   std::vector<Row> all(const HistoryQuery& query) const {
     std::vector<Row> rows;
@@ -41,6 +46,8 @@ class RemoteRows {
     return rows;
   }
 
+  /// Returns the first row; absent where there is none. A whole page is sent for it. Throws as
+  /// each().
   template <typename Row>
   std::optional<Row> first(const HistoryQuery& query) const {
     std::optional<Row> found;
@@ -51,6 +58,7 @@ class RemoteRows {
     return found;
   }
 
+  /// Returns the row that a page has as text. Throws Error for one that is not of its kind.
   template <typename Row>
   static Row read(const std::string& text) {
     Row row{};
@@ -69,6 +77,7 @@ class RemoteRows {
   const std::chrono::milliseconds timeout_;
 };
 
+/// What was tried and decided, as the service's registry has it.
 class RemoteHistorySource final : public HistorySource {
  public:
   explicit RemoteHistorySource(const RemoteRows& rows) : rows_(rows) {}
@@ -91,17 +100,20 @@ class RemoteHistorySource final : public HistorySource {
   const RemoteRows rows_;
 };
 
+/// What was archived, as the service's database has it. Chunks are decoded by the service, samples
+/// are columns on the way.
 class RemoteTelemetrySource final : public TelemetrySource {
  public:
   explicit RemoteTelemetrySource(const RemoteRows& rows) : rows_(rows) {}
 
   std::optional<storage::ParameterDescriptor> parameter(const std::string& spacecraft,
                                                         const std::string& name) const override;
+  /// Without the ids of sources.
   storage::Series read(const std::string& spacecraft, storage::Origin origin,
                        std::uint32_t parameter, storage::TimeRange range) const override;
   std::vector<storage::SeriesInfo> series() const override;
   std::map<std::int64_t, std::string> source_names() const override;
-  /// A stretch is a page, whatever `chunks` says.
+  /// A stretch is a page with all columns, whatever `chunks` and `wanted` say.
   std::unique_ptr<SampleBatches> stretches(const storage::SeriesInfo& series,
                                            storage::TimeRange range, std::size_t chunks,
                                            storage::WantedColumns wanted) const override;

@@ -23,15 +23,16 @@ namespace reident::history {
 
 using Json = nlohmann::ordered_json;
 
+/// An equipment with attempts, and who holds its champion.
 struct EquipmentRow {
   storage::EquipmentName name;
-  std::optional<storage::Hold> hold;
+  std::optional<storage::Hold> hold;  // absent where nobody does
 };
 
 /// Whose champion, and the decision that made it.
 struct ChampionRow {
   storage::EquipmentName name;
-  std::optional<storage::Decision> decision;
+  std::optional<storage::Decision> decision;  // absent where there is no champion
 };
 
 /// Neighbouring bins; the number of the first of them.
@@ -40,28 +41,31 @@ struct CountsRow {
   std::vector<storage::BinCounts> counts;
 };
 
+/// Each returns the object of one row. What identifies the row is among its members, so that rows
+/// of several equipment or series can be distinguished.
 Json row_of(const EquipmentRow& row);
 Json row_of(const storage::Attempt& attempt);
 Json row_of(const storage::Decision& decision);
 Json row_of(const ChampionRow& row);
-/// Without its model and where that comes from.
+/// A version without its model and without its provenance.
 Json summary_row_of(const storage::Version& version);
 Json row_of(const storage::Version& version);
 Json row_of(const storage::ParameterDescriptor& parameter);
 Json row_of(const storage::SeriesInfo& series);
 Json row_of(const std::pair<std::int64_t, std::string>& source);
 Json row_of(const storage::SequenceGap& gap);
-/// The samples [first, last) of the columns, all of which are there.
+/// The samples [first, last). Requires all four columns, and last <= samples.size().
 Json row_of(const storage::SampleColumns& samples, std::size_t first, std::size_t last);
 Json row_of(const CountsRow& row);
 
-/// Each throws nlohmann::json::exception or std::invalid_argument for a row that is not of its
-/// kind.
+/// Each sets its second argument, which has to be new, from what row_of() made. Throws
+/// nlohmann::json::exception or std::invalid_argument for a row that is not of its kind. Members
+/// that it does not know are ignored: a newer service may send more.
 void read_row(const Json& row, EquipmentRow& equipment);
 void read_row(const Json& row, storage::Attempt& attempt);
 void read_row(const Json& row, storage::Decision& decision);
 void read_row(const Json& row, ChampionRow& champion);
-/// The members that a summary does not have stay empty.
+/// Reads a summary too; the members that it does not have stay empty.
 void read_row(const Json& row, storage::Version& version);
 void read_row(const Json& row, storage::ParameterDescriptor& parameter);
 void read_row(const Json& row, storage::SeriesInfo& series);

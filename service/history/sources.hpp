@@ -1,5 +1,6 @@
 // The questions that programs ask the registry and the archive, wherever these are: in a file
-// (stored_sources.hpp), or behind a running service (remote_sources.hpp).
+// (stored_sources.hpp), or behind a running service (remote_sources.hpp). Both give the same
+// answers to the last bit; nothing here changes what it reads.
 #pragma once
 
 #include <map>
@@ -31,25 +32,28 @@ class Error : public std::runtime_error {
   Kind kind_;
 };
 
-/// What was tried and decided. One thread at a time.
+/// What was tried and decided. One thread at a time. Where an answer is absent, so is what was
+/// asked for; every call throws where there can be no answer (Error, storage::Error).
 class HistorySource {
  public:
   virtual ~HistorySource() = default;
 
-  /// Those with attempts, in alphabetical order.
+  /// The equipment with attempts, in alphabetical order.
   virtual std::vector<storage::EquipmentName> equipment() const = 0;
+  /// The hold in force; absent where the champion is not held.
   virtual std::optional<storage::Hold> hold(const storage::EquipmentName& equipment) const = 0;
-  /// Ascending by id.
+  /// The attempts that the filter selects, ascending by id.
   virtual std::vector<storage::Attempt> attempts(const storage::HistoryFilter& filter) const = 0;
-  /// The one that gave a version.
+  /// The attempt that gave a version.
   virtual std::optional<storage::Attempt> attempt(const storage::EquipmentName& equipment,
                                                   std::int64_t version) const = 0;
   /// Every version of an equipment, ascending.
   virtual std::vector<storage::VersionSummary> summaries(
       const storage::EquipmentName& equipment) const = 0;
+  /// A version with its model and provenance.
   virtual std::optional<storage::Version> version(const storage::EquipmentName& equipment,
                                                   std::int64_t number) const = 0;
-  /// Ascending by id.
+  /// The decisions about an equipment, or one version of it, ascending by id.
   virtual std::vector<storage::Decision> decisions(
       const storage::EquipmentName& equipment,
       std::optional<std::int64_t> version = std::nullopt) const = 0;
@@ -59,7 +63,7 @@ class HistorySource {
       std::optional<storage::Time> time = std::nullopt) const = 0;
 };
 
-/// One series read forward, see storage::SeriesBatches.
+/// One series read forward, see storage::SeriesBatches. Its source has to outlive it.
 class SampleBatches {
  public:
   virtual ~SampleBatches() = default;
@@ -67,22 +71,25 @@ class SampleBatches {
   virtual bool next(storage::SampleColumns& stretch) = 0;
 };
 
-/// What was archived. One thread at a time.
+/// What was archived. One thread at a time. Throws as HistorySource does; storage::Error (corrupt)
+/// or Error (refused) where samples cannot be decoded.
 class TelemetrySource : public storage::SampleSource {
  public:
-  /// Those with samples, by spacecraft, origin and name.
+  /// The series with samples, by spacecraft, origin and name.
   virtual std::vector<storage::SeriesInfo> series() const = 0;
-  /// By their ids.
+  /// The names of sources by the ids that samples have.
   virtual std::map<std::int64_t, std::string> source_names() const = 0;
-  /// `chunks` bounds the memory, as for storage::SeriesBatches.
+  /// The samples of a series in `range`, in order of time. `chunks` bounds the memory, as for
+  /// storage::SeriesBatches; columns that are not `wanted` may be empty.
   virtual std::unique_ptr<SampleBatches> stretches(const storage::SeriesInfo& series,
                                                    storage::TimeRange range, std::size_t chunks,
                                                    storage::WantedColumns wanted) const = 0;
-  /// As storage::completeness.
+  /// What came and what is missing in each bin, as storage::completeness counts it. `until`: how
+  /// far the spacecraft's telemetry reaches.
   virtual std::vector<storage::BinCounts> completeness(const storage::SeriesInfo& series,
                                                        const storage::TimeBins& bins,
                                                        storage::Time until) const = 0;
-  /// By source.
+  /// The frames that sources skipped, by source.
   virtual std::vector<storage::SequenceGap> sequence_gaps() const = 0;
 };
 

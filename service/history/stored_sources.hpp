@@ -1,4 +1,5 @@
-// The sources of a database file.
+// The sources of a database file, also while a service writes it. Each call reads what is committed
+// then: two calls are no snapshot.
 #pragma once
 
 #include "service/history/sources.hpp"
@@ -8,7 +9,7 @@
 
 namespace reident::history {
 
-/// Throws storage::Error. The database must outlive it.
+/// The registry of a database, which must outlive it. Throws storage::Error.
 class StoredHistory final : public HistorySource {
  public:
   explicit StoredHistory(storage::Database& database) : registry_(database) {}
@@ -31,7 +32,7 @@ class StoredHistory final : public HistorySource {
   storage::Registry registry_;
 };
 
-/// Throws storage::Error. The database must outlive it.
+/// The archive of a database, which must outlive it. Throws storage::Error.
 class StoredTelemetry final : public TelemetrySource {
  public:
   explicit StoredTelemetry(storage::Database& database) : database_(database), archive_(database) {}
