@@ -1,5 +1,9 @@
 // One equipment of a simulator: a run on the simulator's thread, and versions that come from the
 // client's, handed over without a lock.
+//
+// Models travel in parcels. The client's thread posts one; the run takes it at its next step and
+// sends it back with the model that it has left, which the client's thread frees. So no step
+// allocates, frees or waits.
 #pragma once
 
 #include <atomic>
@@ -29,8 +33,11 @@ struct RunState {
   int transition_left = 0;
 };
 
+/// Two threads may use it at the same time, each its own calls; each of the two may be another
+/// thread later, if it is ordered after the one before.
 class EquipmentRunner {
  public:
+  /// Has no version: outputs are NaN until one was posted. Names in the declaration are distinct.
   EquipmentRunner(std::string spacecraft, std::string equipment, Declaration declaration);
   /// Neither thread uses it any more.
   ~EquipmentRunner();
@@ -41,15 +48,19 @@ class EquipmentRunner {
   const std::string& equipment() const { return equipment_; }
   const Declaration& declaration() const { return declaration_; }
 
-  // The simulator's thread's. None allocates, takes a lock or makes a system call (the clock that
-  // is read at a swap is in the kernel's shared page).
+  // The simulator's thread's. Arrays are those of the declaration. None allocates, takes a lock or
+  // makes a system call (the clock that is read at a swap is in the kernel's shared page).
 
-  /// As ModelRunner's, and REIDENT_SWAPPED at the first step on another version.
+  /// One tick, as ModelRunner's; REIDENT_SWAPPED too at the first step on another version.
   int step(const double* u, double* y);
+  /// One tick that `measured` corrects; NaN where an output is missing. It counts for the error.
   int follow(const double* u, const double* measured, double* y) { return advance(u, measured, y); }
-  /// What was measured at the last step, which was free.
+  /// What was measured at the last step, which was free: it counts for the error and for the state
+  /// of a next version. Call it once for a step at most.
   void observe(const double* measured);
+  /// The state after the last step.
   RunState state() const;
+  /// Flags of one declared input at the last step.
   int input_flags(std::size_t declared) const { return runner_.input_flags(declared); }
 
   // The client's thread's.
@@ -66,11 +77,12 @@ class EquipmentRunner {
     Arrival arrival;
   };
   /// Frees the models that the run has left; `use` is called for each swap since the last call, in
-  /// their order.
+  /// their order, before this returns. It must not throw.
   void collect(const std::function<void(const Swapped&)>& use);
-  /// Asks the run for its state; it is there after its next step.
+  /// Asks the run for its state; last_state() has it after the run's next step.
   void ask_state() { state_is_wanted_.store(true, std::memory_order_release); }
-  /// The state at the last step that was asked for it.
+  /// The state at the last step that was asked for it; the initial one before there was any. Valid
+  /// until the next call.
   const RunState& last_state();
 
  private:
@@ -82,7 +94,9 @@ class EquipmentRunner {
   };
   /// A step at which anything but a free run may happen.
   int advance(const double* u, const double* measured, double* y);
+  /// Counts a step with its flags, and returns them.
   int count(int flags);
+  /// Has the run go on with the parcel's model; afterwards the parcel has the one before.
   void begin(Parcel& parcel);
   void send_back(Parcel* parcel);
 

@@ -11,13 +11,18 @@
 
 namespace reident {
 
+/// One thread at a time. Versions have to be sound (version_check.hpp).
 class LiveEquipment {
  public:
   enum class Mode { free, following };
 
+  /// Runs once the parameters were described, and enough ticks with all inputs and outputs came to
+  /// estimate the state from.
   explicit LiveEquipment(const ModelVersion& version, Mode mode = Mode::free);
 
+  /// Any descriptor; those that the model does not need are ignored.
   void describe(const storage::ParameterDescriptor& descriptor) { tracker_.describe(descriptor); }
+  /// Any frame, in the order of reception; runs the ticks that it completes.
   void add(const storage::TelemetryFrame& frame);
 
   /// Runs `next` from the next tick on; the errors count from zero again. Where its signals,
@@ -26,7 +31,7 @@ class LiveEquipment {
   std::optional<ModelRunner::Swap> adopt(const ModelVersion& next);
 
   const ModelVersion& version() const { return runner_.model()->version(); }
-  /// Since the version was adopted.
+  /// Errors against the measured outputs since the version was adopted.
   identification::Score score() const { return score_.score(); }
   /// Ticks at which an input was outside the identified range, since the version was adopted.
   std::uint64_t ticks_outside() const { return ticks_outside_; }
@@ -53,9 +58,9 @@ class LiveEquipment {
   std::optional<std::int64_t> last_tick_;
   bool running_ = false;
   identification::Vector y_;
-  identification::Matrix seed_u_, seed_y_;
-  identification::Index seeded_ = 0;
-  identification::Index seed_ticks_ = 0;
+  identification::Matrix seed_u_, seed_y_;  // rows that a state is estimated from
+  identification::Index seeded_ = 0;        // of these rows, the ones that are filled in
+  identification::Index seed_ticks_ = 0;    // since the hole, measured or not
   std::uint64_t ticks_outside_ = 0;
   std::uint64_t gaps_ = 0;
 };

@@ -14,10 +14,12 @@
 
 namespace reident {
 
+/// Who subscribes, and to what.
 struct Subscription {
   std::string simulator;               // unique name; acknowledgements carry it
   std::string spacecraft = "*";        // name, or pattern with * and ? (name_pattern.hpp)
   std::vector<std::string> equipment;  // names or patterns; empty: every equipment
+  /// Whether the equipment is subscribed to.
   bool includes(const storage::EquipmentName& name) const;
 };
 
@@ -33,9 +35,11 @@ struct Arrival {
 /// rollback is refused. What was verified stays when the service disposes of it, ends or dies.
 ///
 /// Versions that a cache kept from an earlier run come first; what is published then succeeds them
-/// as it succeeds one another.
+/// as it succeeds one another. One thread at a time. Calls throw dds::Error, and nothing for what
+/// the disk does.
 class ModelSubscriber {
  public:
+  /// A version that is not taken, and why.
   struct Refusal {
     storage::EquipmentName equipment;
     std::int64_t version = 0;
@@ -54,6 +58,7 @@ class ModelSubscriber {
   ModelSubscriber(dds::Participant& participant, Subscription subscription,
                   std::optional<ModelCache> cache = std::nullopt);
 
+  /// Lets the wait set wake for new versions.
   void attach_to(dds::WaitSet& wait_set);
   /// Hands out, at the first call, what was kept, and then what was published since the last call.
   /// Returns how many versions were adopted. Refusals are acknowledged as such; it is the caller's
@@ -64,11 +69,13 @@ class ModelSubscriber {
   /// refusal is reported with it until a version of the equipment is verified.
   void acknowledge(const storage::EquipmentName& equipment, const RunningModel& running);
 
+  /// A version that passed every check.
   struct Verified {
     ModelVersion version;
     Arrival arrival;
   };
-  /// The newest version of an equipment that was verified; null where none came yet.
+  /// The newest version of an equipment that was verified; null where none came yet. Valid until
+  /// the next poll().
   const Verified* newest(const storage::EquipmentName& equipment) const;
 
  private:
@@ -80,6 +87,7 @@ class ModelSubscriber {
   };
 
   void hand_out_kept(const Listener& listener);
+  /// Verifies a version that was received, and adopts, confirms or refuses it.
   void consider(ModelVersion&& version, const Arrival& arrival, const Listener& listener);
   /// Why `version` must not follow `newest`.
   std::string reason_against(const ModelVersion& version, const Verified& newest) const;
@@ -87,6 +95,7 @@ class ModelSubscriber {
   void forget_refusal(const storage::EquipmentName& equipment);
   void keep(const Verified& verified, const Listener& listener);
   void refuse(const ModelVersion& version, const std::string& reason, const Listener& listener);
+  /// Sends the acknowledgement of an equipment as it stands now.
   void tell(const storage::EquipmentName& equipment);
 
   Subscription subscription_;

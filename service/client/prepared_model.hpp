@@ -25,7 +25,8 @@ struct Declaration {
 /// Every input, derived ones as they are, and every output of a model, in its order.
 Declaration declaration_of(const EquipmentModel& model);
 
-/// How a version takes part in a run; ModelRunner alone looks into it while it runs.
+/// How a version takes part in a run; ModelRunner alone looks into it while it runs. Neither copied
+/// nor moved: its parts point to each other.
 class PreparedModel {
  public:
   using Vector = identification::Vector;
@@ -34,7 +35,7 @@ class PreparedModel {
   static constexpr identification::Index matched_rows = 128;
 
   /// Prepares a version that has no damage() (version_check.hpp). A sentence where the declaration
-  /// does not cover its signals.
+  /// does not cover its inputs, has another unit, or has other outputs than the version's.
   static std::variant<std::unique_ptr<PreparedModel>, std::string> make(
       ModelVersion version, const Declaration& declaration);
   PreparedModel(const PreparedModel&) = delete;
@@ -45,7 +46,8 @@ class PreparedModel {
   const identification::StateSpaceModel& dynamics() const { return version_.model.dynamics; }
 
   /// Makes it ready to follow: by its integral feedback, else by its Kalman gain. This takes longer
-  /// than all the rest; the run may begin before, on another thread.
+  /// than all the rest; the run may begin before, on another thread, and runs freely until it is
+  /// ready. A Kalman gain is taken where A - K C is stable. A second call has no effect.
   void prepare_following();
 
  private:

@@ -6,20 +6,25 @@
 
 namespace reident {
 
+/// One thread at a time. Its memory does not grow with the samples.
 class RunningScore {
  public:
   using Vector = identification::Vector;
 
+  /// For p >= 1 outputs.
   explicit RunningScore(identification::Index outputs);
 
   /// Begins again.
   void clear();
-  /// The measured and the simulated outputs at one tick. Those that are not finite are left out.
+  /// Adds the measured and the simulated outputs (p each) at one tick. An output counts where both
+  /// are finite. Allocates nothing.
   void add(const Eigen::Ref<const Vector>& y, const Eigen::Ref<const Vector>& y_hat);
-  /// NaN before the first sample of an output, and for a fit before two different values of it.
+  /// Returns the errors [%] of each output. NaN before the first sample of an output, and for a fit
+  /// before two different values of it.
   identification::Score score() const;
-  /// score().mrse() without allocating.
+  /// score().mrse(), the mean over the outputs, without allocating.
   double mrse() const;
+  /// Ticks at which any output counted.
   identification::Index rows() const { return rows_; }
 
  private:

@@ -1,4 +1,5 @@
-// reident-simulator: the example of a simulator that uses the models of reident.
+// reident-simulator: the example of a simulator that uses the models of reident. It has no inputs
+// of its own: telemetry drives the models, as in a trainer that runs along with the satellite.
 #pragma once
 
 #include <chrono>
@@ -16,22 +17,24 @@
 
 namespace reident {
 
+/// What the command line says.
 struct SimulatorOptions {
   dds::Endpoint endpoint;
   Subscription subscription;
   std::optional<std::filesystem::path> cache;  // folder of the last good versions; absent: none
   LiveEquipment::Mode mode = LiveEquipment::Mode::free;
   std::chrono::nanoseconds report_period = std::chrono::seconds(5);
-  bool json = false;
+  bool json = false;  // of what is printed
 };
 
 /// Subscribes, drives each equipment's model with the live telemetry, exchanges versions while they
-/// run, reports the running errors and acknowledges what runs.
+/// run, reports the running errors and acknowledges what runs. It keeps the newest frames and loses
+/// older ones rather than slow the source. All on the thread that calls run().
 class Simulator {
  public:
   /// Throws dds::Error.
   explicit Simulator(const SimulatorOptions& options);
-  /// Until the stop is requested.
+  /// Returns once the stop is requested, from any thread. Throws dds::Error.
   void run(const std::stop_token& stop);
 
  private:
@@ -39,7 +42,9 @@ class Simulator {
 
   void take_telemetry();
   ModelSubscriber::Listener listener();
+  /// Makes the equipment's run, or exchanges its version.
   void adopt(const ModelVersion& version, const Arrival& arrival);
+  /// Prints and acknowledges each run that went on since the last report.
   void report_running();
 
   SimulatorOptions options_;

@@ -1,5 +1,6 @@
 // What libreident-client does for a simulator: it subscribes, verifies, hands versions to the runs
-// and reports to the service what runs, on a thread of its own.
+// and reports to the service what runs, on a thread of its own. The C interface (c_interface.cpp)
+// adds nothing but the translation.
 #pragma once
 
 #include <atomic>
@@ -24,6 +25,7 @@ namespace reident {
 /// The name of a simulator that was given none: host and process id.
 std::string default_simulator_name();
 
+/// Where to take part, what to subscribe to, and where versions are kept.
 struct SimulatorClientOptions {
   dds::Endpoint endpoint;
   Subscription subscription;
@@ -44,39 +46,51 @@ struct SimulatorEvent {
   identification::Index matched_rows = 0;
 };
 
-/// Any thread may call it.
+/// Any thread may call it; runs are stepped on the simulator's threads without its lock. Its own
+/// thread takes no signal. What the middleware throws there becomes an event of kind `fault`, and
+/// the thread goes on.
 class SimulatorClient {
  public:
   using Callback = std::function<void(const SimulatorEvent&)>;
 
+  /// Events that are kept; the oldest go first.
   static constexpr std::size_t most_events = 1024;
 
-  /// Throws dds::Error. Versions that were kept are there when it returns.
+  /// Joins the domain and starts the thread. Versions that were kept are there when it returns.
+  /// Throws dds::Error.
   explicit SimulatorClient(const SimulatorClientOptions& options);
+  /// Runs must not be stepped any more. Not from the callback.
   ~SimulatorClient();
 
-  /// A run of an equipment, which ends with the client or by close(). A sentence where the
-  /// declaration names a signal twice or the equipment has a run here already.
+  /// Begins a run of an equipment, which ends with the client or by close(). A sentence where no
+  /// output is declared, a signal is declared twice or the equipment has a run here already. A
+  /// version that is known already is posted or offered to the run before it returns.
   std::variant<EquipmentRunner*, std::string> open(const storage::EquipmentName& equipment,
                                                    Declaration declaration);
+  /// Ends a run of open(), which must not be stepped any more. The service hears that nothing runs.
   void close(EquipmentRunner& runner);
   /// Has the run take the version that is offered. A sentence why it cannot.
   std::optional<std::string> accept(EquipmentRunner& runner);
 
+  /// How a run stands to what is published.
   struct Standing {
     std::int64_t offered = 0;  // 0: none
     bool from_cache = false;   // the version that runs or was posted
   };
   Standing standing(const EquipmentRunner& runner);
 
-  /// The oldest event that was not asked for yet, at most `timeout` later (negative: for ever).
+  /// Returns the oldest event that was not asked for yet, and waits for one at most `timeout`
+  /// (negative: for ever). Absent where none came.
   std::optional<SimulatorEvent> next_event(std::chrono::milliseconds timeout);
   /// Events go to `callback`, on the client's thread, instead of being kept; null ends that. The
-  /// one before is not called any more when it returns.
+  /// one before is not called any more when it returns, so not from within a callback. A callback
+  /// must neither block nor throw.
   void on_event(Callback callback);
 
+  /// For questions about the history; lives as long as the client.
   dds::Participant& participant() { return participant_; }
 
+  /// The newest verified version of an equipment; absent where none came.
   std::optional<ModelVersion> newest(const storage::EquipmentName& equipment);
 
  private:
@@ -86,10 +100,12 @@ class SimulatorClient {
     std::optional<ModelSubscriber::Verified> offered;
     RunningModel told;
   };
-  void work();
+  void work();  // the thread
+  /// Takes what was published, what the runs have left, and reports every few seconds.
   void look();
   void tell_fault(const char* what);
   ModelSubscriber::Listener listener() REIDENT_REQUIRES(mutex_);
+  /// Posts the version to the run where it fits what runs, and else offers it.
   void take_in(Run& run, const ModelSubscriber::Verified& verified) REIDENT_REQUIRES(mutex_);
   void offer(Run& run, const ModelSubscriber::Verified& verified, const std::string& reason)
       REIDENT_REQUIRES(mutex_);
@@ -100,6 +116,7 @@ class SimulatorClient {
   void say(SimulatorEvent event) REIDENT_REQUIRES(mutex_);
   /// Hands kept events to the callback, without the lock.
   void deliver();
+  /// How long the thread may wait: less while a run has yet to take what was posted.
   std::chrono::nanoseconds patience();
   Run* find(const storage::EquipmentName& equipment) REIDENT_REQUIRES(mutex_);
 

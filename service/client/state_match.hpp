@@ -11,19 +11,20 @@ namespace reident {
 /// Least squares of y[k] - (response from the zero state) = C A^k x0 over the rows that were added,
 /// by Householder reflections (Golub and Van Loan, Matrix Computations, 5.2.2) of
 /// [C A^k | y - response; ridge | 0]. The ridge is 1e-8 of each column, so that a state that the
-/// rows do not show stays small.
+/// rows do not show stays small. After it was made nothing allocates. One thread at a time.
 class StateMatch {
  public:
   using Vector = identification::Vector;
   using Index = identification::Index;
 
-  /// For at most `capacity` rows of a well-formed model, which must outlive it.
+  /// For at most `capacity` rows of a well-formed model. Model and kernel must outlive it.
   StateMatch(const identification::StateSpaceModel& model, const StepKernel& kernel,
              Index capacity);
 
+  /// Forgets all rows.
   void clear();
   /// The tick after the last one that was added: deviations of the inputs (m) from u0 and of the
-  /// outputs (p) from y0, all finite.
+  /// outputs (p) from y0, all finite. Requires rows() below the capacity.
   void add(const Vector& du, const Eigen::Ref<const Vector>& dy);
   Index rows() const { return rows_; }
 
@@ -33,7 +34,9 @@ class StateMatch {
   const Vector& last_output() const { return last_output_; }
 
  private:
+  /// Brings the first `rows` rows of the system to triangular form.
   void triangularise(Index rows);
+  /// Solves the triangular system for x_.
   void back_substitute();
   /// From x_ before the first row to behind the last one.
   void run_on();

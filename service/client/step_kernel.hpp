@@ -8,12 +8,14 @@
 namespace reident {
 
 /// [x[k+1]; y - y0] = [A B; C D] [x[k]; du]. Sums the columns in a fixed order, so that every
-/// machine gives the same bits.
+/// machine gives the same bits. It copies the matrices; any number of threads may run one.
 class StepKernel {
  public:
+  /// Requires a well-formed model.
   explicit StepKernel(const identification::StateSpaceModel& model);
 
-  /// x: n values, du: m. out: n + p values, and room for out_room() in all; overlaps neither.
+  /// x: n values, du: m. out: n + p values, and room for out_room() in all, which overlaps neither:
+  /// values behind n + p are written too. Allocates nothing.
   void run(const double* x, const double* du, double* out) const { product_(*this, x, du, out); }
   std::size_t out_room() const { return stride_; }
 

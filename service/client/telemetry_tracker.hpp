@@ -24,6 +24,8 @@ struct Tick {
   identification::Vector y;  // p, NaN where the output is missing or not usable
 };
 
+/// One thread at a time. Its memory is that of the samples within a hold; ticks of a gap cost no
+/// time.
 class TelemetryTracker {
  public:
   struct Counters {
@@ -31,17 +33,20 @@ class TelemetryTracker {
     std::uint64_t clock_jumps = 0;  // times that the telemetry's clock was taken to have gone back
   };
 
-  /// The model's expressions are ones (version_check.hpp).
+  /// Requires a model whose expressions can be read (version_check.hpp).
   explicit TelemetryTracker(const EquipmentModel& model);
 
-  /// Learns the parameter's id where the model needs it.
+  /// Learns the parameter's id where the model needs it. Samples of an id that nobody described are
+  /// not kept.
   void describe(const storage::ParameterDescriptor& descriptor);
   /// Parameters that the model needs and whose descriptor has not come yet.
   std::vector<std::string> undescribed() const;
 
   /// Takes the frame's samples in, and gives out, ascending, the ticks before its generation time
   /// at which every input has a value. Frames of other spacecraft and simulated ones are ignored.
-  /// Ticks are never given out twice and never go back, but for a clock that went back.
+  /// Ticks are never given out twice and never go back, but for a clock that went back: 16 frames
+  /// in a row that are too old for any tick show that, and all samples are forgotten. The tick is
+  /// lent to `sink` until that returns.
   void add(const storage::TelemetryFrame& frame, const std::function<void(const Tick&)>& sink);
 
   const Counters& counters() const { return counters_; }
@@ -58,16 +63,19 @@ class TelemetryTracker {
     std::vector<Held> samples;  // ascending; the first may be older than the next tick
   };
 
+  /// Whether the frame of this time is the one that shows it.
   bool went_back(storage::Time time);
   void restart(storage::Time time);
   void store(const storage::TelemetryFrame& frame);
   void insert(Channel& channel, Held held);
+  /// NaN where there is no usable sample within the hold.
   double value_at(const Channel& channel, storage::Time time) const;
   void give_out(std::int64_t tick, const std::function<void(const Tick&)>& sink);
   /// The first tick in [tick, end) at which every parameter of the inputs has a value, or end.
   std::int64_t next_complete(std::int64_t tick, std::int64_t end) const;
   /// next_complete() for one channel.
   std::int64_t next_value(const Channel& channel, std::int64_t tick, std::int64_t end) const;
+  /// Forgets what no tick at `time` or later can use.
   void forget_before(storage::Time time);
 
   std::string spacecraft_;

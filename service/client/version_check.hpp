@@ -1,4 +1,5 @@
-// What a simulator asks of a version before it runs it.
+// What a simulator asks of a version before it runs it (idl/README.md, "What a receiver refuses",
+// and service/DESIGN.md, "Simulators"). Nothing here throws for what a version holds.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,8 @@ namespace reident {
 
 /// Why the version must not run: a digest that does not match its content, sizes that disagree or
 /// numbers that are not finite, an expression that cannot be evaluated, an unstable A, a tracking
-/// gain that does not stabilise the model. Empty when it is sound.
+/// gain that does not stabilise the model. Empty when it is sound. Stability takes the eigenvalues
+/// of an n x n matrix: call it on a thread that may wait.
 std::optional<std::string> damage(const ModelVersion& version);
 
 enum class Succession {
@@ -20,7 +22,8 @@ enum class Succession {
   different,  // the number that runs with another content: to be refused
 };
 
-/// How `version` stands to the one that runs, both of one equipment.
+/// Returns how `version` stands to the one that runs, both of one equipment. Numbers, digests and
+/// the mark of a rollback decide; clocks do not.
 Succession succession(const ModelVersion& version, const ModelVersion& running);
 
 }  // namespace reident
