@@ -1,4 +1,6 @@
 // The daemon's configuration: what it listens to, which equipment it keeps true, and the limits.
+// deploy/reident.toml has every key with its default. What is not in the file has its default here;
+// one that depends on another key is filled in when the file is read.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +34,7 @@ struct Relation {
   bool operator==(const Relation&) const = default;
 };
 
+/// One equipment. Shares are of the window's rows; times are nanoseconds.
 struct EquipmentConfig {
   std::string name;
   std::vector<std::string> inputs;  // SATCS parameters, or names of derived inputs
@@ -65,12 +68,14 @@ struct EquipmentConfig {
   std::vector<Relation> relations;  // the spacecraft's that name a parameter of this equipment
 };
 
+/// One spacecraft; names of its equipment are distinct.
 struct SpacecraftConfig {
   std::string name;
   std::vector<EquipmentConfig> equipment;
   std::vector<Relation> relations{};
 };
 
+/// A whole file that has no mistake.
 struct Config {
   std::string service_name = "reident";
   std::filesystem::path database;
@@ -93,21 +98,24 @@ struct Config {
   std::string digest;  // SHA-256 of the file's bytes, hexadecimal
 };
 
+/// One mistake of a file.
 struct ConfigMistake {
   std::uint32_t line = 0;  // 1-based; 0 for the file as a whole
   std::string message;     // what is wrong and what would mend it
 };
 
-/// The configuration, or every mistake in it, ordered by line.
+/// Returns the configuration, or every mistake in it, ordered by line; a file that cannot be read
+/// is one mistake. A relative database path begins in the file's folder. Throws nothing for what a
+/// file holds.
 std::variant<Config, std::vector<ConfigMistake>> load_config(const std::filesystem::path& path);
 
-/// Parses a text; `folder` is where a relative database path begins.
+/// As load_config(), for a text; `folder` is where a relative database path begins.
 std::variant<Config, std::vector<ConfigMistake>> parse_config(std::string_view text,
                                                               const std::filesystem::path& folder);
 
-/// Ticks that a window of the equipment needs: the rows left to the subspace step, after the shares
-/// for validation and tuning, must be at least the columns that its 2 s block rows of inputs and
-/// outputs ask for.
+/// Returns the ticks that a window of the equipment needs at least: the rows left to the subspace
+/// step, after the shares for validation and tuning, must be at least the columns that its 2 s
+/// block rows of inputs and outputs ask for.
 std::int64_t least_window_ticks(const EquipmentConfig& equipment);
 
 }  // namespace reident

@@ -32,10 +32,10 @@ struct CommandContext {
 storage::CommandOutcome execute(const storage::Command& command, storage::Registry& registry,
                                 const CommandContext& context, storage::Time now);
 
-/// The equipment of a configuration.
+/// Returns the equipment of a configuration, in its order.
 std::vector<storage::EquipmentName> equipment_of(const Config& config);
 
-/// "CBERS-4/BDR".
+/// Returns text such as "CBERS-4/BDR", as operators write it.
 std::string full_name(const storage::EquipmentName& equipment);
 
 /// " (why)", or nothing where no reason was given.

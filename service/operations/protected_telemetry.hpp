@@ -12,16 +12,17 @@ namespace reident {
 
 /// What every version that was ever published (approved, or rolled back to; also those withdrawn
 /// since) was identified from, tuned and validated on: the parameters of its inputs and outputs,
-/// simulated ones too, in its window and the hold before that. Of every parameter of the spacecraft
-/// where the model cannot be read, or where no descriptor has the name of one of its parameters
-/// any more.
+/// simulated ones too, in its window and the hold before that. Every parameter of the spacecraft is
+/// protected where the model cannot be read, or where no descriptor has the name of one of its
+/// parameters any more. Throws storage::Error.
 std::vector<storage::ProtectedRange> telemetry_of_versions(const storage::Archive& archive,
                                                            const storage::Registry& registry);
 
 /// What the service will still read of each equipment, so that a rule that is too tight does not
 /// take it away: what the next window is read from (the last window and slide before where the
 /// spacecraft's telemetry, or the clock, ends), and what its versions on probation are judged by
-/// (the parameters as above, from where the runs may begin before the window to the last look).
+/// (the parameters as above, from where the runs may begin before the window to the last
+/// evaluation). Spacecraft without telemetry have none. Throws storage::Error.
 std::vector<storage::ProtectedRange> telemetry_still_needed(const storage::Archive& archive,
                                                             const storage::Registry& registry,
                                                             const Config& config,

@@ -14,6 +14,7 @@
 
 namespace reident {
 
+/// What is to be recorded of a window.
 struct RefreshResult {
   storage::NewAttempt attempt;                   // its time is left to whoever records it
   std::optional<EquipmentModel> candidate;       // absent where the window gave no model
@@ -27,11 +28,13 @@ struct RefreshResult {
 storage::TimeRange behind_champion(const storage::Registry& registry, const std::string& spacecraft,
                                    const std::string& equipment, storage::TimeRange window);
 
-/// The champion is that of the registry now.
+/// Compares the candidate, or the champion adapted to the window, with its rivals, and decides. The
+/// champion is that of the registry now: whoever records checks that it still is. Throws
+/// storage::Error but for damaged telemetry, which is an outcome.
 RefreshResult judge(const storage::Archive& archive, const storage::Registry& registry,
                     const RefreshRequest& request, PreparedWindow&& prepared);
 
-/// prepare_window, then judge.
+/// prepare_window, then judge; throws as these do.
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,
                       const RefreshRequest& request, WindowCache& kept,
                       const identification::ForEach& for_each, const std::function<bool()>& stop);

@@ -1,6 +1,7 @@
 // A source that reads each stretch of each parameter once, and from then on gives what it read.
 //
-// For one look at an archive: several relations bind the parameters that an equipment has too.
+// For one reading of a window: several relations bind the parameters that an equipment has too.
+// What is stored meanwhile does not change what it gives.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +15,17 @@
 
 namespace reident {
 
+/// Keeps all that it has read until it ends, which is at the end of one load. One thread at a time.
+/// Throws what its source throws, and keeps nothing then.
 class CachingSource final : public storage::SampleSource {
  public:
   /// `source` must outlive this.
   explicit CachingSource(const storage::SampleSource& source) : source_(source) {}
 
+  /// Absent where it was absent at the first call.
   std::optional<storage::ParameterDescriptor> parameter(const std::string& spacecraft,
                                                         const std::string& name) const override;
+  /// A copy. A range is looked up as a whole: one that overlaps another is read again.
   storage::Series read(const std::string& spacecraft, storage::Origin origin,
                        std::uint32_t parameter, storage::TimeRange range) const override;
 

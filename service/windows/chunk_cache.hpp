@@ -10,16 +10,20 @@
 
 namespace reident {
 
+/// Chunk k has the ticks [k chunk_ticks, (k + 1) chunk_ticks). Chunks that a range cuts at its ends
+/// are read and not kept. One thread at a time; memory is that of the rows of the last range.
 class ChunkCache {
  public:
   static constexpr std::int64_t chunk_ticks = 512;
 
-  /// The rows at these ticks, from the archive.
+  /// Returns the rows at these ticks, from the archive. What it throws is thrown by over().
   using Read = std::function<identification::Record(identification::TickRange)>;
 
-  /// The rows at `ticks`; what lies before is forgotten. The bits are those of one read of all.
+  /// Returns the rows at `ticks`; what lies before is forgotten. Reads each stretch that is not
+  /// kept once. The bits are those of one read of all: a row must depend on its tick alone.
   identification::Record over(identification::TickRange ticks, const Read& read);
 
+  /// Forgets every chunk that `ticks` touches: it is read again.
   void forget(identification::TickRange ticks);
   void clear() { chunks_.clear(); }
 
@@ -27,7 +31,7 @@ class ChunkCache {
   /// Reads `ticks` and keeps the whole chunks of them.
   identification::Record read_and_keep(identification::TickRange ticks, const Read& read);
 
-  std::map<std::int64_t, identification::Record> chunks_;
+  std::map<std::int64_t, identification::Record> chunks_;  // whole ones, by number
 };
 
 }  // namespace reident

@@ -11,7 +11,8 @@
 
 namespace reident {
 
-/// The version of a window that gave a candidate: model, parts, options and digests.
+/// Returns the version of a window that gave a candidate: model, parts, options and digests.
+/// Requires a candidate.
 storage::NewVersion version_of(const RefreshRequest& request, const PreparedWindow& prepared);
 
 /// SHA-256, hexadecimal, of the samples on the grid, all parts of the window: for each stretch its
@@ -19,9 +20,11 @@ storage::NewVersion version_of(const RefreshRequest& request, const PreparedWind
 /// integers and doubles, after the names of inputs and outputs, each ended by a line feed.
 std::string digest_of_samples(const identification::Record& record, const WindowRequest& request);
 
-/// The relations that its window was checked with; none where its provenance does not say.
+/// Returns the relations that its window was checked with; none where its provenance does not say
+/// or cannot be read.
 std::vector<Relation> relations_of(const storage::Version& version);
 
+/// What came of identifying a version again.
 struct Reproduction {
   std::string samples_digest;   // of the samples that it was identified from this time
   std::string model_digest;     // empty where the window gives no model
@@ -32,14 +35,16 @@ struct Reproduction {
   bool same_model = false;    // to the last bit
 };
 
-/// What is wrong with what the registry keeps of a version, by itself: its model is not that of its
-/// digest or of its equipment, or its provenance says something else than its row.
+/// Returns what is wrong with what the registry keeps of a version, by itself: its model is not
+/// that of its digest or of its equipment, or its provenance says something else than its row.
+/// Absent where nothing is. Throws nothing for what is kept.
 std::optional<std::string> mistake_in(const storage::Version& version);
 
 /// Identifies a version again, from the telemetry as it was then: what came late since is taken
 /// back until the samples have the digest that the version names. One that an earlier version was
 /// adapted to is adapted from that again. Throws std::invalid_argument where its provenance or that
-/// version cannot be read.
+/// version cannot be read, and storage::Error where telemetry cannot. Takes as long as a refresh,
+/// and for each change that is taken back as long as loading a window.
 Reproduction reproduce(const storage::Archive& archive, const storage::Registry& registry,
                        const storage::Version& version, const identification::ForEach& for_each);
 

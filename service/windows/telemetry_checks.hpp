@@ -1,6 +1,6 @@
-// Which telemetry of an equipment is not believed: ticks at which a declared relation of its
-// sensors does not hold, or a sensor shows a fault by itself. They are holes for whoever
-// identifies, validates or watches.
+// Which telemetry of an equipment is excluded: ticks at which a declared relation of its sensors
+// does not hold, or a sensor shows a fault by itself (identification/METHOD.md, section 17). They
+// are holes for whoever identifies, validates or monitors.
 #pragma once
 
 #include <string>
@@ -16,15 +16,17 @@
 
 namespace reident {
 
-/// What is checked.
+/// What is checked of an equipment.
 struct Checks {
   bool screening = false;
   std::vector<Relation> relations;
 };
 
+/// Returns the checks that the configuration asks for.
 Checks checks_of(const EquipmentConfig& equipment);
 
-/// One check over stretches of time; what it keeps of a window serves the next.
+/// The checks of one equipment over stretches of time; what it keeps of a window serves the next.
+/// One thread at a time.
 class PlausibilityChecks {
  public:
   /// Relations are evaluated on the grid of `request`.
@@ -32,10 +34,12 @@ class PlausibilityChecks {
 
   /// Checks `samples`: the rows at `ticks` with u the parameters that the inputs are computed from
   /// and `described` what they are. A relation of which telemetry has not described a parameter
-  /// does not apply.
+  /// does not apply. Residuals of relations are read where they are not kept. Throws
+  /// storage::Error.
   Plausibility look(const storage::SampleSource& archive, const WindowData& described,
                     const identification::Record& samples, identification::TickRange ticks);
 
+  /// Forgets what was read of these ticks, since samples were stored there.
   void forget(identification::TickRange ticks);
 
  private:
@@ -53,14 +57,16 @@ class PlausibilityChecks {
   std::vector<BoundRelation> relations_;
 };
 
-/// Faults that were found in `ticks`, at least one, each once, over their number, whether they have
-/// telemetry or not.
+/// Returns the share of `ticks` at which a fault was found; ticks without telemetry count too.
+/// Requires at least one tick.
 double fault_share(const Plausibility& plausibility, identification::TickRange ticks);
 
-/// For an attempt's evidence. Of more than 20 stretches the longest are listed.
+/// Returns what an attempt's evidence says (`implausible`). Of more than 20 stretches the longest
+/// are listed. `period`: of a tick [ns].
 nlohmann::ordered_json to_json(const Plausibility& plausibility, Duration period);
 
-/// What an operator has to know: the longest stretch that was left out, by whom and since when.
+/// Returns what an operator has to know, as a sentence: the longest stretch that was excluded, by
+/// which check and since when. Requires that any was found.
 std::string worst_of(const Plausibility& plausibility, Duration period);
 
 }  // namespace reident

@@ -2,7 +2,7 @@
 // their sums. A window that slides reads and sums only what is new.
 //
 // Time is cut into chunks that do not depend on the window, so that what is kept gives the same
-// bits as what is read again. What is not believed of a window depends on all of it: its holes are
+// bits as what is read again. What is excluded from a window depends on all of it: its holes are
 // found again each time, and sums are kept as long as the holes in them stay the same.
 #pragma once
 
@@ -19,23 +19,26 @@
 
 namespace reident {
 
+/// For one equipment and one thread at a time. An exception leaves it usable: what was not read is
+/// read at the next load.
 class WindowCache {
  public:
-  /// `block_rows` as identification::block_rows_needed says.
+  /// `block_rows` as identification::block_rows_needed says. Reads nothing yet.
   WindowCache(const WindowRequest& request, identification::Index block_rows,
               const Checks& checks = {});
 
   const WindowRequest& request() const { return request_; }
 
-  /// load_window() without what the checks exclude; what lies before the window is
-  /// forgotten.
+  /// Returns load_window() without what the checks exclude. What lies before the window is
+  /// forgotten: windows that go forward are the cheap ones. Throws storage::Error.
   std::variant<WindowData, UnknownParameter> load(const storage::Archive& archive,
                                                   storage::TimeRange window);
 
-  /// Samples in `range` were stored after the window was loaded.
+  /// Forgets the ticks that samples in `range` serve, since samples were stored there after the
+  /// window was loaded.
   void forget(storage::TimeRange range);
 
-  /// Sums over the rows that load() gave.
+  /// Sums over the rows that load() gave, for identify(). Valid until the next load().
   identification::LagSums& sums() { return sums_; }
 
   /// Ticks that load() has read from the archive so far.

@@ -20,19 +20,20 @@ struct WindowRequest {
   std::vector<std::string> inputs;    // names of parameters or of derived inputs
   std::vector<DerivedInput> derived;  // of the inputs
   std::vector<std::string> outputs;   // names of parameters
-  Duration period = 0;
-  Duration hold = 0;
+  Duration period = 0;                // of the grid, whose ticks are multiples of it since 1970
+  Duration hold = 0;                  // how long a sample serves
   storage::Origin origin = storage::Origin::real;
   bool operator==(const WindowRequest&) const = default;
 };
 
+/// Returns the request of real telemetry. Two that are equal give comparable samples.
 WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment);
 WindowRequest request_of(const EquipmentModel& model);
 
-/// The parameters that the equipment's signals are, or are computed from, and those that are bound
-/// to them by relations.
+/// Returns the parameters that the equipment's signals are, or are computed from, and those that
+/// are bound to them by relations; each once.
 std::vector<std::string> parameters_of(const EquipmentConfig& equipment);
-/// Those that a relation binds.
+/// Returns those that a relation binds.
 std::vector<std::string> parameters_of(const Relation& relation);
 
 /// A parameter as telemetry describes it.
@@ -43,7 +44,7 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
-/// A stretch that is not believed.
+/// A stretch that is excluded.
 struct Implausible {
   std::string check;                    // "relation", "shift", "stuck", "spike" or "noise"
   Relation relation;                    // of the first two
@@ -52,6 +53,7 @@ struct Implausible {
   double residual = 0;  // the relation's median there
 };
 
+/// What the checks found in a window.
 struct Plausibility {
   std::vector<Implausible> found;
   std::vector<std::string> not_applied;  // relations, each with the reason
@@ -59,6 +61,7 @@ struct Plausibility {
   identification::TickSet holes;         // all that was found
 };
 
+/// The samples of a window, and what they are.
 struct WindowData {
   identification::Record record;
   std::vector<Signal> inputs, outputs;  // as they are described; their ranges are not set
@@ -66,7 +69,7 @@ struct WindowData {
   std::vector<Channel> output_channels;
   Plausibility plausibility;  // of a WindowCache with checks: its holes are not in the record
   double coverage = 0;        // share of the window's ticks that have a row
-  double read_coverage = 0;   // the same before holes were made of what is not believed
+  double read_coverage = 0;   // before holes were made of what is excluded
 };
 
 /// A parameter that telemetry has not described yet, so that nobody knows its samples.
@@ -74,29 +77,32 @@ struct UnknownParameter {
   std::string name;
 };
 
-/// What the request's signals and parameters are, and no rows.
+/// Returns what the request's signals and parameters are, and no rows; the first parameter that has
+/// no descriptor. Requires expressions that can be read. Throws storage::Error, as all that read
+/// here.
 std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleSource& archive,
                                                            const WindowRequest& request);
 
-/// The rows at which every channel of the request is valid; u holds the input channels.
+/// Returns the rows at which every channel of the request is valid; u holds the input channels.
+/// `described` is of the same request. The hold before the window is read too.
 identification::Record load_samples(const storage::SampleSource& archive,
                                     const WindowRequest& request, const WindowData& described,
                                     storage::TimeRange window);
 
-/// Share of the window's ticks that are rows of the record.
+/// Returns the share of the window's ticks that are rows of the record, 0 to 1.
 double coverage_of(const identification::Record& record, storage::TimeRange window,
                    Duration period);
 
-/// Samples of a usable quality count; all others are holes, and so are ticks at which a derived
-/// input has no finite value.
+/// Returns the window's rows, nothing excluded. Samples of a usable quality count; all others are
+/// holes, and so are ticks at which a derived input has no finite value.
 std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window);
 
-/// The ticks of this period in `range`.
+/// Returns the ticks of this period in `range`: tick k is at k * period.
 identification::TickRange ticks_of(storage::TimeRange range, Duration period);
 
-/// Time of a row of a record with this period.
+/// Returns the time of a row of a record with this period. Requires a row of the record.
 storage::Time time_of_row(const identification::Record& record, identification::Index row,
                           Duration period);
 
