@@ -20,12 +20,14 @@ struct ImportLimits {
   std::size_t frames = 65536;
 };
 
+/// How far it is, after a batch that is in the archive.
 struct ImportProgress {
   double fraction = 0;            // of the file's bytes
   std::uint64_t samples = 0;      // of this run
   storage::ImportPosition total;  // of all runs
 };
 
+/// What came of it.
 struct ImportReport {
   storage::ImportPosition total;  // of all runs, from the file's first row
   std::uint64_t samples = 0;      // of this run
@@ -38,8 +40,12 @@ struct ImportReport {
 /// Called after each batch; false stops the import there.
 using ImportObserver = std::function<bool(const ImportProgress&)>;
 
-/// Rows before an error are in the archive: the same call goes on there when the line is mended.
-/// Throws storage::Error when the archive cannot be written.
+/// Imports the file, or goes on with an import of it that did not end: same options, same columns,
+/// same bytes so far. Requires a database that is open for writing, and a regular file that does
+/// not change meanwhile. `now` gives the times of the log. An error where the file, the options or
+/// a row is wrong; rows before it are in the archive, and the same call goes on there when the line
+/// is mended. Throws storage::Error when the archive cannot be written; then the same call goes on
+/// too.
 std::variant<ImportReport, csv::Error> import_file(storage::Database& database,
                                                    const ImportOptions& options,
                                                    const std::function<storage::Time()>& now,

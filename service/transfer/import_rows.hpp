@@ -16,6 +16,7 @@
 
 namespace reident::transfer {
 
+/// What `reident import` was asked.
 struct ImportOptions {
   std::filesystem::path file;
   /// What is given here goes before what a long file says. A wide one needs the spacecraft.
@@ -33,18 +34,22 @@ struct ImportOptions {
   bool skip_bad_lines = false;
 };
 
-/// What waits for a commit. Frames keep their memory from batch to batch.
+/// What waits for a commit. Frames keep their memory from batch to batch. References to them hold
+/// until the next next() or clear().
 class ImportBatch {
  public:
   /// The frame behind the last one, empty; it counts from keep() on.
   storage::TelemetryFrame& next();
+  /// Counts the frame of next().
   void keep();
   /// The last frame that counts; null where there is none.
   storage::TelemetryFrame* last() { return count_ == 0 ? nullptr : &frames_[count_ - 1]; }
+  /// Adds a sample to a frame that counts already.
   void add(storage::TelemetryFrame& frame, const storage::Sample& sample) {
     frame.samples.push_back(sample);
     ++samples_;
   }
+  /// Begins the next batch.
   void clear();
 
   std::span<const storage::TelemetryFrame> frames() const { return {frames_.data(), count_}; }
@@ -57,15 +62,19 @@ class ImportBatch {
   std::uint64_t samples_ = 0;
 };
 
+/// Turns the rows of one file into frames without sequence numbers. One thread at a time.
 class ImportRows {
  public:
   virtual ~ImportRows() = default;
-  /// Adds the row that the reader stands at, or nothing of it and an error.
+  /// Adds the row that the reader stands at, or nothing of it and an error. An empty cell is no
+  /// sample, and a row without one no frame.
   virtual std::optional<csv::Error> add(const csv::Reader& reader, ImportBatch& batch) = 0;
 };
 
-/// For the layout of the reader's file. It may stand at the first row, to see which column holds a
-/// time. The archive must outlive the result.
+/// Returns the rows of the layout that the reader's file has. Requires a reader that stands at the
+/// first row, which shows which column holds a time. An error where no spacecraft is known, no
+/// column holds a time, a column that is named is not there, or a parameter has another unit in the
+/// archive. Options and archive must outlive the result.
 std::variant<std::unique_ptr<ImportRows>, csv::Error> import_rows(const ImportOptions& options,
                                                                   const csv::Reader& reader,
                                                                   const storage::Archive& archive);

@@ -1,4 +1,4 @@
-// Which number a parameter has that a file knows by its name.
+// Which number a parameter has that a file knows by its name. Frames carry numbers alone.
 #pragma once
 
 #include <map>
@@ -15,11 +15,14 @@ namespace reident::transfer {
 /// The parameters of one spacecraft.
 class ParameterBook {
  public:
+  /// Reads the descriptors that the archive has now. Throws storage::Error.
   ParameterBook(const storage::Archive& archive, std::string spacecraft);
 
+  /// A parameter, to be described once where it is not yet.
   struct Entry {
     storage::ParameterDescriptor descriptor;
-    bool is_described = false;  // the archive has a descriptor, or `take_new` gave it
+    bool is_described =
+        false;  // the archive has a descriptor, a batch does, or there is to be none
   };
 
   /// The entry of a parameter by its name: the one that the archive has; else a new one, whose
@@ -30,6 +33,7 @@ class ParameterBook {
                                          std::string_view description);
 
  private:
+  /// The entry of a name that is new here.
   std::variant<Entry*, std::string> add(std::string_view name, std::string_view unit,
                                         std::string_view description);
 

@@ -5,7 +5,8 @@
 //   spacecraft,parameter,origin,source,time,value,quality
 //
 // Wide layout, one time a row: a column with the time and one for each parameter. A file is long
-// when it has the columns parameter, time and value.
+// when it has the columns parameter, time and value. A value that is written and read again has the
+// same bits, but for the payload of a NaN. Nothing here throws but std::bad_alloc.
 #pragma once
 
 #include <array>
@@ -19,25 +20,30 @@
 
 namespace reident::transfer {
 
+/// In the order in which they are written.
 inline constexpr std::array<std::string_view, 7> long_columns = {
     "spacecraft", "parameter", "origin", "source", "time", "value", "quality"};
 
+/// Whether a file with these columns is long.
 bool is_long_layout(const std::vector<std::string>& columns);
 
-/// The number in a cell, with blanks around it and a sign; "nan" and "inf" too. Empty for anything
-/// else.
+/// Returns the number in a cell, with blanks around it and a sign; "nan" and "inf" too. Empty for
+/// anything else.
 std::optional<double> parse_value(std::string_view cell);
 
-/// The words that storage::name gives, with '_' or a blank between them.
+/// Each takes the words that storage::name gives, with '_' or a blank between them. Empty for
+/// anything else.
 std::optional<storage::Quality> parse_quality(std::string_view cell);
 std::optional<storage::Origin> parse_origin(std::string_view cell);
 
 /// What a number is that stands for a time. `any`: seconds, but whole numbers of 17 digits and more
 /// are nanoseconds; a date and time as parse_time() takes them.
 enum class TimeUnit { any, s, ms, us, ns };
+/// Takes "s", "ms", "us" or "ns"; empty for anything else.
 std::optional<TimeUnit> parse_time_unit(std::string_view text);
 /// By the end of a column's name, as in time_ms; else `any`.
 TimeUnit unit_of_column(std::string_view column);
+/// Returns the time in a cell whose numbers are of this unit; empty where it is none.
 std::optional<storage::Time> parse_time_in(TimeUnit unit, std::string_view cell);
 
 /// Each appends to `line`. A value has the fewest digits that give its bits back, a time as many
