@@ -8,7 +8,8 @@
 
 namespace reident::satcs {
 
-/// A time such as 2017-07-01T06:00:00Z or, with a plus sign, a duration after `start`.
+/// Returns the time that the text says: one such as 2017-07-01T06:00:00Z or, with a plus sign, a
+/// duration after `start`. Absent for anything else.
 std::optional<storage::Time> parse_event_time(std::string_view text, storage::Time start);
 /// What it takes, for messages.
 inline constexpr std::string_view event_time_form =

@@ -1,4 +1,4 @@
-// Telemetry as a stream of frames.
+// Telemetry as a stream of frames: what a source gives, whoever publishes or writes it.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ struct Sender {
   std::uint64_t first_sequence = 1;
 };
 
-/// Where frames come from: a recorded file, the reference spacecraft.
+/// Where frames come from: a recorded file, the reference spacecraft. It is read once, forward, by
+/// one thread at a time.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -24,7 +25,7 @@ class FrameSource {
   /// What the samples are; whoever sends them on fills in the spacecraft.
   virtual std::vector<storage::ParameterDescriptor> parameters() const = 0;
   /// All of the next frame but its spacecraft, in the order of reception; false when there is none.
-  /// Throws std::runtime_error when the source breaks.
+  /// The frame's memory is used again. Throws std::runtime_error when the source breaks.
   virtual bool next(storage::TelemetryFrame& frame) = 0;
   /// The share of the source that was handed out, in [0, 1].
   virtual double progress() const = 0;

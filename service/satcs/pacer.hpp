@@ -8,6 +8,8 @@
 
 namespace reident::satcs {
 
+/// The pace of one sender's frames. It does not wait by itself, and `now` is given: tests need no
+/// clock.
 class Pacer {
  public:
   using Clock = std::chrono::steady_clock;

@@ -15,6 +15,7 @@
 
 namespace reident::satcs {
 
+/// Exit statuses of satcs-replay and satcs-reference.
 enum ExitCode : int {
   exit_complete = 0,       // every reader has every frame
   exit_failed = 1,         // the middleware or the machine failed
@@ -29,7 +30,8 @@ class BadRequest : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// An option whose text becomes `value` by `parse`, or is refused with a word on what it takes.
+/// Adds an option whose text becomes `value` by `parse`, or is refused with a sentence on what it
+/// takes. `value` has to live until the command line was parsed.
 template <class T, class Parsed>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, T& value,
                         std::optional<Parsed> (*parse)(std::string_view),
@@ -44,20 +46,21 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, T& value,
       description);
 }
 
-/// --spacecraft, --source, --origin, --first-sequence, --speed and all that says how frames are
-/// published.
+/// Adds --spacecraft, --source, --origin, --first-sequence, --speed and all that says how frames
+/// are published. What the three hold before are the defaults.
 void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& options, bool& json);
 
 /// Parses the command line and does the work; every failure becomes one line on standard error.
 /// Returns the exit status.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
 
-/// Publishes all of `source` until a signal says otherwise, and prints the summary. Returns the
-/// exit status.
+/// Publishes all of `source` until SIGINT or SIGTERM, and prints the summary. Returns the exit
+/// status. Call it before any other thread starts (stop_signal.hpp). Throws dds::Error, and what
+/// the source throws.
 int publish_and_report(FrameSource& source, const Sender& sender, const PublisherOptions& options,
                        bool json);
 
-/// The summary as one JSON object on one line.
+/// Returns the summary as one JSON object on one line.
 std::string to_json(const PublisherSummary& summary, const Sender& sender,
                     const PublisherOptions& options);
 

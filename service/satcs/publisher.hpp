@@ -15,6 +15,7 @@
 
 namespace reident::satcs {
 
+/// How frames are published.
 struct PublisherOptions {
   dds::Endpoint endpoint;
   std::string spacecraft;
@@ -29,6 +30,7 @@ struct PublisherOptions {
   std::chrono::nanoseconds linger{0};
 };
 
+/// How a publication ended.
 enum class Outcome {
   complete,          // every reader has acknowledged every frame
   stopped,           // asked to stop before that
@@ -38,6 +40,7 @@ enum class Outcome {
 /// "complete", "stopped", "no_readers" or "not_acknowledged".
 std::string_view name(Outcome outcome);
 
+/// What was published.
 struct PublisherSummary {
   Outcome outcome = Outcome::complete;
   std::uint64_t parameters = 0;
@@ -49,12 +52,13 @@ struct PublisherSummary {
   std::uint64_t last_sequence = 0;
   storage::Time first_time = 0;
   storage::Time last_time = 0;
-  double wall_s = 0;
+  double wall_s = 0;  // time that it took, waiting included
 };
 
 /// Publishes all frames of `source` in its order. Each sender's frames are paced by its own
-/// reception times. Shows a progress bar on a terminal. Throws dds::Error when the middleware
-/// fails.
+/// reception times. A stop ends it within some 100 ms, wherever it is; frames that were written
+/// till then stay sent. Shows a progress bar on a terminal. Throws dds::Error when the middleware
+/// fails, and what the source throws.
 PublisherSummary publish(FrameSource& source, const PublisherOptions& options,
                          const std::stop_token& stop);
 

@@ -67,6 +67,7 @@ std::string_view name(FaultKind kind);
 /// "stuck, bias_step, ...".
 std::string fault_kind_names();
 
+/// One fault of telemetry. Valid where obstacle() finds nothing.
 struct Fault {
   FaultKind kind = FaultKind::stuck;
   storage::TimeRange when;          // of the true generation time
@@ -76,6 +77,7 @@ struct Fault {
   std::uint64_t seed = 0;
 };
 
+/// Why a fault cannot be.
 struct FaultError {
   std::string message;  // what is wrong and what would mend it
 };
@@ -96,6 +98,8 @@ struct FaultInjectorOptions {
   std::uint64_t seed = 1;  // of the operations plan
 };
 
+/// One thread at a time. Its memory is that of the frames on their way: those of a stretch, where a
+/// fault holds them back.
 class FaultInjector {
  public:
   /// Throws std::invalid_argument with the message of the first obstacle.
@@ -109,7 +113,7 @@ class FaultInjector {
   /// Takes the next true frame; generation times ascend. Appends what the ground has received by
   /// that time, in the order of reception.
   void take(storage::TelemetryFrame&& frame, std::vector<storage::TelemetryFrame>& received);
-  /// Appends what is still on its way.
+  /// Appends what is still on its way, in the order of reception; call once, behind the last frame.
   void flush(std::vector<storage::TelemetryFrame>& received);
 
  private:

@@ -16,13 +16,14 @@ struct Flight {
   storage::Time arrival = 0;    // the true time on the ground
   storage::TelemetryFrame frame;
 
-  /// The station's clock keeps its error.
+  /// Moves the arrival; the station's clock keeps its error.
   void arrive_at(storage::Time time) {
     frame.reception_time += time - arrival;
     arrival = time;
   }
 };
 
+/// What one fault does to flights, in the order of their true times.
 class FaultStage {
  public:
   virtual ~FaultStage() = default;
@@ -36,15 +37,16 @@ inline RandomStream draw(const Fault& fault, storage::Time time, std::uint32_t p
           mix(static_cast<std::uint64_t>(time)) ^ parameter};
 }
 
+/// Rounds to the nearest nanosecond.
 inline storage::Time nanoseconds(double seconds) {
   return static_cast<storage::Time>(seconds * 1e9 + (seconds < 0 ? -0.5 : 0.5));
 }
 
-/// A fault about the samples of parameters. `subjects` are the parameters that it names; all where
-/// it names none.
+/// Returns a fault about the samples of the parameters that it names; all of `parameters` where it
+/// names none. Requires one without obstacle(), as the next.
 std::unique_ptr<FaultStage> sample_fault(const Fault& fault,
                                          std::span<const storage::ParameterDescriptor> parameters);
-/// A fault about frames.
+/// Returns a fault about frames.
 std::unique_ptr<FaultStage> frame_fault(const Fault& fault, const FaultInjectorOptions& options);
 
 }  // namespace reident::satcs

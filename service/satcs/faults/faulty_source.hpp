@@ -9,9 +9,10 @@
 
 namespace reident::satcs {
 
+/// Frames in the order of reception, with their senders. Progress is that of the truth.
 class FaultySource : public FrameSource {
  public:
-  /// Throws std::invalid_argument when a fault cannot be applied to the truth.
+  /// Owns the truth. Throws std::invalid_argument when a fault cannot be applied to it.
   FaultySource(std::unique_ptr<FrameSource> truth, std::span<const Fault> faults,
                const FaultInjectorOptions& options);
 

@@ -25,6 +25,7 @@
 
 namespace reident::satcs {
 
+/// What the project takes from data sheets and the power budget.
 struct HandwrittenConstants {
   double bus_V = 28;
   double bus_array_A = 45;       // SAG2 in sunlight: 90 strings of 0.5 A
@@ -51,6 +52,7 @@ struct HandwrittenConstants {
   double battery_ohm = 0.05;
 };
 
+/// Steps once a second. The same arguments give the same samples to the last bit.
 class HandwrittenEps {
  public:
   /// From `start`, rounded down to a second, with the operations plan of `seed` and
@@ -64,6 +66,7 @@ class HandwrittenEps {
   /// Goes on by one second.
   void advance();
 
+  /// What holds during the present second.
   struct Flows {
     double load_A = 0, array_A = 0, sg2_A = 0, shunt_A = 0, bdr_out_A = 0;
     // Parts of load_A.
@@ -77,6 +80,7 @@ class HandwrittenEps {
     reference::OperationsPlan::On on;
   };
   const Flows& flows() const { return flows_; }
+  /// The charge of each battery as a share of the capacity.
   double charge() const { return charge_; }
 
  private:

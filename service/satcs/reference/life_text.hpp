@@ -9,8 +9,9 @@
 
 namespace reident::satcs {
 
+/// Why a text is no event.
 struct LifeError {
-  std::string message;
+  std::string message;  // what is wrong and what would mend it
 };
 
 /// "KIND@TIME[/TIME][*MAGNITUDE][#UNIT]", such as "capacity_fade@+1d/+20d*0.2#1". The times are

@@ -1,4 +1,6 @@
-// Small random streams of our own: the same numbers with every standard library.
+// Small random streams of our own: the same numbers with every standard library, whose
+// distributions are not laid down. log, sin and cos are those of the C library, so gaussian()
+// repeats on one machine.
 #pragma once
 
 #include <cmath>
@@ -15,16 +17,18 @@ constexpr std::uint64_t mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// In [0, 1).
+/// Returns a number in [0, 1) from the upper 53 bits.
 constexpr double unit_interval(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
+/// One sequence of numbers. Not thread-safe; streams are cheap, one for each purpose.
 class RandomStream {
  public:
   /// Streams of one seed with different numbers are independent of each other.
   RandomStream(std::uint64_t seed, std::uint64_t stream) : state_(mix(mix(seed) ^ stream)) {}
 
+  /// In [0, 1).
   double uniform() { return unit_interval(next()); }
 
   /// Mean 0, variance 1 (Box and Muller).

@@ -9,6 +9,7 @@ namespace reident::satcs::reference {
 class SolarArray {
  public:
   explicit SolarArray(const ArrayConstants& constants);
+  /// Goes on with other constants; the temperature stays.
   void age(const ArrayConstants& constants) { constants_ = constants; }
 
   /// Current of one string [A] of `cells` in series that feeds a node at `node_V` through its
@@ -21,7 +22,7 @@ class SolarArray {
   void set_sun(double flux, double incidence) { flux_ = flux * incidence; }
   /// The incidence at a beta angle [rad]: the wing follows the Sun in the orbit's plane.
   double incidence(double beta) const;
-  /// `electrical_W` are drawn from the panels, and do not heat them.
+  /// One step of the temperature. `electrical_W` are drawn from the panels, and do not heat them.
   void step(double dt_s, double electrical_W);
 
   double temperature_C() const { return temperature_C_; }

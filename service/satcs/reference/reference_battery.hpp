@@ -12,20 +12,22 @@
 
 namespace reident::satcs::reference {
 
+/// One battery in steps of `step_s` [s].
 class Battery {
  public:
   Battery(const BatteryConstants& constants, double step_s);
-  /// The state of charge stays a share of the capacity.
+  /// Goes on with other constants. The state of charge stays a share of the capacity.
   void age(const BatteryConstants& constants) { constants_ = constants; }
 
   struct State {
-    double soc = 0;
-    double fast_V = 0;
+    double soc = 0;     // share of the capacity, 0 to 1
+    double fast_V = 0;  // voltages of the two pairs
     double slow_V = 0;
     double temperature_C = 0;
   };
   const State& state() const { return state_; }
 
+  /// At rest, at the present charge and temperature.
   double open_circuit_V() const;
   /// Chemical energy above that of an empty battery [J], at 10 degC: what the temperature adds to
   /// the voltage is heat that it takes from the cells or gives to them.

@@ -16,16 +16,19 @@
 
 namespace reident::satcs::reference {
 
+/// Bus voltage and amplifier, in steps of `step_s` [s].
 class Bus {
  public:
   Bus(const BusConstants& bus, const ErrorAmplifierConstants& mea, double step_s);
 
   using Channels = std::array<double, shunt_channels>;
+  /// What meets at the bus during one step.
   struct Demand {
     Channels channel_A{};  // what the array gives in each channel
     double bdr_max_A = 0;  // what the regulators can give
     double load_A = 0;
   };
+  /// What holds during the step, at the voltage that it leaves.
   struct Solution {
     double bdr_A = 0;
     double shunt_A = 0;
@@ -35,12 +38,14 @@ class Bus {
     double capacitor_J = 0;  // stored by the step; the rest is lost in its series resistance
     double load_share = 1;   // of the demand that the loads get; below 1 in a brown-out
   };
+  /// One step; the currents of the result balance to rounding.
   Solution step(const Demand& demand);
 
   double bus_V() const { return bus_V_; }
   double mea_V() const { return mea_V_; }
 
  private:
+  // What the domains of V_mea give at a voltage of the amplifier.
   double bdr_A(double mea_V, const Demand& demand) const;
   double shunt_A(double mea_V, const Demand& demand) const;
   double shunting(double mea_V, std::size_t channel) const;

@@ -6,6 +6,7 @@
 
 namespace reident::satcs::reference {
 
+/// One controller, in steps of `step_s` [s]: an integrator of the voltage above the limit.
 class Charger {
  public:
   Charger(const ChargerConstants& constants, double step_s)
@@ -17,8 +18,10 @@ class Charger {
   double share() const { return share_; }
   /// The section's voltage while a current goes to the battery.
   double section_V(double battery_V, double charge_A) const;
+  /// The battery's voltage that is held at a temperature.
   double limit_V(double battery_C) const;
 
+  /// One step of the share, which stays in [0, 1].
   void step(double battery_V, double battery_C);
 
  private:

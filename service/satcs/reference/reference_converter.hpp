@@ -10,6 +10,7 @@
 
 namespace reident::satcs::reference {
 
+/// The three converters, in steps of `step_s` [s]. A line is numbered from 0: 5 V, 15 V, 12 V.
 class Converters {
  public:
   using Lines = std::array<double, converter_count>;
@@ -20,6 +21,7 @@ class Converters {
     constants_ = constants;
   }
 
+  /// Output voltage of a line at a current.
   double output_V(std::size_t line, double output_A) const;
   /// What the converter takes [W] to give a current.
   double input_W(std::size_t line, double output_A) const;

@@ -16,6 +16,7 @@
 
 namespace reident::satcs::reference {
 
+/// What happens.
 enum class LifeKind {
   // Changes that stay. With an end after the beginning they grow linearly, otherwise they are
   // steps.
@@ -42,12 +43,13 @@ enum class LifeUnit {
   string_row,  // 1 SAG1A, 2 SAG1B, 3 to 8 the channels of SAG2
 };
 
+/// One event. Functions below but life_mistake() require one without a mistake.
 struct LifeEvent {
   LifeKind kind = LifeKind::array_degradation;
   storage::Time begin = 0;
-  storage::Time end = 0;
-  double magnitude = 0;
-  int unit = 0;
+  storage::Time end = 0;  // as `begin` for a step, and for a mode that lasts for good
+  double magnitude = 0;   // of a mode: 1
+  int unit = 0;           // what LifeUnit says; 0 where it takes none
 };
 
 /// "array_degradation" and so on.

@@ -32,6 +32,7 @@ class OperationsPlan {
   OperationsPlan(const Orbit& orbit, const LoadConstants& constants, std::vector<LifeEvent> life,
                  std::uint64_t seed);
 
+  /// What is on at a time.
   struct On {
     bool payload = false;
     bool transmitter = false;
@@ -54,6 +55,7 @@ class OperationsPlan {
 /// A slow variation: Ornstein and Uhlenbeck's process, exact over one second.
 class SlowVariation {
  public:
+  /// `sigma`: standard deviation in the long run; begins at 0.
   SlowVariation(double sigma, double correlation_s)
       : keep_(std::exp(-1 / correlation_s)), kick_(sigma * std::sqrt(1 - keep_ * keep_)) {}
   void advance(RandomStream& random) { value_ = keep_ * value_ + kick_ * random.gaussian(); }
@@ -65,7 +67,8 @@ class SlowVariation {
 };
 
 /// The demand of every user. The platform and the transmitter take constant power, heaters are
-/// resistors, and the users of the secondary lines take currents.
+/// resistors, and the users of the secondary lines take currents. update() comes once before the
+/// first currents_A().
 class Loads {
  public:
   Loads(const Orbit& orbit, const LoadConstants& constants, const std::vector<LifeEvent>& life,

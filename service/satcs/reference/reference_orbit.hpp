@@ -10,6 +10,7 @@
 
 namespace reident::satcs::reference {
 
+/// A function of time alone; any number of threads may ask.
 class Orbit {
  public:
   explicit Orbit(const OrbitConstants& constants);

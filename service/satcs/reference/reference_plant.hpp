@@ -91,6 +91,7 @@ struct PowerBalance {
   double stored() const { return capacitor + batteries; }
 };
 
+/// States and flows, step by step. Equal arguments give equal flows to the last bit.
 class Plant {
  public:
   static constexpr int usual_steps_per_second = 4;
@@ -101,11 +102,14 @@ class Plant {
   Plant(const Constants& fresh, std::vector<LifeEvent> life, storage::Time start,
         std::uint64_t seed, int steps_per_second = usual_steps_per_second);
 
+  /// One step; at the begin of a second the life and the loads go on first.
   void step();
   int steps_per_second() const { return steps_per_second_; }
   double step_s() const { return step_s_; }
 
+  /// The end of the last step.
   storage::Time time() const;
+  /// What the last step had.
   const Flows& flows() const { return flows_; }
   /// The balance of the last step.
   PowerBalance power_balance() const;

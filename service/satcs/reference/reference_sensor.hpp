@@ -18,6 +18,8 @@ struct SensorSpec {
   double quantum() const { return (high - low) / static_cast<double>((1 << bits) - 1); }
 };
 
+/// One sensor, observing in steps of `step_s` [s]. Its noise follows from seed and stream, one
+/// stream a sensor.
 class Sensor {
  public:
   Sensor(const SensorSpec& spec, double step_s, std::uint64_t seed, std::uint64_t stream);
@@ -29,7 +31,7 @@ class Sensor {
   }
   /// After the filter, without noise and converter.
   double filtered() const { return filtered_; }
-  /// One conversion.
+  /// One conversion, with noise of its own: a multiple of the quantum within the range.
   double read();
 
  private:

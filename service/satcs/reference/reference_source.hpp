@@ -7,6 +7,7 @@
 
 namespace reident::satcs {
 
+/// Which flight.
 struct ReferenceOptions {
   reference::Constants constants;                   // before any of `life`
   std::vector<reference::LifeEvent> life;           // events without life_mistake()
@@ -35,11 +36,13 @@ class SecondsSource : public FrameSource {
   std::uint64_t frames_done_ = 0;
 };
 
+/// The spacecraft's true telemetry.
 class ReferenceSource : public SecondsSource<reference::Spacecraft> {
  public:
   ReferenceSource(const ReferenceOptions& options, Sender sender);
 };
 
+/// The hand-written simulator's telemetry at the same times.
 class HandwrittenSource : public SecondsSource<HandwrittenEps> {
  public:
   HandwrittenSource(const ReferenceOptions& options, Sender sender);

@@ -17,6 +17,7 @@ namespace reident::satcs::reference {
 /// `time` rounded down to a second.
 storage::Time whole_seconds(storage::Time time);
 
+/// Plant and sensors, second by second. One thread at a time.
 class Spacecraft {
  public:
   /// The first reading is of `start`, rounded down to a second. `life` happens to a spacecraft of
@@ -26,7 +27,8 @@ class Spacecraft {
 
   storage::Time time() const { return plant_.time(); }
   const Plant& plant() const { return plant_; }
-  /// One sample for each telemetry point that is due now.
+  /// Replaces `samples` by one sample for each telemetry point that is due now. Draws noise: call
+  /// it once a second.
   void read(std::vector<storage::Sample>& samples);
   /// What the sensor of each telemetry point, due or not, would read now without noise and
   /// converter.

@@ -11,7 +11,7 @@
 
 namespace reident::satcs::reference {
 
-/// Digital points are 0 or 1 and have no sensor.
+/// One row of the table. Digital points are 0 or 1 and have no sensor.
 struct TelemetryPoint {
   std::string_view name;
   std::string_view unit;
@@ -22,6 +22,7 @@ struct TelemetryPoint {
   double (*read)(const Plant& plant) = nullptr;
   SensorSpec sensor;
 
+  /// Whether it is sampled at a second since 1970, also one before.
   bool due(std::int64_t second) const {
     return every_s == 1 || (second % every_s + every_s) % every_s == phase_s;
   }
@@ -30,7 +31,7 @@ struct TelemetryPoint {
 /// Every point, in the order in which a reading holds those that are due. Their ids follow from
 /// their names (parameter_id).
 std::span<const TelemetryPoint> telemetry_points();
-/// Their descriptors; the limits are the ends of the sensors' ranges.
+/// Returns their descriptors; the limits are the ends of the sensors' ranges.
 std::vector<storage::ParameterDescriptor> telemetry_descriptors(std::string_view spacecraft);
 
 }  // namespace reident::satcs::reference

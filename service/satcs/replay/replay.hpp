@@ -1,7 +1,8 @@
 // Recorded telemetry in a CSV file as a source of frames: one frame a row, one parameter a column.
 //
 // The file is read twice: once to see that all of it can be replayed and what it holds, before
-// anything is published, and once to replay it.
+// anything is published, and once to replay it. It must not change in between: a row that cannot be
+// read the second time breaks the source.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,7 @@ struct ColumnMapping {
   std::string parameter;
   std::string unit;
 };
+/// Absent where the text is not of that form, or a part but the unit is empty.
 std::optional<ColumnMapping> parse_mapping(std::string_view text);
 
 /// One end of the stretch to replay: a time, or an offset from the earliest row ("+90", "2h").
@@ -29,8 +31,10 @@ struct ReplayBound {
   bool relative = false;
   std::int64_t ns = 0;
 };
+/// Absent where the text is neither.
 std::optional<ReplayBound> parse_bound(std::string_view text);
 
+/// What satcs-replay was asked.
 struct ReplayOptions {
   std::filesystem::path file;
   std::optional<std::string> time_column;  // absent: the first that looks like one

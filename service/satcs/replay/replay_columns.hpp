@@ -12,20 +12,21 @@ using IsTime = std::function<bool(std::string_view column, std::string_view cell
 /// As parse_time() takes it.
 bool is_time(std::string_view column, std::string_view cell);
 
-/// The column asked for, or the first that is named like a time and holds one in the row that
-/// `reader` stands at, or the first that holds a calendar time there.
+/// Returns the column asked for, or the first that is named like a time and holds one in the row
+/// that `reader` stands at, or the first that holds a calendar time there.
 std::variant<std::size_t, csv::Error> find_time_column(const csv::Reader& reader,
                                                        const std::optional<std::string>& asked,
                                                        const IsTime& holds_time = is_time);
 
 /// Fills in plan.columns and plan.left_out. `numbers` counts the cells with a number in each column
-/// of the file.
+/// of the file. An error where a column that the options name is not there, two would be one
+/// parameter, or none is left.
 std::optional<csv::Error> choose_columns(const ReplayOptions& options, const csv::Reader& reader,
                                          const std::vector<std::uint64_t>& numbers,
                                          ReplayPlan& plan);
 
 /// A column's name cut into the parameter's name and the unit at its end; the unit is empty where
-/// there is none.
+/// there is none that is known.
 struct NameAndUnit {
   std::string name;
   std::string unit;
