@@ -1,4 +1,5 @@
-// The texts of an FMU; README.md says what is in them.
+// The texts of an FMU; README.md says what is in them. Each function is pure: equal arguments give
+// equal bytes, in every locale. Requires a version without obstacle().
 #pragma once
 
 #include <string>
@@ -9,19 +10,21 @@
 
 namespace reident::model_export {
 
-/// A C identifier of spacecraft, equipment and version, such as CBERS_4_BDR_v3.
+/// Returns a C identifier of spacecraft, equipment and version, such as CBERS_4_BDR_v3. Other
+/// characters than ASCII letters and digits become _, and a long name is cut before the version.
 std::string model_identifier(const ModelVersion& version);
 
-/// The text as it stands within XML and HTML, in attributes too.
+/// Returns the text as it stands within XML and HTML, in attributes too. Control characters become
+/// blanks.
 std::string xml_text(std::string_view text);
 
-/// modelDescription.xml. The guid is the model's digest.
+/// Returns modelDescription.xml. The guid is the model's digest.
 std::string model_description(const ExportedVersion& exported, const FmuVariables& variables);
 
-/// resources/model.txt (fmu/model_file.h).
+/// Returns resources/model.txt (fmu/model_file.h), with its checksum.
 std::string fmu_resources(const ModelVersion& version, const FmuVariables& variables);
 
-/// documentation/index.html.
+/// Returns documentation/index.html: what the model is, its variables, what a step does.
 std::string fmu_documentation(const ExportedVersion& exported, const FmuVariables& variables);
 
 }  // namespace reident::model_export

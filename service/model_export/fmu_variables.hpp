@@ -8,13 +8,15 @@
 
 namespace reident::model_export {
 
+/// One variable, a real number.
 struct FmuVariable {
   std::string name;
   std::string unit;  // empty where a version does not say it
   std::string description;
-  double start = 0;  // of an input
+  double start = 0;  // of an input, before any was set
 };
 
+/// All variables of one FMU.
 struct FmuVariables {
   /// The SATCS parameters that the model's inputs are computed from. A parameter that stands in
   /// expressions alone starts at 1: a version keeps the operating point of inputs, not of what they
@@ -25,9 +27,11 @@ struct FmuVariables {
   std::vector<std::vector<std::size_t>> direct;
 };
 
+/// Returns the variables of a model without obstacle(). Parameters come in the order of first use.
 FmuVariables fmu_variables(const EquipmentModel& model);
 
-/// The place of a parameter in `inputs`.
+/// Returns the place of a parameter in `inputs`. Throws std::logic_error where it is not one of
+/// them.
 std::size_t place_of(const std::vector<FmuVariable>& inputs, const std::string& parameter);
 
 }  // namespace reident::model_export

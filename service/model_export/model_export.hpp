@@ -15,23 +15,24 @@ struct ExportedVersion {
   std::string status;  // "approved", "superseded", "rejected", "waiting" or "withdrawn"
 };
 
-/// Why the model cannot be exported: its content is damaged, or two of its signals have one name.
-/// Empty when it can. What follows asks for a model that can be.
+/// Returns why the model cannot be exported: its content is damaged, or two of its signals have one
+/// name. Empty when it can. What follows requires a model that can be.
 std::optional<std::string> obstacle(const ModelVersion& version);
 
-/// One JSON object; "model" in it is what equipment_model_from_json reads.
+/// Returns one JSON object; "model" in it is what equipment_model_from_json reads.
 std::string json_file(const ExportedVersion& exported);
 
-/// A MATLAB file of version 5. Throws std::runtime_error where the library fails.
+/// Returns a MATLAB file of version 5, made in memory. Throws std::runtime_error where the library
+/// fails.
 std::string mat_file(const ExportedVersion& exported);
 
-/// An FMU for co-simulation (FMI 2.0), from the parts in `parts`: linux64/reident_fmu.so and
-/// sources/. The same version gives the same bytes. Throws std::runtime_error where a part is
-/// missing.
+/// Returns an FMU for co-simulation (FMI 2.0), from the parts in `parts`: linux64/reident_fmu.so
+/// and sources/. The same version, of the same status, gives the same bytes. Throws
+/// std::runtime_error where a part is missing.
 std::string fmu_file(const ExportedVersion& exported, const std::filesystem::path& parts);
 
-/// The folder of these parts: by the place of the running program, as it was built or installed.
-/// Throws std::runtime_error where there is none.
+/// Returns the folder of these parts: by the place of the running program, as it was built or
+/// installed. Throws std::runtime_error where there is none.
 std::filesystem::path fmu_parts();
 
 }  // namespace reident::model_export

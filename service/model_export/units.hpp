@@ -1,4 +1,4 @@
-// Units of telemetry in the base units of the SI.
+// Units of telemetry in the base units of the SI, as modelDescription.xml gives them.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,8 @@ struct BaseUnit {
   double offset = 0;
 };
 
-/// What a unit such as "A", "mV", "degC" or "Ah" is; empty where it is not known.
+/// Returns what a unit such as "A", "mV", "degC" or "Ah" is. Empty where it is not known: an FMU
+/// then has its name alone. A prefix from n to M is taken off a unit that has one and no offset.
 std::optional<BaseUnit> base_unit(const std::string& unit);
 
 }  // namespace reident::model_export

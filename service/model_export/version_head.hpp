@@ -6,7 +6,8 @@
 
 namespace reident::model_export {
 
-/// Calls visit(name, value) in the order of the files; values are texts and whole numbers.
+/// Calls visit(name, value) in the order of the files; values are texts and whole numbers. A new
+/// line here appears in JSON and in the MATLAB file; README.md lists both.
 template <class Visit>
 void visit_head(const ExportedVersion& exported, Visit&& visit) {
   const ModelVersion& version = exported.version;

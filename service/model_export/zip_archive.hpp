@@ -9,8 +9,9 @@ struct zip_source;
 
 namespace reident::model_export {
 
-/// Entries carry no time, so that the same entries give the same bytes. Calls throw
-/// std::runtime_error where the library fails.
+/// Entries carry no time, so that the same entries give the same bytes. The whole file and what
+/// goes into it are in memory. Calls throw std::runtime_error where the library fails. One thread
+/// at a time.
 class ZipArchive {
  public:
   ZipArchive();
@@ -18,8 +19,9 @@ class ZipArchive {
   ZipArchive(const ZipArchive&) = delete;
   ZipArchive& operator=(const ZipArchive&) = delete;
 
+  /// Adds an entry; paths are UTF-8 with / between folders, each given once.
   void add(const std::string& path, std::string content);
-  /// The bytes of the whole file; nothing can be added afterwards.
+  /// Returns the bytes of the whole file; nothing can be added afterwards. Call once.
   std::string finish();
 
  private:

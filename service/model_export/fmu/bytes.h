@@ -14,6 +14,8 @@ static uint64_t bytes_checksum(const unsigned char* bytes, size_t count) {
   return sum;
 }
 
+/* Each put_ writes eight bytes at `at` and returns where the next ones go; each get_ reads eight. A
+ * double keeps its bits, those of a NaN too. */
 static unsigned char* put_whole(unsigned char* at, uint64_t value) {
   for (int i = 0; i < 8; ++i) at[i] = (unsigned char)(value >> (8 * i));
   return at + 8;

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdint.h>
 
+/* The time since the start: periods * period + rest_s. */
 typedef struct {
   int64_t periods;
   double rest_s; /* in [-tolerance, period - tolerance) */
@@ -24,7 +25,8 @@ static double clock_tolerance(double period_s, double time_s) {
   return fmin(fmax(1e-6 * period_s, resolution), period_s / 4);
 }
 
-/* `step_s` later, which is at most 1e9 periods. The remainder is exact. */
+/* Returns the clock `step_s` later; step_s is above 0 and at most 1e9 periods. The remainder is
+ * exact, so that a whole multiple of the period leaves the rest as it is. */
 static Clock clock_after(Clock clock, double step_s, double period_s, double tolerance_s) {
   const double beyond = remainder(step_s, period_s);
   clock.periods += (int64_t)llround((step_s - beyond) / period_s);
@@ -40,7 +42,8 @@ static Clock clock_after(Clock clock, double step_s, double period_s, double tol
   return clock;
 }
 
-/* How many ticks lie before the time of the clock; a tick at that time is not one of them. */
+/* Returns how many ticks lie before the time of the clock; a tick at that time is not one of
+ * them. */
 static int64_t clock_ticks(Clock clock, double tolerance_s) {
   return clock.periods + (clock.rest_s > tolerance_s ? 1 : 0);
 }

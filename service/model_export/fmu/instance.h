@@ -8,6 +8,8 @@
 #include "resource_path.h"
 #include "run.h"
 
+/* What fmi2Instantiate makes and fmi2FreeInstance ends. Instances share nothing, so that any number
+ * may run in one process, each on one thread at a time. */
 typedef struct {
   Model model;
   Run run;
@@ -19,7 +21,8 @@ typedef struct {
 
 enum { message_bytes = 600 };
 
-/* The logger takes a format, in which % and # have meanings. */
+/* Doubles % and #, which have meanings in the format that the logger takes. Text that does not fit
+ * is cut. */
 static void escape(const char* text, char* escaped, size_t size) {
   size_t length = 0;
   for (; *text != '\0' && length + 3 < size; ++text) {
@@ -29,6 +32,7 @@ static void escape(const char* text, char* escaped, size_t size) {
   escaped[length] = '\0';
 }
 
+/* Hands `text` to the logger, where there is one, under the category of `status`. */
 static void log_text(fmi2CallbackLogger logger, fmi2ComponentEnvironment environment,
                      const char* name, fmi2Status status, const char* text) {
   char escaped[2 * message_bytes];
@@ -41,6 +45,7 @@ static void log_text(fmi2CallbackLogger logger, fmi2ComponentEnvironment environ
          escaped);
 }
 
+/* Logs a message of at most message_bytes and returns `status`. */
 static fmi2Status say(const Instance* instance, fmi2Status status, const char* format,
                       va_list values) {
   char text[message_bytes];
@@ -103,6 +108,7 @@ static int is_in(const Instance* instance, int phases, const char* call) {
   return 0;
 }
 
+/* Frees the instance and all that it owns; NULL is allowed. */
 static void instance_free(Instance* instance) {
   if (instance == NULL) return;
   model_free(&instance->model);
@@ -112,7 +118,8 @@ static void instance_free(Instance* instance) {
   free(instance);
 }
 
-/* What is wrong with the model that was read for an instance, or NULL. */
+/* Gives the instance a run of the model that was read for it, at its start. Returns what is wrong
+ * with the model, or NULL. */
 static const char* instance_prepare(Instance* instance, const char* guid) {
   const Model* const model = &instance->model;
   if (strcmp(model->digest, guid) != 0)
@@ -126,7 +133,7 @@ static const char* instance_prepare(Instance* instance, const char* guid) {
   return NULL;
 }
 
-/* What is wrong with the way in which an instance is asked for, or NULL. */
+/* Returns what is wrong with the way in which an instance is asked for, or NULL. */
 static const char* request_mistake(fmi2String name, fmi2Type type, fmi2String guid,
                                    fmi2String resources) {
   if (name == NULL || *name == '\0') return "an instance needs a name";
@@ -136,6 +143,8 @@ static const char* request_mistake(fmi2String name, fmi2Type type, fmi2String gu
   return NULL;
 }
 
+/* Returns an instance of the model in the folder that the URI `resources` names; NULL, and a
+ * message, where there is none. The callbacks' memory functions are not used. */
 static Instance* instance_of(const fmi2CallbackFunctions* functions, fmi2String name,
                              fmi2String guid, fmi2String resources) {
   char text[message_bytes];

@@ -23,6 +23,7 @@
 #include "bytes.h"
 #include "postfix.h"
 
+/* Bounds of what is accepted, so that a damaged file cannot ask for all memory. */
 enum {
   model_digest_length = 64,
   model_most_signals = 10000,
@@ -30,11 +31,13 @@ enum {
   model_most_bytes = 256 * 1024 * 1024
 };
 
+/* How an input follows from the parameters (postfix.h). */
 typedef struct {
   PostfixStep* steps;
   size_t count;
 } Program;
 
+/* What the file holds. It owns `numbers` and `programs`. Constant once it was read. */
 typedef struct {
   char digest[model_digest_length + 1];
   double period_s;
@@ -44,6 +47,7 @@ typedef struct {
   Program* programs; /* one for each input */
 } Model;
 
+/* Frees what the model owns; also of one that is all 0. */
 static void model_free(Model* model) {
   if (model->programs != NULL)
     for (size_t i = 0; i < model->inputs; ++i) free(model->programs[i].steps);
@@ -51,6 +55,8 @@ static void model_free(Model* model) {
   free(model->numbers);
 }
 
+/* What is left of the text. The first mistake stays, and sizes that are read after it are 0, so that
+ * readers need not look at each step. */
 typedef struct {
   const char* at;
   const char* end;
@@ -70,6 +76,7 @@ static int is_blank(char c) {
   return c == ' ' || c == '\n' || c == '\r' || c == '\t';
 }
 
+/* Returns the next word; one without length at the end. */
 static Word next_word(Words* words) {
   while (words->at < words->end && is_blank(*words->at)) ++words->at;
   Word word = {words->at, 0};
@@ -82,10 +89,13 @@ static int word_is(Word word, const char* text) {
   return strlen(text) == word.length && memcmp(text, word.at, word.length) == 0;
 }
 
+/* Steps over the word that has to come next. */
 static void expect_word(Words* words, const char* text) {
   if (!word_is(next_word(words), text)) words_refuse(words, "an entry is missing or misplaced");
 }
 
+/* Whether the word is a whole number of at most 9 digits and not above `most`; then sets
+ * `value`. */
 static int whole_of(Word word, size_t most, size_t* value) {
   if (word.length == 0 || word.length > 9) return 0;
   *value = 0;
@@ -96,6 +106,7 @@ static int whole_of(Word word, size_t most, size_t* value) {
   return *value <= most;
 }
 
+/* Returns the size behind the word `name`. */
 static size_t next_size(Words* words, const char* name, size_t most) {
   size_t value = 0;
   expect_word(words, name);
@@ -117,7 +128,8 @@ static int take_digits(const char** at, const char* end, uint64_t* mantissa) {
   return count;
 }
 
-/* [-]0xH[.HHH]p(+|-)DDD. strtod would ask the locale for its decimal point. */
+/* Whether the word is [-]0xH[.HHH]p(+|-)DDD and finite; then sets `value` to it exactly. strtod
+ * would ask the locale for its decimal point. */
 static int real_of(Word word, double* value) {
   const char* at = word.at;
   const char* const end = word.at + word.length;
@@ -150,6 +162,8 @@ static double next_real(Words* words) {
   return value;
 }
 
+/* Reads `count` numbers behind the word `name` to `at`, notes in `where` that they are there, and
+ * returns the place behind them. */
 static double* next_reals(Words* words, const char* name, double* at, size_t count,
                           const double** where) {
   expect_word(words, name);
@@ -158,6 +172,7 @@ static double* next_reals(Words* words, const char* name, double* at, size_t cou
   return at;
 }
 
+/* Reads a step: a number, pN for parameter N, or the word of an operation. */
 static void read_step(Words* words, size_t parameters, PostfixStep* step) {
   const Word word = next_word(words);
   step->kind = postfix_kind(word.at, word.length);
@@ -220,7 +235,8 @@ static void read_head(Words* words, Model* model) {
   model->parameters = next_size(words, "parameters", model_most_signals);
 }
 
-/* `text` without its last line, where that is the checksum of what is before it; else 0. */
+/* Returns the length of `text` without its last line, where that is the checksum of what is before
+ * it; else 0. */
 static size_t checked_length(const char* text, size_t length) {
   const char key[] = "checksum ";
   const size_t line = sizeof key - 1 + 16 + 1;
@@ -233,7 +249,8 @@ static size_t checked_length(const char* text, size_t length) {
   return stated == bytes_checksum((const unsigned char*)text, before) ? before : 0;
 }
 
-/* What is wrong with the text, or NULL. The model is to be freed either way. */
+/* Reads a text into a model that is all 0. Returns what is wrong with it, or NULL. The model is to
+ * be freed either way. */
 static const char* model_parse(const char* text, size_t length, Model* model) {
   const size_t checked = checked_length(text, length);
   if (checked == 0) return "it is damaged: its checksum does not match its content";
@@ -255,7 +272,8 @@ static const char* model_parse(const char* text, size_t length, Model* model) {
   return words.mistake;
 }
 
-/* The whole file, to be freed; NULL where it cannot be read. */
+/* Returns the whole file, to be freed; NULL where it cannot be read or has more than
+ * model_most_bytes. */
 static char* file_content(const char* path, size_t* length) {
   FILE* file = fopen(path, "rb");
   if (file == NULL) return NULL;
@@ -273,7 +291,8 @@ static char* file_content(const char* path, size_t* length) {
   return content;
 }
 
-/* Reads the model. What is wrong with the file, or NULL; the model is to be freed either way. */
+/* Reads the model. Returns what is wrong with the file, or NULL; the model is to be freed either
+ * way. */
 static const char* model_read(const char* path, Model* model) {
   memset(model, 0, sizeof *model);
   size_t length = 0;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Whether the URI begins with `scheme`, which is in lower case; it may be in either. */
 static int scheme_ends(const char* uri, const char* scheme) {
   for (; *scheme != '\0'; ++uri, ++scheme) {
     const char c = *uri >= 'A' && *uri <= 'Z' ? (char)(*uri - 'A' + 'a') : *uri;
@@ -13,7 +14,7 @@ static int scheme_ends(const char* uri, const char* scheme) {
   return 1;
 }
 
-/* Where the path of file:/path, file:///path or file://localhost/path begins; else NULL. */
+/* Returns where the path of file:/path, file:///path or file://localhost/path begins; else NULL. */
 static const char* uri_path(const char* uri) {
   if (!scheme_ends(uri, "file:")) return NULL;
   const char* at = uri + 5;
@@ -28,6 +29,7 @@ static const char* uri_path(const char* uri) {
   return at;
 }
 
+/* The value of a hexadecimal digit, or -1. */
 static int uri_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -35,7 +37,8 @@ static int uri_digit(char c) {
   return -1;
 }
 
-/* The path of `file` in the folder that the URI names, to be freed; NULL where it names none. */
+/* Returns the path of `file` in the folder that the URI names, to be freed; NULL where it names
+ * none or there is no memory. %XX stands for a byte other than 0. */
 static char* resource_path(const char* uri, const char* file) {
   const char* at = uri_path(uri);
   if (at == NULL) return NULL;

@@ -12,8 +12,10 @@
 #include "clock.h"
 #include "model_file.h"
 
+/* Between which calls of the standard an instance is. */
 typedef enum { phase_instantiated, phase_initialisation, phase_stepping, phase_terminated } Phase;
 
+/* All that a saved state has to hold (saved_state.h). It owns `values`. */
 typedef struct {
   Phase phase;
   int stop_defined;
@@ -24,6 +26,7 @@ typedef struct {
   double* values; /* parameters, u - u0 of the last tick, x, y; run_values() of them */
 } Run;
 
+/* How many values a run of the model has, and where its parts begin. */
 static size_t run_values(const Model* model) {
   return model->parameters + model->inputs + model->order + model->outputs;
 }
@@ -40,7 +43,7 @@ static double* run_outputs(const Model* model, const Run* run) {
   return run_state(model, run) + model->order;
 }
 
-/* To before its initialisation. */
+/* Sets the run to before its initialisation; `values` has to have room. */
 static void run_reset(const Model* model, Run* run) {
   double* const values = run->values;
   memset(run, 0, sizeof *run);
@@ -49,6 +52,7 @@ static void run_reset(const Model* model, Run* run) {
   memcpy(values, model->start, model->parameters * sizeof *values);
 }
 
+/* Copies a run of the same model; each keeps its own memory. */
 static void run_copy(const Model* model, const Run* from, Run* to) {
   double* const values = to->values;
   *to = *from;
@@ -56,7 +60,8 @@ static void run_copy(const Model* model, const Run* from, Run* to) {
   memcpy(values, from->values, run_values(model) * sizeof *values);
 }
 
-/* u - u0 of the parameters into `du` (m). The first input without a finite value, or m. */
+/* Sets `du` (m) to u - u0 of the parameters that are set. An input without a finite value keeps
+ * that of the last tick. Returns the first such input, or m. */
 static size_t inputs_of(const Model* model, const Run* run, double* du) {
   size_t first = model->inputs;
   for (size_t i = 0; i < model->inputs; ++i) {
@@ -74,6 +79,7 @@ static double row_times(const double* row, const double* vector, size_t count) {
   return sum;
 }
 
+/* Sets `y` (p) to the outputs of x (n) and du (m). Returns whether all are finite. */
 static int outputs_of(const Model* model, const double* x, const double* du, double* y) {
   int finite = 1;
   for (size_t i = 0; i < model->outputs; ++i) {
@@ -84,7 +90,8 @@ static int outputs_of(const Model* model, const double* x, const double* du, dou
   return finite;
 }
 
-/* One tick: y of x and du, then the x that follows, by way of `next` (n). Whether all is finite. */
+/* One tick: y of x and du, then the x that follows, by way of `next` (n). Returns whether all is
+ * finite; x and y are changed either way. */
 static int tick(const Model* model, const double* du, double* x, double* y, double* next) {
   int finite = outputs_of(model, x, du, y);
   for (size_t i = 0; i < model->order; ++i) {
