@@ -5,13 +5,6 @@
 namespace reident {
 namespace {
 
-bool sizes_agree(const EquipmentModel& model) {
-  const identification::StateSpaceModel& dynamics = model.dynamics;
-  return identification::is_well_formed(dynamics) &&
-         dynamics.inputs() == static_cast<identification::Index>(model.inputs.size()) &&
-         dynamics.outputs() == static_cast<identification::Index>(model.outputs.size());
-}
-
 std::optional<std::string> fault_in_expressions(const std::vector<Signal>& inputs) {
   for (const DerivedInput& input : derived_inputs(inputs)) {
     const auto parsed = Expression::parse(input.expression);
@@ -25,7 +18,7 @@ std::optional<std::string> fault_in_expressions(const std::vector<Signal>& input
 }  // namespace
 
 std::optional<std::string> damage(const ModelVersion& version) {
-  if (!sizes_agree(version.model)) {
+  if (!is_well_formed(version.model)) {
     return "its matrices, signals and period do not fit together, or are not finite";
   }
   if (auto reason = fault_in_expressions(version.model.inputs)) return reason;

@@ -21,7 +21,7 @@ struct Signal {
   std::string unit;
   double low = 0;  // range visited in the identification window
   double high = 0;
-  /// Of an input, over SATCS parameters; empty where the input is the parameter `name` itself.
+  /// How an input follows from SATCS parameters; empty where it is the parameter `name` itself.
   std::string expression = {};
   bool operator==(const Signal&) const = default;
 };
@@ -76,6 +76,14 @@ struct EquipmentModel {
   std::optional<Tracking> tracking;
   std::string method;  // such as "N4SID, horizon 12, order 3"
 };
+
+/// Whether the dynamics are well formed and have as many inputs and outputs as are named.
+inline bool is_well_formed(const EquipmentModel& model) {
+  const identification::StateSpaceModel& dynamics = model.dynamics;
+  return identification::is_well_formed(dynamics) &&
+         dynamics.inputs() == static_cast<identification::Index>(model.inputs.size()) &&
+         dynamics.outputs() == static_cast<identification::Index>(model.outputs.size());
+}
 
 /// A version as simulators receive it.
 struct ModelVersion {

@@ -6,15 +6,6 @@
 namespace reident::model_export {
 namespace {
 
-using identification::Index;
-
-bool sizes_agree(const EquipmentModel& model) {
-  const identification::StateSpaceModel& dynamics = model.dynamics;
-  return identification::is_well_formed(dynamics) &&
-         dynamics.inputs() == static_cast<Index>(model.inputs.size()) &&
-         dynamics.outputs() == static_cast<Index>(model.outputs.size());
-}
-
 std::optional<std::string> name_given_twice(const EquipmentModel& model) {
   std::set<std::string> names;
   for (const auto* signals : {&model.inputs, &model.outputs})
@@ -26,7 +17,7 @@ std::optional<std::string> name_given_twice(const EquipmentModel& model) {
 }  // namespace
 
 std::optional<std::string> obstacle(const ModelVersion& version) {
-  if (!sizes_agree(version.model))
+  if (!is_well_formed(version.model))
     return "its matrices, signals and period do not fit together, or are not finite";
   if (model_digest(version.model) != version.digest)
     return "its stored model does not match its digest: it was damaged; restore the database from "

@@ -83,6 +83,12 @@ void add_rows(std::string& text, std::string_view by, const std::map<std::string
   for (const auto& [name, outcomes] : rows) add_row(text, name, outcomes, details, worst);
 }
 
+std::map<std::string, Outcomes> by(std::string ScenarioOutcome::*kind, const Outcomes& outcomes) {
+  std::map<std::string, Outcomes> rows;
+  for (const ScenarioOutcome* outcome : outcomes) rows[outcome->*kind].push_back(outcome);
+  return rows;
+}
+
 }  // namespace
 
 Outcomes half_of(const std::vector<ScenarioOutcome>& outcomes, Half half) {
@@ -149,15 +155,10 @@ nlohmann::ordered_json to_json(const Figures& figures) {
 }
 
 std::string table(const Outcomes& outcomes, bool details, Outcomes* worst) {
-  std::map<std::string, Outcomes> by_life, by_fault;
-  for (const ScenarioOutcome* outcome : outcomes) {
-    by_life[outcome->life].push_back(outcome);
-    by_fault[outcome->fault].push_back(outcome);
-  }
   std::string text;
-  add_rows(text, "life", by_life, details, worst);
+  add_rows(text, "life", by(&ScenarioOutcome::life, outcomes), details, worst);
   text += '\n';
-  add_rows(text, "fault", by_fault, details, worst);
+  add_rows(text, "fault", by(&ScenarioOutcome::fault, outcomes), details, worst);
   return text;
 }
 
@@ -175,10 +176,14 @@ std::string tables(const std::vector<ScenarioOutcome>& outcomes, Outcomes* worst
 }
 
 nlohmann::ordered_json figures_json(const std::vector<ScenarioOutcome>& outcomes) {
-  nlohmann::ordered_json json;
-  json["tuned"] = to_json(figures_of(half_of(outcomes, Half::tuned)));
-  json["held_out"] = to_json(figures_of(half_of(outcomes, Half::held_out)));
-  return json;
+  const auto figures = [&outcomes](Half half) {
+    const Outcomes of_half = half_of(outcomes, half);
+    nlohmann::ordered_json json = to_json(figures_of(of_half));
+    for (const auto& [life, rows] : by(&ScenarioOutcome::life, of_half))
+      json["lives"][life] = to_json(figures_of(rows));
+    return json;
+  };
+  return {{"tuned", figures(Half::tuned)}, {"held_out", figures(Half::held_out)}};
 }
 
 void write_report(const std::vector<ScenarioOutcome>& outcomes,

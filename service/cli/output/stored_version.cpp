@@ -69,6 +69,12 @@ std::variant<Subject, Refusal> parse_subject(const std::string& text) {
   return subject;
 }
 
+void add_version_argument(CLI::App& command, std::string& subject) {
+  command
+      .add_option("subject", subject, "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
+      ->required();
+}
+
 std::variant<StoredVersion, Refusal> find_stored_version(const HistorySource& history,
                                                          const Subject& subject) {
   const auto found = find_equipment(history, subject);
@@ -91,6 +97,17 @@ std::variant<StoredVersion, Refusal> find_stored_version(const HistorySource& hi
   story.digest_matches = model_digest(story.model) == version->digest;
   story.version = *std::move(version);
   return story;
+}
+
+int with_version(const HistoryAccessOptions& options, const std::string& subject,
+                 const std::function<int(const Sources&, StoredVersion&&)>& work) {
+  const auto parsed = parse_subject(subject);
+  if (const auto* refusal = std::get_if<Refusal>(&parsed)) return refuse(*refusal);
+  return with_sources(options, [&](const Sources& sources) {
+    auto found = find_stored_version(sources.history, std::get<Subject>(parsed));
+    if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
+    return work(sources, std::get<StoredVersion>(std::move(found)));
+  });
 }
 
 std::optional<storage::TimeRange> tuned_on(const storage::Version& version) {

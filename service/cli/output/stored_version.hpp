@@ -1,12 +1,14 @@
 // One version of a model as an operator names it, and all that is stored about it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "service/cli/command.hpp"
+#include "service/cli/history_access.hpp"
 #include "service/history/sources.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/registry/registry.hpp"
@@ -21,6 +23,9 @@ struct Subject {
 };
 
 std::variant<Subject, Refusal> parse_subject(const std::string& text);
+
+/// The required first argument of a verb that is about one version.
+void add_version_argument(CLI::App& command, std::string& subject);
 
 /// All that is stored about one version.
 struct StoredVersion {
@@ -40,5 +45,11 @@ std::optional<storage::TimeRange> tuned_on(const storage::Version& version);
 /// out is found by the equipment's name.
 std::variant<StoredVersion, Refusal> find_stored_version(const history::HistorySource& history,
                                                          const Subject& subject);
+
+/// Calls `work` with the version that `subject` names, and with the sources that it was found in.
+/// Returns what that returns; a text that names no version, and a version that is not there, are
+/// refused.
+int with_version(const HistoryAccessOptions& options, const std::string& subject,
+                 const std::function<int(const Sources&, StoredVersion&&)>& work);
 
 }  // namespace reident::cli

@@ -100,31 +100,26 @@ void write(const ExportedVersion& exported, const std::vector<Target>& targets, 
 
 int run(const Arguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);
-  const auto subject = parse_subject(arguments.subject);
-  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
   const std::vector<Target> targets = targets_of(arguments);
   if (const auto refusal = mistake_in(targets, arguments.force)) return refuse(*refusal);
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    auto story = find_stored_version(sources.history, std::get<Subject>(subject));
-    if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
-    const auto exported = exported_version(std::get<StoredVersion>(std::move(story)));
-    if (const auto* refusal = std::get_if<Refusal>(&exported)) return refuse(*refusal);
-    const auto& version = std::get<ExportedVersion>(exported).version;
-    write(std::get<ExportedVersion>(exported), targets, arguments.force);
-    for (const Target& target : targets)
-      if (arguments.json != standard_output)
-        fmt::print("{}: {} of {} version {}\n", target.path, target.what,
-                   full_name({version.model.spacecraft, version.model.equipment}), version.number);
-    return static_cast<int>(exit_done);
-  });
+  return with_version(
+      arguments.source, arguments.subject, [&](const Sources&, StoredVersion&& story) {
+        const auto exported = exported_version(std::move(story));
+        if (const auto* refusal = std::get_if<Refusal>(&exported)) return refuse(*refusal);
+        const auto& version = std::get<ExportedVersion>(exported).version;
+        write(std::get<ExportedVersion>(exported), targets, arguments.force);
+        for (const Target& target : targets)
+          if (arguments.json != standard_output)
+            fmt::print("{}: {} of {} version {}\n", target.path, target.what,
+                       full_name({version.model.spacecraft, version.model.equipment}),
+                       version.number);
+        return static_cast<int>(exit_done);
+      });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .add_option("subject", arguments->subject,
-                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
-      ->required();
+  add_version_argument(command, arguments->subject);
   command.add_option("--fmu", arguments->fmu, "FMU for co-simulation, FMI 2.0");
   command.add_option("--mat", arguments->mat, "MATLAB file, version 5");
   command.add_option("--json", arguments->json, "JSON; - is standard output");

@@ -90,26 +90,19 @@ int write_picture(const std::string& picture, const std::string& path) {
 }
 
 int run(const Arguments& arguments) {
-  const auto subject = parse_subject(arguments.subject);
-  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto found = find_stored_version(sources.history, std::get<Subject>(subject));
-    if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
-    const StoredVersion& story = std::get<StoredVersion>(found);
-    const auto picture = picture_of(sources.telemetry, story, arguments.range);
-    if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
-    return write_picture(std::get<std::string>(picture),
-                         arguments.output.value_or(fmt::format(
-                             "{}-v{}.svg", story.version.equipment, story.version.number)));
-  });
+  return with_version(
+      arguments.source, arguments.subject, [&](const Sources& sources, const StoredVersion& story) {
+        const auto picture = picture_of(sources.telemetry, story, arguments.range);
+        if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
+        return write_picture(std::get<std::string>(picture),
+                             arguments.output.value_or(fmt::format(
+                                 "{}-v{}.svg", story.version.equipment, story.version.number)));
+      });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .add_option("subject", arguments->subject,
-                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
-      ->required();
+  add_version_argument(command, arguments->subject);
   command.add_option("-o,--output", arguments->output,
                      "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
   add_range_options(command, arguments->range, "the window of the version");

@@ -102,10 +102,7 @@ int run(const Arguments& arguments) {
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .add_option("subject", arguments->subject,
-                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
-      ->required();
+  add_version_argument(command, arguments->subject);
   add_database_options(command, arguments->database);
   command.add_flag("--json", arguments->json, "one JSON object with the digests");
   command.footer(

@@ -167,25 +167,19 @@ void print_story(const StoredVersion& story) {
 }
 
 int run(const Arguments& arguments) {
-  const auto subject = parse_subject(arguments.subject);
-  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto story = find_stored_version(sources.history, std::get<Subject>(subject));
-    if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
-    if (arguments.json)
-      print_json(std::get<StoredVersion>(story));
-    else
-      print_story(std::get<StoredVersion>(story));
-    return static_cast<int>(exit_done);
-  });
+  return with_version(arguments.source, arguments.subject,
+                      [&](const Sources&, const StoredVersion& story) {
+                        if (arguments.json)
+                          print_json(story);
+                        else
+                          print_story(story);
+                        return static_cast<int>(exit_done);
+                      });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .add_option("subject", arguments->subject,
-                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
-      ->required();
+  add_version_argument(command, arguments->subject);
   add_source_options(command, arguments->source);
   command.add_flag("--json", arguments->json, "one JSON object with the matrices");
   command.footer("Example:\n  reident show CBERS-4/BDR@3 --config reident.toml");

@@ -209,21 +209,14 @@ int print(const StoredVersion& story, bool json) {
 }
 
 int run(const Arguments& arguments) {
-  const auto subject = parse_subject(arguments.subject);
-  if (const auto* refusal = std::get_if<Refusal>(&subject)) return refuse(*refusal);
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto story = find_stored_version(sources.history, std::get<Subject>(subject));
-    if (const auto* refusal = std::get_if<Refusal>(&story)) return refuse(*refusal);
-    return print(std::get<StoredVersion>(story), arguments.json);
-  });
+  return with_version(
+      arguments.source, arguments.subject,
+      [&](const Sources&, const StoredVersion& story) { return print(story, arguments.json); });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .add_option("subject", arguments->subject,
-                  "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
-      ->required();
+  add_version_argument(command, arguments->subject);
   add_source_options(command, arguments->source);
   command.add_flag("--json", arguments->json, "one JSON object with the evidence itself");
   command.footer("Example:\n  reident why CBERS-4/BDR@3 --config reident.toml");
