@@ -1,4 +1,5 @@
 // A published model: the state-space model with all that a simulator or an operator asks of it.
+// What JSON, the digest and files have of it follows from model_fields.hpp.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +19,15 @@ namespace reident {
 /// One input or output of a model, in the model's order.
 struct Signal {
   std::string name;  // SATCS parameter, or what `expression` computes
-  std::string unit;
-  double low = 0;  // range visited in the identification window
+  std::string unit;  // as telemetry describes it; of a computed input, as the configuration does
+  double low = 0;    // range visited in the identification window
   double high = 0;
   /// How an input follows from SATCS parameters; empty where it is the parameter `name` itself.
   std::string expression = {};
   bool operator==(const Signal&) const = default;
 };
 
+/// Returns the names, in the order of the signals.
 inline std::vector<std::string> signal_names(const std::vector<Signal>& signals) {
   std::vector<std::string> names;
   names.reserve(signals.size());
@@ -33,7 +35,7 @@ inline std::vector<std::string> signal_names(const std::vector<Signal>& signals)
   return names;
 }
 
-/// The signals with the ranges of their samples (N x signals, N at least 1).
+/// Returns the signals with the ranges of their samples (N x signals, N at least 1, finite).
 inline std::vector<Signal> with_ranges(std::vector<Signal> signals,
                                        const identification::Matrix& samples) {
   for (std::size_t i = 0; i < signals.size(); ++i) {
@@ -50,6 +52,7 @@ inline bool has_expressions(const std::vector<Signal>& signals) {
                      [](const Signal& signal) { return !signal.expression.empty(); });
 }
 
+/// Returns those that follow from parameters, in their order.
 inline std::vector<DerivedInput> derived_inputs(const std::vector<Signal>& inputs) {
   std::vector<DerivedInput> derived;
   for (const Signal& input : inputs) {
@@ -58,23 +61,24 @@ inline std::vector<DerivedInput> derived_inputs(const std::vector<Signal>& input
   return derived;
 }
 
-/// What is identified, stored as JSON and digested; it says nothing about when it was approved.
+/// What is identified, stored as JSON and digested; it says nothing about when it was approved. A
+/// value: a copy is another model, and none is changed once it was recorded.
 struct EquipmentModel {
   std::string spacecraft;
   std::string equipment;
-  std::vector<Signal> inputs;
-  std::vector<Signal> outputs;
+  std::vector<Signal> inputs;   // m, in the order of u
+  std::vector<Signal> outputs;  // p, in the order of y
   identification::StateSpaceModel dynamics;
-  std::int64_t hold_ns = 0;  // a sample of an input or output serves this long
-  storage::TimeRange identified_from;
-  storage::TimeRange validated_on;
-  identification::Score validation;  // free run on samples that the identification did not use
+  std::int64_t hold_ns = 0;            // a sample of an input or output serves this long
+  storage::TimeRange identified_from;  // times of the rows that were identified from
+  storage::TimeRange validated_on;     // times of the rows that nothing was chosen on
+  identification::Score validation;    // free run on samples that the identification did not use
   struct Tracking {
     identification::TrackingGain gain;
     identification::Score validation;  // corrected by the gain, on the same samples
   };
-  std::optional<Tracking> tracking;
-  std::string method;  // such as "N4SID, horizon 12, order 3"
+  std::optional<Tracking> tracking;  // absent where no gain helped, or none was looked for
+  std::string method;                // such as "N4SID, horizon 12, order 3"
 };
 
 /// Whether the dynamics are well formed and have as many inputs and outputs as are named.
@@ -85,7 +89,7 @@ inline bool is_well_formed(const EquipmentModel& model) {
          dynamics.outputs() == static_cast<identification::Index>(model.outputs.size());
 }
 
-/// A version as simulators receive it.
+/// A version as simulators receive it. Number and digest identify it, for one equipment.
 struct ModelVersion {
   EquipmentModel model;
   std::int64_t number = 0;    // counts the versions of one equipment from 1
