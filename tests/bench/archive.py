@@ -1,4 +1,4 @@
-"""The archive beside a plain SQLite table, and telemetry over DDS into it, in one run.
+"""The archive compared with a plain SQLite table, and telemetry over DDS into it, in one run.
 
     archive.py BUILD [DATA_FOLDER] [--billion | --samples N] [--folder FOLDER]
 

@@ -1,4 +1,4 @@
-"""reident's identification beside SLICOT's and Octave's, in one run, each on one thread.
+"""reident's identification compared with SLICOT's and Octave's, in one run, each on one thread.
 
 Prints tables as Markdown and, as the last line, one JSON object of the figures. Without SLICOT or
 Octave it says what it leaves out; the figures that need it are null.

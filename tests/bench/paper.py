@@ -1,6 +1,6 @@
 """The paper's table: for each equipment the error of the simulator's own model, of the identified
 one, with pole placement, and with integral feedback, on rows that nothing was chosen on. The error of
-the output as it was a sample before stands beside that of integral feedback, which has seen it too.
+the output as it was a sample before stands next to that of integral feedback, which has seen it too.
 
     paper.py BUILD [DATA_FOLDER] [--pictures FOLDER]
 

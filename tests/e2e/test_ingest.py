@@ -113,7 +113,7 @@ class Ingest(EndToEnd):
 
 
 class Faults(EndToEnd):
-    """Frames that no good source would send, beside good ones."""
+    """Frames that no good source would send, together with good ones."""
 
     def publish(self, messages, source="station"):
         path = self.folder / f"frames-{len(self.processes)}.jsonl"

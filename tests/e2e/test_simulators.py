@@ -1,4 +1,4 @@
-"""Simulators beside good and bad services, and without any: they keep the last good version, say why
+"""Simulators with good and bad services, and without any: they keep the last good version, say why
 and go on, and `reident simulators` shows it."""
 
 import fcntl
@@ -34,7 +34,7 @@ def model(gain=1.0, equipment="PLANT", **changes):
 
 
 class Service:
-    """Publishes the versions that it is told to, good and bad."""
+    """Publishes the versions that a test gives it, good and bad."""
 
     def __init__(self, test, name):
         pipe = test.folder / f"{name}.pipe"

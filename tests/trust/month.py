@@ -3,7 +3,7 @@ over DDS to reidentd with deploy/reference.toml, until no window is pending.
 
     month.py PROGRAMS CONFIGURATION [--days N] [--speed N|max]
 
-PROGRAMS is the folder service of a build; the database is made beside it, on the disk of the build,
+PROGRAMS is the folder service of a build; the database is made next to it, on the disk of the build,
 and thrown away. Prints one JSON object: wall seconds for the month, what was stored, tried and
 approved, and where processor time went, in seconds.
 """

@@ -1,4 +1,4 @@
-"""Size, appending and reading: the archive's file beside a plain table's."""
+"""Size, appending and reading: the archive's file compared with a plain table's."""
 
 import statistics
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Free-run errors on DaISy data sets beside Octave and SLICOT, and SLICOT's published figures.
+"""Free-run errors on DaISy data sets, compared with Octave, SLICOT and SLICOT's published figures.
 
 Preprocessing, rows, block rows and orders are those of P. Van Overschee and B. De Moor, Subspace
 Identification for Linear Systems, Kluwer 1996, chapter 6. reident is given the rows alone and
@@ -173,7 +173,7 @@ PUBLISHED = [
 
 
 def check_published(tools, data, folder):
-    """Prints what is found beside what is published; the largest differences."""
+    """Prints what is found next to what is published; the largest differences."""
     results, lines = {}, []
     for case in PUBLISHED:
         file = data / f"daisy_{case['name']}.csv"

@@ -1,4 +1,5 @@
-"""Time and memory beside SLICOT on simulated telemetry: 4 inputs, 1 output, 20 block rows, order 4.
+"""Time and memory compared with SLICOT on simulated telemetry: 4 inputs, 1 output, 20 block rows,
+order 4.
 
 The sizes run one after the other. Within a size the programs alternate, so that a slow minute of
 the machine falls on all of them, and times are processor times, so that other load counts little.

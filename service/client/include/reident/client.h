@@ -5,7 +5,7 @@
  * unless it is a rollback). It keeps the last good version of each equipment in a file, so that a
  * simulator starts at once when no service answers. A runner runs the model of one equipment, step
  * by step. It changes to a new version between two steps, and the output continues where it was.
- * README.md beside the sources has complete examples.
+ * README.md next to the sources has complete examples.
  *
  * Threads: a client works on a thread of its own. Each runner, and each client, is for one thread
  * at a time; several runners may run on several threads. reident_step, reident_follow and
