@@ -55,8 +55,8 @@ static void model_free(Model* model) {
   free(model->numbers);
 }
 
-/* What is left of the text. The first mistake stays, and sizes that are read after it are 0, so that
- * readers need not look at each step. */
+/* What is left of the text. The first mistake stays, and sizes that are read after it are 0, so
+ * that readers need not look at each step. */
 typedef struct {
   const char* at;
   const char* end;
