@@ -107,11 +107,14 @@ struct Made {
   std::vector<DriftRequest> drifts;
   /// When, on the spacecraft's clock, simulators got what was approved.
   std::function<storage::Time(const storage::Decision&, const storage::Version&)> published;
+  /// When, on the same clock, a version was made.
+  std::function<storage::Time(const storage::Version&)> made;
 };
 
 Made made_by(const SimulatedService& service) {
   return {service.registry(), service.attempts(), service.drifts(),
-          [](const storage::Decision& decision, const auto&) { return decision.time; }};
+          [](const storage::Decision& decision, const auto&) { return decision.time; },
+          [](const storage::Version& version) { return version.created; }};
 }
 
 /// Where the telemetry ends that an approval rests on: the version's window, or what came after it.
@@ -122,7 +125,9 @@ storage::Time rests_until(const storage::Decision& decision, const storage::Vers
 
 /// By a service whose clock was not the spacecraft's.
 Made made_elsewhere(const storage::Registry& registry) {
-  Made made{registry, {}, {}, rests_until};
+  Made made{registry, {}, {}, rests_until, [](const storage::Version& version) {
+              return version.window.end;
+            }};
   for (storage::Attempt& attempt : registry.attempts()) {
     const std::int64_t version = attempt.version.value_or(0);
     const storage::Time time = attempt.window.end;
@@ -144,6 +149,18 @@ std::vector<Tenure> tenures_of(const Made& made, const std::string& spacecraft,
                        decision.version, equipment_model_from_json(version->model_json)});
   }
   return tenures;
+}
+
+/// All versions, by the time at which they were made.
+std::vector<Tenure> versions_of(const Made& made, const std::string& spacecraft,
+                                const std::string& equipment) {
+  std::vector<Tenure> versions;
+  for (const storage::VersionSummary& summary : made.registry.summaries(spacecraft, equipment)) {
+    const auto version = made.registry.version(spacecraft, equipment, summary.number);
+    versions.push_back(
+        {made.made(*version), summary.number, equipment_model_from_json(version->model_json)});
+  }
+  return versions;
 }
 
 /// Scores the scenarios of a group; what an oracle identified for one serves the others.
@@ -193,6 +210,7 @@ class Judge {
             [&](storage::Time begin) { return oracle_of(equipment, begin); }, honest),
         {},
         {},
+        regret(truth, tenures, versions_of(made, spacecraft_.name, equipment.name)),
         champion_curve(truth, tenures),
         truth.output_extremes({group_.start, group_.start + group_.duration}, orbit_ns() / 10)};
     for (const Attempted& attempt : made.attempts)

@@ -20,6 +20,7 @@ struct EquipmentOutcome {
   std::vector<ChangeScore> changes;
   std::vector<Attempted> attempts;
   std::vector<DriftRequest> drifts;
+  std::optional<double> regret;  // absent without a champion
   ErrorCurve champion;           // of what simulators ran
   std::vector<Extremes> output;  // of the truth, a tenth of an orbit each
 };

@@ -105,6 +105,7 @@ void Figures::add(const ScenarioOutcome& outcome) {
       versions += publication.mrse_percent.has_value();
       wrong_approvals += publication.wrong();
     }
+    if (equipment.regret) regrets.push_back(*equipment.regret);
     for (const ChangeScore& change : equipment.changes) {
       if (!change.mattered) continue;
       ++changes;
@@ -116,6 +117,19 @@ void Figures::add(const ScenarioOutcome& outcome) {
     quiet_publications += std::max(0, static_cast<int>(equipment.publications.size()) - 1);
     false_alarms += static_cast<int>(equipment.drifts.size());
   }
+}
+
+double Figures::regret() const {
+  double sum = 0;
+  for (const double regret : regrets) sum += std::log(regret);
+  return regrets.empty() ? 1 : std::exp(sum / static_cast<double>(regrets.size()));
+}
+
+double Figures::regret_quantile(double share) const {
+  if (regrets.empty()) return 1;
+  std::vector<double> sorted = regrets;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
 double Figures::recovered_fraction() const {
@@ -150,6 +164,8 @@ nlohmann::ordered_json to_json(const Figures& figures) {
           {"changes", figures.changes},
           {"recovered_fraction", figures.recovered_fraction()},
           {"orbits_to_recover_median", figures.recovery_quantile(0.5)},
+          {"regret", figures.regret()},
+          {"regret_p90", figures.regret_quantile(0.9)},
           {"publications_per_month", figures.publications_per_month()},
           {"false_alarms_per_month", figures.false_alarms_per_month()}};
 }
@@ -220,7 +236,9 @@ std::string story(const ScenarioOutcome& outcome) {
     for (const Attempted& attempt : equipment.attempts) ++outcomes[attempt.outcome];
     text += fmt::format("  {}: {} windows", equipment.equipment, equipment.attempts.size());
     for (const auto& [what, count] : outcomes) text += fmt::format(", {} {}", what, count);
-    text += fmt::format("; {} drift requests\n", equipment.drifts.size());
+    text += fmt::format("; {} drift requests", equipment.drifts.size());
+    if (equipment.regret) text += fmt::format("; regret {:.3f}", *equipment.regret);
+    text += '\n';
     for (const Publication& publication : equipment.publications)
       text += fmt::format(
           "    day {:.2f} version {}: {:.4g} % after {:.4g} %, {:.2f} of the tolerance{}\n",

@@ -19,7 +19,8 @@ Outcomes half_of(const std::vector<ScenarioOutcome>& outcomes, Half half);
 /// The figures that are asked for, over some scenarios.
 struct Figures {
   int scenarios = 0;
-  int versions = 0;  // published and judged
+  std::vector<double> regrets;  // of each equipment with a champion
+  int versions = 0;             // published and judged
   int wrong_approvals = 0;
   int changes = 0;  // that mattered
   int recovered = 0;
@@ -29,8 +30,10 @@ struct Figures {
   std::vector<std::int64_t> orbits_to_recover{};
 
   void add(const ScenarioOutcome& outcome);
-  double recovered_fraction() const;      // 1 where nothing changed
-  double publications_per_month() const;  // that replace a version, of one equipment
+  double recovered_fraction() const;
+  double regret() const;
+  double regret_quantile(double share) const;  // 1 where nothing changed
+  double publications_per_month() const;       // that replace a version, of one equipment
   double false_alarms_per_month() const;
   std::int64_t recovery_quantile(double share) const;  // orbits; 0 where nothing changed
 };

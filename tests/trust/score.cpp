@@ -1,6 +1,7 @@
 #include "tests/trust/score.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace reident::trust {
@@ -132,6 +133,42 @@ ErrorCurve champion_curve(const Truth& truth, const std::vector<Tenure>& tenures
     if (until > tenures[i].since) curve.add(run(truth, tenures[i], {tenures[i].since, until}));
   }
   return curve;
+}
+
+std::optional<double> regret(const Truth& truth, const std::vector<Tenure>& tenures,
+                             const std::vector<Tenure>& versions) {
+  std::map<std::int64_t, ErrorCurve> curves;
+  for (const Tenure& version : versions)
+    if (version.model && version.since < truth.extent().end)
+      curves.emplace(version.version,
+                     truth.free_run(*version.model, {version.since, truth.extent().end}));
+  const ErrorCurve frame = truth.empty_curve();
+  const double resolution = truth.resolution_percent(truth.extent());
+  double sum = 0;
+  std::int64_t orbits = 0;
+  const std::int64_t last = frame.block_of(truth.extent().end) - least_judged_orbits;
+  for (std::int64_t block = 0; block <= last; ++block) {
+    const storage::Time now = frame.begin_of(block);
+    const auto error = [&](std::int64_t version) -> std::optional<double> {
+      const auto curve = curves.find(version);
+      if (curve == curves.end()) return std::nullopt;
+      const auto mrse = curve->second.mrse_percent(block, block + judged_orbits);
+      return mrse ? std::optional(std::max(*mrse, resolution)) : std::nullopt;
+    };
+    const Tenure& champion = at(tenures, std::max(now, tenures.front().since));
+    if (champion.version == 0) continue;
+    const auto own = error(champion.version);
+    if (!own) continue;
+    double best = *own;
+    for (const Tenure& version : versions)
+      if (version.since <= now)
+        if (const auto other = error(version.version)) best = std::min(best, *other);
+    // A run that diverged is as bad as any: it counts as a hundred times the best.
+    sum += std::log(std::min(*own / best, 100.0));
+    ++orbits;
+  }
+  if (orbits == 0) return std::nullopt;
+  return std::exp(sum / static_cast<double>(orbits));
 }
 
 std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Tenure>& tenures,

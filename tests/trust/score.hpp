@@ -79,6 +79,13 @@ std::vector<Publication> score_publications(const Truth& truth, const std::vecto
 /// Error of what simulators ran, orbit by orbit.
 ErrorCurve champion_curve(const Truth& truth, const std::vector<Tenure>& tenures);
 
+/// Geometric mean, over the orbits with a champion, of the champion's error over the orbit and the
+/// next 29, over the least one of any version that existed by then; errors below the sensors' own
+/// resolution count as that. `versions` has all of them, by the time at which they were made.
+/// Absent without a champion.
+std::optional<double> regret(const Truth& truth, const std::vector<Tenure>& tenures,
+                             const std::vector<Tenure>& versions);
+
 /// `honest` says whether an orbit's telemetry of the equipment is without faults that mislead.
 std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Tenure>& tenures,
                                        const std::vector<TrueChange>& changes, const Oracle& oracle,

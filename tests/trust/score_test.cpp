@@ -109,6 +109,18 @@ class ScoreOfAgeing : public Score {
   ScoreOfAgeing() : Score(4, 80) { change_.end = at(80); }
 };
 
+TEST_F(Score, RegretIsTheChampionsErrorOverThatOfTheBestVersionOfThen) {
+  // Version 2 errs half as much and exists for all but the first 10 orbits of the champion's
+  // tenure.
+  const std::vector<Tenure> versions = {tenure(5, 1, 2.4), tenure(15, 2, 2.2)};
+  const std::vector<Tenure> served = {{start, 0, {}}, versions[0]};
+  const std::int64_t judged = orbits - least_judged_orbits - 5 + 1;
+  const double all_but_ten = double(judged - 10) / double(judged);
+  EXPECT_NEAR(*regret(truth(), served, versions), std::pow(2, all_but_ten), 0.02);
+  EXPECT_NEAR(*regret(truth(), {{start, 0, {}}, versions[1]}, versions), 1, 1e-12);
+  EXPECT_EQ(regret(truth(), {{start, 0, {}}}, versions), std::nullopt);
+}
+
 TEST_F(Score, CountsAVersionThatIsWorseThanWhatItReplacedAsWrong) {
   std::vector<Tenure> tenures = good_service();
   tenures.push_back(tenure(20, 2, 3));
