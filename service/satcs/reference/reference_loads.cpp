@@ -8,16 +8,16 @@ namespace {
 
 constexpr double rated_heater_V = 28;
 
-bool thermostat(bool on, double temperature_C, const ThermostatConstants& limits) {
-  if (temperature_C < limits.on_C) return true;
-  return on && temperature_C < limits.off_C;
-}
-
 SlowVariation variation_of(const LineConstants& line) {
   return {line.sigma_A, line.correlation_s};
 }
 
 }  // namespace
+
+bool thermostat(bool on, double temperature_C, const ThermostatConstants& limits) {
+  if (temperature_C < limits.on_C) return true;
+  return on && temperature_C < limits.off_C;
+}
 
 OperationsPlan::OperationsPlan(const Orbit& orbit, const LoadConstants& constants,
                                std::vector<LifeEvent> life, std::uint64_t seed)

@@ -52,6 +52,9 @@ class OperationsPlan {
   std::uint64_t seed_;
 };
 
+/// Whether a heater is on that was `on` before: between the limits it stays as it is.
+bool thermostat(bool on, double temperature_C, const ThermostatConstants& limits);
+
 /// A slow variation: Ornstein and Uhlenbeck's process, exact over one second.
 class SlowVariation {
  public:

@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "service/satcs/parameter_id.hpp"
-
 namespace reident::satcs::reference {
 namespace {
 
@@ -26,23 +24,15 @@ constexpr SensorSpec array_temperature{5, 0.1, -120, 120, 12};
 using P = const Plant&;
 using Read = double (*)(const Plant&);
 
-struct Rate {
-  int every_s;
-  int phase_s;
-};
-constexpr Rate every_second{1, 0};
-
 constexpr TelemetryPoint analog(std::string_view name, std::string_view unit,
                                 std::string_view description, Rate rate, const SensorSpec& sensor,
                                 Read read) {
-  return {name,         unit,         description, storage::ParameterKind::analog,
-          rate.every_s, rate.phase_s, read,        sensor};
+  return analog_point<Plant>(name, unit, description, rate, sensor, read);
 }
 
 constexpr TelemetryPoint digital(std::string_view name, std::string_view description, Rate rate,
                                  Read read) {
-  return {name,         {},           description, storage::ParameterKind::digital,
-          rate.every_s, rate.phase_s, read,        {}};
+  return digital_point<Plant>(name, description, rate, read);
 }
 
 double heaters_A(P p) {
@@ -235,22 +225,7 @@ std::span<const TelemetryPoint> telemetry_points() {
 }
 
 std::vector<storage::ParameterDescriptor> telemetry_descriptors(std::string_view spacecraft) {
-  std::vector<storage::ParameterDescriptor> descriptors;
-  for (const TelemetryPoint& point : telemetry_points()) {
-    storage::ParameterDescriptor d;
-    d.spacecraft = spacecraft;
-    d.id = parameter_id(point.name);
-    d.name = point.name;
-    d.unit = point.unit;
-    d.description = point.description;
-    d.kind = point.kind;
-    if (point.kind == storage::ParameterKind::analog) {
-      d.low_limit = point.sensor.low;
-      d.high_limit = point.sensor.high;
-    }
-    descriptors.push_back(std::move(d));
-  }
-  return descriptors;
+  return descriptors_of(telemetry_points(), spacecraft);
 }
 
 }  // namespace reident::satcs::reference

@@ -1,5 +1,6 @@
 #include "service/satcs/reference/reference_spacecraft.hpp"
 
+#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
@@ -42,6 +43,23 @@ TEST(ReferenceSpacecraft, GivesTheSameTelemetryForTheSameSeed) {
     equal += same(first[i], other[i]);
   }
   EXPECT_EQ(equal, 0U);
+}
+
+/// FNV-1a over the bits of all readings.
+std::uint64_t digest_of(const std::vector<std::vector<storage::Sample>>& readings) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  const auto add = [&hash](std::uint64_t bits) { hash = (hash ^ bits) * 1099511628211ULL; };
+  for (const auto& reading : readings)
+    for (const storage::Sample& sample : reading) {
+      add(sample.parameter);
+      add(std::bit_cast<std::uint64_t>(sample.value));
+    }
+  return hash;
+}
+
+// Readings are steps of a converter, so that a mathematical library's last bit seldom shows.
+TEST(ReferenceSpacecraft, KeepsTheTelemetryThatItHadBeforeThePlatformWasAdded) {
+  EXPECT_EQ(digest_of(readings(7, 6016)), 2999143150844696296ULL);
 }
 
 TEST(ReferenceSpacecraft, PublishesTheParametersOfThePaper) {
