@@ -17,6 +17,7 @@
 #include <variant>
 #include <vector>
 
+#include "service/satcs/family.hpp"
 #include "service/satcs/reference/reference_life.hpp"
 #include "storage/types/telemetry.hpp"
 
@@ -96,6 +97,7 @@ struct FaultInjectorOptions {
   reference::Constants constants;
   std::vector<reference::LifeEvent> life;
   std::uint64_t seed = 1;  // of the operations plan
+  Family family = Family::power;
 };
 
 /// One thread at a time. Its memory is that of the frames on their way: those of a stretch, where a

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "service/satcs/faults/fault_stage.hpp"
+#include "service/satcs/platform/handwritten_platform.hpp"
 #include "service/satcs/reference/handwritten_eps.hpp"
 
 namespace reident::satcs {
@@ -138,10 +139,11 @@ class Again : public FaultStage {
   bool restamps_;
 };
 
+template <class Simulator>
 class SimulatedAsReal : public FaultStage {
  public:
-  SimulatedAsReal(const Fault& fault, const FaultInjectorOptions& options)
-      : simulator_(options.constants, options.life, fault.when.begin, options.seed) {}
+  SimulatedAsReal(const Fault& fault, const auto& constants, const FaultInjectorOptions& options)
+      : simulator_(constants, options.life, fault.when.begin, options.seed) {}
 
   void pass(Flight&& flight, std::vector<Flight>& on) override {
     // A fault before this one may have sent the same frame twice.
@@ -163,7 +165,7 @@ class SimulatedAsReal : public FaultStage {
     return flight;
   }
 
-  HandwrittenEps simulator_;
+  Simulator simulator_;
   std::uint64_t sent_ = 0;
 };
 
@@ -186,7 +188,10 @@ std::unique_ptr<FaultStage> frame_fault(const Fault& fault, const FaultInjectorO
     case FaultKind::repeated_day:
       return std::make_unique<Again>(fault);
     default:
-      return std::make_unique<SimulatedAsReal>(fault, options);
+      if (options.family == Family::platform)
+        return std::make_unique<SimulatedAsReal<platform::HandwrittenPlatform>>(
+            fault, platform::Constants{}, options);
+      return std::make_unique<SimulatedAsReal<HandwrittenEps>>(fault, options.constants, options);
   }
 }
 

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "service/satcs/platform/platform_constants.hpp"
+
 namespace reident::satcs::reference {
 namespace {
 
@@ -40,6 +42,27 @@ constexpr std::array kinds{
              1},
     KindInfo{LifeKind::safe_mode, "safe_mode", Course::mode, LifeUnit::none, 0, 1, 1},
     KindInfo{LifeKind::quiet, "quiet", Course::mode, LifeUnit::none, 0, 1, 1},
+    KindInfo{LifeKind::paint_degradation, "paint_degradation", Course::gradual, LifeUnit::panel, 0,
+             0.05, 0.6},
+    KindInfo{LifeKind::interface_loss, "interface_loss", Course::gradual, LifeUnit::none, 0, 0.3,
+             0.9},
+    KindInfo{LifeKind::heater_loss, "heater_loss", Course::gradual, LifeUnit::heater, 4, 0.5, 1},
+    KindInfo{LifeKind::thermostat_shift, "thermostat_shift", Course::gradual, LifeUnit::heater, 4,
+             2, 20},
+    KindInfo{LifeKind::bearing_wear, "bearing_wear", Course::gradual, LifeUnit::wheel, 1, 0.5, 5},
+    KindInfo{LifeKind::lubricant_loss, "lubricant_loss", Course::gradual, LifeUnit::wheel, 1, 0.3,
+             0.9},
+    KindInfo{LifeKind::motor_fade, "motor_fade", Course::gradual, LifeUnit::wheel, 1, 0.05, 0.5},
+    KindInfo{LifeKind::gain_drop, "gain_drop", Course::gradual, LifeUnit::none, 0, 1, 10},
+    KindInfo{LifeKind::quiescent_growth, "quiescent_growth", Course::gradual, LifeUnit::none, 0,
+             0.3, 3},
+    KindInfo{LifeKind::heater_stuck, "heater_stuck", Course::mode, LifeUnit::heater, 4, 1, 1},
+    KindInfo{LifeKind::redundant_thermostat, "redundant_thermostat", Course::mode, LifeUnit::heater,
+             4, 1, 1},
+    KindInfo{LifeKind::bearing_instability, "bearing_instability", Course::mode, LifeUnit::wheel, 1,
+             1, 5},
+    KindInfo{LifeKind::redundant_amplifier, "redundant_amplifier", Course::mode, LifeUnit::none, 0,
+             1, 1},
 };
 
 const KindInfo& info(LifeKind kind) {
@@ -58,6 +81,12 @@ int most_unit(LifeUnit unit) {
       return converter_count;
     case LifeUnit::string_row:
       return battery_count + shunt_channels;
+    case LifeUnit::panel:
+      return platform::panel_count;
+    case LifeUnit::heater:
+      return platform::heater_count;
+    case LifeUnit::wheel:
+      return platform::wheel_count;
   }
   return 0;
 }
@@ -123,9 +152,8 @@ void apply(const LifeEvent& event, double grown, Constants& c) {
       for (std::size_t k = 0; k < battery_count; ++k)
         if (grown > 0 && concerns(event, k + 1)) c.load.heater_in_use[k] = 1;
       break;
-    case LifeKind::safe_mode:
-    case LifeKind::quiet:
-      break;  // the operations plan asks for them
+    default:  // modes that the plan asks for, and what happens to the platform
+      break;
   }
 }
 
@@ -142,6 +170,11 @@ std::span<const LifeKind> life_kinds() {
     return result;
   }();
   return list;
+}
+
+bool happens_to(Family family, LifeKind kind) {
+  if (kind == LifeKind::safe_mode || kind == LifeKind::quiet) return true;
+  return (family == Family::platform) == (kind >= LifeKind::paint_degradation);
 }
 
 LifeUnit unit_of(LifeKind kind) {

@@ -1,8 +1,10 @@
 // What happens to the reference spacecraft over the years: ageing, faults, switches to redundant
-// units, and stretches of special operations.
+// units, and stretches of special operations. Each kind is of the power subsystem, of the platform,
+// or of both.
 //
 // Life is nothing but other constants at a time (aged()); the plant takes them second by second, so
-// that the same events give the same telemetry whatever the start. REFERENCE.md lists the kinds.
+// that the same events give the same telemetry whatever the start. REFERENCE.md lists the kinds of
+// the power subsystem, ../platform/PLATFORM.md those of the platform.
 #pragma once
 
 #include <optional>
@@ -11,6 +13,7 @@
 #include <string_view>
 #include <variant>
 
+#include "service/satcs/family.hpp"
 #include "service/satcs/reference/reference_constants.hpp"
 #include "storage/types/telemetry.hpp"
 
@@ -32,6 +35,21 @@ enum class LifeKind {
   redundant_heater,   // the battery's heater controller; unit: battery
   safe_mode,          // the payload and the transmitter off, the platform at its least; unit: none
   quiet,              // neither imaging nor transmission; unit: none
+  // The platform's changes that stay.
+  paint_degradation,  // magnitude: growth of the absorptance; unit: panel
+  interface_loss,     // magnitude: share of the amplifier's conductance lost; unit: none
+  heater_loss,        // magnitude: share of the heater's power lost; unit: heater
+  thermostat_shift,   // magnitude: both thresholds rise [K]; unit: heater
+  bearing_wear,       // magnitude: relative growth of the friction; unit: wheel
+  lubricant_loss,     // magnitude: share of the viscous friction lost; unit: wheel
+  motor_fade,         // magnitude: share of the motor's constant lost; unit: wheel
+  gain_drop,          // magnitude: gain of the amplifiers lost [dB]; unit: none
+  quiescent_growth,   // magnitude: relative growth of the amplifiers' quiescent power; unit: none
+  // The platform's modes; two have a magnitude.
+  heater_stuck,          // magnitude: share of the power that flows all the time; unit: heater
+  redundant_thermostat,  // unit: heater
+  bearing_instability,   // magnitude: relative growth of the friction while it lasts; unit: wheel
+  redundant_amplifier,   // unit: none
 };
 
 /// What `LifeEvent::unit` counts, from 1.
@@ -41,6 +59,9 @@ enum class LifeUnit {
   section,     // 1 SAG1A, 2 SAG1B, 3 SAG2; 0: all
   converter,   // 1 logic, 2 analog, 3 cameras; 0: all
   string_row,  // 1 SAG1A, 2 SAG1B, 3 to 8 the channels of SAG2
+  panel,       // 1 zenith, 2 nadir, 3 sun side, 4 space side; 0: all
+  heater,      // 1 deck, 2 wheels' plate, 3 transmitter's plate, 4 tank; 0: all
+  wheel,       // 1 to 3; 0: all
 };
 
 /// One event. Functions below but life_mistake() require one without a mistake.
@@ -56,6 +77,8 @@ struct LifeEvent {
 std::string_view name(LifeKind kind);
 /// Every kind, in the order of their declaration.
 std::span<const LifeKind> life_kinds();
+/// Whether a kind happens to equipment of the family.
+bool happens_to(Family family, LifeKind kind);
 LifeUnit unit_of(LifeKind kind);
 /// An event with its kind's usual magnitude and unit.
 LifeEvent usual(LifeKind kind, storage::Time begin, storage::Time end);

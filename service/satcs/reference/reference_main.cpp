@@ -5,10 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "service/satcs/csv_export.hpp"
 #include "service/satcs/faults/faulty_source.hpp"
 #include "service/satcs/program.hpp"
 #include "service/satcs/reference/life_text.hpp"
+#include "service/satcs/reference/random.hpp"
 #include "service/satcs/reference/reference_source.hpp"
 #include "service/support/time_text.hpp"
 
@@ -17,8 +20,9 @@ namespace {
 using namespace reident::satcs;
 
 constexpr const char* about =
-    "Simulates the electrical power subsystem of a CBERS-4-class spacecraft and publishes its\n"
-    "telemetry at 1 Hz. The same start and seed give the same telemetry.\n\n"
+    "Simulates the electrical power subsystem of a CBERS-4-class spacecraft, or its platform\n"
+    "(thermal nodes, reaction wheels, transmitter), and publishes the telemetry at 1 Hz. The same\n"
+    "start and seed give the same telemetry.\n\n"
     "Examples:\n"
     "  satcs-reference --duration 12h --speed 600\n"
     "  satcs-reference --start 2017-07-01T06:00:00Z --duration 3d --speed max --seed 7 --json\n"
@@ -27,7 +31,9 @@ constexpr const char* about =
     "  satcs-reference --duration 30d --speed max --life capacity_fade@+5d/+25d*0.2#1 \\\n"
     "      --life lost_string@2017-07-11#4\n"
     "  satcs-reference --duration 2d --speed max --fault stuck@+6h/+8h:V_BUS \\\n"
-    "      --fault bias_step@+1d/+30h:I_BUS*0.5 --fault passes_lost@+12h/+36h\n\n"
+    "      --fault bias_step@+1d/+30h:I_BUS*0.5 --fault passes_lost@+12h/+36h\n"
+    "  satcs-reference --family platform --duration 30d --speed max --life "
+    "bearing_wear@+9d*0.5#1\n\n"
     "Exit status: 0 every reader has every frame; 1 failure; 2 bad request; 3 readers were "
     "missing\n"
     "or did not take everything; 128 + N stopped by signal N.\n";
@@ -47,17 +53,18 @@ void add_reference_options(CLI::App& app, ReferenceOptions& options) {
       ->type_name("DURATION")
       ->default_str(reident::duration_text(options.duration_ns));
   app.add_option("--seed", options.seed, "Seed of noise and operations")->capture_default_str();
-}
-
-std::unique_ptr<FrameSource> source_of(const ReferenceOptions& options, const Sender& sender,
-                                       bool simulated) {
-  if (simulated) return std::make_unique<HandwrittenSource>(options, sender);
-  return std::make_unique<ReferenceSource>(options, sender);
+  add_parsed(
+      app, "--family", options.family, parse_family,
+      "What is simulated: power, the electrical power subsystem; or platform, thermal nodes,\n"
+      "reaction wheels and a transmitter, by default of the spacecraft PLATFORM",
+      "power or platform")
+      ->type_name("FAMILY")
+      ->default_str("power");
 }
 
 /// Throws BadRequest.
 std::vector<reference::LifeEvent> parse_life(const std::vector<std::string>& texts,
-                                             reident::storage::Time start) {
+                                             reident::storage::Time start, Family family) {
   std::vector<reference::LifeEvent> life;
   for (const std::string& text : texts) {
     const auto parsed = parse_life_event(text, start);
@@ -65,6 +72,11 @@ std::vector<reference::LifeEvent> parse_life(const std::vector<std::string>& tex
       throw BadRequest("--life: " + error->message);
     }
     life.push_back(std::get<reference::LifeEvent>(parsed));
+    if (!reference::happens_to(family, life.back().kind)) {
+      throw BadRequest(fmt::format(
+          "--life: '{}' does not happen to the family {}; give --family {}", text, name(family),
+          name(family == Family::power ? Family::platform : Family::power)));
+    }
   }
   return life;
 }
@@ -87,7 +99,7 @@ std::unique_ptr<FrameSource> with_faults(std::unique_ptr<FrameSource> truth,
   }
   return std::make_unique<FaultySource>(
       std::move(truth), faults,
-      FaultInjectorOptions{options.constants, options.life, options.seed});
+      FaultInjectorOptions{options.constants, options.life, options.seed, options.family});
 }
 
 }  // namespace
@@ -126,8 +138,11 @@ int main(int argc, char** argv) {
       sender.origin = reident::storage::Origin::simulated;
       if (app.count("--source") == 0) sender.source = "simulator";
     }
-    options.life = parse_life(life, options.start);
-    auto source = source_of(options, sender, simulated);
+    if (options.family == Family::platform && app.count("--spacecraft") == 0)
+      publisher.spacecraft = "PLATFORM";
+    options.life = parse_life(life, options.start, options.family);
+    auto source =
+        simulated ? handwritten_source(options, sender) : reference_source(options, sender);
     if (!faults.empty()) source = with_faults(std::move(source), faults, options);
     if (csv.empty()) return publish_and_report(*source, sender, publisher, json);
     write_csv(*source, csv);

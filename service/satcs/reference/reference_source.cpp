@@ -2,41 +2,78 @@
 
 #include <utility>
 
+#include "service/satcs/platform/handwritten_platform.hpp"
+#include "service/satcs/platform/platform_spacecraft.hpp"
+#include "service/satcs/reference/handwritten_eps.hpp"
+#include "service/satcs/reference/reference_spacecraft.hpp"
+
 namespace reident::satcs {
+namespace {
 
+/// `Model` is read and advanced second by second.
 template <class Model>
-SecondsSource<Model>::SecondsSource(const ReferenceOptions& options, Sender sender,
-                                    std::vector<storage::ParameterDescriptor> descriptors)
-    : model_(options.constants, options.life, options.start, options.seed),
-      sender_(std::move(sender)),
-      descriptors_(std::move(descriptors)),
-      frames_(static_cast<std::uint64_t>((options.duration_ns + 999'999'999) / 1'000'000'000)) {}
+class SecondsSource : public FrameSource {
+ public:
+  SecondsSource(Model model, const ReferenceOptions& options, Sender sender,
+                std::vector<storage::ParameterDescriptor> descriptors)
+      : model_(std::move(model)),
+        sender_(std::move(sender)),
+        descriptors_(std::move(descriptors)),
+        frames_(static_cast<std::uint64_t>((options.duration_ns + 999'999'999) / 1'000'000'000)) {}
 
-template <class Model>
-bool SecondsSource<Model>::next(storage::TelemetryFrame& frame) {
-  if (frames_done_ == frames_) return false;
-  if (frames_done_ > 0) model_.advance();
-  frame.source = sender_.source;
-  frame.origin = sender_.origin;
-  frame.sequence = sender_.first_sequence + frames_done_;
-  frame.generation_time = frame.reception_time = model_.time();
-  model_.read(frame.samples);
-  ++frames_done_;
-  return true;
+  std::vector<storage::ParameterDescriptor> parameters() const override { return descriptors_; }
+
+  bool next(storage::TelemetryFrame& frame) override {
+    if (frames_done_ == frames_) return false;
+    if (frames_done_ > 0) model_.advance();
+    frame.source = sender_.source;
+    frame.origin = sender_.origin;
+    frame.sequence = sender_.first_sequence + frames_done_;
+    frame.generation_time = frame.reception_time = model_.time();
+    model_.read(frame.samples);
+    ++frames_done_;
+    return true;
+  }
+
+  double progress() const override {
+    return static_cast<double>(frames_done_) / static_cast<double>(frames_);
+  }
+
+ private:
+  Model model_;
+  Sender sender_;
+  std::vector<storage::ParameterDescriptor> descriptors_;
+  std::uint64_t frames_;
+  std::uint64_t frames_done_ = 0;
+};
+
+template <class Model, class Constants>
+std::unique_ptr<FrameSource> source_of(const Constants& constants, const ReferenceOptions& options,
+                                       Sender sender,
+                                       std::vector<storage::ParameterDescriptor> descriptors) {
+  return std::make_unique<SecondsSource<Model>>(
+      Model(constants, options.life, options.start, options.seed), options, std::move(sender),
+      std::move(descriptors));
 }
 
-template <class Model>
-double SecondsSource<Model>::progress() const {
-  return static_cast<double>(frames_done_) / static_cast<double>(frames_);
+}  // namespace
+
+std::unique_ptr<FrameSource> reference_source(const ReferenceOptions& options, Sender sender) {
+  auto descriptors = family_descriptors(options.family, {});
+  if (options.family == Family::platform)
+    return source_of<platform::PlatformSpacecraft>(platform::Constants{}, options,
+                                                   std::move(sender), std::move(descriptors));
+  return source_of<reference::Spacecraft>(options.constants, options, std::move(sender),
+                                          std::move(descriptors));
 }
 
-template class SecondsSource<reference::Spacecraft>;
-template class SecondsSource<HandwrittenEps>;
-
-ReferenceSource::ReferenceSource(const ReferenceOptions& options, Sender sender)
-    : SecondsSource(options, std::move(sender), reference::telemetry_descriptors({})) {}
-
-HandwrittenSource::HandwrittenSource(const ReferenceOptions& options, Sender sender)
-    : SecondsSource(options, std::move(sender), handwritten_descriptors({})) {}
+std::unique_ptr<FrameSource> handwritten_source(const ReferenceOptions& options, Sender sender) {
+  auto descriptors = simulated_descriptors(options.family, {});
+  if (options.family == Family::platform)
+    return source_of<platform::HandwrittenPlatform>(platform::Constants{}, options,
+                                                    std::move(sender), std::move(descriptors));
+  return source_of<HandwrittenEps>(options.constants, options, std::move(sender),
+                                   std::move(descriptors));
+}
 
 }  // namespace reident::satcs

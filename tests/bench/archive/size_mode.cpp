@@ -31,7 +31,7 @@ std::vector<std::unique_ptr<satcs::FrameSource>> sources_of(const SizeOptions& o
   if (options.reference_s > 0) {
     satcs::ReferenceOptions reference;
     reference.duration_ns = options.reference_s * 1'000'000'000;
-    sources.push_back(std::make_unique<satcs::ReferenceSource>(reference, sender));
+    sources.push_back(satcs::reference_source(reference, sender));
   }
   return sources;
 }

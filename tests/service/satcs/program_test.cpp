@@ -369,6 +369,33 @@ TEST_F(Programs, TheHandWrittenSimulationIsSentAsASimulator) {
   EXPECT_GT(received[0].samples.size(), 17U);
 }
 
+TEST_F(Programs, ThePlatformIsAnotherSpacecraftWithItsOwnParametersAndLife) {
+  dds::Participant participant(endpoint_);
+  dds::Reader<TelemetryFrame> frames(participant);
+  Child child(command(SATCS_REFERENCE,
+                      "--family platform --duration 1min --speed max --life bearing_wear@+30s#1"));
+  const auto received = take_all(frames, 60);
+  EXPECT_EQ(child.wait(), 0) << errors();
+  ASSERT_EQ(received.size(), 60U);
+  EXPECT_EQ(received[0].spacecraft, "PLATFORM");
+  EXPECT_EQ(received[0].samples[0].parameter, satcs::parameter_id("TQ_RW1"));
+
+  ASSERT_EQ(Child(command(SATCS_REFERENCE,
+                          "--family platform --duration 1min --csv t.csv "
+                          "--simulated"))
+                .wait(),
+            0);
+  EXPECT_THAT(text_of(folder_ / "t.csv"), testing::StartsWith("unix_s,TQ_RW1,"));
+  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--life bearing_wear@+1h")).wait(), 2);
+  EXPECT_EQ(errors(),
+            "satcs-reference: --life: 'bearing_wear@+1h' does not happen to the family power; "
+            "give --family platform\n");
+  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--family moon")).wait(), 2);
+  EXPECT_EQ(errors(),
+            "satcs-reference: --family: 'moon' is not power or platform; see "
+            "satcs-reference --help\n");
+}
+
 TEST_F(Programs, TheHandWrittenSimulationIsWrittenToAFile) {
   ASSERT_EQ(Child(command(SATCS_REFERENCE, "--duration 1min --csv t.csv --simulated")).wait(), 0);
   const std::string text = text_of(folder_ / "t.csv");

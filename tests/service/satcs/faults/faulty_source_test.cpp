@@ -56,25 +56,25 @@ TEST(FaultySource, RefusesWhatCannotBeToldOfItsTruth) {
 TEST(ReferenceSource, NumbersItsFramesAndReceivesThemWhenTheyAreGenerated) {
   ReferenceOptions options;
   options.duration_ns = 3 * second;
-  ReferenceSource real(options, {.source = "station", .first_sequence = 7});
-  HandwrittenSource simulated(options, {"simulator", storage::Origin::simulated});
+  const auto real = reference_source(options, {.source = "station", .first_sequence = 7});
+  const auto simulated = handwritten_source(options, {"simulator", storage::Origin::simulated});
   TelemetryFrame frame;
   for (int k = 0; k < 3; ++k) {
     const Time time = options.start + k * second;
-    ASSERT_TRUE(real.next(frame));
+    ASSERT_TRUE(real->next(frame));
     EXPECT_EQ(frame.source, "station");
     EXPECT_EQ(frame.origin, storage::Origin::real);
     EXPECT_EQ(frame.sequence, static_cast<std::uint64_t>(7 + k));
     EXPECT_EQ(frame.generation_time, time);
     EXPECT_EQ(frame.reception_time, time);
-    ASSERT_TRUE(simulated.next(frame));
+    ASSERT_TRUE(simulated->next(frame));
     EXPECT_EQ(frame.source, "simulator");
     EXPECT_EQ(frame.origin, storage::Origin::simulated);
     EXPECT_EQ(frame.sequence, static_cast<std::uint64_t>(1 + k));
     EXPECT_EQ(frame.generation_time, time);
   }
-  EXPECT_FALSE(real.next(frame));
-  EXPECT_FALSE(simulated.next(frame));
+  EXPECT_FALSE(real->next(frame));
+  EXPECT_FALSE(simulated->next(frame));
 }
 
 }  // namespace
