@@ -437,6 +437,9 @@ TEST(ConfigExamples, AreCompleteAndRight) {
   const auto reference = load_config(REIDENT_EXAMPLES "/reference.toml");
   ASSERT_TRUE(std::holds_alternative<Config>(reference));
   EXPECT_THAT(std::get<Config>(reference).spacecraft.at(0).equipment, SizeIs(9));
+  const auto platform = load_config(REIDENT_EXAMPLES "/reference-platform.toml");
+  ASSERT_TRUE(std::holds_alternative<Config>(platform));
+  EXPECT_THAT(std::get<Config>(platform).spacecraft.at(0).equipment, SizeIs(11));
 }
 
 }  // namespace
