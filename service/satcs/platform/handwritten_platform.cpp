@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "service/satcs/parameter_id.hpp"
@@ -87,7 +88,7 @@ HandwrittenPlatform::HandwrittenPlatform(const Constants& spacecraft,
       drives_(orbit_, spacecraft, life, seed),
       time_(reference::whole_seconds(start)) {
   state_.bus_V = constants_.bus_V;
-  state_.panel_C.fill(constants_.panel_sink_C);
+  state_.panel_C = constants_.panel_sink_C;
   state_.heated_C = constants_.heated_C;
   state_.bearing_C = constants_.bearing_C;
   state_.amplifier_C = constants_.heated_C[2];
@@ -115,7 +116,8 @@ void HandwrittenPlatform::advance() {
     const double sun_W = c.panel_absorptance * c.panel_area_m2 *
                          spacecraft_.environment.solar_flux_W_m2 * s.sun_mA[p] /
                          spacecraft_.environment.sun_sensor_mA;
-    s.panel_C[p] += (sun_W - c.panel_W_K * (s.panel_C[p] - c.panel_sink_C)) / c.panel_capacity_J_K;
+    s.panel_C[p] +=
+        (sun_W - c.panel_W_K * (s.panel_C[p] - c.panel_sink_C[p])) / c.panel_capacity_J_K;
   }
   for (std::size_t k = 0; k < wheel_count; ++k) {
     const double friction_Nm = c.wheel_viscous_Nms * s.speed_rad_s[k];
@@ -145,7 +147,7 @@ void HandwrittenPlatform::solve() {
     const double off = s.speed_rad_s[k] - axis.bias_rad_s;
     unloads_[k] = std::abs(off) > (unloads_[k] ? axis.unload_until_rad_s : axis.unload_from_rad_s);
     const double unloading_Nm = unloads_[k] ? std::copysign(axis.unload_Nm, -off) : 0;
-    s.command_Nm[k] = disturbance_Nm(axis, phase, sunlight) + unloading_Nm -
+    s.command_Nm[k] = c.gravity_Nm * std::cos(2 * std::numbers::pi * phase) + unloading_Nm -
                       axis.body_kg_m2 * slews_.acceleration(k, axis.slew_deg, time_) +
                       c.wheel_viscous_Nms * s.speed_rad_s[k];
     s.motor_A[k] = s.command_Nm[k] / spacecraft_.wheel[k].torque_Nm_A;

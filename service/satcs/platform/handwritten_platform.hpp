@@ -2,7 +2,7 @@
 // and the thermal budget. It is tuned to nothing that the spacecraft has sent.
 //
 //   C dT/dt = Q - G (T - T_sink)     each node by itself, against a sink of the thermal budget
-//   J dw/dt = T_cmd - b w            T_cmd: what the plan and the disturbances ask for, plus b w
+//   J dw/dt = T_cmd - b w            T_cmd: what slews and gravity ask for, plus b w
 //   P_out = g D,  P_supply = P_q + P_out / efficiency
 //
 // The orbit, the slews, the drive levels and the operations plan are the spacecraft's own:
@@ -34,7 +34,9 @@ struct HandwrittenPlatformConstants {
   double gain = 4500;  // 36.5 dB
   double quiescent_W = 8;
   double efficiency = 0.45;
-  double panel_capacity_J_K = 8000, panel_W_K = 4, panel_sink_C = -25;
+  double gravity_Nm = 1e-3;  // amplitude, once an orbit, on each axis: the one disturbance
+  double panel_capacity_J_K = 8000, panel_W_K = 4;
+  std::array<double, panel_count> panel_sink_C{-25, 0, -18, -22};
   double panel_absorptance = 0.2, panel_area_m2 = 0.7;
   /// Temperatures at which the thermal budget has the heated nodes and the bearings.
   std::array<double, heater_count> heated_C{16, 14, 5, 13};

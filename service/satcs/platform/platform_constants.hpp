@@ -77,12 +77,12 @@ struct ThermalConstants {
                                                    7000, 9000, 2500, 2500, 2500, 900};
   std::array<double, node_count> initial_C{-5, 0, -5, -12, 17, 15, 5, 13, 22, 22, 22, 6};
   std::array<PanelConstants, panel_count> panel{
-      PanelConstants{0.60, 0.25, 0.80, 0.0}, PanelConstants{0.50, 0.25, 0.80, 0.8},
+      PanelConstants{0.60, 0.25, 0.80, 0.0}, PanelConstants{0.42, 0.25, 0.80, 0.8},
       PanelConstants{0.70, 0.22, 0.80, 0.2}, PanelConstants{0.85, 0.20, 0.80, 0.2}};
   double tank_emitting_m2 = 0.03;  // area times emittance of its insulation
   std::array<LinkConstants, 13> link{LinkConstants{amplifier_case, transmitter_plate, 3.5},
                                      LinkConstants{deck, zenith_panel, 2.6},
-                                     LinkConstants{deck, nadir_panel, 2.6},
+                                     LinkConstants{deck, nadir_panel, 5.0},
                                      LinkConstants{deck, sun_panel, 2.2},
                                      LinkConstants{deck, space_panel, 2.4},
                                      LinkConstants{deck, wheel_plate, 1.2},
@@ -106,7 +106,7 @@ struct SupplyConstants {
   double source_ohm = 0.006;
   double sigma_V = 0.06;  // slow variation
   double correlation_s = 400;
-  double electronics_W = 175;  // of the deck
+  double electronics_W = 180;  // of the deck
   double payload_W = 90;       // more while the cameras are on
   double safe_W = 110;         // in safe mode
   double electronics_sigma_W = 5;

@@ -21,6 +21,9 @@ void apply_to_thermal(const LifeEvent& event, double grown, ThermalConstants& c)
     case LifeKind::interface_loss:
       c.link[amplifier_link].conductance_W_K *= 1 - change;
       break;
+    case LifeKind::insulation_loss:
+      c.tank_emitting_m2 *= 1 + change;
+      break;
     case LifeKind::heater_loss:
       each(event, c.heater, [&](HeaterConstants& heater) { heater.share *= 1 - change; });
       break;

@@ -46,6 +46,8 @@ constexpr std::array kinds{
              0.05, 0.6},
     KindInfo{LifeKind::interface_loss, "interface_loss", Course::gradual, LifeUnit::none, 0, 0.3,
              0.9},
+    KindInfo{LifeKind::insulation_loss, "insulation_loss", Course::gradual, LifeUnit::none, 0, 0.5,
+             5},
     KindInfo{LifeKind::heater_loss, "heater_loss", Course::gradual, LifeUnit::heater, 4, 0.5, 1},
     KindInfo{LifeKind::thermostat_shift, "thermostat_shift", Course::gradual, LifeUnit::heater, 4,
              2, 20},

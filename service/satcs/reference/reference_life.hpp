@@ -38,6 +38,7 @@ enum class LifeKind {
   // The platform's changes that stay.
   paint_degradation,  // magnitude: growth of the absorptance; unit: panel
   interface_loss,     // magnitude: share of the amplifier's conductance lost; unit: none
+  insulation_loss,    // magnitude: relative growth of what the tank radiates; unit: none
   heater_loss,        // magnitude: share of the heater's power lost; unit: heater
   thermostat_shift,   // magnitude: both thresholds rise [K]; unit: heater
   bearing_wear,       // magnitude: relative growth of the friction; unit: wheel

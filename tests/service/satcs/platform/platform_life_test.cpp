@@ -37,6 +37,8 @@ const std::vector<Change>& changes() {
        [](Constants& c) { c.thermal.panel[sun_panel].absorptance += 0.25; }},
       {{LifeKind::interface_loss, 0, 100, 0.5, 0},
        [](Constants& c) { c.thermal.link[amplifier_link].conductance_W_K /= 2; }},
+      {{LifeKind::insulation_loss, 0, 100, 0.5, 0},
+       [](Constants& c) { c.thermal.tank_emitting_m2 *= 1.5; }},
       {{LifeKind::heater_loss, 0, 0, 1, 2}, [](Constants& c) { c.thermal.heater[1].share = 0; }},
       {{LifeKind::thermostat_shift, 0, 100, 2, 4},
        [](Constants& c) {
@@ -128,6 +130,7 @@ TEST(PlatformLife, TelemetryFeelsEachEventFromItsSecondOn) {
   const std::map<LifeKind, std::vector<std::string>> felt{
       {LifeKind::paint_degradation, {"T_PZEN", "T_PNAD", "T_PSUN"}},
       {LifeKind::interface_loss, {"T_PA"}},
+      {LifeKind::insulation_loss, {"T_TANK"}},
       {LifeKind::heater_loss, {"T_TANK", "I_H4", "I_HALL"}},
       {LifeKind::thermostat_shift, {"S_H4"}},
       {LifeKind::bearing_wear, {"W_RW1", "TQ_RW1", "IM_RW1", "I_RW1"}},
