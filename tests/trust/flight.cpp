@@ -4,9 +4,13 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "service/satcs/parameter_id.hpp"
+#include "service/satcs/platform/handwritten_platform.hpp"
+#include "service/satcs/platform/platform_spacecraft.hpp"
 #include "service/satcs/reference/handwritten_eps.hpp"
 #include "service/satcs/reference/reference_spacecraft.hpp"
 #include "service/windows/window_data.hpp"
@@ -14,8 +18,6 @@
 
 namespace reident::trust {
 namespace {
-
-using satcs::reference::Spacecraft;
 
 constexpr Duration second = 1'000'000'000;
 
@@ -28,15 +30,17 @@ std::vector<std::string> parameter_names(const SpacecraftConfig& spacecraft) {
 
 /// Goes through the life second by second; a frame every `period`, which holds the last sample of
 /// each point that was due since the one before.
+template <class Spacecraft, class Simulator>
 class Flight {
  public:
-  Flight(const LifeGroup& group, const std::string& spacecraft, Duration period,
-         const std::vector<std::string>& names)
+  /// Both are new at the group's start; `points` are the spacecraft's.
+  template <class TelemetryPoint>
+  Flight(Spacecraft plant, Simulator simulator, std::span<const TelemetryPoint> points,
+         const std::string& spacecraft, Duration period, const std::vector<std::string>& names)
       : spacecraft_(spacecraft),
         period_(period),
-        plant_({}, group.events, group.start, group.seed),
-        simulator_({}, group.events, group.start, group.seed) {
-    const auto points = satcs::reference::telemetry_points();
+        plant_(std::move(plant)),
+        simulator_(std::move(simulator)) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (std::find(names.begin(), names.end(), points[i].name) == names.end()) continue;
       wanted_.emplace(satcs::parameter_id(points[i].name), Point{i, points[i].every_s > 1});
@@ -100,11 +104,37 @@ class Flight {
   std::string spacecraft_;
   Duration period_;
   Spacecraft plant_;
-  satcs::HandwrittenEps simulator_;
+  Simulator simulator_;
   std::map<std::uint32_t, Point> wanted_;
   std::vector<storage::Sample> due_;
   std::uint64_t sequence_ = 0;
 };
+
+/// A spacecraft or a simulator at the start of a life.
+template <class Model>
+Model begun(const LifeGroup& group, const auto& fresh) {
+  return Model(fresh, group.events, group.start, group.seed);
+}
+
+template <class Spacecraft, class Simulator>
+Known fly_with(Flight<Spacecraft, Simulator> flight, const LifeGroup& group,
+               const SpacecraftConfig& spacecraft, const std::vector<std::string>& names,
+               const Heard& heard) {
+  const auto descriptors = telemetry_of(spacecraft);
+  Known known{{descriptors, names},
+              {descriptors, names},
+              {satcs::simulated_descriptors(group.family, spacecraft.name), names}};
+  storage::TelemetryFrame frame, simulated;
+  std::vector<storage::Sample> truth;
+  while (flight.time() < extent_of(group).end) {
+    flight.next(frame, truth, simulated);
+    known.truth.append(flight.time(), truth);
+    known.clean.append(flight.time(), frame.samples);
+    known.simulated.append(flight.time(), simulated.samples);
+    if (flight.time() < group.start + group.duration) heard(frame, simulated);
+  }
+  return known;
+}
 
 }  // namespace
 
@@ -118,7 +148,10 @@ storage::TimeRange extent_of(const LifeGroup& group) {
 
 std::vector<storage::ParameterDescriptor> telemetry_of(const SpacecraftConfig& spacecraft) {
   const auto names = parameter_names(spacecraft);
-  auto all = satcs::reference::telemetry_descriptors(spacecraft.name);
+  // No parameter is of both families.
+  auto all = satcs::family_descriptors(satcs::Family::power, spacecraft.name);
+  const auto platform = satcs::family_descriptors(satcs::Family::platform, spacecraft.name);
+  all.insert(all.end(), platform.begin(), platform.end());
   std::erase_if(all, [&names](const auto& descriptor) {
     return std::find(names.begin(), names.end(), descriptor.name) == names.end();
   });
@@ -126,22 +159,22 @@ std::vector<storage::ParameterDescriptor> telemetry_of(const SpacecraftConfig& s
 }
 
 Known fly(const LifeGroup& group, const SpacecraftConfig& spacecraft, const Heard& heard) {
+  namespace power = satcs::reference;
+  namespace platform = satcs::platform;
   const auto names = parameter_names(spacecraft);
-  const auto descriptors = telemetry_of(spacecraft);
-  Known known{{descriptors, names},
-              {descriptors, names},
-              {satcs::handwritten_descriptors(spacecraft.name), names}};
-  Flight flight(group, spacecraft.name, spacecraft.equipment.front().sample_period, names);
-  storage::TelemetryFrame frame, simulated;
-  std::vector<storage::Sample> truth;
-  while (flight.time() < extent_of(group).end) {
-    flight.next(frame, truth, simulated);
-    known.truth.append(flight.time(), truth);
-    known.clean.append(flight.time(), frame.samples);
-    known.simulated.append(flight.time(), simulated.samples);
-    if (flight.time() < group.start + group.duration) heard(frame, simulated);
+  const Duration period = spacecraft.equipment.front().sample_period;
+  if (group.family == satcs::Family::platform) {
+    const platform::Constants fresh;
+    return fly_with(Flight(begun<platform::PlatformSpacecraft>(group, fresh),
+                           begun<platform::HandwrittenPlatform>(group, fresh),
+                           platform::telemetry_points(), spacecraft.name, period, names),
+                    group, spacecraft, names, heard);
   }
-  return known;
+  const power::Constants fresh;
+  return fly_with(
+      Flight(begun<power::Spacecraft>(group, fresh), begun<satcs::HandwrittenEps>(group, fresh),
+             power::telemetry_points(), spacecraft.name, period, names),
+      group, spacecraft, names, heard);
 }
 
 }  // namespace reident::trust

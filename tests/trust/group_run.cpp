@@ -35,6 +35,7 @@ class Telling {
     config_.database = folder_ / "reident.db";
     satcs::FaultInjectorOptions options;
     options.seed = group.seed;
+    options.family = group.family;
     injector_.emplace(scenario.faults, descriptors, options);
     service_.emplace(config_);
     service_->describe(descriptors);
@@ -183,6 +184,7 @@ class Judge {
                             {},
                             group_.events,
                             scenario.faults};
+    outcome.family = group_.family;
     for (const EquipmentConfig& equipment : spacecraft_.equipment)
       outcome.equipment.push_back(score(scenario, made, equipment));
     return outcome;

@@ -34,6 +34,7 @@ struct ScenarioOutcome {
   std::vector<EquipmentOutcome> equipment;
   std::vector<satcs::reference::LifeEvent> events;
   std::vector<satcs::Fault> faults;
+  satcs::Family family = satcs::Family::power;
 };
 
 /// What becomes of the databases of the scenarios once these are scored.

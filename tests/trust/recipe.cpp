@@ -27,6 +27,10 @@ std::vector<std::string> arguments_of(const LifeGroup& group, Duration duration)
   std::vector<std::string> arguments{"--start",    time_text(group.start),
                                      "--duration", duration_text(duration),
                                      "--seed",     fmt::to_string(group.seed)};
+  if (group.family != satcs::Family::power) {
+    arguments.emplace_back("--family");
+    arguments.emplace_back(name(group.family));
+  }
   for (const auto& event : group.events) {
     arguments.emplace_back("--life");
     arguments.push_back(text_of(event));

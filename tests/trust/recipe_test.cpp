@@ -35,10 +35,15 @@ std::vector<std::string> values_of(const std::string& option,
 TEST(Recipe, GivesEveryScenarioBackToTheLastBit) {
   std::vector<LifeGroup> groups = all_groups(suite_config().spacecraft.front());
   groups.push_back(short_group());
+  using enum satcs::Family;
+  for (LifeGroup& group : all_groups(suite_config(platform).spacecraft.front(), 0, platform))
+    groups.push_back(std::move(group));
   for (const LifeGroup& group : groups)
     for (const Scenario& scenario : group.scenarios) {
       const Recipe recipe = recipe_of(group, scenario);
       for (const auto& arguments : {recipe.simulator, recipe.spacecraft}) {
+        const auto family = values_of("--family", arguments);
+        EXPECT_EQ(family.empty() ? "power" : family.front(), name(group.family));
         EXPECT_EQ(parse_time(values_of("--start", arguments).at(0)), group.start);
         EXPECT_EQ(values_of("--seed", arguments).at(0), std::to_string(group.seed));
         const auto life = values_of("--life", arguments);
@@ -67,6 +72,16 @@ TEST(Recipe, HasAConfigurationOfTheGroupsEquipmentAlone) {
   EXPECT_EQ(spacecraft.equipment[0].sample_period, suite_period);
   EXPECT_EQ(spacecraft.equipment[0].max_order, 6);
   EXPECT_EQ(spacecraft.relations, whole.spacecraft.front().relations);
+}
+
+TEST(Recipe, HasThePlatformsConfigurationForThePlatform) {
+  const auto parsed = parse_config(suite_toml({"TANK"}, satcs::Family::platform), {});
+  const Config& config = std::get<Config>(parsed);
+  EXPECT_EQ(config.database, "reference.db");
+  const SpacecraftConfig& spacecraft = config.spacecraft.front();
+  EXPECT_EQ(spacecraft.name, "PLATFORM");
+  ASSERT_EQ(spacecraft.equipment.size(), 1U);
+  EXPECT_EQ(spacecraft.equipment[0].sample_period, platform_period);
 }
 
 TEST(Handful, IsOfBothHalvesAndOfDifferentLivesAndFaults) {

@@ -6,7 +6,8 @@
 #include <stdexcept>
 
 #include "service/model/derived_inputs.hpp"
-#include "service/satcs/reference/reference_telemetry.hpp"
+#include "service/satcs/reference/telemetry_point.hpp"
+#include "tests/trust/plans.hpp"
 
 namespace reident::trust {
 namespace {
@@ -20,108 +21,7 @@ constexpr storage::Time first_start = 1'498'867'200'000'000'000;  // 2017-07-01T
 constexpr Duration hour = 3'600'000'000'000;
 constexpr Duration day = 24 * hour;
 constexpr Duration telemetry_days = 31;
-constexpr int faults_of_a_life = 4;
-
-/// A life without its times.
-struct LifePlan {
-  std::string_view name;
-  struct Event {
-    LifeKind kind;
-    double magnitude;
-    int unit;
-    double begin_day;  // after the time of the change
-    double days;       // 0: a step, or for good
-  };
-  std::vector<Event> events;
-  std::vector<std::string> equipment;
-  int start_day = 0;  // after 2017-07-01
-};
-
-std::vector<LifePlan> life_plans() {
-  using enum LifeKind;
-  return {
-      {"none", {}, {"BDR"}},
-      {"none", {}, {"BAT1"}, 120},
-      {"none", {}, {"MEA"}, 240},
-      {"none", {}, {"SAG2", "DCDC3"}, 300},
-      {"array_degradation", {{array_degradation, 0.05, 0, 0, 12}}, {"SAG2"}},
-      {"array_degradation", {{array_degradation, 0.20, 3, 0, 0}}, {"MEA", "SAG2"}, 90},
-      {"capacity_fade", {{capacity_fade, 0.10, 0, 0, 12}}, {"BAT1"}, 30},
-      {"capacity_fade", {{capacity_fade, 0.30, 1, 0, 0}}, {"BAT1"}, 200},
-      {"capacity_fade", {{capacity_fade, 0.50, 1, 0, 0}}, {"BAT1"}},
-      {"rising_resistance", {{rising_resistance, 0.5, 0, 0, 12}}, {"BAT1"}},
-      {"rising_resistance", {{rising_resistance, 2.0, 0, 0, 12}}, {"BAT1"}, 150},
-      {"rising_resistance", {{rising_resistance, 1.0, 1, 0, 0}}, {"BAT1"}, 60},
-      {"efficiency_drift", {{efficiency_drift, 0.3, 0, 0, 12}}, {"BDR"}},
-      {"efficiency_drift", {{efficiency_drift, 1.0, 0, 0, 0}}, {"BDR"}, 270},
-      {"efficiency_drift", {{efficiency_drift, 3.0, 0, 0, 10}}, {"BDR"}, 180},
-      {"lost_string", {{lost_string, 1, 1, 0, 0}}, {"BAT1"}},
-      {"lost_string", {{lost_string, 6, 1, 0, 0}}, {"BAT1"}, 330},
-      {"lost_string", {{lost_string, 3, 3, 0, 0}}, {"SAG2"}},
-      {"failed_cell", {{failed_cell, 1, 1, 0, 0}}, {"BAT1"}},
-      {"failed_cell", {{failed_cell, 2, 1, 0, 0}}, {"BDR", "BAT1"}, 100},
-      {"failed_cell", {{failed_cell, 2, 2, 0, 0}}, {"BAT2"}},
-      {"redundant_charger", {{redundant_charger, 1, 1, 0, 0}}, {"CHC1"}, 45},
-      {"redundant_charger", {{redundant_charger, 1, 1, 0, 5}}, {"BAT1"}},
-      {"safe_mode", {{safe_mode, 1, 0, 0, 1}}, {"DIST"}},
-      {"safe_mode", {{safe_mode, 1, 0, 0, 3}}, {"MEA"}, 210},
-      {"quiet", {{quiet, 1, 0, 0, 7}}, {"BAT1"}},
-      {"quiet", {{quiet, 1, 0, 0, 7}}, {"DIST"}, 75},
-      {"ageing",
-       {{array_degradation, 0.03, 0, 0, 12},
-        {capacity_fade, 0.08, 0, 0, 12},
-        {rising_resistance, 0.4, 0, 0, 12},
-        {efficiency_drift, 0.3, 0, 0, 12}},
-       {"BDR", "BAT1"}},
-      {"ageing",
-       {{array_degradation, 0.08, 0, 0, 12},
-        {capacity_fade, 0.15, 0, 0, 12},
-        {rising_resistance, 0.8, 0, 0, 12},
-        {efficiency_drift, 0.6, 0, 0, 12}},
-       {"MEA"},
-       160},
-      {"two_failures",
-       {{failed_cell, 1, 1, 0, 0}, {efficiency_drift, 1.0, 0, 6, 0}},
-       {"BDR", "BAT1"},
-       20},
-      {"failure_in_safe_mode", {{safe_mode, 1, 0, -0.2, 1}, {lost_string, 4, 4, 0, 0}}, {"MEA"}},
-      {"failure_in_safe_mode",
-       {{safe_mode, 1, 0, -0.2, 1}, {failed_cell, 1, 1, 0, 0}},
-       {"BAT1"},
-       130},
-      {"converter_drift", {{converter_drift, 1.0, 3, 0, 0}}, {"DCDC3"}},
-      {"converter_drift", {{converter_drift, 0.5, 0, 0, 12}}, {"DCDC3"}, 250},
-      {"redundant_heater", {{redundant_heater, 1, 1, 0, 0}}, {"BAT1"}, 10},
-  };
-}
-
-/// Which of an equipment's parameters a fault is about.
-enum class Role { none, output, first_input, last_input };
-
-/// A fault without its time.
-struct FaultPlan {
-  FaultKind kind;
-  Role role = Role::none;
-  std::optional<double> magnitude = {};  // of a sensor's: in shares of the usual one
-};
-
-std::vector<FaultPlan> fault_plans() {
-  using enum FaultKind;
-  std::vector<FaultPlan> plans;
-  constexpr std::array roles{Role::output, Role::first_input, Role::last_input};
-  for (const FaultKind kind : {bias_step, drifting_bias, noise_burst, spikes})
-    for (const Role role : roles)
-      for (const double share : {0.5, 2.0}) plans.push_back({kind, role, share});
-  for (const FaultKind kind : {stuck, stops, wrong_calibration, swapped})
-    for (const Role role : roles) plans.push_back({kind, role});
-  for (const double share : {0.05, 0.2, 0.5}) plans.push_back({wrong_validity, Role::none, share});
-  for (const double share : {0.1, 0.5}) plans.push_back({frames_lost, Role::none, share});
-  for (const double share : {0.3, 0.8}) plans.push_back({passes_lost, Role::none, share});
-  for (const FaultKind kind : {backwards_playback, two_stations, two_stamping_stations, time_jump,
-                               duplicated_day, repeated_day, simulated_as_real})
-    plans.push_back({kind});
-  return plans;
-}
+constexpr std::size_t faults_of_a_life = 4;
 
 /// Uniform numbers that are the same on every machine.
 class Dice {
@@ -162,9 +62,8 @@ double usual_share(FaultKind kind) {
   }
 }
 
-const satcs::reference::TelemetryPoint& point_of(const std::string& parameter) {
-  for (const auto& point : satcs::reference::telemetry_points())
-    if (point.name == parameter) return point;
+const satcs::reference::PointInfo& point_of(const std::string& parameter) {
+  if (const auto* point = satcs::find_point(parameter)) return *point;
   throw std::logic_error("no telemetry point " + parameter);
 }
 
@@ -174,7 +73,7 @@ double span_of(const std::string& parameter) {
 }
 
 bool is_digital(const std::string& parameter) {
-  return point_of(parameter).kind == storage::ParameterKind::digital;
+  return point_of(parameter).digital();
 }
 
 std::string parameter_of(Role role, const EquipmentConfig& equipment) {
@@ -187,13 +86,16 @@ std::string parameter_of(Role role, const EquipmentConfig& equipment) {
 satcs::Fault fault_of(const FaultPlan& plan, const EquipmentConfig& equipment, storage::Time start,
                       storage::Time change, bool on_the_change, Dice& dice) {
   constexpr std::array days{0.15, 1.0, 3.0, 6.0};
-  const double lasts = days[dice.below(days.size())];
+  const double drawn = days[dice.below(days.size())];
+  const double lasts = plan.days.value_or(drawn);
   storage::Time begin = after(change, dice.between(-1.0, 1.0));
-  if (!on_the_change)
+  if (plan.days && on_the_change)  // the change falls into it
+    begin = after(change, -lasts * dice.between(0.1, 0.9));
+  else if (!on_the_change)
     begin =
         dice.below(2) == 0 ? after(start, dice.between(2, 6)) : after(change, dice.between(6, 9));
   Fault fault{plan.kind, {begin, after(begin, lasts)}, {}, {}, plan.magnitude, dice.below(1 << 20)};
-  if (plan.role == Role::none) return fault;
+  if (plan.role == Role::none) return fault;  // a magnitude is a share, as it is
   fault.parameter = parameter_of(plan.role, equipment);
   if (plan.kind == FaultKind::swapped)
     fault.other =
@@ -212,42 +114,89 @@ const EquipmentConfig& named(const SpacecraftConfig& spacecraft, const std::stri
   throw std::invalid_argument("the configuration has no equipment " + name);
 }
 
-}  // namespace
+/// A life with its times, and the scenario without a fault.
+LifeGroup group_of(const LifePlan& life, satcs::Family family, std::uint64_t seed, Dice& dice,
+                   storage::Time& change) {
+  LifeGroup group;
+  group.family = family;
+  group.seed = seed;
+  group.life = life.name;
+  group.equipment = life.equipment;
+  group.start = after(first_start, life.start_day + static_cast<double>(dice.below(20)));
+  group.duration = telemetry_days * day;
+  change = after(group.start, dice.between(12, 15));
+  group.events = events_of(life, change);
+  group.scenarios.push_back({0, "none", {}});
+  return group;
+}
 
-std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw) {
-  constexpr std::uint64_t seeds_of_a_draw = 10'000;  // even: no seed of a draw is held out
-  const std::vector<LifePlan> lives = life_plans();
+void add_fault(LifeGroup& group, const FaultPlan& plan, const SpacecraftConfig& spacecraft,
+               storage::Time change, bool on_the_change, Dice& dice) {
+  const EquipmentConfig& equipment =
+      named(spacecraft, group.equipment[dice.below(group.equipment.size())]);
+  group.scenarios.push_back(
+      {0,
+       std::string(name(plan.kind)),
+       {fault_of(plan, equipment, group.start, change, on_the_change, dice)}});
+}
+
+constexpr std::uint64_t seeds_of_a_draw = 10'000;  // even: no seed of a draw is held out
+
+// A walk through all faults, far apart from one to the next.
+constexpr std::size_t stride = 31;
+
+std::vector<LifeGroup> power_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw) {
+  const std::vector<LifePlan> lives = life_plans(satcs::Family::power);
   const std::vector<FaultPlan> faults = fault_plans();
   std::vector<LifeGroup> groups;
-  int number = 0;
   for (std::uint64_t half = 0; half < (draw == 0 ? 2 : 1); ++half) {
-    // Walks through all faults, far apart from one to the next.
-    constexpr std::size_t stride = 31;
     std::size_t next_fault = 5 * half;
     for (std::size_t i = 0; i < lives.size(); ++i) {
-      const LifePlan& life = lives[i];
-      LifeGroup group;
-      group.seed = seeds_of_a_draw * draw + 2 * (i + 1) + half;
-      group.life = life.name;
-      group.equipment = life.equipment;
-      Dice dice(group.seed);
-      group.start = after(first_start, life.start_day + static_cast<double>(dice.below(20)));
-      group.duration = telemetry_days * day;
-      const storage::Time change = after(group.start, dice.between(12, 15));
-      group.events = events_of(life, change);
-      group.scenarios.push_back({++number, "none", {}});
-      for (int k = 0; k < faults_of_a_life; ++k, next_fault += stride) {
-        const FaultPlan& plan = faults[next_fault % faults.size()];
-        const EquipmentConfig& equipment =
-            named(spacecraft, life.equipment[dice.below(life.equipment.size())]);
-        group.scenarios.push_back(
-            {++number,
-             std::string(name(plan.kind)),
-             {fault_of(plan, equipment, group.start, change, k % 2 == 0, dice)}});
-      }
+      const std::uint64_t seed = seeds_of_a_draw * draw + 2 * (i + 1) + half;
+      Dice dice(seed);
+      storage::Time change = 0;
+      LifeGroup group = group_of(lives[i], satcs::Family::power, seed, dice, change);
+      for (std::size_t k = 0; k < faults_of_a_life; ++k, next_fault += stride)
+        add_fault(group, faults[next_fault % faults.size()], spacecraft, change, k % 2 == 0, dice);
       groups.push_back(std::move(group));
     }
   }
+  return groups;
+}
+
+/// All of them have odd seeds: the family is held out as a whole, whatever the draw.
+std::vector<LifeGroup> platform_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw) {
+  constexpr std::uint64_t first_seed = 1'000'001;
+  const std::vector<LifePlan> lives = life_plans(satcs::Family::platform);
+  std::vector<FaultPlan> any_fault = fault_plans();
+  std::erase_if(any_fault,  // of which there are enough
+                [](const FaultPlan& plan) { return plan.kind == FaultKind::bias_step; });
+  std::vector<LifeGroup> groups;
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    const std::uint64_t seed = first_seed + seeds_of_a_draw * draw + 2 * i;
+    Dice dice(seed);
+    storage::Time change = 0;
+    LifeGroup group = group_of(lives[i], satcs::Family::platform, seed, dice, change);
+    std::vector<FaultPlan> faults = platform_faults(i);
+    faults.push_back(any_fault[(5 + i * stride) % any_fault.size()]);
+    for (std::size_t k = 0; k < faults.size(); ++k)
+      add_fault(group, faults[k], spacecraft, change, faults[k].on_the_change.value_or(i % 2 == 0),
+                dice);
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw,
+                                  satcs::Family family) {
+  std::vector<LifeGroup> groups = family == satcs::Family::power
+                                      ? power_groups(spacecraft, draw)
+                                      : platform_groups(spacecraft, draw);
+  int number = family == satcs::Family::power ? 0 : platform_numbers;
+  for (LifeGroup& group : groups)
+    for (Scenario& scenario : group.scenarios) scenario.number = ++number;
   return groups;
 }
 

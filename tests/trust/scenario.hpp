@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "service/config/config.hpp"
+#include "service/satcs/family.hpp"
 #include "service/satcs/faults/fault_injector.hpp"
 #include "service/satcs/reference/reference_life.hpp"
 
@@ -23,6 +24,7 @@ struct Scenario {
 };
 
 struct LifeGroup {
+  satcs::Family family = satcs::Family::power;
   std::uint64_t seed = 0;  // of the operations plan, the sensors and the times; odd: held out
   std::string life = "none";
   std::vector<satcs::reference::LifeEvent> events;
@@ -38,13 +40,18 @@ struct LifeGroup {
 /// much as the spacecraft's.
 inline constexpr Duration simulator_sends = 12 * 86'400'000'000'000;
 
-/// All of the suite, for the equipment of its configuration. With `draw` above 0 the plans of its
-/// tuned half, numbered as there, with other seeds, dates and times: rules that are made on few
-/// lives fit these, and other lives show it.
-std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw = 0);
+/// Scenarios of the platform are numbered from here.
+inline constexpr int platform_numbers = 1000;
 
-/// Those that go over real DDS too: every 71st, so that lives and faults are different ones and two
-/// are tuned and three held out.
+/// All of the suite of a family, for the equipment of its configuration. With `draw` above 0 the
+/// plans of its tuned half, numbered as there, with other seeds, dates and times: rules that are
+/// made on few lives fit these, and other lives show it. The platform has no tuned half. It is held
+/// out as a whole, in each draw.
+std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw = 0,
+                                  satcs::Family family = satcs::Family::power);
+
+/// Those that go over real DDS too: every 71st, so that lives and faults are different ones. Two are
+/// tuned, three are held out, and three are of the platform.
 bool is_of_the_handful(const Scenario& scenario);
 
 /// Number 0, for tests, and no part of the suite: five days in which a sensor faults and, later, a

@@ -1,11 +1,12 @@
 #include "tests/trust/scenario.hpp"
 
+#include <cmath>
 #include <map>
 #include <set>
 
 #include <gmock/gmock.h>
 
-#include "service/satcs/reference/reference_telemetry.hpp"
+#include "service/satcs/family.hpp"
 #include "tests/trust/suite_config.hpp"
 
 namespace reident::trust::scenario_test {
@@ -56,10 +57,84 @@ TEST(Scenarios, OfAnotherDrawAreThoseOfTheTunedHalfAtOtherTimes) {
   }
 }
 
+std::vector<LifeGroup> platform_groups(std::uint64_t draw = 0) {
+  using enum satcs::Family;
+  return all_groups(suite_config(platform).spacecraft.front(), draw, platform);
+}
+
+TEST(PlatformScenarios, AreManyAndAllHeldOutInEachDraw) {
+  std::set<int> numbers;
+  std::set<std::uint64_t> seeds;
+  std::size_t scenarios = 0;
+  for (const std::uint64_t draw : {0U, 4U})
+    for (const LifeGroup& group : platform_groups(draw)) {
+      EXPECT_EQ(group.half(), Half::held_out);
+      EXPECT_TRUE(seeds.insert(group.seed).second);
+      if (draw > 0) continue;
+      for (const Scenario& scenario : group.scenarios) {
+        EXPECT_GT(scenario.number, platform_numbers);
+        numbers.insert(scenario.number);
+        ++scenarios;
+      }
+    }
+  EXPECT_GE(scenarios, 150U);
+  EXPECT_EQ(numbers.size(), scenarios);
+}
+
+TEST(PlatformScenarios, HaveEveryLifeEveryFaultAndEveryEquipment) {
+  std::set<satcs::reference::LifeKind> lives, of_platform;
+  std::set<std::string> faults, equipment;
+  for (const LifeGroup& group : platform_groups()) {
+    for (const auto& event : group.events) lives.insert(event.kind);
+    for (const Scenario& scenario : group.scenarios) faults.insert(scenario.fault);
+    equipment.insert(group.equipment.begin(), group.equipment.end());
+  }
+  for (const auto kind : satcs::reference::life_kinds())
+    if (happens_to(satcs::Family::platform, kind)) of_platform.insert(kind);
+  EXPECT_EQ(lives, of_platform);
+  EXPECT_EQ(faults.size(), satcs::fault_kinds + 1);  // and none
+  EXPECT_EQ(equipment.size(),
+            suite_config(satcs::Family::platform).spacecraft.front().equipment.size());
+}
+
+/// How many biases of so many days lie on the change, and apart from it.
+std::pair<int, int> biases_of(double days) {
+  constexpr Duration day = 86'400'000'000'000;
+  std::pair<int, int> count;
+  for (const LifeGroup& group : platform_groups())
+    for (const Scenario& scenario : group.scenarios)
+      for (const satcs::Fault& fault : scenario.faults) {
+        const auto lasts = static_cast<double>(fault.when.end - fault.when.begin);
+        if (fault.kind != satcs::FaultKind::bias_step || group.events.empty() ||
+            std::abs(lasts / static_cast<double>(day) - days) > 1e-3)
+          continue;
+        const storage::Time change = group.events.front().begin;
+        const bool on = fault.when.begin < change && change < fault.when.end;
+        (on ? count.first : count.second) += 1;
+      }
+  return count;
+}
+
+TEST(PlatformScenarios, HaveBiasesOfADayAndOfFourDaysOnTheChangeAndApart) {
+  for (const double days : {1.0, 4.0}) {
+    EXPECT_GE(biases_of(days).first, 10) << days;
+    EXPECT_GE(biases_of(days).second, 10) << days;
+  }
+}
+
 TEST(Scenarios, CanHappen) {
-  const auto descriptors = satcs::reference::telemetry_descriptors("REFERENCE");
-  for (const LifeGroup& group : all_groups(suite_config().spacecraft.front())) {
-    for (const auto& event : group.events) EXPECT_EQ(life_mistake(event), "") << group.life;
+  std::vector<storage::ParameterDescriptor> descriptors;
+  std::vector<LifeGroup> groups;
+  for (const auto family : {satcs::Family::power, satcs::Family::platform}) {
+    for (auto& d : satcs::family_descriptors(family, "S")) descriptors.push_back(std::move(d));
+    for (LifeGroup& group : all_groups(suite_config(family).spacecraft.front(), 0, family))
+      groups.push_back(std::move(group));
+  }
+  for (const LifeGroup& group : groups) {
+    for (const auto& event : group.events) {
+      EXPECT_EQ(life_mistake(event), "") << group.life;
+      EXPECT_TRUE(happens_to(group.family, event.kind)) << group.life;
+    }
     for (const Scenario& scenario : group.scenarios)
       for (const satcs::Fault& fault : scenario.faults) {
         const auto why = obstacle(fault, descriptors);

@@ -20,8 +20,14 @@ std::string read_text(const char* path) {
   return text.str();
 }
 
-void change(toml::table& equipment) {
-  equipment.insert_or_assign("sample_period", duration_text(suite_period));
+const char* path_of(satcs::Family family) {
+  return family == satcs::Family::power ? REIDENT_TRUST_CONFIG : REIDENT_TRUST_PLATFORM_CONFIG;
+}
+
+void change(toml::table& equipment, satcs::Family family) {
+  equipment.insert_or_assign(
+      "sample_period",
+      duration_text(family == satcs::Family::power ? suite_period : platform_period));
   equipment.insert_or_assign("window", duration_text(48'000 * storage::second_ns));
   equipment.insert_or_assign("slide", duration_text(18'000 * storage::second_ns));
   equipment.insert_or_assign("validation_share", 0.4);
@@ -30,10 +36,12 @@ void change(toml::table& equipment) {
 
 }  // namespace
 
-std::string suite_toml(const std::vector<std::string>& equipment) {
-  ConfigDocument document = parse_document(read_text(REIDENT_TRUST_CONFIG));
+std::string suite_toml(const std::vector<std::string>& equipment, satcs::Family family) {
+  ConfigDocument document = parse_document(read_text(path_of(family)));
   toml::array* all = document.table["spacecraft"][0]["equipment"].as_array();
-  if (!all) throw std::runtime_error(REIDENT_TRUST_CONFIG ": has no [[spacecraft.equipment]]");
+  if (!all)
+    throw std::runtime_error(fmt::format("{}: has no [[spacecraft.equipment]]", path_of(family)));
+  document.table["archive"].as_table()->insert_or_assign("database", "reference.db");
   toml::array chosen;
   for (toml::node& node : *all) {
     toml::table& one = *node.as_table();
@@ -41,7 +49,7 @@ std::string suite_toml(const std::vector<std::string>& equipment) {
     if (!equipment.empty() &&
         std::find(equipment.begin(), equipment.end(), name) == equipment.end())
       continue;
-    change(one);
+    change(one, family);
     chosen.push_back(one);
   }
   *all = std::move(chosen);
@@ -50,11 +58,10 @@ std::string suite_toml(const std::vector<std::string>& equipment) {
   return text.str();
 }
 
-Config suite_config() {
-  auto parsed = parse_config(suite_toml(), {});
+Config suite_config(satcs::Family family) {
+  auto parsed = parse_config(suite_toml({}, family), {});
   if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&parsed))
-    throw std::runtime_error(
-        fmt::format("{}: {}", REIDENT_TRUST_CONFIG, mistakes->front().message));
+    throw std::runtime_error(fmt::format("{}: {}", path_of(family), mistakes->front().message));
   Config config = std::get<Config>(std::move(parsed));
   config.durability = storage::Durability::kill;
   config.recent_samples = 20'000;

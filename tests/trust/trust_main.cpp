@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -29,6 +30,7 @@ struct Options {
   bool list = false, quick = false, handful = false, recipe = false;
   std::vector<int> scenarios;
   std::string half;
+  std::vector<satcs::Family> families;
   std::string life, fault;
   std::string plot;       // a file, of one scenario
   std::string report;     // a folder
@@ -55,8 +57,13 @@ bool is_wanted(const LifeGroup& group, int first_number, const Scenario& scenari
   return options.fault.empty() || scenario.fault == options.fault;
 }
 
-std::vector<LifeGroup> wanted_groups(const Config& config, const Options& options) {
-  std::vector<LifeGroup> groups = all_groups(config.spacecraft.front(), options.draw);
+using Configs = std::map<satcs::Family, Config>;
+
+std::vector<LifeGroup> wanted_groups(const Configs& configs, const Options& options) {
+  std::vector<LifeGroup> groups;
+  for (const satcs::Family family : options.families)
+    for (LifeGroup& group : all_groups(configs.at(family).spacecraft.front(), options.draw, family))
+      groups.push_back(std::move(group));
   const auto& numbers = options.scenarios;
   if (std::find(numbers.begin(), numbers.end(), 0) != numbers.end())
     groups.insert(groups.begin(), short_group());
@@ -82,16 +89,17 @@ void print_recipes(const std::vector<LifeGroup>& groups) {
   for (const LifeGroup& group : groups)
     for (const Scenario& scenario : group.scenarios) {
       const Recipe recipe = recipe_of(group, scenario);
-      const nlohmann::ordered_json json{{"scenario", scenario.number},
-                                        {"configuration", suite_toml(group.equipment)},
-                                        {"simulator", recipe.simulator},
-                                        {"spacecraft", recipe.spacecraft}};
+      const nlohmann::ordered_json json{
+          {"scenario", scenario.number},
+          {"configuration", suite_toml(group.equipment, group.family)},
+          {"simulator", recipe.simulator},
+          {"spacecraft", recipe.spacecraft}};
       fmt::print("{}\n", json.dump());
     }
 }
 
 /// Groups side by side on `jobs` threads; the outcomes in the order of the scenarios' numbers.
-std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Config& config,
+std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Configs& configs,
                                  const Options& options) {
   const test::TemporaryFolder folder;
   std::vector<std::vector<ScenarioOutcome>> outcomes(groups.size());
@@ -101,6 +109,7 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
   const auto work = [&] {
     try {
       for (std::size_t i = next++; i < groups.size(); i = next++) {
+        const Config& config = configs.at(groups[i].family);
         outcomes[i] = options.databases.empty()
                           ? (options.keep.empty()
                                  ? run_group(groups[i], config, folder.path())
@@ -130,11 +139,26 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
   return all;
 }
 
+std::pair<std::vector<ScenarioOutcome>, std::vector<ScenarioOutcome>> by_family(
+    const std::vector<ScenarioOutcome>& outcomes) {
+  std::pair<std::vector<ScenarioOutcome>, std::vector<ScenarioOutcome>> split;
+  for (const ScenarioOutcome& outcome : outcomes)
+    (outcome.family == satcs::Family::power ? split.first : split.second).push_back(outcome);
+  return split;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("The trust suite: life and faults through the real service", "reident_trust");
   Options options;
+  std::string families = "both";
+  app.add_option(
+         "--family", families,
+         "run the power subsystem's scenarios, the platform's (from 1001, all held out), or "
+         "both; figures of the platform stand under the key platform")
+      ->check(CLI::IsMember({"power", "platform", "both"}))
+      ->capture_default_str();
   app.add_flag("--list", options.list, "list the scenarios that are chosen, and run none");
   app.add_flag("--quick", options.quick, "run two scenarios of every sixth life of the tuned half");
   app.add_flag("--handful", options.handful, "run every 71st scenario alone");
@@ -168,10 +192,14 @@ int main(int argc, char** argv) {
                  "reident history, show and why");
   app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
+  for (const satcs::Family one : {satcs::Family::power, satcs::Family::platform})
+    if (families == "both" || name(one) == families) options.families.push_back(one);
   try {
     log::set_level("error");
-    const Config config = suite_config();
-    const std::vector<LifeGroup> groups = wanted_groups(config, options);
+    Configs configs;
+    for (const satcs::Family family : {satcs::Family::power, satcs::Family::platform})
+      configs.emplace(family, suite_config(family));
+    const std::vector<LifeGroup> groups = wanted_groups(configs, options);
     if (options.list) {
       list(groups);
       return 0;
@@ -180,7 +208,7 @@ int main(int argc, char** argv) {
       print_recipes(groups);
       return 0;
     }
-    const std::vector<ScenarioOutcome> outcomes = run(groups, config, options);
+    const std::vector<ScenarioOutcome> outcomes = run(groups, configs, options);
     if (!options.plot.empty()) {
       if (outcomes.size() != 1) throw std::runtime_error("--plot needs one --scenario");
       std::ofstream file(options.plot);
@@ -188,7 +216,9 @@ int main(int argc, char** argv) {
       if (!file.flush()) throw std::runtime_error(options.plot + ": cannot be written");
     }
     if (!options.report.empty()) write_report(outcomes, options.report);
-    auto figures = figures_json(outcomes);
+    const auto [power, platform] = by_family(outcomes);
+    auto figures = figures_json(power);
+    if (!platform.empty()) figures["platform"] = figures_json(platform).at("held_out");
     if (!options.month.empty()) {
       std::ifstream file(options.month);
       figures["month_seconds"] = nlohmann::json::parse(file).at("month_seconds");
@@ -197,7 +227,9 @@ int main(int argc, char** argv) {
       std::ifstream file(options.dds);
       figures["over_dds"] = nlohmann::json::parse(file);
     }
-    fmt::print("{}{}\n", tables(outcomes), figures.dump());
+    if (!power.empty()) fmt::print("{}", tables(power));
+    if (!platform.empty()) fmt::print("The platform:\n\n{}", tables(platform));
+    fmt::print("{}\n", figures.dump());
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "reident_trust: {}\n", error.what());

@@ -8,7 +8,8 @@
 #include "identification/search/identify.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "identification/simulation/initial_state.hpp"
-#include "service/satcs/reference/reference_spacecraft.hpp"
+#include "service/satcs/family.hpp"
+#include "service/satcs/reference/telemetry_point.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/windows/candidate.hpp"
 #include "service/windows/window_data.hpp"
@@ -28,8 +29,7 @@ WindowData load(const KnownSeries& series, const WindowRequest& request, storage
 }
 
 const satcs::reference::SensorSpec& sensor_of(const std::string& parameter) {
-  for (const auto& point : satcs::reference::telemetry_points())
-    if (point.name == parameter) return point.sensor;
+  if (const auto* point = satcs::find_point(parameter)) return point->sensor;
   throw std::logic_error("no telemetry point " + parameter);
 }
 
