@@ -1,0 +1,32 @@
+// Whether the mean of bounded scores is above a value, decided by betting (METHOD.md, section 19;
+// I. Waudby-Smith and A. Ramdas, "Estimating means of bounded random variables by betting", Journal
+// of the Royal Statistical Society B 86, 2024). The wealth of one who bets on it rarely grows where
+// it is not so, however often it is looked at. Nothing here throws.
+#pragma once
+
+#include "identification/numerics/matrix.hpp"
+
+namespace reident::identification {
+
+/// Scores in the order of time, each within [-bound, bound], and what was found of them.
+struct ScoreSeries {
+  Vector scores;
+  double bound = 1;
+  /// Scores that are taken together until their dependence is measured: those of a whole cycle.
+  Index cycle = 1;
+};
+
+/// Returns by how many times the variance of a mean of the scores exceeds that of as many
+/// independent ones, at least 1: the largest ratio that means of 2, 4, 8 ... scores show.
+double dependence(const ScoreSeries& series);
+
+/// Returns the logarithm of the wealth of one who bets that the mean of the scores is above `mean`
+/// in (-bound, bound). Where it is not, the wealth ever exceeds w with a probability of at most
+/// 1 / w. Dependent scores count as 1 / dependence() each. 0 without scores.
+double log_wealth(const ScoreSeries& series, double dependence, double mean);
+
+/// Returns the lower end of the confidence sequence: the largest mean against which log_wealth()
+/// exceeds `log_threshold`; -bound where there is none.
+double lower_mean(const ScoreSeries& series, double dependence, double log_threshold);
+
+}  // namespace reident::identification
