@@ -74,13 +74,13 @@ struct Deviation {
 };
 
 /// The deviation of the mean of values in the order of time.
-Deviation deviation(const Array& values, Course course) {
+Deviation deviation(const Array& values, Stationarity stationarity) {
   const auto n = double(values.size());
   Array left = values - values.mean();
   double degrees_of_freedom = n - 1;
   const Array times = Array::LinSpaced(values.size(), -(n - 1) / 2, (n - 1) / 2);
   const double slope = (times * left).sum() / times.square().sum();
-  if (course == Course::changing && slope > 0) {
+  if (stationarity == Stationarity::changing && slope > 0) {
     left -= slope * times;
     --degrees_of_freedom;
   }
@@ -107,7 +107,7 @@ double least_without_a_stretch(const Sums& all, Index rows, const Over& over) {
 std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incumbent,
                                              const Matrix& candidate,
                                              const std::vector<RowRange>& stretches,
-                                             double confidence, Course course) {
+                                             double confidence, Stationarity stationarity) {
   assert(y.rows() == incumbent.rows() && y.cols() == incumbent.cols());
   assert(y.rows() == candidate.rows() && y.cols() == candidate.cols());
   const Index rows = y.rows();
@@ -138,7 +138,7 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
     pseudo(b) = blocks * phi - (blocks - 1) * log_ratio(all - over(begin, count));
   }
   if (!pseudo.allFinite()) return std::nullopt;
-  const Deviation chance = deviation(pseudo, course);
+  const Deviation chance = deviation(pseudo, stationarity);
   const double quantile = student_quantile(confidence, chance.degrees_of_freedom);
   result.reduction = 1 - std::exp(-phi);
   const double low =

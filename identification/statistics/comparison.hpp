@@ -12,7 +12,7 @@ namespace reident::identification {
 
 /// What is assumed of the equipment while the rows were taken. Where it goes on changing, an
 /// advantage that rises with time is neither chance nor correlation; any late advantage profits.
-enum class Course { steady, changing };
+enum class Stationarity { stationary, changing };
 
 /// By how much the candidate errs less than the incumbent.
 struct PairedComparison {
@@ -28,7 +28,7 @@ struct PairedComparison {
 std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incumbent,
                                              const Matrix& candidate,
                                              const std::vector<RowRange>& stretches,
-                                             double confidence, Course course);
+                                             double confidence, Stationarity stationarity);
 
 /// Returns the MRSE, in percent, that the noise of the sensors alone would give a run: that of the
 /// usual change of its errors from row to row. Where an output's samples are held, new ones count.

@@ -18,8 +18,8 @@
 namespace reident {
 namespace {
 
-using identification::Course;
 using identification::RowRange;
+using identification::Stationarity;
 using nlohmann::ordered_json;
 using storage::DecisionKind;
 using storage::NewDecision;
@@ -223,12 +223,12 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
   };
   PairedRuns runs = since(model.validated_on.begin);
   if (runs.rows.empty()) return std::nullopt;
-  look.comparison = compare(runs, equipment.confidence_percent, Course::changing);
+  look.comparison = compare(runs, equipment.confidence_percent, Stationarity::changing);
   const PairedRuns in_window = since(window.begin);
-  look.with_window = compare(in_window, equipment.confidence_percent, Course::changing);
+  look.with_window = compare(in_window, equipment.confidence_percent, Stationarity::changing);
   const PairedRuns after = since(window.end);
   if (!after.rows.empty() && (after.y.array() != 0).colwise().any().all())
-    look.after = compare(after, equipment.confidence_percent, Course::changing);
+    look.after = compare(after, equipment.confidence_percent, Stationarity::changing);
   if (same_inputs(incumbent, model)) {
     const Duration validation = model.validated_on.end - model.validated_on.begin;
     const auto last = std::min(std::ssize(runs.rows), validation / request.period);
@@ -246,10 +246,11 @@ std::optional<Looked> longer_look(const storage::Archive& archive, storage::Time
   if (look.comparison.rival_mrse_percent < as_ever)
     if (const auto past =
             runs_where_validated(archive, incumbent, model, checks_of(equipment), window.begin))
-      look.with_past = compare(joined(*past, runs), equipment.confidence_percent, Course::changing);
+      look.with_past =
+          compare(joined(*past, runs), equipment.confidence_percent, Stationarity::changing);
   PairedRuns centred = runs;
   centred.rival.rowwise() += (runs.y - runs.rival).colwise().mean();
-  look.without_offset = compare(centred, equipment.confidence_percent, Course::changing);
+  look.without_offset = compare(centred, equipment.confidence_percent, Stationarity::changing);
   return Looked{std::move(look), std::move(runs)};
 }
 
@@ -259,7 +260,7 @@ void add_tenure(ConfirmationEvidence& look, const RunsOfBoth& tenure, const Pair
   look.champion_worst_mrse_percent = worst_of_rival(tenure.runs, runs.y.rows());
   if (as_before(look) || may_be_excursion(look, limits))
     look.over_tenure =
-        compare(joined(tenure.runs, runs), limits.confidence_percent, Course::changing);
+        compare(joined(tenure.runs, runs), limits.confidence_percent, Stationarity::changing);
 }
 
 /// What speaks against the version whatever came after its window.

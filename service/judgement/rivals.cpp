@@ -13,11 +13,11 @@
 namespace reident {
 namespace {
 
-using identification::Course;
 using identification::Index;
 using identification::Matrix;
 using identification::RowRange;
 using identification::Segment;
+using identification::Stationarity;
 
 constexpr double range_slack = 0.05;
 
@@ -38,7 +38,7 @@ std::optional<Evidence::Comparison> against_run(const PreparedWindow& prepared, 
     *offset = (runs.y - runs.rival).colwise().mean().transpose();
     runs.rival.rowwise() += offset->transpose();
   }
-  return compare(runs, confidence_percent, Course::steady);
+  return compare(runs, confidence_percent, Stationarity::stationary);
 }
 
 bool is_outside(const Signal& signal, double value) {
@@ -188,7 +188,7 @@ Evidence::Comparison against_mean(const PreparedWindow& prepared, double confide
   runs.rival = runs.y.colwise().mean().replicate(runs.y.rows(), 1);
   for (const Segment& segment : segments_from(record, rows))
     runs.stretches.push_back({segment.begin, segment.end});
-  return compare(runs, confidence_percent, Course::steady);
+  return compare(runs, confidence_percent, Stationarity::stationary);
 }
 
 std::optional<Evidence::Comparison> against_simulator(const storage::Archive& archive,
@@ -234,7 +234,7 @@ std::optional<Evidence::Champion> against_champion(const storage::Archive& archi
       !is_left_behind(evidence.comparison->rival_mrse_percent, evidence.validated_mrse_percent))
     if (const auto runs = runs_where_validated(archive, champion, candidate, prepared.checks,
                                                prepared.attempt.window.begin))
-      evidence.where_validated = compare(*runs, confidence_percent, Course::steady);
+      evidence.where_validated = compare(*runs, confidence_percent, Stationarity::stationary);
   const bool may_gain_a_constant_alone =
       evidence.without_offset && !(evidence.without_offset->sure_percent > 0.0);
   if (!evidence.comparison || !(evidence.comparison->reduction_percent <= margin_percent))

@@ -139,7 +139,7 @@ std::string still_input(const storage::Archive& archive, const EquipmentModel& m
 }
 
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
-                             identification::Course course) {
+                             identification::Stationarity stationarity) {
   Evidence::Comparison result;
   result.rows = runs.y.rows();
   result.mrse_percent = identification::score(runs.y, runs.candidate).mrse();
@@ -148,8 +148,9 @@ Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
   if (std::isfinite(result.mrse_percent))
     result.noise_percent = identification::noise_percent(runs.y, runs.candidate, runs.stretches);
   if (std::isfinite(result.mrse_percent) && std::isfinite(result.rival_mrse_percent))
-    if (const auto sure = identification::compare_runs(
-            runs.y, runs.rival, runs.candidate, runs.stretches, confidence_percent / 100, course))
+    if (const auto sure =
+            identification::compare_runs(runs.y, runs.rival, runs.candidate, runs.stretches,
+                                         confidence_percent / 100, stationarity))
       result.sure_percent = 100 * sure->low;
   return result;
 }

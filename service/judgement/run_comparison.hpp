@@ -67,7 +67,7 @@ std::string still_input(const storage::Archive& archive, const EquipmentModel& m
                         const identification::Matrix& u);
 
 Evidence::Comparison compare(const PairedRuns& runs, double confidence_percent,
-                             identification::Course course);
+                             identification::Stationarity stationarity);
 
 /// The free runs of `model` and of the champion on the part of what validated the champion that
 /// comes before `end`: where the model's window does not begin before that, telemetry which nothing

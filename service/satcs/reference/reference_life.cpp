@@ -11,12 +11,12 @@
 namespace reident::satcs::reference {
 namespace {
 
-enum class Course { gradual, step, mode };
+enum class Profile { gradual, step, mode };
 
 struct KindInfo {
   LifeKind kind;
   std::string_view name;
-  Course course;
+  Profile profile;
   LifeUnit unit;
   int usual_unit;
   double usual_magnitude;  // of a mode: 1
@@ -24,46 +24,46 @@ struct KindInfo {
 };
 
 constexpr std::array kinds{
-    KindInfo{LifeKind::array_degradation, "array_degradation", Course::gradual, LifeUnit::section,
+    KindInfo{LifeKind::array_degradation, "array_degradation", Profile::gradual, LifeUnit::section,
              0, 0.05, 0.9},
-    KindInfo{LifeKind::capacity_fade, "capacity_fade", Course::gradual, LifeUnit::battery, 0, 0.10,
+    KindInfo{LifeKind::capacity_fade, "capacity_fade", Profile::gradual, LifeUnit::battery, 0, 0.10,
              0.9},
-    KindInfo{LifeKind::rising_resistance, "rising_resistance", Course::gradual, LifeUnit::battery,
+    KindInfo{LifeKind::rising_resistance, "rising_resistance", Profile::gradual, LifeUnit::battery,
              0, 0.5, 3},
-    KindInfo{LifeKind::efficiency_drift, "efficiency_drift", Course::gradual, LifeUnit::none, 0,
+    KindInfo{LifeKind::efficiency_drift, "efficiency_drift", Profile::gradual, LifeUnit::none, 0,
              0.3, 3},
-    KindInfo{LifeKind::converter_drift, "converter_drift", Course::gradual, LifeUnit::converter, 0,
+    KindInfo{LifeKind::converter_drift, "converter_drift", Profile::gradual, LifeUnit::converter, 0,
              0.3, 3},
-    KindInfo{LifeKind::lost_string, "lost_string", Course::step, LifeUnit::string_row, 3, 1, 13},
-    KindInfo{LifeKind::failed_cell, "failed_cell", Course::step, LifeUnit::battery, 1, 1, 10},
-    KindInfo{LifeKind::redundant_charger, "redundant_charger", Course::mode, LifeUnit::battery, 1,
+    KindInfo{LifeKind::lost_string, "lost_string", Profile::step, LifeUnit::string_row, 3, 1, 13},
+    KindInfo{LifeKind::failed_cell, "failed_cell", Profile::step, LifeUnit::battery, 1, 1, 10},
+    KindInfo{LifeKind::redundant_charger, "redundant_charger", Profile::mode, LifeUnit::battery, 1,
              1, 1},
-    KindInfo{LifeKind::redundant_heater, "redundant_heater", Course::mode, LifeUnit::battery, 1, 1,
+    KindInfo{LifeKind::redundant_heater, "redundant_heater", Profile::mode, LifeUnit::battery, 1, 1,
              1},
-    KindInfo{LifeKind::safe_mode, "safe_mode", Course::mode, LifeUnit::none, 0, 1, 1},
-    KindInfo{LifeKind::quiet, "quiet", Course::mode, LifeUnit::none, 0, 1, 1},
-    KindInfo{LifeKind::paint_degradation, "paint_degradation", Course::gradual, LifeUnit::panel, 0,
+    KindInfo{LifeKind::safe_mode, "safe_mode", Profile::mode, LifeUnit::none, 0, 1, 1},
+    KindInfo{LifeKind::quiet, "quiet", Profile::mode, LifeUnit::none, 0, 1, 1},
+    KindInfo{LifeKind::paint_degradation, "paint_degradation", Profile::gradual, LifeUnit::panel, 0,
              0.05, 0.6},
-    KindInfo{LifeKind::interface_loss, "interface_loss", Course::gradual, LifeUnit::none, 0, 0.3,
+    KindInfo{LifeKind::interface_loss, "interface_loss", Profile::gradual, LifeUnit::none, 0, 0.3,
              0.9},
-    KindInfo{LifeKind::insulation_loss, "insulation_loss", Course::gradual, LifeUnit::none, 0, 0.5,
+    KindInfo{LifeKind::insulation_loss, "insulation_loss", Profile::gradual, LifeUnit::none, 0, 0.5,
              5},
-    KindInfo{LifeKind::heater_loss, "heater_loss", Course::gradual, LifeUnit::heater, 4, 0.5, 1},
-    KindInfo{LifeKind::thermostat_shift, "thermostat_shift", Course::gradual, LifeUnit::heater, 4,
+    KindInfo{LifeKind::heater_loss, "heater_loss", Profile::gradual, LifeUnit::heater, 4, 0.5, 1},
+    KindInfo{LifeKind::thermostat_shift, "thermostat_shift", Profile::gradual, LifeUnit::heater, 4,
              2, 20},
-    KindInfo{LifeKind::bearing_wear, "bearing_wear", Course::gradual, LifeUnit::wheel, 1, 0.5, 5},
-    KindInfo{LifeKind::lubricant_loss, "lubricant_loss", Course::gradual, LifeUnit::wheel, 1, 0.3,
+    KindInfo{LifeKind::bearing_wear, "bearing_wear", Profile::gradual, LifeUnit::wheel, 1, 0.5, 5},
+    KindInfo{LifeKind::lubricant_loss, "lubricant_loss", Profile::gradual, LifeUnit::wheel, 1, 0.3,
              0.9},
-    KindInfo{LifeKind::motor_fade, "motor_fade", Course::gradual, LifeUnit::wheel, 1, 0.05, 0.5},
-    KindInfo{LifeKind::gain_drop, "gain_drop", Course::gradual, LifeUnit::none, 0, 1, 10},
-    KindInfo{LifeKind::quiescent_growth, "quiescent_growth", Course::gradual, LifeUnit::none, 0,
+    KindInfo{LifeKind::motor_fade, "motor_fade", Profile::gradual, LifeUnit::wheel, 1, 0.05, 0.5},
+    KindInfo{LifeKind::gain_drop, "gain_drop", Profile::gradual, LifeUnit::none, 0, 1, 10},
+    KindInfo{LifeKind::quiescent_growth, "quiescent_growth", Profile::gradual, LifeUnit::none, 0,
              0.3, 3},
-    KindInfo{LifeKind::heater_stuck, "heater_stuck", Course::mode, LifeUnit::heater, 4, 1, 1},
-    KindInfo{LifeKind::redundant_thermostat, "redundant_thermostat", Course::mode, LifeUnit::heater,
-             4, 1, 1},
-    KindInfo{LifeKind::bearing_instability, "bearing_instability", Course::mode, LifeUnit::wheel, 1,
-             1, 5},
-    KindInfo{LifeKind::redundant_amplifier, "redundant_amplifier", Course::mode, LifeUnit::none, 0,
+    KindInfo{LifeKind::heater_stuck, "heater_stuck", Profile::mode, LifeUnit::heater, 4, 1, 1},
+    KindInfo{LifeKind::redundant_thermostat, "redundant_thermostat", Profile::mode,
+             LifeUnit::heater, 4, 1, 1},
+    KindInfo{LifeKind::bearing_instability, "bearing_instability", Profile::mode, LifeUnit::wheel,
+             1, 1, 5},
+    KindInfo{LifeKind::redundant_amplifier, "redundant_amplifier", Profile::mode, LifeUnit::none, 0,
              1, 1},
 };
 
@@ -191,7 +191,7 @@ std::string life_mistake(const LifeEvent& event) {
   const KindInfo& kind = info(event.kind);
   if (event.end < event.begin)
     return fmt::format("{} ends before it begins; write its times in their order", kind.name);
-  if (kind.course == Course::step && event.end != event.begin)
+  if (kind.profile == Profile::step && event.end != event.begin)
     return fmt::format("{} happens at once; give one time", kind.name);
   const int least_unit = kind.unit == LifeUnit::string_row ? 1 : 0;
   if (event.unit < least_unit || event.unit > most_unit(kind.unit))
@@ -200,7 +200,7 @@ std::string life_mistake(const LifeEvent& event) {
   if (!(event.magnitude > 0 && event.magnitude <= kind.most))
     return fmt::format("{} takes a magnitude above 0 and up to {}, not {}", kind.name, kind.most,
                        event.magnitude);
-  if (kind.course == Course::step && event.magnitude != std::floor(event.magnitude))
+  if (kind.profile == Profile::step && event.magnitude != std::floor(event.magnitude))
     return fmt::format("{} takes a whole number, not {}", kind.name, event.magnitude);
   return {};
 }
@@ -208,7 +208,7 @@ std::string life_mistake(const LifeEvent& event) {
 double progress(const LifeEvent& event, storage::Time time) {
   if (time < event.begin) return 0;
   if (event.begin == event.end) return 1;
-  if (info(event.kind).course == Course::mode) return time < event.end ? 1 : 0;
+  if (info(event.kind).profile == Profile::mode) return time < event.end ? 1 : 0;
   if (time >= event.end) return 1;
   return static_cast<double>(time - event.begin) / static_cast<double>(event.end - event.begin);
 }

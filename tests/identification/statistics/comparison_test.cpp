@@ -44,8 +44,8 @@ double promoted(double coefficient,
   int count = 0;
   for (int i = 0; i < 1000; ++i) {
     const Trial t = trial(noise, coefficient);
-    const auto compared =
-        compare_runs(t.y, t.run, other(t, noise), {{0, rows}}, confidence, Course::steady);
+    const auto compared = compare_runs(t.y, t.run, other(t, noise), {{0, rows}}, confidence,
+                                       Stationarity::stationary);
     count += compared && compared->low > 0;
   }
   return count / 1000.0;
@@ -87,8 +87,10 @@ TEST(PairedComparison, OfModelsThatErrByDifferentThingsFindsAnErrorSmallerByATen
     const Trial t = trial(noise, 0.5);
     const Matrix one = t.run + 0.7 * first_order(noise, rows, 0.5);
     const Matrix other = t.run + 0.3 * first_order(noise, rows, 0.5);
-    const auto compared = compare_runs(t.y, one, other, {{0, rows}}, confidence, Course::steady);
-    const auto reversed = compare_runs(t.y, other, one, {{0, rows}}, confidence, Course::steady);
+    const auto compared =
+        compare_runs(t.y, one, other, {{0, rows}}, confidence, Stationarity::stationary);
+    const auto reversed =
+        compare_runs(t.y, other, one, {{0, rows}}, confidence, Stationarity::stationary);
     found += compared->low > 0;
     wrong += reversed->low > 0;
   }
@@ -105,12 +107,13 @@ TEST(PairedComparison, OfAnEquipmentThatChangesAllTheTimeFindsTheRunThatFollows)
     const Trial t = trial(noise, 0.8);
     const Matrix follows = t.run + 0.3 * first_order(noise, rows, 0.98);
     const Matrix stays = t.run - growing.cwiseProduct(t.run) + 0.3 * first_order(noise, rows, 0.98);
-    const auto low = [&](const Matrix& incumbent, const Matrix& candidate, Course course) {
-      return compare_runs(t.y, incumbent, candidate, {{0, rows}}, confidence, course)->low;
+    const auto low = [&](const Matrix& incumbent, const Matrix& candidate,
+                         Stationarity stationarity) {
+      return compare_runs(t.y, incumbent, candidate, {{0, rows}}, confidence, stationarity)->low;
     };
-    found += low(stays, follows, Course::changing) > 0.15;
-    found_as_steady += low(stays, follows, Course::steady) > 0.15;
-    wrong += low(follows, stays, Course::changing) > 0;
+    found += low(stays, follows, Stationarity::changing) > 0.15;
+    found_as_steady += low(stays, follows, Stationarity::stationary) > 0.15;
+    wrong += low(follows, stays, Stationarity::changing) > 0;
   }
   EXPECT_GT(found, 600);
   EXPECT_LT(found_as_steady, 50);
@@ -124,8 +127,10 @@ TEST(PairedComparison, OfRunsThatErrAlikeAndSlowlySeldomFindsOneBetter) {
     const Trial t = trial(noise, 0.5);
     const Matrix one = t.run + first_order(noise, rows, 0.98);
     const Matrix other = t.run + first_order(noise, rows, 0.98);
-    steady += compare_runs(t.y, one, other, {{0, rows}}, confidence, Course::steady)->low > 0;
-    changing += compare_runs(t.y, one, other, {{0, rows}}, confidence, Course::changing)->low > 0;
+    steady +=
+        compare_runs(t.y, one, other, {{0, rows}}, confidence, Stationarity::stationary)->low > 0;
+    changing +=
+        compare_runs(t.y, one, other, {{0, rows}}, confidence, Stationarity::changing)->low > 0;
   }
   EXPECT_LT(steady, 20);
   EXPECT_LT(changing, 20);
@@ -141,7 +146,7 @@ TEST(PairedComparison, AStuckSensorDoesNotPromoteWhoeverAgreesWithIt) {
     t.y.middleRows(begin, stuck).setConstant(40);
     agreeing.middleRows(begin, stuck).setConstant(35);
     const auto compared =
-        compare_runs(t.y, t.run, agreeing, {{0, rows}}, confidence, Course::steady);
+        compare_runs(t.y, t.run, agreeing, {{0, rows}}, confidence, Stationarity::stationary);
     EXPECT_GT(compared->reduction, 0.5);
     count += compared->low > 0;
   }
@@ -152,7 +157,8 @@ TEST(PairedComparison, TellsTheReductionOfTheErrorAndBoundsItFromBelow) {
   test::Noise noise(45);
   const Trial t = trial(noise, 0.5);
   const Matrix better = 0.4 * t.y + 0.6 * t.run;
-  const auto compared = compare_runs(t.y, t.run, better, {{0, rows}}, confidence, Course::steady);
+  const auto compared =
+      compare_runs(t.y, t.run, better, {{0, rows}}, confidence, Stationarity::stationary);
   ASSERT_TRUE(compared);
   EXPECT_NEAR(compared->reduction, 1 - score(t.y, better).mrse() / score(t.y, t.run).mrse(), 1e-9);
   EXPECT_NEAR(compared->reduction, 0.4, 1e-9);
@@ -166,7 +172,8 @@ TEST(PairedComparison, WeighsOutputsAsTheErrorDoes) {
   Matrix y = run + noise.normal(500, 2) * Eigen::Vector2d(1, 0.01).asDiagonal();
   Matrix other = run;
   other.col(0) = 0.5 * (y.col(0) + run.col(0));
-  const auto compared = compare_runs(y, run, other, {{0, 500}}, confidence, Course::steady);
+  const auto compared =
+      compare_runs(y, run, other, {{0, 500}}, confidence, Stationarity::stationary);
   EXPECT_NEAR(compared->reduction, 1 - score(y, other).mrse() / score(y, run).mrse(), 1e-6);
   EXPECT_GT(compared->low, 0.3);
 }
@@ -174,7 +181,8 @@ TEST(PairedComparison, WeighsOutputsAsTheErrorDoes) {
 TEST(PairedComparison, OfARunWithoutErrorIsCertain) {
   test::Noise noise(47);
   const Trial t = trial(noise, 0);
-  const auto compared = compare_runs(t.y, t.run, t.y, {{0, rows}}, confidence, Course::steady);
+  const auto compared =
+      compare_runs(t.y, t.run, t.y, {{0, rows}}, confidence, Stationarity::stationary);
   ASSERT_TRUE(compared);
   EXPECT_GT(compared->low, 0.999);
 }
@@ -183,12 +191,12 @@ TEST(PairedComparison, SaysNothingOfTooFewRowsZerosOrInfinities) {
   test::Noise noise(48);
   const Trial t = trial(noise, 0);
   EXPECT_FALSE(compare_runs(t.y.topRows(49), t.run.topRows(49), t.run.topRows(49), {{0, 49}},
-                            confidence, Course::steady));
+                            confidence, Stationarity::stationary));
   const Matrix zero = Matrix::Zero(100, 1), one = Matrix::Ones(100, 1);
-  EXPECT_FALSE(compare_runs(zero, one, zero, {{0, 100}}, confidence, Course::steady));
+  EXPECT_FALSE(compare_runs(zero, one, zero, {{0, 100}}, confidence, Stationarity::stationary));
   Matrix astray = t.run;
   astray(7, 0) = std::numeric_limits<double>::infinity();
-  EXPECT_FALSE(compare_runs(t.y, astray, t.run, {{0, rows}}, confidence, Course::steady));
+  EXPECT_FALSE(compare_runs(t.y, astray, t.run, {{0, rows}}, confidence, Stationarity::stationary));
 }
 
 TEST(NoisePercent, IsWhatChangesFromRowToRow) {

@@ -66,9 +66,9 @@ Outcome outcome(const Trial& one, const StateSpaceModel& candidate) {
   EquipmentConfig limits;
   limits.margin_percent = 2;
   limits.max_mrse_percent = 1e6;
-  const auto paired =
-      identification::compare_runs(record.y, of_champion, run, {{0, rows}},
-                                   limits.confidence_percent / 100, identification::Course::steady);
+  const auto paired = identification::compare_runs(record.y, of_champion, run, {{0, rows}},
+                                                   limits.confidence_percent / 100,
+                                                   identification::Stationarity::stationary);
   Evidence::Comparison comparison;
   comparison.rows = rows;
   comparison.mrse_percent = evidence.mrse_percent;
