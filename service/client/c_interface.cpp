@@ -309,15 +309,15 @@ int reident_runner_get_state(const reident_runner* runner, reident_runner_state*
     return fail(REIDENT_BAD_ARGUMENT, "runner or state is NULL, or the state's size is 0");
   return guarded<int>(REIDENT_FAILED, [&] {
     const reident::RunState run = runner->run->state();
-    const auto standing = runner->client->client.standing(*runner->run);
+    const auto versions = runner->client->client.version_state(*runner->run);
     reident_runner_state c{};
     c.version = run.version;
-    c.offered_version = standing.offered;
+    c.offered_version = versions.offered;
     c.decided_ns = run.decided;
     c.age_ns = run.version == 0 ? 0 : std::max<std::int64_t>(0, reident::utc_now() - run.decided);
     c.swapped_ns = run.swapped;
     c.following = run.is_following ? 1 : 0;
-    c.from_cache = run.version != 0 && standing.from_cache ? 1 : 0;
+    c.from_cache = run.version != 0 && versions.from_cache ? 1 : 0;
     c.sample_period_s = run.period_s;
     c.running_mrse_percent = run.mrse_percent;
     c.steps = run.steps;

@@ -334,7 +334,7 @@ std::optional<std::string> SimulatorClient::accept(EquipmentRunner& runner) {
   return std::nullopt;
 }
 
-SimulatorClient::Standing SimulatorClient::standing(const EquipmentRunner& runner) {
+SimulatorClient::VersionState SimulatorClient::version_state(const EquipmentRunner& runner) {
   const MutexLock lock(mutex_);
   const Run* run = find({runner.spacecraft(), runner.equipment()});
   return {run->offered ? run->offered->version.number : 0,

@@ -73,11 +73,11 @@ class SimulatorClient {
   std::optional<std::string> accept(EquipmentRunner& runner);
 
   /// How a run stands to what is published.
-  struct Standing {
+  struct VersionState {
     std::int64_t offered = 0;  // 0: none
     bool from_cache = false;   // the version that runs or was posted
   };
-  Standing standing(const EquipmentRunner& runner);
+  VersionState version_state(const EquipmentRunner& runner);
 
   /// Returns the oldest event that was not asked for yet, and waits for one at most `timeout`
   /// (negative: for ever). Absent where none came.

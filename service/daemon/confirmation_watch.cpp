@@ -27,12 +27,13 @@ void ConfirmationWatch::look(Watched& watched, storage::Time reached,
   const Duration pause = std::max(equipment.confirmation / asked_in_confirmation, least_pause);
   if (reached < watched.since + pause) return;
   try {
-    const storage::Standing standing = registry.standing(*watched.spacecraft, equipment.name);
-    if (standing != watched.standing) watched.since = INT64_MIN;
+    const storage::DecisionState state =
+        registry.decision_state(*watched.spacecraft, equipment.name);
+    if (state != watched.state) watched.since = INT64_MIN;
     decide_probation(archive, registry, *watched.spacecraft, equipment, watched.since, reached,
                      context);
     watched.since = reached;
-    watched.standing = standing;
+    watched.state = state;
   } catch (const storage::Error& error) {
     if (error.what() != std::exchange(last_error_, error.what()))
       log::error(

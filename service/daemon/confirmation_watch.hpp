@@ -23,8 +23,8 @@ class ConfirmationWatch {
   struct Watched {
     const std::string* spacecraft;
     const EquipmentConfig* equipment;
-    storage::Time since = INT64_MIN;  // looked at so far, on this standing
-    storage::Standing standing{};
+    storage::Time since = INT64_MIN;  // looked at so far, on this decision state
+    storage::DecisionState state{};
   };
   void look(Watched& watched, storage::Time reached, const storage::Archive& archive,
             const storage::Registry& registry, const AttemptContext& context);

@@ -6,29 +6,29 @@
 namespace reident {
 namespace {
 
-/// The version's number, 0 without one; absent where the standing has changed.
-std::optional<std::int64_t> record(const storage::Standing& standing, RefreshResult& result,
+/// The version's number, 0 without one; absent where the decision state has changed.
+std::optional<std::int64_t> record(const storage::DecisionState& state, RefreshResult& result,
                                    const AttemptContext& context) {
   std::optional<std::int64_t> number;
   context.write([&](storage::Registry& registry, auto&) {
     result.attempt.time = context.clock();
     if (!result.candidate) {
-      if (registry.standing(result.attempt.spacecraft, result.attempt.equipment) != standing)
+      if (registry.decision_state(result.attempt.spacecraft, result.attempt.equipment) != state)
         return;
       registry.record(result.attempt);
       number = 0;
       return;
     }
-    number = registry.record_if(standing, result.attempt, result.version, *result.decision);
+    number = registry.record_if(state, result.attempt, result.version, *result.decision);
   });
   return number;
 }
 
-bool record(const storage::Standing& standing, const ProbationDecision& found,
+bool record(const storage::DecisionState& state, const ProbationDecision& found,
             const AttemptContext& context) {
   bool recorded = false;
   context.write([&](storage::Registry& registry, auto&) {
-    recorded = reident::record(registry, standing, found, context.clock());
+    recorded = reident::record(registry, state, found, context.clock());
   });
   if (recorded && context.decided) context.decided(found);
   return recorded;
@@ -39,10 +39,11 @@ bool record(const storage::Standing& standing, const ProbationDecision& found,
 void decide_probation(const storage::Archive& archive, const storage::Registry& registry,
                       const std::string& spacecraft, const EquipmentConfig& equipment,
                       storage::Time since, storage::Time reached, const AttemptContext& context) {
-  look_at_probation(archive, registry, spacecraft, equipment, since, reached,
-                    [&context](const storage::Standing& standing, const ProbationDecision& found) {
-                      return record(standing, found, context);
-                    });
+  look_at_probation(
+      archive, registry, spacecraft, equipment, since, reached,
+      [&context](const storage::DecisionState& state, const ProbationDecision& found) {
+        return record(state, found, context);
+      });
 }
 
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
@@ -55,14 +56,15 @@ std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
   context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, end); });
   decide_probation(archive, registry, *job.spacecraft, *job.equipment, INT64_MIN, end, context);
   // Read before the champion and the hold are looked at.
-  const storage::Standing standing = registry.standing(*job.spacecraft, job.equipment->name);
+  const storage::DecisionState state =
+      registry.decision_state(*job.spacecraft, job.equipment->name);
   const RefreshRequest request{
       *job.spacecraft, *job.equipment,
       behind_champion(registry, *job.spacecraft, job.equipment->name, job.window.window),
       job.window.cause, context.configuration_digest};
   RecordedAttempt attempt{
       refresh(archive, registry, request, kept, context.for_each, context.stop)};
-  const auto number = record(standing, attempt.result, context);
+  const auto number = record(state, attempt.result, context);
   if (!number) return std::nullopt;
   attempt.version = *number;
   return attempt;

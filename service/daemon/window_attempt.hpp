@@ -38,10 +38,9 @@ void decide_probation(const storage::Archive& archive, const storage::Registry& 
 
 /// Seals the window, looks at the equipment's versions on probation with the telemetry up to its
 /// end, tries what of it does not lie before the champion's window and commits what came out;
-/// nothing is published. Absent, and nothing recorded of the window, where the equipment's standing
-/// is not the one that the attempt saw any more.
-/// `archive` and `registry` are of the calling thread; `kept` is of the job's equipment. Throws
-/// Stopped where `stop` answered true.
+/// nothing is published. Absent, and nothing recorded of the window, where the equipment's decision
+/// state is not the one that the attempt saw any more. `archive` and `registry` are of the calling
+/// thread; `kept` is of the job's equipment. Throws Stopped where `stop` answered true.
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
                                               const storage::Archive& archive,
                                               const storage::Registry& registry, WindowCache& kept,

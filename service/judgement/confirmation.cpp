@@ -399,12 +399,11 @@ Duration longest_run_up(const EquipmentConfig& equipment) {
   return time_constants * equipment.window;
 }
 
-bool record(storage::Registry& registry, const storage::Standing& standing,
+bool record(storage::Registry& registry, const storage::DecisionState& state,
             const ProbationDecision& found, storage::Time time) {
   const storage::Version& version = found.version;
   return registry
-      .decide_if(standing, version.spacecraft, version.equipment, version.number, found.decision,
-                 time)
+      .decide_if(state, version.spacecraft, version.equipment, version.number, found.decision, time)
       .has_value();
 }
 
@@ -415,12 +414,12 @@ void look_at_probation(const storage::Archive& archive, const storage::Registry&
   std::stable_sort(versions.begin(), versions.end(),
                    [](const auto& a, const auto& b) { return a.window.end > b.window.end; });
   for (const storage::Version& listed : versions) {
-    const storage::Standing standing = registry.standing(spacecraft, equipment.name);
+    const storage::DecisionState state = registry.decision_state(spacecraft, equipment.name);
     if (registry.hold(spacecraft, equipment.name)) return;
     storage::Version version = *registry.version(spacecraft, equipment.name, listed.number);
     if (version.status != "waiting") continue;  // another thread has decided meanwhile
     auto found = look_at(archive, registry, equipment, version, since, reached);
-    if (found) record(standing, {std::move(version), std::move(*found)});
+    if (found) record(state, {std::move(version), std::move(*found)});
   }
 }
 

@@ -93,11 +93,12 @@ struct ProbationDecision {
   storage::NewDecision decision;
 };
 
-/// Records the decision unless the standing is not the given one any more. Whether it was recorded.
-bool record(storage::Registry& registry, const storage::Standing& standing,
+/// Records the decision if the decision state is still the given one. Whether it was recorded.
+bool record(storage::Registry& registry, const storage::DecisionState& state,
             const ProbationDecision& found, storage::Time time);
 
-using RecordProbation = std::function<bool(const storage::Standing&, const ProbationDecision&)>;
+using RecordProbation =
+    std::function<bool(const storage::DecisionState&, const ProbationDecision&)>;
 
 /// Looks at the equipment's versions on probation with telemetry until `reached`, that of the
 /// newest window first: when it has gone on for three quarters and all of `confirmation`

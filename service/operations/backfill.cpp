@@ -124,8 +124,8 @@ class Backfill {
   bool record(RefreshRequest request, PreparedWindow&& prepared) {
     look_at_probation(archive_, registry_, request.spacecraft, request.equipment, INT64_MIN,
                       request.window.end,
-                      [this](const storage::Standing& standing, const ProbationDecision& found) {
-                        return record(standing, found);
+                      [this](const storage::DecisionState& state, const ProbationDecision& found) {
+                        return record(state, found);
                       });
     const storage::TimeRange window =
         behind_champion(registry_, request.spacecraft, request.equipment.name, request.window);
@@ -147,8 +147,8 @@ class Backfill {
     return report_(progress_);
   }
 
-  bool record(const storage::Standing& standing, const ProbationDecision& found) {
-    const bool recorded = reident::record(registry_, standing, found, clock_());
+  bool record(const storage::DecisionState& state, const ProbationDecision& found) {
+    const bool recorded = reident::record(registry_, state, found, clock_());
     if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
     return recorded;
   }

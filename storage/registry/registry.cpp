@@ -96,11 +96,12 @@ std::int64_t Registry::record(const NewAttempt& attempt, const NewVersion& versi
   return number;
 }
 
-std::optional<std::int64_t> Registry::record_if(const Standing& standing, const NewAttempt& attempt,
+std::optional<std::int64_t> Registry::record_if(const DecisionState& state,
+                                                const NewAttempt& attempt,
                                                 const NewVersion& version,
                                                 const NewDecision& decision) {
   sqlite::Transaction transaction(connection(database_));
-  if (this->standing(attempt.spacecraft, attempt.equipment) != standing) return std::nullopt;
+  if (decision_state(attempt.spacecraft, attempt.equipment) != state) return std::nullopt;
   const std::int64_t number = record(attempt, version, decision);
   transaction.commit();
   return number;
@@ -134,13 +135,13 @@ std::int64_t Registry::decide(const std::string& spacecraft, const std::string& 
   return id;
 }
 
-std::optional<std::int64_t> Registry::decide_if(const Standing& standing,
+std::optional<std::int64_t> Registry::decide_if(const DecisionState& state,
                                                 const std::string& spacecraft,
                                                 const std::string& equipment, std::int64_t version,
                                                 const NewDecision& decision, Time time) {
   sqlite::Connection& db = connection(database_);
   sqlite::Transaction transaction(db);
-  if (this->standing(spacecraft, equipment) != standing) return std::nullopt;
+  if (decision_state(spacecraft, equipment) != state) return std::nullopt;
   version_to_decide(*this, spacecraft, equipment, version, decision.kind);
   const std::int64_t id = add_decision(db, spacecraft, equipment, version, decision, time);
   transaction.commit();
@@ -255,7 +256,8 @@ std::int64_t Registry::last_decision() const {
   return row.integer(0);
 }
 
-Standing Registry::standing(const std::string& spacecraft, const std::string& equipment) const {
+DecisionState Registry::decision_state(const std::string& spacecraft,
+                                       const std::string& equipment) const {
   sqlite::Query row = connection(database_).query(
       "SELECT (SELECT coalesce(max(id), 0) FROM decision "
       "        WHERE spacecraft = ?1 AND equipment = ?2), "

@@ -6,7 +6,7 @@
 // kind `approve` or `roll_back` not later than it, unless that version was withdrawn by then. The
 // last one is the one with the highest id, which also holds when the clock was set back. A
 // version's parent is the champion that it was judged against. A decision rests on what was decided
-// before it (Standing): everything that decides checks this in the transaction that records it.
+// before it (DecisionState): everything that decides checks this in its transaction.
 #pragma once
 
 #include <cstdint>
@@ -34,9 +34,9 @@ class Registry {
   /// transaction. Returns the version's number.
   std::int64_t record(const NewAttempt& attempt, const NewVersion& version,
                       const NewDecision& decision);
-  /// As record(), if the equipment's standing is still the given one. Absent where it is not; then
-  /// nothing is recorded.
-  std::optional<std::int64_t> record_if(const Standing& standing, const NewAttempt& attempt,
+  /// As record(), if the equipment's decision state is still the given one. Absent where it is not;
+  /// then nothing is recorded.
+  std::optional<std::int64_t> record_if(const DecisionState& state, const NewAttempt& attempt,
                                         const NewVersion& version, const NewDecision& decision);
   /// Records one more decision about a version that exists. A waiting version may be approved, if
   /// its parent is the champion, or rejected; a superseded one rolled back to; an approved or
@@ -47,8 +47,8 @@ class Registry {
                       std::int64_t version, const NewDecision& decision, Time time);
 
   /// As decide(), by one who judged a waiting version against today's champion, whatever its parent
-  /// was till then. Absent where the standing is not the given one; then nothing is recorded.
-  std::optional<std::int64_t> decide_if(const Standing& standing, const std::string& spacecraft,
+  /// was till then. Absent where the decision state is not the given one; then nothing is recorded.
+  std::optional<std::int64_t> decide_if(const DecisionState& state, const std::string& spacecraft,
                                         const std::string& equipment, std::int64_t version,
                                         const NewDecision& decision, Time time);
 
@@ -95,7 +95,7 @@ class Registry {
   std::optional<Hold> hold(const std::string& spacecraft, const std::string& equipment) const;
   /// Id of the last decision about any equipment, 0 before the first.
   std::int64_t last_decision() const;
-  Standing standing(const std::string& spacecraft, const std::string& equipment) const;
+  DecisionState decision_state(const std::string& spacecraft, const std::string& equipment) const;
   std::optional<Attempt> attempt(std::int64_t id) const;
   /// Attempts that the filter selects, ascending by id.
   std::vector<Attempt> attempts(const HistoryFilter& filter = {}) const;

@@ -119,11 +119,11 @@ struct Hold {
 
 /// What a decision about an equipment is based on. It changes with every decision and hold, so that
 /// two equal ones mean that nothing was decided in between.
-struct Standing {
+struct DecisionState {
   /// Ids of the last decision, and of the last hold or release; 0 before the first.
   std::int64_t last_decision = 0;
   std::int64_t last_hold = 0;
-  bool operator==(const Standing&) const = default;
+  bool operator==(const DecisionState&) const = default;
 };
 
 /// An operator's command. Requester and request identify it: the same pair with the same contents

@@ -51,7 +51,7 @@ TEST_F(WindowAttempt, TriesNothingThatLiesBeforeTheChampionsWindow) {
       << "an older one";
 }
 
-TEST_F(WindowAttempt, IsNotRecordedWithoutAModelEitherOnceTheStandingIsAnotherOne) {
+TEST_F(WindowAttempt, IsNotRecordedWithoutAModelEitherOnceTheDecisionStateIsAnotherOne) {
   const storage::TimeRange empty{day + 60 * minute, day + 70 * minute};
   int writes = 0;
   const auto hold = [&] {

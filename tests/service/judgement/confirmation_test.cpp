@@ -58,9 +58,9 @@ class Probation : public DaemonTest {
   std::vector<ProbationDecision> look(storage::Time reached, storage::Time since = INT64_MIN) {
     std::vector<ProbationDecision> found;
     look_at_probation(archive, registry, "SAT", equipment, since, reached,
-                      [&](const storage::Standing& standing, const ProbationDecision& decided) {
+                      [&](const storage::DecisionState& state, const ProbationDecision& decided) {
                         found.push_back(decided);
-                        return record(registry, standing, decided, reached);
+                        return record(registry, state, decided, reached);
                       });
     return found;
   }
@@ -307,7 +307,7 @@ TEST_F(Probation, IsOverOnceNoneWaitsAnyMore) {
   none.confirmation = 0;
   std::vector<ProbationDecision> found;
   look_at_probation(archive, registry, "SAT", none, INT64_MIN, window_end + minute,
-                    [&](const storage::Standing&, const ProbationDecision& decided) {
+                    [&](const storage::DecisionState&, const ProbationDecision& decided) {
                       found.push_back(decided);
                       return true;
                     });

@@ -50,8 +50,8 @@ class Commands : public DaemonTest {
     return registry_.version("SAT", "PLANT", number)->status;
   }
   std::size_t rows() const {
-    const storage::Standing standing = registry_.standing("SAT", "PLANT");
-    return static_cast<std::size_t>(standing.last_decision + standing.last_hold);
+    const storage::DecisionState state = registry_.decision_state("SAT", "PLANT");
+    return static_cast<std::size_t>(state.last_decision + state.last_hold);
   }
   void expect_done(const CommandOutcome& outcome, const std::string& says) {
     EXPECT_TRUE(outcome.ok) << outcome.reply;

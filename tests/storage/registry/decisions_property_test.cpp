@@ -116,7 +116,7 @@ RC_GTEST_PROP(DecisionsProperty, FollowTheRulesInWhateverOrderAndWhateverTheCloc
         is_anew ? ledger.status(version) == "waiting" : ledger.allows(version, kind);
     const std::string error = error_of([&] {
       if (is_anew)
-        registry.decide_if(registry.standing("CB4", "BDR"), "CB4", "BDR", version,
+        registry.decide_if(registry.decision_state("CB4", "BDR"), "CB4", "BDR", version,
                            {kind, "gate", ""}, time);
       else
         registry.decide("CB4", "BDR", version, {kind, "Ana", ""}, time);

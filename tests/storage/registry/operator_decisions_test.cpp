@@ -209,21 +209,21 @@ TEST_F(OperatorDecisions, AHoldLastsUntilItsRelease) {
 }
 
 TEST_F(OperatorDecisions, NothingIsRecordedOnAGroundThatChanged) {
-  const auto record_on = [&](const Standing& standing) {
-    return registry.record_if(standing, attempt(100), {"{}", "d"}, decision(approve));
+  const auto record_on = [&](const DecisionState& state) {
+    return registry.record_if(state, attempt(100), {"{}", "d"}, decision(approve));
   };
-  const Standing nothing = registry.standing("CB4", "BDR");
+  const DecisionState nothing = registry.decision_state("CB4", "BDR");
   version(10, approve, "MEA");
   registry.put_on_hold("CB4", "MEA", {"Ana", "", 15});
   EXPECT_EQ(record_on(nothing), 1) << "another equipment is no ground of this one";
   EXPECT_EQ(record_on(nothing), std::nullopt) << "there is a champion now";
-  const Standing first = registry.standing("CB4", "BDR");
+  const DecisionState first = registry.decision_state("CB4", "BDR");
   registry.put_on_hold("CB4", "BDR", {"Ana", "", 20});
   EXPECT_EQ(record_on(first), std::nullopt) << "held";
   registry.release("CB4", "BDR", {"Ana", "", 30});
   EXPECT_EQ(record_on(first), std::nullopt) << "it was held meanwhile";
   EXPECT_EQ(registry.version("CB4", "BDR", 2), std::nullopt);
-  EXPECT_EQ(record_on(registry.standing("CB4", "BDR")), 2);
+  EXPECT_EQ(record_on(registry.decision_state("CB4", "BDR")), 2);
 }
 
 TEST_F(OperatorDecisions, ACommandThatComesTwiceHasItsEffectOnceAndTheSameReply) {

@@ -103,19 +103,20 @@ TEST_F(RegistryTest, LetsWhoJudgedAnewApproveAfterTheChampionChanged) {
   version(10, DecisionKind::approve);
   version(20, DecisionKind::wait);
   version(30, DecisionKind::approve);
-  const Standing standing = registry.standing("CB4", "BDR");
+  const DecisionState state = registry.decision_state("CB4", "BDR");
   EXPECT_THAT(error_of([&] { decide(2, DecisionKind::approve, 35); }),
               HasSubstr("judged against another champion"));
   const NewDecision confirmed{DecisionKind::approve, "gate", "confirmed", R"({"rows":9})"};
-  EXPECT_TRUE(registry.decide_if(standing, "CB4", "BDR", 2, confirmed, 40));
+  EXPECT_TRUE(registry.decide_if(state, "CB4", "BDR", 2, confirmed, 40));
   EXPECT_EQ(registry.version("CB4", "BDR", 2)->parent, 3);
   EXPECT_EQ(registry.decisions("CB4", "BDR", 2).back().evidence_json, R"({"rows":9})");
   EXPECT_EQ(champion_at(std::nullopt), 2);
   version(50, DecisionKind::wait);
-  EXPECT_FALSE(registry.decide_if(standing, "CB4", "BDR", 4, confirmed, 60))
+  EXPECT_FALSE(registry.decide_if(state, "CB4", "BDR", 4, confirmed, 60))
       << "decisions were made since";
   EXPECT_THAT(error_of([&] {
-                registry.decide_if(registry.standing("CB4", "BDR"), "CB4", "BDR", 3, confirmed, 60);
+                registry.decide_if(registry.decision_state("CB4", "BDR"), "CB4", "BDR", 3,
+                                   confirmed, 60);
               }),
               HasSubstr("is superseded"));
 }
