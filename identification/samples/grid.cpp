@@ -18,8 +18,8 @@ std::int64_t tick_at_or_after(std::int64_t time_ns, std::int64_t period_ns) {
 /// Walks one channel's samples along ascending times.
 class Cursor {
  public:
-  Cursor(const ChannelSamples& channel, std::int64_t hold_ns)
-      : channel_(channel), hold_ns_(hold_ns) {}
+  Cursor(const ChannelSamples& channel, std::int64_t sample_hold_ns)
+      : channel_(channel), sample_hold_ns_(sample_hold_ns) {}
 
   /// The value that holds at `time_ns`, which never decreases from call to call.
   std::optional<double> value_at(std::int64_t time_ns) {
@@ -28,7 +28,7 @@ class Cursor {
     // Unsigned, since the distance of two int64 may not fit in one.
     const auto age = static_cast<std::uint64_t>(time_ns) -
                      static_cast<std::uint64_t>(channel_.time_ns[next_ - 1]);
-    if (age >= static_cast<std::uint64_t>(hold_ns_)) return std::nullopt;
+    if (age >= static_cast<std::uint64_t>(sample_hold_ns_)) return std::nullopt;
     return channel_.value[next_ - 1];
   }
 
@@ -46,7 +46,7 @@ class Cursor {
   }
 
   ChannelSamples channel_;
-  std::int64_t hold_ns_;
+  std::int64_t sample_hold_ns_;
   std::size_t next_ = 0;  // first sample after the last call's time
 };
 
@@ -69,11 +69,13 @@ struct Rows {
 
 Record make_record(std::span<const ChannelSamples> inputs, std::span<const ChannelSamples> outputs,
                    std::int64_t begin_ns, std::int64_t end_ns, const GridOptions& options) {
-  assert(options.period_ns > 0 && options.hold_ns > 0);
+  assert(options.period_ns > 0 && options.sample_hold_ns > 0);
   const std::int64_t period = options.period_ns;
   std::vector<Cursor> cursors;
-  for (const ChannelSamples& channel : inputs) cursors.emplace_back(channel, options.hold_ns);
-  for (const ChannelSamples& channel : outputs) cursors.emplace_back(channel, options.hold_ns);
+  for (const ChannelSamples& channel : inputs)
+    cursors.emplace_back(channel, options.sample_hold_ns);
+  for (const ChannelSamples& channel : outputs)
+    cursors.emplace_back(channel, options.sample_hold_ns);
 
   Rows rows;
   std::vector<double> row(cursors.size());

@@ -19,7 +19,7 @@ using identification::Record;
 using identification::RowRange;
 
 // The daemon's default: a sample serves this many periods.
-constexpr std::int64_t hold_periods = 3;
+constexpr std::int64_t sample_hold_periods = 3;
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -255,12 +255,12 @@ std::variant<std::int64_t, Refusal> period_of(const DataRequest& request,
     return usual;
   }
   const auto period = static_cast<std::int64_t>(std::llround(*request.period_s * 1e9));
-  const std::int64_t least = (usual + hold_periods - 1) / hold_periods;
+  const std::int64_t least = (usual + sample_hold_periods - 1) / sample_hold_periods;
   if (period < least)
     return Refusal{
         fmt::format("--period {} is too short for {}, whose median step is {}: a sample "
                     "serves {} periods; make it at least {}",
-                    *request.period_s, *request.time, duration_text(usual), hold_periods,
+                    *request.period_s, *request.time, duration_text(usual), sample_hold_periods,
                     duration_text(least))};
   return period;
 }
@@ -272,7 +272,7 @@ Record record_of_times(const csv::Table& table, std::size_t inputs, std::int64_t
     channels.push_back({table.time_ns, column, usable});
   const std::span all(channels);
   return make_record(all.first(inputs), all.subspan(inputs), table.time_ns.front(),
-                     table.time_ns.back() + 1, {period_ns, hold_periods * period_ns});
+                     table.time_ns.back() + 1, {period_ns, sample_hold_periods * period_ns});
 }
 
 /// First tick at or after the time of a row of the file; after the last row's, the end.

@@ -26,7 +26,7 @@ class LiveEquipment {
   void add(const storage::TelemetryFrame& frame);
 
   /// Runs `next` from the next tick on; the errors count from zero again. Where its signals,
-  /// period and hold are those of the version that runs, the output continues: the swap is
+  /// period and sample hold are those of the version that runs, the output continues: the swap is
   /// returned. Otherwise the run starts over with it, and the parameters must be described again.
   std::optional<ModelRunner::Swap> adopt(const ModelVersion& next);
 

@@ -26,7 +26,7 @@ bool is_usable(const storage::Sample& sample) {
 TelemetryTracker::TelemetryTracker(const EquipmentModel& model)
     : spacecraft_(model.spacecraft),
       period_ns_(std::max<storage::Time>(1, std::llround(model.dynamics.period_s * 1e9))),
-      hold_ns_(model.hold_ns),
+      sample_hold_ns_(model.sample_hold_ns),
       expressions_(signal_names(model.inputs), derived_inputs(model.inputs)),
       inputs_(expressions_.parameters().size()),
       parameters_(static_cast<identification::Index>(inputs_)) {
@@ -93,7 +93,7 @@ void TelemetryTracker::give_out(std::int64_t tick, const std::function<void(cons
 }
 
 bool TelemetryTracker::went_back(storage::Time time) {
-  const bool useless = time + hold_ns_ < next_tick_ * period_ns_ - period_ns_;
+  const bool useless = time + sample_hold_ns_ < next_tick_ * period_ns_ - period_ns_;
   frames_in_the_past_ = useless ? frames_in_the_past_ + 1 : 0;
   if (frames_in_the_past_ < frames_that_prove_a_jump) return false;
   ++counters_.clock_jumps;
@@ -135,7 +135,7 @@ double TelemetryTracker::value_at(const Channel& channel, storage::Time time) co
   double value = nan;
   for (const Held& held : channel.samples) {
     if (held.time > time) break;
-    value = time - held.time < hold_ns_ ? held.value : nan;
+    value = time - held.time < sample_hold_ns_ ? held.value : nan;
   }
   return value;
 }
@@ -157,7 +157,8 @@ std::int64_t TelemetryTracker::next_value(const Channel& channel, std::int64_t t
         channel.samples.begin(), channel.samples.end(),
         [&](const Held& held) { return held.time > tick * period_ns_ && !std::isnan(held.value); });
     if (next == channel.samples.end()) return end;
-    // A later sample that is not usable, or a hold below the period, may still leave it empty.
+    // A later sample that is not usable, or a sample hold below the period, may still leave it
+    // empty.
     tick = std::max(tick + 1, tick_at_or_after(next->time, period_ns_));
   }
   return std::min(tick, end);

@@ -1,10 +1,10 @@
 // From live frames to the ticks of a model's grid.
 //
 // The rule is that of identification/samples/grid.hpp: the value of a signal at a tick is its
-// latest usable sample at or before it and younger than the hold; a sample that is not usable ends
-// the hold of the one before it. A tick is given out once a frame with a later generation time has
-// come, so that samples of the tick's own time that travel in several frames are all there. Derived
-// inputs follow from the values of their parameters at the tick.
+// latest usable sample at or before it and younger than the sample hold; a sample that is not
+// usable ends the sample hold of the one before it. A tick is given out once a frame with a later
+// generation time has come, so that samples of the tick's own time that travel in several frames
+// are all there. Derived inputs follow from the values of their parameters at the tick.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ struct Tick {
   identification::Vector y;  // p, NaN where the output is missing or not usable
 };
 
-/// One thread at a time. Its memory is that of the samples within a hold; ticks of a gap cost no
-/// time.
+/// One thread at a time. Its memory is that of the samples within a sample hold; ticks of a gap
+/// cost no time.
 class TelemetryTracker {
  public:
   struct Counters {
@@ -68,7 +68,7 @@ class TelemetryTracker {
   void restart(storage::Time time);
   void store(const storage::TelemetryFrame& frame);
   void insert(Channel& channel, Held held);
-  /// NaN where there is no usable sample within the hold.
+  /// NaN where there is no usable sample within the sample hold.
   double value_at(const Channel& channel, storage::Time time) const;
   void give_out(std::int64_t tick, const std::function<void(const Tick&)>& sink);
   /// The first tick in [tick, end) at which every parameter of the inputs has a value, or end.
@@ -80,7 +80,7 @@ class TelemetryTracker {
 
   std::string spacecraft_;
   storage::Time period_ns_;
-  storage::Time hold_ns_;
+  storage::Time sample_hold_ns_;
   InputExpressions expressions_;
   std::size_t inputs_;             // channels that the inputs are computed from
   std::vector<Channel> channels_;  // these, then outputs

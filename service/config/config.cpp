@@ -258,7 +258,7 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
   const auto slide = reader.duration("slide", millisecond, 3650 * day);
   if (!period) return;
   equipment.sample_period = *period;
-  equipment.hold = hold.value_or(3 * *period);
+  equipment.sample_hold = hold.value_or(3 * *period);
   if (hold && *hold < *period)
     reader.mistake("hold", fmt::format("hold {} is shorter than sample_period {}: there would be "
                                        "holes between samples",

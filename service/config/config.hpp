@@ -41,7 +41,7 @@ struct EquipmentConfig {
   std::vector<DerivedInput> derived;
   std::vector<std::string> outputs;
   Duration sample_period = 0;
-  Duration hold = 0;  // default: three sample periods
+  Duration sample_hold = 0;  // default: three sample periods
   Duration window = 0;
   Duration slide = 0;
   double validation_share = 0.3;  // last part of the window, for scores alone

@@ -128,7 +128,7 @@ Fault fault_in_scalars(const ModelVersion& version) {
   if (!std::isfinite(model.dynamics.period_s) || model.dynamics.period_s <= 0) {
     return "the sample period is not a number of seconds above 0";
   }
-  if (model.hold_ns < 1) return "the hold is below 1 ns";
+  if (model.sample_hold_ns < 1) return "the hold is below 1 ns";
   if (model.identified_from.end < model.identified_from.begin ||
       model.validated_on.end < model.validated_on.begin) {
     return "a range of time ends before it begins";
@@ -160,7 +160,7 @@ const reident_ModelVersion& Codec<ModelVersion>::Encoder::operator()(const Model
   wire_.rollback = version.rollback;
   wire_.program_version = borrow(version.program_version);
   wire_.sample_period_s = dynamics.period_s;
-  wire_.hold_ns = model.hold_ns;
+  wire_.hold_ns = model.sample_hold_ns;
   wire_.order = static_cast<std::uint32_t>(dynamics.order());
   wire_.inputs = borrow_signals<decltype(wire_.inputs)>(model.inputs, inputs_);
   wire_.outputs = borrow_signals<decltype(wire_.outputs)>(model.outputs, outputs_);
@@ -212,7 +212,7 @@ Fault Codec<ModelVersion>::decode(const reident_ModelVersion& wire,
   model.outputs = read_signals(wire.outputs, texts);
   model.method = texts.text(wire.method, "method");
   model.dynamics.period_s = wire.sample_period_s;
-  model.hold_ns = wire.hold_ns;
+  model.sample_hold_ns = wire.hold_ns;
   model.identified_from = {wire.identified_begin_ns, wire.identified_end_ns};
   model.validated_on = {wire.validated_begin_ns, wire.validated_end_ns};
   model.validation.rows = wire.validation_rows;

@@ -111,8 +111,8 @@ template <class Visit>
 void visit_fields(RecordOf<EquipmentModel> auto& model, Visit&& visit) {
   using enum Digest;
   using enum Extent;
-  auto& [spacecraft, equipment, inputs, outputs, dynamics, hold_ns, identified_from, validated_on,
-         validation, tracking, method] = model;
+  auto& [spacecraft, equipment, inputs, outputs, dynamics, sample_hold_ns, identified_from,
+         validated_on, validation, tracking, method] = model;
   auto& [A, B, C, D, K, u0, y0, period_s] = dynamics;
   const identification::Index order = dynamics.order();
   visit({"spacecraft", digested}, spacecraft);
@@ -121,7 +121,7 @@ void visit_fields(RecordOf<EquipmentModel> auto& model, Visit&& visit) {
   visit({"outputs", digested, "output_", p}, outputs);
   visit({"order"}, order);
   visit({"sample_period_s", digested, "Ts"}, period_s);
-  visit({"hold_ns", digested}, hold_ns);
+  visit({"hold_ns", digested}, sample_hold_ns);
   visit({"A", digested, "A", n, n}, A);
   visit({"B", digested, "B", n, m}, B);
   visit({"C", digested, "C", p, n}, C);

@@ -22,8 +22,8 @@ nlohmann::ordered_json to_json(const EquipmentModel& model);
 EquipmentModel equipment_model_from_json(const std::string& text);
 
 /// SHA-256, hexadecimal, of the model's canonical encoding (README of idl/): names, units, ranges,
-/// period, hold, sizes and matrices as little-endian bytes. Whoever receives a version can compute
-/// it again from the fields that it received.
+/// period, sample hold, sizes and matrices as little-endian bytes. Whoever receives a version can
+/// compute it again from the fields that it received.
 std::string model_digest(const EquipmentModel& model);
 
 }  // namespace reident

@@ -69,7 +69,7 @@ struct EquipmentModel {
   std::vector<Signal> inputs;   // m, in the order of u
   std::vector<Signal> outputs;  // p, in the order of y
   identification::StateSpaceModel dynamics;
-  std::int64_t hold_ns = 0;            // a sample of an input or output serves this long
+  std::int64_t sample_hold_ns = 0;     // a sample of an input or output serves this long
   storage::TimeRange identified_from;  // times of the rows that were identified from
   storage::TimeRange validated_on;     // times of the rows that nothing was chosen on
   identification::Score validation;    // free run on samples that the identification did not use

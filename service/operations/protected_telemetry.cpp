@@ -51,7 +51,7 @@ void add(std::vector<ProtectedRange>& stretches, const Descriptors& descriptors,
       range.begin = std::min(range.begin, part.begin);
       range.end = std::max(range.end, part.end);
     }
-    range.begin = before(range.begin, model.hold_ns);
+    range.begin = before(range.begin, model.sample_hold_ns);
     std::vector<std::string> names = parameters_of(model);
     for (const Relation& relation : relations_of(version))
       for (std::string& name : parameters_of(relation)) names.push_back(std::move(name));
@@ -92,7 +92,7 @@ std::vector<ProtectedRange> telemetry_still_needed(const storage::Archive& archi
     const Descriptors descriptors = archive.parameters(spacecraft.name);
     for (const EquipmentConfig& equipment : spacecraft.equipment) {
       add(stretches, spacecraft.name, descriptors, parameters_of(equipment),
-          {before(newest, equipment.window + equipment.slide + equipment.hold),
+          {before(newest, equipment.window + equipment.slide + equipment.sample_hold),
            std::numeric_limits<storage::Time>::max()});
       for (const storage::Version& version : on_probation(registry, spacecraft.name, equipment))
         add(stretches, descriptors, version,

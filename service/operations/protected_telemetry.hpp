@@ -12,9 +12,9 @@ namespace reident {
 
 /// What every version that was ever published (approved, or rolled back to; also those withdrawn
 /// since) was identified from, tuned and validated on: the parameters of its inputs and outputs,
-/// simulated ones too, in its window and the hold before that. Every parameter of the spacecraft is
-/// protected where the model cannot be read, or where no descriptor has the name of one of its
-/// parameters any more. Throws storage::Error.
+/// simulated ones too, in its window and the sample hold before that. Every parameter of the
+/// spacecraft is protected where the model cannot be read, or where no descriptor has the name of
+/// one of its parameters any more. Throws storage::Error.
 std::vector<storage::ProtectedRange> telemetry_of_versions(const storage::Archive& archive,
                                                            const storage::Registry& registry);
 

@@ -87,7 +87,7 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   model.inputs = with_ranges(data.inputs, fitted(data.record.u));
   model.outputs = with_ranges(data.outputs, fitted(data.record.y));
   model.dynamics = chosen.dynamics;
-  model.hold_ns = request.equipment.hold;
+  model.sample_hold_ns = request.equipment.sample_hold;
   model.identified_from = time_range(data.record, parts.identify, period);
   model.validated_on = time_range(data.record, parts.validate, period);
   model.method = chosen.method;

@@ -34,7 +34,7 @@ ordered_json to_json(const EquipmentConfig& equipment) {
                        {"inputs", equipment.inputs},
                        {"outputs", equipment.outputs},
                        {"sample_period_ns", equipment.sample_period},
-                       {"hold_ns", equipment.hold},
+                       {"hold_ns", equipment.sample_hold},
                        {"tune_share", equipment.tune_share},
                        {"validation_share", equipment.validation_share},
                        {"min_coverage", equipment.min_coverage},
@@ -68,7 +68,7 @@ EquipmentConfig equipment_from(const ordered_json& json) {
   json.at("inputs").get_to(equipment.inputs);
   json.at("outputs").get_to(equipment.outputs);
   json.at("sample_period_ns").get_to(equipment.sample_period);
-  json.at("hold_ns").get_to(equipment.hold);
+  json.at("hold_ns").get_to(equipment.sample_hold);
   json.at("tune_share").get_to(equipment.tune_share);
   json.at("validation_share").get_to(equipment.validation_share);
   json.at("min_coverage").get_to(equipment.min_coverage);
@@ -126,7 +126,8 @@ std::string digest_of_window(const storage::Archive& archive, const RefreshReque
 std::vector<std::int64_t> revisions_of(const storage::Archive& archive,
                                        const RefreshRequest& request) {
   std::vector<std::int64_t> batches;
-  const storage::TimeRange range{request.window.begin - request.equipment.hold, request.window.end};
+  const storage::TimeRange range{request.window.begin - request.equipment.sample_hold,
+                                 request.window.end};
   for (const std::string& name : parameters_of(request.equipment))
     if (const auto parameter = archive.parameter(request.spacecraft, name)) {
       const auto of_one =

@@ -63,9 +63,9 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Arch
 
 void WindowCache::forget(storage::TimeRange range) {
   // A sample serves the ticks until it is too old.
-  const storage::Time latest = std::numeric_limits<storage::Time>::max() - request_.hold;
+  const storage::Time latest = std::numeric_limits<storage::Time>::max() - request_.sample_hold;
   const TickRange ticks =
-      ticks_of({range.begin, std::min(range.end, latest) + request_.hold}, request_.period);
+      ticks_of({range.begin, std::min(range.end, latest) + request_.sample_hold}, request_.period);
   samples_.forget(ticks);
   checks_.forget(ticks);
   sums_.forget(ticks);

@@ -38,7 +38,7 @@ WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& e
     for (const DerivedInput& one : equipment.derived)
       if (one.name == input) derived.push_back(one);
   return {spacecraft,        equipment.inputs,        std::move(derived),
-          equipment.outputs, equipment.sample_period, equipment.hold};
+          equipment.outputs, equipment.sample_period, equipment.sample_hold};
 }
 
 WindowRequest request_of(const EquipmentModel& model) {
@@ -47,7 +47,7 @@ WindowRequest request_of(const EquipmentModel& model) {
           derived_inputs(model.inputs),
           signal_names(model.outputs),
           static_cast<Duration>(std::llround(model.dynamics.period_s * 1e9)),
-          model.hold_ns};
+          model.sample_hold_ns};
 }
 
 std::vector<std::string> parameters_of(const EquipmentConfig& equipment) {
@@ -103,7 +103,7 @@ double coverage_of(const identification::Record& record, storage::TimeRange wind
 identification::Record load_samples(const storage::SampleSource& archive,
                                     const WindowRequest& request, const WindowData& described,
                                     storage::TimeRange window) {
-  const storage::TimeRange read{window.begin - request.hold, window.end};
+  const storage::TimeRange read{window.begin - request.sample_hold, window.end};
   const auto channels = [&](const std::vector<Channel>& wanted) {
     std::vector<ReadChannel> result;
     for (const Channel& channel : wanted)
@@ -112,8 +112,9 @@ identification::Record load_samples(const storage::SampleSource& archive,
   };
   const std::vector<ReadChannel> inputs = channels(described.input_channels);
   const std::vector<ReadChannel> outputs = channels(described.output_channels);
-  return identification::make_record(views(inputs), views(outputs), window.begin, window.end,
-                                     {.period_ns = request.period, .hold_ns = request.hold});
+  return identification::make_record(
+      views(inputs), views(outputs), window.begin, window.end,
+      {.period_ns = request.period, .sample_hold_ns = request.sample_hold});
 }
 
 std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,

@@ -21,7 +21,7 @@ struct WindowRequest {
   std::vector<DerivedInput> derived;  // of the inputs
   std::vector<std::string> outputs;   // names of parameters
   Duration period = 0;                // of the grid, whose ticks are multiples of it since 1970
-  Duration hold = 0;                  // how long a sample serves
+  Duration sample_hold = 0;           // how long a sample serves
   storage::Origin origin = storage::Origin::real;
   bool operator==(const WindowRequest&) const = default;
 };
@@ -84,7 +84,7 @@ std::variant<WindowData, UnknownParameter> describe_window(const storage::Sample
                                                            const WindowRequest& request);
 
 /// Returns the rows at which every channel of the request is valid; u holds the input channels.
-/// `described` is of the same request. The hold before the window is read too.
+/// `described` is of the same request. The sample hold before the window is read too.
 identification::Record load_samples(const storage::SampleSource& archive,
                                     const WindowRequest& request, const WindowData& described,
                                     storage::TimeRange window);

@@ -14,7 +14,7 @@ void require(bool condition) {
 
 bool keeps_its_rules(const reident::EquipmentConfig& equipment) {
   return !equipment.name.empty() && !equipment.inputs.empty() && !equipment.outputs.empty() &&
-         equipment.sample_period > 0 && equipment.hold >= equipment.sample_period &&
+         equipment.sample_period > 0 && equipment.sample_hold >= equipment.sample_period &&
          equipment.window >= equipment.sample_period && equipment.slide > 0 &&
          equipment.slide <= equipment.window && equipment.slide % equipment.sample_period == 0 &&
          equipment.min_order >= 1 && equipment.min_order <= equipment.max_order;

@@ -63,7 +63,7 @@ EquipmentModel any_model() {
   model.dynamics = {any_matrix(n, n), any_matrix(n, m), any_matrix(p, n),  any_matrix(p, m), {},
                     any_vector(m),    any_vector(p),    any_of(1, 9) / 8.0};
   if (n > 0 && any_of(0, 2) == 0) model.dynamics.K = any_matrix(n, p);
-  model.hold_ns = any_of<std::int64_t>(1, std::int64_t{1} << 60);
+  model.sample_hold_ns = any_of<std::int64_t>(1, std::int64_t{1} << 60);
   model.validation = {any_vector(p), any_vector(p), any_of(0, 1000)};
   if (any_of(0, 2) == 0)
     model.tracking = EquipmentModel::Tracking{

@@ -119,7 +119,7 @@ class DaemonTest : public testing::Test {
     equipment.inputs = {"u", "v"};
     equipment.outputs = {"y"};
     equipment.sample_period = second;
-    equipment.hold = 3 * second;
+    equipment.sample_hold = 3 * second;
     equipment.window = 10 * minute;
     equipment.slide = 5 * minute;
     return equipment;

@@ -24,7 +24,7 @@ EquipmentModel named(StateSpaceModel dynamics) {
   dynamics.u0.setConstant(operating_point);
   dynamics.y0.setConstant(28);
   model.dynamics = std::move(dynamics);
-  model.hold_ns = 1'000'000'000;
+  model.sample_hold_ns = 1'000'000'000;
   return model;
 }
 

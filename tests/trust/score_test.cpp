@@ -33,7 +33,7 @@ EquipmentModel model_of(double gain) {
   dynamics.u0 = identification::Vector::Zero(1);
   dynamics.y0 = identification::Vector::Constant(1, 10);
   dynamics.period_s = 8;
-  model.hold_ns = 3 * period;
+  model.sample_hold_ns = 3 * period;
   return model;
 }
 
@@ -49,7 +49,7 @@ class Score : public testing::Test {
     equipment_.inputs = {"I_BDRIN1"};
     equipment_.outputs = {"I_BDROUT"};
     equipment_.sample_period = period;
-    equipment_.hold = 3 * period;
+    equipment_.sample_hold = 3 * period;
     equipment_.window = 8 * orbit;
     double x = 2;
     for (storage::Time time = start; time < end_; time += period) {

@@ -192,7 +192,7 @@ std::optional<EquipmentModel> oracle(const KnownSeries& clean, const SpacecraftC
   model.inputs = data.inputs;
   model.outputs = data.outputs;
   model.dynamics = identified->model;
-  model.hold_ns = equipment.hold;
+  model.sample_hold_ns = equipment.sample_hold;
   return model;
 }
 

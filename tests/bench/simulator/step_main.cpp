@@ -37,7 +37,7 @@ struct Versions {
     model.outputs = {{"Y", "V", -100, 100}};
     model.dynamics = test::random_system(noise, 6, inputs, 1, 0.95);
     model.dynamics.period_s = 1;
-    model.hold_ns = 1'000'000'000;
+    model.sample_hold_ns = 1'000'000'000;
     model.validation.mrse_percent = identification::Vector::Constant(1, 5);
     model.validation.fit_percent = identification::Vector::Constant(1, 80);
   }

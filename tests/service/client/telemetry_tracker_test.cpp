@@ -33,7 +33,7 @@ class Tracker : public testing::Test {
     return result;
   }
 
-  TelemetryTracker tracker_{example_model()};  // 1 s period, 3 s hold
+  TelemetryTracker tracker_{example_model()};  // 1 s period, 3 s sample hold
   std::vector<Tick> ticks_;
 };
 
@@ -168,7 +168,7 @@ TEST(TrackerGrid, IsThatOfTheIdentification) {
     EquipmentModel model = example_model();
     model.outputs.clear();
     model.dynamics.period_s = 0.5;
-    model.hold_ns = 1'200'000'000;
+    model.sample_hold_ns = 1'200'000'000;
     TelemetryTracker tracker(model);
     describe_all(tracker);
     std::array<std::vector<storage::Time>, 2> times;
@@ -192,7 +192,8 @@ TEST(TrackerGrid, IsThatOfTheIdentification) {
     const std::vector<identification::ChannelSamples> channels = {{times[0], values[0], usable[0]},
                                                                   {times[1], values[1], usable[1]}};
     const identification::Record record = identification::make_record(
-        channels, {}, begin, time, {.period_ns = second / 2, .hold_ns = model.hold_ns});
+        channels, {}, begin, time,
+        {.period_ns = second / 2, .sample_hold_ns = model.sample_hold_ns});
     ASSERT_EQ(static_cast<identification::Index>(ticks.size()), record.u.rows());
     std::size_t i = 0;
     for (const identification::Segment& segment : record.segments) {

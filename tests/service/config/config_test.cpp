@@ -41,7 +41,7 @@ TEST(Config, AMinimalFileHasGoodDefaults) {
   ASSERT_THAT(config.spacecraft[0].equipment, SizeIs(1));
   const EquipmentConfig& bdr = config.spacecraft[0].equipment[0];
   EXPECT_THAT(bdr.inputs, ElementsAre("I_BDRIN1", "I_BDRIN2"));
-  EXPECT_EQ(bdr.hold, 3 * s);
+  EXPECT_EQ(bdr.sample_hold, 3 * s);
   EXPECT_EQ(bdr.window, 100 * min);
   EXPECT_EQ(bdr.slide, 30 * min) << "the validation part of the window";
   EXPECT_EQ(bdr.min_order, 1);
@@ -124,7 +124,7 @@ horizon = "auto"
   const EquipmentConfig& x = config.spacecraft[0].equipment[0];
   EXPECT_THAT(x.outputs, ElementsAre("y", "z"));
   EXPECT_EQ(x.sample_period, 500 * ms);
-  EXPECT_EQ(x.hold, 4 * s);
+  EXPECT_EQ(x.sample_hold, 4 * s);
   EXPECT_EQ(x.window, 60 * min);
   EXPECT_EQ(x.slide, 90 * s);
   EXPECT_EQ(x.validation_share, 0.4);

@@ -232,7 +232,7 @@ TEST_F(Probation, IsDecidedByWhatComesLaterWhereTooLittleCame) {
   archive.append({frames.begin(), frames.begin() + 602});
   archive.append({frames.begin() + 900, frames.end()});  // five minutes are lost
   EquipmentConfig brief = equipment;
-  brief.hold = second;  // nothing is held into the hole
+  brief.sample_hold = second;  // nothing is held into the hole
   make_version_of(brief, window_end, "on_probation", DecisionKind::wait);
   const auto found = look(window_end + 10 * minute);
   ASSERT_EQ(found.size(), 1U);
@@ -295,7 +295,7 @@ TEST_F(Probation, KnowsAnUnusualOperationAlsoOnceItsHoldIsAnotherOne) {
   archive.append(operation(day + 10 * minute, 901,
                            {.u = 0.3, .v = 0.3, .gain = 2, .since = window_end + second}));
   EquipmentConfig longer = equipment;
-  longer.hold = 5 * second;
+  longer.sample_hold = 5 * second;
   make_version_of(longer, window_end, "on_probation", DecisionKind::wait);
   EXPECT_EQ(code_in(look(window_end + 5 * minute).at(0).decision.evidence_json),
             name(Code::unconfirmed_unusual));

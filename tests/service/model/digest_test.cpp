@@ -25,7 +25,7 @@ TEST(Digest, IsTheSha256OfTheDocumentedEncoding) {
   model.dynamics.u0 = identification::Vector::Constant(1, 1);
   model.dynamics.y0 = identification::Vector::Constant(1, -2);
   model.dynamics.period_s = 1;
-  model.hold_ns = 0x0102;
+  model.sample_hold_ns = 0x0102;
 
   const std::string zero(8, '\0');
   const std::string half = "\0\0\0\0\0\0\xe0\x3f"s;
@@ -43,7 +43,7 @@ TEST(Digest, IsTheSha256OfTheDocumentedEncoding) {
   append(input);
   append({"\x01\0\0\0"s});
   append(output);
-  append({one, "\x02\x01\0\0\0\0\0\0"s, "\x01\0\0\0"s});  // period, hold, order
+  append({one, "\x02\x01\0\0\0\0\0\0"s, "\x01\0\0\0"s});  // period, sample hold, order
   append(a_b_c_d);
   append({"\0\0\0\0"s, one, minus_two});  // no K, offsets
   EXPECT_EQ(model_digest(model), sha256_hex(encoding));
@@ -71,7 +71,7 @@ TEST(Digest, ChangesWithEverythingThatASimulatorComputesWith) {
       [](EquipmentModel& m) { m.inputs[1].high = 4.5; },
       [](EquipmentModel& m) { std::swap(m.inputs[0], m.inputs[1]); },
       [](EquipmentModel& m) { m.outputs[0].unit = "V"s; },
-      [](EquipmentModel& m) { m.hold_ns += 1; },
+      [](EquipmentModel& m) { m.sample_hold_ns += 1; },
       [](EquipmentModel& m) { m.dynamics.period_s = 2; },
       [](EquipmentModel& m) { m.dynamics.A(0, 1) += 1e-16; },
       [](EquipmentModel& m) { m.dynamics.A.transposeInPlace(); },
@@ -141,7 +141,7 @@ TEST(Digest, EndsWithWhatNotEveryModelHas) {
   const std::string y = "\x01\0\0\0y\x01\0\0\0A"s + number(0) + number(0);
   const std::string one = "\x01\0\0\0"s;
   std::string encoding = "\x0f\0\0\0reident model 1\0\0\0\0\0\0\0\0"s + one + u + one + y;
-  encoding += number(0) + std::string(8, '\0') + one;  // period, hold, order
+  encoding += number(0) + std::string(8, '\0') + one;  // period, sample hold, order
   encoding += std::string(4 * 8, '\0') + "\0\0\0\0"s + std::string(2 * 8, '\0');
   encoding += "\x0b\0\0\0expressions\x03\0\0\0a+b\x08\0\0\0tracking"s;
   encoding += number(3) + number(4) + number(5) + number(6);

@@ -20,7 +20,7 @@ inline EquipmentModel example_model() {
   dynamics.u0 = (identification::Vector(2) << 2.5, 1.5).finished();
   dynamics.y0 = identification::Vector::Constant(1, 4.25);
   dynamics.period_s = 1;
-  model.hold_ns = 3'000'000'000;
+  model.sample_hold_ns = 3'000'000'000;
   model.identified_from = {1'000, 5'000};
   model.validated_on = {5'000, 7'000};
   model.validation.mrse_percent = identification::Vector::Constant(1, 6.9);

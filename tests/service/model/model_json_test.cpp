@@ -34,7 +34,7 @@ TEST(ModelJson, GivesTheSameModelBackToTheLastBit) {
   model.dynamics.B(0, 1) = std::numeric_limits<double>::max();
   model.dynamics.K = any_numbers(2, 1, 3);
   model.inputs[0].low = 0.1;
-  model.hold_ns = std::numeric_limits<std::int64_t>::max();
+  model.sample_hold_ns = std::numeric_limits<std::int64_t>::max();
 
   const EquipmentModel back = equipment_model_from_json(to_json(model).dump());
   EXPECT_THAT(differing_fields(back, model), testing::IsEmpty());

@@ -58,7 +58,7 @@ TEST_F(ProtectedTelemetry, IsThatOfEachSignalInTheWindowAndTheHoldBeforeIt) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(found[i].spacecraft, "SAT");
     EXPECT_EQ(found[i].parameter, i + 1);
-    EXPECT_EQ(found[i].range, (storage::TimeRange{day - plant().hold, day + 10 * minute}));
+    EXPECT_EQ(found[i].range, (storage::TimeRange{day - plant().sample_hold, day + 10 * minute}));
   }
 }
 
@@ -82,7 +82,7 @@ TEST_F(ProtectedTelemetry, OfProbationsGoesFromTheFirstRunToTheLastLook) {
   const auto found = telemetry_still_needed(archive, registry, config, latest);
   ASSERT_THAT(found, SizeIs(3 + 3)) << "the next window's, and one version's";
   EXPECT_EQ(found[3].range,
-            (storage::TimeRange{day - 30 * minute - plant().hold, day + 18 * minute}));
+            (storage::TimeRange{day - 30 * minute - plant().sample_hold, day + 18 * minute}));
   registry.decide("SAT", "PLANT", version, {DecisionKind::reject, "gate", "worse"}, day);
   EXPECT_THAT(telemetry_still_needed(archive, registry, config, latest), SizeIs(3));
 }
@@ -131,7 +131,7 @@ TEST_F(ProtectedTelemetry, LeavesAVersionReproducibleToTheLastBit) {
 TEST_F(ProtectedTelemetry, OfTheNextWindowsReachesBackFromWhereTelemetryOrTheClockEnds) {
   Config config;
   config.spacecraft = {{"SAT", {plant()}}, {"NONE", {plant()}}};
-  const Duration back = plant().window + plant().slide + plant().hold;
+  const Duration back = plant().window + plant().slide + plant().sample_hold;
   auto found = telemetry_still_needed(archive, registry, config, latest);
   ASSERT_THAT(found, SizeIs(3));
   EXPECT_EQ(found[2].parameter, 3U);

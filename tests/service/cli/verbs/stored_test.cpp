@@ -34,7 +34,7 @@ EquipmentModel model_of(const std::string& equipment) {
   dynamics.u0 = Eigen::Vector2d(3, 4);
   dynamics.y0 = Eigen::VectorXd::Constant(1, 5);
   dynamics.period_s = 1;
-  model.hold_ns = 3'000'000'000;
+  model.sample_hold_ns = 3'000'000'000;
   model.identified_from = {start, start + 70 * minute};
   model.validated_on = {start + 70 * minute, start + 100 * minute};
   model.validation = {Eigen::VectorXd::Constant(1, 2.5), Eigen::VectorXd::Constant(1, 91.25), 1800};
