@@ -1,5 +1,5 @@
 // The regression of the measured output on everything that the simulated output is linear in
-// (METHOD.md, sections 6 and 9). Private to the sources of this folder. Records are of normalised
+// (METHOD.md, sections 6 and 9). Private to this folder. Records are of normalised
 // channels; sizes agree with the Columns. Nothing here throws but what a caller's function throws.
 #pragma once
 

@@ -1,6 +1,6 @@
 // Samples that no sum of squares can hold: those that are not finite, or too large to be squared
 // (METHOD.md, section 1). The sums are looked at first, which costs nothing; the samples only where
-// these are spoilt. Private to the sources of this folder. Nothing here throws.
+// these are spoilt. Private to this folder. Nothing here throws.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Which horizons the rows can feed (METHOD.md, section 7, "Stages"). Private to the sources of this
+// Which horizons the rows can feed (METHOD.md, section 7, "Stages"). Private to this
 // folder. Options have no mistakes; nothing here throws.
 #pragma once
 

@@ -1,5 +1,5 @@
 // One identification of inputs that act without delay: its steps in their order (METHOD.md).
-// Private to the sources of this folder. Nothing here throws but what the caller's functions throw.
+// Private to this folder. Nothing here throws but what the caller's functions throw.
 #pragma once
 
 #include "identification/search/identify.hpp"

@@ -1,5 +1,5 @@
 // The rows of one identification, prepared: what the choice and the realisation of a model work on
-// (METHOD.md, sections 1 to 4). Private to the sources of this folder. Nothing here throws.
+// (METHOD.md, sections 1 to 4). Private to this folder. Nothing here throws.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// From a recipe to a model (METHOD.md, sections 5, 6, 8 and 9). Private to the sources of this
+// From a recipe to a model (METHOD.md, sections 5, 6, 8 and 9). Private to this
 // folder. Nothing here throws.
 #pragma once
 

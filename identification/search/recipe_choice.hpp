@@ -1,5 +1,5 @@
 // Which models are worth identifying from the rows, best first (METHOD.md, section 7). Private to
-// the sources of this folder. Nothing here throws but what the caller's `for_each` throws.
+// this folder. Nothing here throws but what the caller's `for_each` throws.
 #pragma once
 
 #include <limits>

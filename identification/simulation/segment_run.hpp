@@ -1,5 +1,5 @@
 // The run of a model over one segment, which free runs and estimates of states are made of.
-// Private to the sources of this folder. Nothing here throws.
+// Private to this folder. Nothing here throws.
 #pragma once
 
 #include "identification/samples/record.hpp"

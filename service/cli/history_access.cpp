@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "service/cli/config_options.hpp"
-#include "service/history/remote_sources.hpp"
-#include "service/history/stored_sources.hpp"
+#include "service/history/remote_readers.hpp"
+#include "service/history/stored_readers.hpp"
 
 namespace reident::cli {
 namespace {
@@ -41,13 +41,13 @@ std::variant<Service, Refusal> service_of(const HistoryAccessOptions& options) {
 }
 
 int with_service(const Service& service, const HistoryAccessOptions& options,
-                 const std::function<int(const Sources&)>& work) {
+                 const std::function<int(const Readers&)>& work) {
   dds::Participant participant(service.endpoint);
   history::RemoteHistory remote(participant, service.name);
   const history::RemoteRows rows(remote, std::chrono::duration_cast<std::chrono::milliseconds>(
                                              std::chrono::duration<double>(options.timeout_s)));
   try {
-    return work({history::RemoteHistorySource(rows), history::RemoteTelemetrySource(rows)});
+    return work({history::RemoteHistoryReader(rows), history::RemoteTelemetryReader(rows)});
   } catch (const history::Error& error) {
     if (error.kind() == history::Error::Kind::refused) return refuse({error.what()});
     fmt::print(stderr,
@@ -72,7 +72,7 @@ void add_remote_options(CLI::App& command, HistoryAccessOptions& options) {
       ->capture_default_str();
 }
 
-void add_source_options(CLI::App& command, HistoryAccessOptions& options) {
+void add_access_options(CLI::App& command, HistoryAccessOptions& options) {
   add_database_options(command, options.database);
   add_remote_options(command, options);
 }
@@ -91,8 +91,8 @@ std::string no_archive(const std::string& command) {
   return fmt::format("archive is required, or --remote; see reident {} --help", command);
 }
 
-int with_sources(const HistoryAccessOptions& options,
-                 const std::function<int(const Sources&)>& work) {
+int with_readers(const HistoryAccessOptions& options,
+                 const std::function<int(const Readers&)>& work) {
   if (!options.is_remote()) {
     if (options.domain || options.partition)
       return refuse({"--domain and --partition say which service is asked; add --remote"});

@@ -8,7 +8,7 @@
 
 #include "service/cli/command.hpp"
 #include "service/cli/stored.hpp"
-#include "service/history/sources.hpp"
+#include "service/history/readers.hpp"
 
 namespace reident::cli {
 
@@ -27,7 +27,7 @@ struct HistoryAccessOptions {
 /// --remote, --domain, --partition and --timeout.
 void add_remote_options(CLI::App& command, HistoryAccessOptions& options);
 /// Those, --database and --config.
-void add_source_options(CLI::App& command, HistoryAccessOptions& options);
+void add_access_options(CLI::App& command, HistoryAccessOptions& options);
 
 /// Options of a command whose first argument is the database and that takes a configuration for the
 /// rest.
@@ -35,14 +35,14 @@ void add_archive_options(CLI::App& command, HistoryAccessOptions& options);
 /// What to say where such a command is given neither a database nor --remote.
 std::string no_archive(const std::string& command);
 
-struct Sources {
-  const history::HistorySource& history;
-  const history::TelemetrySource& telemetry;
+struct Readers {
+  const history::HistoryReader& history;
+  const history::TelemetryReader& telemetry;
 };
 
 /// Calls `work` with what the options name. A database that cannot be used, and what a service
 /// cannot answer, is refused; exit_timed_out where no service answers.
-int with_sources(const HistoryAccessOptions& options,
-                 const std::function<int(const Sources&)>& work);
+int with_readers(const HistoryAccessOptions& options,
+                 const std::function<int(const Readers&)>& work);
 
 }  // namespace reident::cli

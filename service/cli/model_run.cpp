@@ -52,7 +52,7 @@ std::variant<storage::TimeRange, Refusal> range_of(const RangeOptions& options,
   return range;
 }
 
-std::variant<ModelRun, std::string> run_model(const storage::SampleSource& archive,
+std::variant<ModelRun, std::string> run_model(const storage::SampleReader& archive,
                                               const EquipmentModel& model, storage::TimeRange range,
                                               storage::Time scored_from) {
   if (!is_well_formed(model.dynamics)) return "the stored model is damaged";

@@ -8,7 +8,7 @@
 #include "service/cli/command.hpp"
 #include "service/model/model_version.hpp"
 #include "service/windows/window_data.hpp"
-#include "storage/types/sample_source.hpp"
+#include "storage/types/sample_reader.hpp"
 
 namespace reident::cli {
 
@@ -38,7 +38,7 @@ struct ModelRun {
 /// The model's free run over the telemetry in `range`, the state at the beginning of each stretch
 /// without holes estimated from its first rows; or the reason why there is none. The scores are of
 /// the rows at `scored_from` or later.
-std::variant<ModelRun, std::string> run_model(const storage::SampleSource& archive,
+std::variant<ModelRun, std::string> run_model(const storage::SampleReader& archive,
                                               const EquipmentModel& model, storage::TimeRange range,
                                               storage::Time scored_from);
 

@@ -67,7 +67,7 @@ int with_writable_database(const DatabaseOptions& options,
   }
 }
 
-std::string equipment_in(const history::HistorySource& history) {
+std::string equipment_in(const history::HistoryReader& history) {
   std::vector<std::string> names;
   for (const auto& [spacecraft, equipment] : history.equipment())
     names.push_back(full_name({spacecraft, equipment}));

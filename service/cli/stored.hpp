@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/command.hpp"
-#include "service/history/sources.hpp"
+#include "service/history/readers.hpp"
 #include "storage/registry/registry.hpp"
 
 namespace reident::cli {
@@ -32,7 +32,7 @@ int with_writable_database(const DatabaseOptions& options,
                            const std::function<int(storage::Database&)>& work);
 
 /// The equipment of the database for messages, such as "CBERS-4/BDR, CBERS-4/MEA".
-std::string equipment_in(const history::HistorySource& history);
+std::string equipment_in(const history::HistoryReader& history);
 
 nlohmann::ordered_json hold_json(const storage::Hold& hold);
 nlohmann::ordered_json decisions_json(const std::vector<storage::Decision>& decisions);

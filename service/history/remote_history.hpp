@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "service/dds/dds.hpp"
-#include "service/history/sources.hpp"
+#include "service/history/readers.hpp"
 
 namespace reident::history {
 

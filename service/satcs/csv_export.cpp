@@ -25,18 +25,18 @@ void append_time(std::string& row, storage::Time time) {
 
 }  // namespace
 
-void write_csv(FrameSource& source, const std::filesystem::path& path) {
+void write_csv(FrameStream& stream, const std::filesystem::path& path) {
   std::ofstream file(path, std::ios::binary);
   std::string row = "unix_s";
   std::unordered_map<std::uint32_t, std::size_t> column;
-  for (const auto& parameter : source.parameters()) {
+  for (const auto& parameter : stream.parameters()) {
     column.emplace(parameter.id, column.size());
     row += "," + parameter.name;
   }
   file << row << '\n';
   storage::TelemetryFrame frame;
   std::vector<std::optional<double>> cells;
-  while (file && source.next(frame)) {
+  while (file && stream.next(frame)) {
     cells.assign(column.size(), std::nullopt);
     for (const auto& sample : frame.samples) {
       if (sample.quality != storage::Quality::invalid)

@@ -162,10 +162,10 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   }
 }
 
-int publish_and_report(FrameSource& source, const Sender& sender, const PublisherOptions& options,
+int publish_and_report(FrameStream& stream, const Sender& sender, const PublisherOptions& options,
                        bool json) {
   const StopSignal stop;
-  const PublisherSummary summary = publish(source, options, stop.token());
+  const PublisherSummary summary = publish(stream, options, stop.token());
   fmt::print("{}\n", json ? to_json(summary, sender, options) : sentence(summary));
   if (const std::string what = remedy(summary.outcome, options); !what.empty()) {
     log::error("satcs", what);

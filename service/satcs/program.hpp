@@ -54,10 +54,10 @@ void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& opti
 /// Returns the exit status.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
 
-/// Publishes all of `source` until SIGINT or SIGTERM, and prints the summary. Returns the exit
+/// Publishes all of `stream` until SIGINT or SIGTERM, and prints the summary. Returns the exit
 /// status. Call it before any other thread starts (stop_signal.hpp). Throws dds::Error, and what
-/// the source throws.
-int publish_and_report(FrameSource& source, const Sender& sender, const PublisherOptions& options,
+/// the stream throws.
+int publish_and_report(FrameStream& stream, const Sender& sender, const PublisherOptions& options,
                        bool json);
 
 /// Returns the summary as one JSON object on one line.

@@ -41,14 +41,14 @@ std::int32_t history_of_restarts(std::size_t parameters) {
 /// One run of publish().
 class Run {
  public:
-  Run(FrameSource& source, const PublisherOptions& options, const std::stop_token& stop)
-      : source_(source),
+  Run(FrameStream& stream, const PublisherOptions& options, const std::stop_token& stop)
+      : stream_(stream),
         options_(options),
         stop_(stop),
         participant_(options.endpoint),
         descriptors_(participant_),
         frames_(participant_, {.history = options.history.value_or(
-                                   history_of_restarts(source.parameters().size()))}) {}
+                                   history_of_restarts(stream.parameters().size()))}) {}
 
   PublisherSummary operator()() {
     const auto began = Clock::now();
@@ -66,7 +66,7 @@ class Run {
   void count(const storage::TelemetryFrame& frame);
   void show_progress(const storage::TelemetryFrame& frame);
 
-  FrameSource& source_;
+  FrameStream& stream_;
   const PublisherOptions& options_;
   const std::stop_token& stop_;
   dds::Participant participant_;
@@ -78,7 +78,7 @@ class Run {
 };
 
 Outcome Run::all() {
-  for (auto descriptor : source_.parameters()) {
+  for (auto descriptor : stream_.parameters()) {
     descriptor.spacecraft = options_.spacecraft;
     descriptors_.write(descriptor);
     ++summary_.parameters;
@@ -96,7 +96,7 @@ Outcome Run::all() {
 Outcome Run::write_frames() {
   storage::TelemetryFrame frame;
   if (const Outcome outcome = wait_for_readers(); outcome != Outcome::complete) return outcome;
-  while (source_.next(frame)) {
+  while (stream_.next(frame)) {
     frame.spacecraft = options_.spacecraft;
     const auto now = Clock::now();
     const auto due = pacers_.try_emplace(frame.source, options_.speed)
@@ -163,7 +163,7 @@ void Run::count(const storage::TelemetryFrame& frame) {
 
 void Run::show_progress(const storage::TelemetryFrame& frame) {
   if (!progress_.due()) return;
-  progress_.update(source_.progress(),
+  progress_.update(stream_.progress(),
                    fmt::format("{} frames, {}", summary_.frames, time_text(frame.generation_time)));
 }
 
@@ -183,9 +183,9 @@ std::string_view name(Outcome outcome) {
   return "";
 }
 
-PublisherSummary publish(FrameSource& source, const PublisherOptions& options,
+PublisherSummary publish(FrameStream& stream, const PublisherOptions& options,
                          const std::stop_token& stop) {
-  return Run(source, options, stop)();
+  return Run(stream, options, stop)();
 }
 
 }  // namespace reident::satcs

@@ -1,4 +1,4 @@
-// Publishes a source of telemetry as SATCS frames and parameter descriptors: paced, no faster than
+// Publishes a stream of telemetry as SATCS frames and parameter descriptors: paced, no faster than
 // the readers take it, and with a clean end wherever it is stopped.
 #pragma once
 
@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "service/dds/dds.hpp"
-#include "service/satcs/frame_source.hpp"
+#include "service/satcs/frame_stream.hpp"
 #include "storage/types/telemetry.hpp"
 
 namespace reident::satcs {
@@ -55,11 +55,11 @@ struct PublisherSummary {
   double wall_s = 0;  // time that it took, waiting included
 };
 
-/// Publishes all frames of `source` in its order. Each sender's frames are paced by its own
+/// Publishes all frames of `stream` in its order. Each sender's frames are paced by its own
 /// reception times. A stop ends it within some 100 ms, wherever it is; frames that were written
 /// till then stay sent. Shows a progress bar on a terminal. Throws dds::Error when the middleware
-/// fails, and what the source throws.
-PublisherSummary publish(FrameSource& source, const PublisherOptions& options,
+/// fails, and what the stream throws.
+PublisherSummary publish(FrameStream& stream, const PublisherOptions& options,
                          const std::stop_token& stop);
 
 }  // namespace reident::satcs

@@ -97,7 +97,7 @@ class Text {
 
 class Export {
  public:
-  Export(const history::TelemetrySource& telemetry, const std::vector<SeriesInfo>& series,
+  Export(const history::TelemetryReader& telemetry, const std::vector<SeriesInfo>& series,
          const ExportOptions& options, const TextSink& sink, const ExportObserver& observer);
 
   ExportReport run() {
@@ -145,7 +145,7 @@ class Export {
 
   void write_row(std::vector<Column>& columns, Time time);
 
-  const history::TelemetrySource& telemetry_;
+  const history::TelemetryReader& telemetry_;
   const std::vector<SeriesInfo>& series_;
   const ExportOptions& options_;
   Text text_;
@@ -155,7 +155,7 @@ class Export {
   ExportReport report_;
 };
 
-Export::Export(const history::TelemetrySource& telemetry, const std::vector<SeriesInfo>& series,
+Export::Export(const history::TelemetryReader& telemetry, const std::vector<SeriesInfo>& series,
                const ExportOptions& options, const TextSink& sink, const ExportObserver& observer)
     : telemetry_(telemetry), series_(series), options_(options), text_(sink), observer_(observer) {
   for (const SeriesInfo& one : series) expected_ += one.samples;
@@ -248,7 +248,7 @@ void Export::write_row(std::vector<Column>& columns, Time time) {
 }  // namespace
 
 std::variant<std::vector<SeriesInfo>, Error> series_to_export(
-    const history::TelemetrySource& telemetry, const ExportOptions& options) {
+    const history::TelemetryReader& telemetry, const ExportOptions& options) {
   const std::vector<SeriesInfo> all = telemetry.series();
   if (auto error = check_names(all, options)) return *std::move(error);
   std::vector<SeriesInfo> wanted;
@@ -267,7 +267,7 @@ std::variant<std::vector<SeriesInfo>, Error> series_to_export(
   return wanted;
 }
 
-ExportReport export_series(const history::TelemetrySource& telemetry,
+ExportReport export_series(const history::TelemetryReader& telemetry,
                            const std::vector<SeriesInfo>& series, const ExportOptions& options,
                            const TextSink& sink, const ExportObserver& observer) {
   return Export(telemetry, series, options, sink, observer).run();

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "service/history/sources.hpp"
+#include "service/history/readers.hpp"
 #include "service/support/csv.hpp"
 #include "storage/archive/holdings.hpp"
 
@@ -45,14 +45,14 @@ using ExportObserver = std::function<bool(const ExportProgress&)>;
 
 /// Returns the series to be exported, in their order; or what is wrong with the request: a
 /// spacecraft or parameter that the archive does not have, or more than one spacecraft or origin,
-/// or two parameters of one name, where `wide`. Throws as TelemetrySource does.
+/// or two parameters of one name, where `wide`. Throws as TelemetryReader does.
 std::variant<std::vector<storage::SeriesInfo>, csv::Error> series_to_export(
-    const history::TelemetrySource& telemetry, const ExportOptions& options);
+    const history::TelemetryReader& telemetry, const ExportOptions& options);
 
 /// Writes header and rows. Long: series after series, each in order of time. Samples that come
 /// while it runs may be among them or not. Requires series of series_to_export() with the same
-/// options. Throws what the source and the sink throw; what was written till then stays written.
-ExportReport export_series(const history::TelemetrySource& telemetry,
+/// options. Throws what the reader and the sink throw; what was written till then stays written.
+ExportReport export_series(const history::TelemetryReader& telemetry,
                            const std::vector<storage::SeriesInfo>& series,
                            const ExportOptions& options, const TextSink& sink,
                            const ExportObserver& observer);

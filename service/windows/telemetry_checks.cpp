@@ -57,7 +57,7 @@ PlausibilityChecks::PlausibilityChecks(const WindowRequest& request, const Check
   }
 }
 
-void PlausibilityChecks::look(const storage::SampleSource& archive, BoundRelation& bound,
+void PlausibilityChecks::look(const storage::SampleReader& archive, BoundRelation& bound,
                               TickRange ticks, Plausibility& result) {
   const auto described = describe_window(archive, bound.request);
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) {
@@ -88,7 +88,7 @@ void PlausibilityChecks::look(const storage::SampleSource& archive, BoundRelatio
                             .residual = one.residual});
 }
 
-Plausibility PlausibilityChecks::look(const storage::SampleSource& archive,
+Plausibility PlausibilityChecks::look(const storage::SampleReader& archive,
                                       const WindowData& described, const Record& samples,
                                       TickRange ticks) {
   Plausibility result;

@@ -12,7 +12,7 @@
 #include "service/config/config.hpp"
 #include "service/windows/chunk_cache.hpp"
 #include "service/windows/window_data.hpp"
-#include "storage/types/sample_source.hpp"
+#include "storage/types/sample_reader.hpp"
 
 namespace reident {
 
@@ -36,7 +36,7 @@ class PlausibilityChecks {
   /// and `described` what they are. A relation of which telemetry has not described a parameter
   /// does not apply. Residuals of relations are read where they are not kept. Throws
   /// storage::Error.
-  Plausibility look(const storage::SampleSource& archive, const WindowData& described,
+  Plausibility look(const storage::SampleReader& archive, const WindowData& described,
                     const identification::Record& samples, identification::TickRange ticks);
 
   /// Forgets what was read of these ticks, since samples were stored there.
@@ -50,7 +50,7 @@ class PlausibilityChecks {
     ChunkCache residuals;
     std::vector<std::uint32_t> ids;  // that these were read of
   };
-  void look(const storage::SampleSource& archive, BoundRelation& bound,
+  void look(const storage::SampleReader& archive, BoundRelation& bound,
             identification::TickRange ticks, Plausibility& result);
 
   bool screening_;

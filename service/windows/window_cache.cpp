@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "service/support/floor_divide.hpp"
-#include "service/windows/caching_source.hpp"
+#include "service/windows/caching_reader.hpp"
 
 namespace reident {
 
@@ -29,8 +29,8 @@ void WindowCache::make_holes(const TickSet& holes, TickRange ticks) {
 
 std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Archive& archive,
                                                              storage::TimeRange window) {
-  const CachingSource source(archive);
-  auto described = describe_window(source, request_);
+  const CachingReader reader(archive);
+  auto described = describe_window(reader, request_);
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
   WindowData data = std::get<WindowData>(std::move(described));
   std::vector<Channel> channels = data.input_channels;
@@ -49,10 +49,10 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Arch
   holes_ = outside(holes_, past);
   Record samples = samples_.over(ticks, [&](TickRange missing) {
     ticks_read_ += missing.end - missing.begin;
-    return load_samples(source, request_, data,
+    return load_samples(reader, request_, data,
                         {missing.begin * request_.period, missing.end * request_.period});
   });
-  data.plausibility = checks_.look(source, data, samples, ticks);
+  data.plausibility = checks_.look(reader, data, samples, ticks);
   make_holes(inside(data.plausibility.holes, ticks), ticks);
   Record read = InputExpressions(request_.inputs, request_.derived).evaluate(std::move(samples));
   data.read_coverage = coverage_of(read, window, request_.period);

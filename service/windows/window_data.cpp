@@ -64,7 +64,7 @@ std::vector<std::string> parameters_of(const Relation& relation) {
   return InputExpressions({relation.name}, {{relation.name, relation.expression, ""}}).parameters();
 }
 
-std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleSource& archive,
+std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleReader& archive,
                                                            const WindowRequest& request) {
   WindowData data;
   std::map<std::string, std::string> units;
@@ -100,7 +100,7 @@ double coverage_of(const identification::Record& record, storage::TimeRange wind
   return std::min(1.0, static_cast<double>(record.rows()) / ticks);
 }
 
-identification::Record load_samples(const storage::SampleSource& archive,
+identification::Record load_samples(const storage::SampleReader& archive,
                                     const WindowRequest& request, const WindowData& described,
                                     storage::TimeRange window) {
   const storage::TimeRange read{window.begin - request.sample_hold, window.end};
@@ -117,7 +117,7 @@ identification::Record load_samples(const storage::SampleSource& archive,
       {.period_ns = request.period, .sample_hold_ns = request.sample_hold});
 }
 
-std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,
+std::variant<WindowData, UnknownParameter> load_window(const storage::SampleReader& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window) {
   auto described = describe_window(archive, request);

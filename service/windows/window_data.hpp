@@ -9,7 +9,7 @@
 #include "identification/samples/tick_ranges.hpp"
 #include "service/config/config.hpp"
 #include "service/model/model_version.hpp"
-#include "storage/types/sample_source.hpp"
+#include "storage/types/sample_reader.hpp"
 
 namespace reident {
 
@@ -80,12 +80,12 @@ struct UnknownParameter {
 /// Returns what the request's signals and parameters are, and no rows; the first parameter that has
 /// no descriptor. Requires expressions that can be read. Throws storage::Error, as all that read
 /// here.
-std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleSource& archive,
+std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleReader& archive,
                                                            const WindowRequest& request);
 
 /// Returns the rows at which every channel of the request is valid; u holds the input channels.
 /// `described` is of the same request. The sample hold before the window is read too.
-identification::Record load_samples(const storage::SampleSource& archive,
+identification::Record load_samples(const storage::SampleReader& archive,
                                     const WindowRequest& request, const WindowData& described,
                                     storage::TimeRange window);
 
@@ -95,7 +95,7 @@ double coverage_of(const identification::Record& record, storage::TimeRange wind
 
 /// Returns the window's rows, nothing excluded. Samples of a usable quality count; all others are
 /// holes, and so are ticks at which a derived input has no finite value.
-std::variant<WindowData, UnknownParameter> load_window(const storage::SampleSource& archive,
+std::variant<WindowData, UnknownParameter> load_window(const storage::SampleReader& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window);
 

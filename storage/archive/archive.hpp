@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "storage/database/database.hpp"
-#include "storage/types/sample_source.hpp"
+#include "storage/types/sample_reader.hpp"
 #include "storage/types/series.hpp"
 #include "storage/types/telemetry.hpp"
 
@@ -67,7 +67,7 @@ struct LateRange {
 /// The telemetry in a database. Any number of archives may be made on one database; they share its
 /// writer. Functions that are not const need a database that is opened for writing, and throw Error
 /// (read_only) elsewhere.
-class Archive : public SampleSource {
+class Archive : public SampleReader {
  public:
   /// The database must outlive the archive. The options are the writer's: those of the archive that
   /// appends first hold for the database.

@@ -7,13 +7,13 @@
 #include <unordered_map>
 #include <vector>
 
-#include "storage/types/sample_source.hpp"
+#include "storage/types/sample_reader.hpp"
 
 namespace reident::trust {
 
 /// Holds one spacecraft and origin, whatever a caller asks for; samples come in the order of time
 /// and are good.
-class KnownSeries : public storage::SampleSource {
+class KnownSeries : public storage::SampleReader {
  public:
   /// Keeps those of the descriptors whose names are in `names`.
   KnownSeries(std::span<const storage::ParameterDescriptor> descriptors,

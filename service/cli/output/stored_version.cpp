@@ -11,11 +11,11 @@
 
 namespace reident::cli {
 
-using history::HistorySource;
+using history::HistoryReader;
 
 namespace {
 
-std::string versions_text(const HistorySource& history, const storage::EquipmentName& equipment) {
+std::string versions_text(const HistoryReader& history, const storage::EquipmentName& equipment) {
   constexpr std::size_t most = 5;
   const std::vector<storage::VersionSummary> versions = history.summaries(equipment);
   if (versions.empty()) return "none yet";
@@ -30,7 +30,7 @@ std::string versions_text(const HistorySource& history, const storage::Equipment
 }
 
 /// The equipment that a subject means.
-std::variant<storage::EquipmentName, Refusal> find_equipment(const HistorySource& history,
+std::variant<storage::EquipmentName, Refusal> find_equipment(const HistoryReader& history,
                                                              const Subject& subject) {
   std::optional<storage::EquipmentName> found;
   for (const storage::EquipmentName& one : history.equipment()) {
@@ -75,7 +75,7 @@ void add_version_argument(CLI::App& command, std::string& subject) {
       ->required();
 }
 
-std::variant<StoredVersion, Refusal> find_stored_version(const HistorySource& history,
+std::variant<StoredVersion, Refusal> find_stored_version(const HistoryReader& history,
                                                          const Subject& subject) {
   const auto found = find_equipment(history, subject);
   if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
@@ -100,13 +100,13 @@ std::variant<StoredVersion, Refusal> find_stored_version(const HistorySource& hi
 }
 
 int with_version(const HistoryAccessOptions& options, const std::string& subject,
-                 const std::function<int(const Sources&, StoredVersion&&)>& work) {
+                 const std::function<int(const Readers&, StoredVersion&&)>& work) {
   const auto parsed = parse_subject(subject);
   if (const auto* refusal = std::get_if<Refusal>(&parsed)) return refuse(*refusal);
-  return with_sources(options, [&](const Sources& sources) {
-    auto found = find_stored_version(sources.history, std::get<Subject>(parsed));
+  return with_readers(options, [&](const Readers& readers) {
+    auto found = find_stored_version(readers.history, std::get<Subject>(parsed));
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
-    return work(sources, std::get<StoredVersion>(std::move(found)));
+    return work(readers, std::get<StoredVersion>(std::move(found)));
   });
 }
 

@@ -9,7 +9,7 @@
 
 #include "service/cli/command.hpp"
 #include "service/cli/history_access.hpp"
-#include "service/history/sources.hpp"
+#include "service/history/readers.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/registry/registry.hpp"
 
@@ -43,13 +43,13 @@ std::optional<storage::TimeRange> tuned_on(const storage::Version& version);
 
 /// The version that the subject names, or the champion of its equipment. A spacecraft that is left
 /// out is found by the equipment's name.
-std::variant<StoredVersion, Refusal> find_stored_version(const history::HistorySource& history,
+std::variant<StoredVersion, Refusal> find_stored_version(const history::HistoryReader& history,
                                                          const Subject& subject);
 
-/// Calls `work` with the version that `subject` names, and with the sources that it was found in.
+/// Calls `work` with the version that `subject` names, and with the readers that it was found with.
 /// Returns what that returns; a text that names no version, and a version that is not there, are
 /// refused.
 int with_version(const HistoryAccessOptions& options, const std::string& subject,
-                 const std::function<int(const Sources&, StoredVersion&&)>& work);
+                 const std::function<int(const Readers&, StoredVersion&&)>& work);
 
 }  // namespace reident::cli

@@ -13,13 +13,13 @@
 namespace reident::cli::at_verb {
 namespace {
 
-using history::HistorySource;
+using history::HistoryReader;
 using nlohmann::ordered_json;
 using storage::Decision;
 using storage::EquipmentName;
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   std::string time;
   std::string subject;
   bool json = false;
@@ -28,7 +28,7 @@ struct Arguments {
 /// An equipment and the decision that made its champion; none where it had no champion.
 using Reign = std::pair<EquipmentName, std::optional<Decision>>;
 
-std::variant<std::vector<Reign>, Refusal> reigns(const HistorySource& history, storage::Time time,
+std::variant<std::vector<Reign>, Refusal> reigns(const HistoryReader& history, storage::Time time,
                                                  const std::string& text) {
   Subject wanted;
   if (!text.empty()) {
@@ -86,8 +86,8 @@ int run(const Arguments& arguments) {
         {fmt::format("{} is no time; write it as 2026-03-01T12:00:00Z or in seconds since "
                      "1970",
                      arguments.time)});
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto found = reigns(sources.history, *time, arguments.subject);
+  return with_readers(arguments.access, [&](const Readers& readers) {
+    const auto found = reigns(readers.history, *time, arguments.subject);
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
     if (arguments.json)
       print_json(*time, std::get<std::vector<Reign>>(found));
@@ -102,7 +102,7 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("time", arguments->time, "UTC, or seconds since 1970")->required();
   command.add_option("equipment", arguments->subject,
                      "EQUIPMENT or SPACECRAFT/EQUIPMENT (all of them)");
-  add_source_options(command, arguments->source);
+  add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer("Example:\n  reident at 2026-03-01T12:00:00Z CBERS-4/BDR --config reident.toml");
   return [arguments] { return run(*arguments); };

@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 using RunResult = std::variant<ModelRun, std::string>;
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   std::string equipment;
   std::string first, second;
   RangeOptions range;
@@ -38,7 +38,7 @@ struct Outcome {
   RunResult run_a, run_b;
 };
 
-std::variant<StoredVersion, Refusal> story_of(const history::HistorySource& history,
+std::variant<StoredVersion, Refusal> story_of(const history::HistoryReader& history,
                                               Subject subject, const std::string& number) {
   subject.version = whole_number(number);
   if (!subject.version)
@@ -50,12 +50,12 @@ std::variant<StoredVersion, Refusal> story_of(const history::HistorySource& hist
   return story;
 }
 
-std::variant<Outcome, Refusal> compare(const Sources& sources, const Arguments& arguments) {
+std::variant<Outcome, Refusal> compare(const Readers& readers, const Arguments& arguments) {
   const auto subject = parse_subject(arguments.equipment);
   if (const auto* refusal = std::get_if<Refusal>(&subject)) return *refusal;
-  auto a = story_of(sources.history, std::get<Subject>(subject), arguments.first);
+  auto a = story_of(readers.history, std::get<Subject>(subject), arguments.first);
   if (const auto* refusal = std::get_if<Refusal>(&a)) return *refusal;
-  auto b = story_of(sources.history, std::get<Subject>(subject), arguments.second);
+  auto b = story_of(readers.history, std::get<Subject>(subject), arguments.second);
   if (const auto* refusal = std::get_if<Refusal>(&b)) return *refusal;
   Outcome outcome{std::get<StoredVersion>(std::move(a)),
                   std::get<StoredVersion>(std::move(b)),
@@ -76,8 +76,8 @@ std::variant<Outcome, Refusal> compare(const Sources& sources, const Arguments& 
   outcome.models =
       compare_models(model_a, outcome.a.version.number, model_b, outcome.b.version.number);
   const storage::TimeRange run{outcome.run_from, outcome.range.end};
-  outcome.run_a = run_model(sources.telemetry, model_a, run, outcome.range.begin);
-  outcome.run_b = run_model(sources.telemetry, model_b, run, outcome.range.begin);
+  outcome.run_a = run_model(readers.telemetry, model_a, run, outcome.range.begin);
+  outcome.run_b = run_model(readers.telemetry, model_b, run, outcome.range.begin);
   return outcome;
 }
 
@@ -237,8 +237,8 @@ void print_text(const Outcome& outcome) {
 }
 
 int run(const Arguments& arguments) {
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto outcome = compare(sources, arguments);
+  return with_readers(arguments.access, [&](const Readers& readers) {
+    const auto outcome = compare(readers, arguments);
     if (const auto* refusal = std::get_if<Refusal>(&outcome)) return refuse(*refusal);
     if (arguments.json)
       print_json(std::get<Outcome>(outcome));
@@ -254,7 +254,7 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("first", arguments->first, "number of a version")->required();
   command.add_option("second", arguments->second, "number of another")->required();
   add_range_options(command, arguments->range, "the validation part of the second version");
-  add_source_options(command, arguments->source);
+  add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer("Example:\n  reident compare CBERS-4/BDR 3 5 --config reident.toml");
   return [arguments] { return run(*arguments); };

@@ -36,7 +36,7 @@ constexpr std::size_t most_bins = 100'000;
 constexpr int bar_width = 20;
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   std::optional<std::string> spacecraft, equipment;
   std::vector<std::string> parameters;
   TimeOptions time;
@@ -68,7 +68,7 @@ struct Wanted {
 
 std::optional<Refusal> add_equipment(const Arguments& arguments, Wanted& wanted) {
   if (!arguments.equipment) return std::nullopt;
-  auto chosen = chosen_config(arguments.source.database.config);
+  auto chosen = chosen_config(arguments.access.database.config);
   if (auto* refusal = std::get_if<Refusal>(&chosen)) return std::move(*refusal);
   const auto& config = std::get<std::optional<Config>>(chosen);
   if (!config)
@@ -94,7 +94,7 @@ std::optional<Refusal> add_equipment(const Arguments& arguments, Wanted& wanted)
                              *arguments.equipment, joined(names))};
 }
 
-std::variant<std::vector<Group>, Refusal> groups_of(const history::TelemetrySource& telemetry,
+std::variant<std::vector<Group>, Refusal> groups_of(const history::TelemetryReader& telemetry,
                                                     const Wanted& wanted) {
   std::vector<Group> groups;
   std::vector<std::string> spacecraft;
@@ -151,7 +151,7 @@ void count_frames(const std::vector<storage::SequenceGap>& gaps, const TimeBins&
   }
 }
 
-void count(const history::TelemetrySource& telemetry, const TimeBins& bins,
+void count(const history::TelemetryReader& telemetry, const TimeBins& bins,
            std::vector<Group>& groups) {
   const auto gaps = telemetry.sequence_gaps();
   std::size_t all = 0, done = 0;
@@ -299,15 +299,15 @@ void print_json(const std::vector<Group>& groups, const TimeBins& bins,
 int run(const Arguments& arguments) {
   Wanted wanted{arguments.spacecraft, arguments.parameters};
   if (const auto refusal = add_equipment(arguments, wanted)) return refuse(*refusal);
-  if (!arguments.source.is_remote() && !arguments.source.database.database)
+  if (!arguments.access.is_remote() && !arguments.access.database.database)
     return refuse({no_archive("completeness")});
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    auto found = groups_of(sources.telemetry, wanted);
+  return with_readers(arguments.access, [&](const Readers& readers) {
+    auto found = groups_of(readers.telemetry, wanted);
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
     auto& groups = std::get<std::vector<Group>>(found);
     const auto bins = bins_of(groups, arguments);
     if (const auto* refusal = std::get_if<Refusal>(&bins)) return refuse(*refusal);
-    count(sources.telemetry, std::get<TimeBins>(bins), groups);
+    count(readers.telemetry, std::get<TimeBins>(bins), groups);
     if (arguments.json) {
       print_json(groups, std::get<TimeBins>(bins), arguments);
       return static_cast<int>(exit_done);
@@ -322,7 +322,7 @@ int run(const Arguments& arguments) {
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  add_archive_options(command, arguments->source);
+  add_archive_options(command, arguments->access);
   command.add_option("--spacecraft", arguments->spacecraft, "this one alone (all)");
   CLI::Option* parameters =
       command.add_option("--parameter", arguments->parameters, "these alone (all)");

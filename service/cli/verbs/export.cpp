@@ -25,14 +25,14 @@ using transfer::ExportReport;
 constexpr const char* standard_output = "-";
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   ExportOptions options;
   std::optional<std::string> origin;
   TimeOptions time;
   std::string output = standard_output;
 };
 
-int write(const history::TelemetrySource& telemetry, const std::vector<storage::SeriesInfo>& series,
+int write(const history::TelemetryReader& telemetry, const std::vector<storage::SeriesInfo>& series,
           const Arguments& arguments) {
   const StopSignal stop;
   const bool to_file = arguments.output != standard_output;
@@ -65,18 +65,18 @@ int run(Arguments& arguments) {
   if (const auto* refusal = std::get_if<Refusal>(&range)) return refuse(*refusal);
   arguments.options.range = std::get<storage::TimeRange>(range);
   if (arguments.origin) arguments.options.origin = transfer::parse_origin(*arguments.origin);
-  if (!arguments.source.is_remote() && !arguments.source.database.database)
+  if (!arguments.access.is_remote() && !arguments.access.database.database)
     return refuse({no_archive("export")});
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    const auto series = transfer::series_to_export(sources.telemetry, arguments.options);
+  return with_readers(arguments.access, [&](const Readers& readers) {
+    const auto series = transfer::series_to_export(readers.telemetry, arguments.options);
     if (const auto* error = std::get_if<csv::Error>(&series)) return refuse({error->message});
-    return write(sources.telemetry, std::get<std::vector<storage::SeriesInfo>>(series), arguments);
+    return write(readers.telemetry, std::get<std::vector<storage::SeriesInfo>>(series), arguments);
   });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  add_archive_options(command, arguments->source);
+  add_archive_options(command, arguments->access);
   command.add_option("--spacecraft", arguments->options.spacecraft, "this one alone (all)");
   command.add_option("--parameter", arguments->options.parameters, "these alone (all)");
   command.add_option("--origin", arguments->origin, "real or simulated alone (both)")

@@ -19,7 +19,7 @@ using model_export::ExportedVersion;
 constexpr const char* standard_output = "-";
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   std::string subject;
   std::optional<std::string> fmu, mat, json;
   bool force = false;
@@ -103,7 +103,7 @@ int run(const Arguments& arguments) {
   const std::vector<Target> targets = targets_of(arguments);
   if (const auto refusal = mistake_in(targets, arguments.force)) return refuse(*refusal);
   return with_version(
-      arguments.source, arguments.subject, [&](const Sources&, StoredVersion&& story) {
+      arguments.access, arguments.subject, [&](const Readers&, StoredVersion&& story) {
         const auto exported = exported_version(std::move(story));
         if (const auto* refusal = std::get_if<Refusal>(&exported)) return refuse(*refusal);
         const auto& version = std::get<ExportedVersion>(exported).version;
@@ -124,7 +124,7 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--mat", arguments->mat, "MATLAB file, version 5");
   command.add_option("--json", arguments->json, "JSON; - is standard output");
   command.add_flag("--force", arguments->force, "replace files that exist");
-  add_source_options(command, arguments->source);
+  add_access_options(command, arguments->access);
   command.footer(
       "Of several no file takes its name before all of them are written.\n"
       "Example:\n"

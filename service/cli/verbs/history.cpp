@@ -14,7 +14,7 @@
 namespace reident::cli::history_verb {
 namespace {
 
-using history::HistorySource;
+using history::HistoryReader;
 using nlohmann::ordered_json;
 using storage::Attempt;
 using storage::Decision;
@@ -24,7 +24,7 @@ using storage::Hold;
 using storage::VersionSummary;
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   std::string spacecraft;
   std::string equipment;
   std::optional<std::size_t> last;
@@ -40,7 +40,7 @@ bool is_selected(const EquipmentName& equipment, const Arguments& arguments) {
 /// What the registry says about the versions of the chosen equipment, and about holds.
 class Decided {
  public:
-  Decided(const HistorySource& history, const Arguments& arguments) {
+  Decided(const HistoryReader& history, const Arguments& arguments) {
     for (const EquipmentName& equipment : history.equipment()) {
       if (!is_selected(equipment, arguments)) continue;
       for (VersionSummary& version : history.summaries(equipment))
@@ -153,7 +153,7 @@ void print_json(const std::vector<Attempt>& attempts, const Decided& decided) {
 }
 
 /// Why a filter selects nothing.
-Refusal nothing_selected(const Arguments& arguments, const HistorySource& history) {
+Refusal nothing_selected(const Arguments& arguments, const HistoryReader& history) {
   HistoryFilter newest;
   newest.last = 1;
   if (history.attempts(newest).empty())
@@ -171,8 +171,8 @@ int run(Arguments arguments) {
     arguments.spacecraft = arguments.equipment.substr(0, slash);
     arguments.equipment.erase(0, slash + 1);
   }
-  return with_sources(arguments.source, [&](const Sources& sources) {
-    const HistorySource& history = sources.history;
+  return with_readers(arguments.access, [&](const Readers& readers) {
+    const HistoryReader& history = readers.history;
     const std::vector<EquipmentName> known = history.equipment();
     const bool filtered = !arguments.spacecraft.empty() || !arguments.equipment.empty();
     if (filtered && std::none_of(known.begin(), known.end(), [&](const EquipmentName& one) {
@@ -198,7 +198,7 @@ int run(Arguments arguments) {
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  add_source_options(command, arguments->source);
+  add_access_options(command, arguments->access);
   command.add_option("--spacecraft", arguments->spacecraft, "of this spacecraft alone");
   command.add_option("--equipment", arguments->equipment,
                      "of this EQUIPMENT or SPACECRAFT/EQUIPMENT alone");

@@ -18,7 +18,7 @@ using storage::DecisionKind;
 using storage::EquipmentName;
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   bool json = false;
 };
 
@@ -31,7 +31,7 @@ struct Line {
   std::size_t tried = 0, versions = 0, published = 0;
 };
 
-Line line_of(const history::HistorySource& history, const EquipmentName& equipment) {
+Line line_of(const history::HistoryReader& history, const EquipmentName& equipment) {
   Line line;
   line.equipment = equipment;
   storage::HistoryFilter filter;
@@ -97,10 +97,10 @@ void print_json(const std::vector<Line>& lines) {
 }
 
 int run(const Arguments& arguments) {
-  return with_sources(arguments.source, [&](const Sources& sources) {
+  return with_readers(arguments.access, [&](const Readers& readers) {
     std::vector<Line> lines;
-    for (const EquipmentName& equipment : sources.history.equipment())
-      lines.push_back(line_of(sources.history, equipment));
+    for (const EquipmentName& equipment : readers.history.equipment())
+      lines.push_back(line_of(readers.history, equipment));
     if (arguments.json)
       print_json(lines);
     else if (lines.empty())
@@ -113,7 +113,7 @@ int run(const Arguments& arguments) {
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  add_source_options(command, arguments->source);
+  add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
       "A line for each equipment: the champion and its error on data that it was not fitted to,\n"

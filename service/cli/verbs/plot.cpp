@@ -21,7 +21,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   std::string subject;
   std::optional<std::string> output;
   RangeOptions range;
@@ -49,7 +49,7 @@ std::vector<double> singular_values_of(const storage::Attempt& attempt) {
   return values;
 }
 
-std::variant<std::string, Refusal> picture_of(const storage::SampleSource& archive,
+std::variant<std::string, Refusal> picture_of(const storage::SampleReader& archive,
                                               const StoredVersion& story,
                                               const RangeOptions& options) {
   const auto range = range_of(options, story.version.window);
@@ -91,8 +91,8 @@ int write_picture(const std::string& picture, const std::string& path) {
 
 int run(const Arguments& arguments) {
   return with_version(
-      arguments.source, arguments.subject, [&](const Sources& sources, const StoredVersion& story) {
-        const auto picture = picture_of(sources.telemetry, story, arguments.range);
+      arguments.access, arguments.subject, [&](const Readers& readers, const StoredVersion& story) {
+        const auto picture = picture_of(readers.telemetry, story, arguments.range);
         if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
         return write_picture(std::get<std::string>(picture),
                              arguments.output.value_or(fmt::format(
@@ -106,7 +106,7 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("-o,--output", arguments->output,
                      "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
   add_range_options(command, arguments->range, "the window of the version");
-  add_source_options(command, arguments->source);
+  add_access_options(command, arguments->access);
   command.footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");
   return [arguments] { return run(*arguments); };
 }

@@ -6,7 +6,7 @@
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
-#include "service/history/stored_sources.hpp"
+#include "service/history/stored_readers.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/parallel.hpp"
 #include "service/support/version.hpp"

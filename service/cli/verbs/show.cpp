@@ -21,7 +21,7 @@ using nlohmann::ordered_json;
 using storage::Decision;
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   std::string subject;
   bool json = false;
 };
@@ -167,8 +167,8 @@ void print_story(const StoredVersion& story) {
 }
 
 int run(const Arguments& arguments) {
-  return with_version(arguments.source, arguments.subject,
-                      [&](const Sources&, const StoredVersion& story) {
+  return with_version(arguments.access, arguments.subject,
+                      [&](const Readers&, const StoredVersion& story) {
                         if (arguments.json)
                           print_json(story);
                         else
@@ -180,7 +180,7 @@ int run(const Arguments& arguments) {
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   add_version_argument(command, arguments->subject);
-  add_source_options(command, arguments->source);
+  add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object with the matrices");
   command.footer("Example:\n  reident show CBERS-4/BDR@3 --config reident.toml");
   return [arguments] { return run(*arguments); };

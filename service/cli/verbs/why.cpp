@@ -21,7 +21,7 @@ using nlohmann::ordered_json;
 using Sentences = std::vector<std::string>;
 
 struct Arguments {
-  HistoryAccessOptions source;
+  HistoryAccessOptions access;
   std::string subject;
   bool json = false;
 };
@@ -210,14 +210,14 @@ int print(const StoredVersion& story, bool json) {
 
 int run(const Arguments& arguments) {
   return with_version(
-      arguments.source, arguments.subject,
-      [&](const Sources&, const StoredVersion& story) { return print(story, arguments.json); });
+      arguments.access, arguments.subject,
+      [&](const Readers&, const StoredVersion& story) { return print(story, arguments.json); });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   add_version_argument(command, arguments->subject);
-  add_source_options(command, arguments->source);
+  add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object with the evidence itself");
   command.footer("Example:\n  reident why CBERS-4/BDR@3 --config reident.toml");
   return [arguments] { return run(*arguments); };

@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "service/satcs/csv_export.hpp"
-#include "service/satcs/faults/faulty_source.hpp"
+#include "service/satcs/faults/faulty_stream.hpp"
 #include "service/satcs/program.hpp"
 #include "service/satcs/reference/life_text.hpp"
 #include "service/satcs/reference/random.hpp"
-#include "service/satcs/reference/reference_source.hpp"
+#include "service/satcs/reference/reference_stream.hpp"
 #include "service/support/time_text.hpp"
 
 namespace {
@@ -82,7 +82,7 @@ std::vector<reference::LifeEvent> parse_life(const std::vector<std::string>& tex
 }
 
 /// What the ground receives of `truth`. Throws BadRequest.
-std::unique_ptr<FrameSource> with_faults(std::unique_ptr<FrameSource> truth,
+std::unique_ptr<FrameStream> with_faults(std::unique_ptr<FrameStream> truth,
                                          const std::vector<std::string>& texts,
                                          const ReferenceOptions& options) {
   const auto parameters = truth->parameters();
@@ -97,7 +97,7 @@ std::unique_ptr<FrameSource> with_faults(std::unique_ptr<FrameSource> truth,
       throw BadRequest("--fault: " + error->message);
     faults.push_back(std::move(fault));
   }
-  return std::make_unique<FaultySource>(
+  return std::make_unique<FaultyStream>(
       std::move(truth), faults,
       FaultInjectorOptions{options.constants, options.life, options.seed, options.family});
 }
@@ -141,11 +141,11 @@ int main(int argc, char** argv) {
     if (options.family == Family::platform && app.count("--spacecraft") == 0)
       publisher.spacecraft = "PLATFORM";
     options.life = parse_life(life, options.start, options.family);
-    auto source =
-        simulated ? handwritten_source(options, sender) : reference_source(options, sender);
-    if (!faults.empty()) source = with_faults(std::move(source), faults, options);
-    if (csv.empty()) return publish_and_report(*source, sender, publisher, json);
-    write_csv(*source, csv);
+    auto stream =
+        simulated ? handwritten_stream(options, sender) : reference_stream(options, sender);
+    if (!faults.empty()) stream = with_faults(std::move(stream), faults, options);
+    if (csv.empty()) return publish_and_report(*stream, sender, publisher, json);
+    write_csv(*stream, csv);
     return exit_complete;
   });
 }

@@ -128,16 +128,16 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
   return plan;
 }
 
-ReplaySource::ReplaySource(ReplayPlan plan, Sender sender)
+ReplayStream::ReplayStream(ReplayPlan plan, Sender sender)
     : plan_(std::move(plan)), reader_(reopened(plan_.file)), sender_(std::move(sender)) {}
 
-std::vector<storage::ParameterDescriptor> ReplaySource::parameters() const {
+std::vector<storage::ParameterDescriptor> ReplayStream::parameters() const {
   std::vector<storage::ParameterDescriptor> parameters;
   for (const auto& column : plan_.columns) parameters.push_back(column.parameter);
   return parameters;
 }
 
-bool ReplaySource::next(storage::TelemetryFrame& frame) {
+bool ReplayStream::next(storage::TelemetryFrame& frame) {
   while (true) {
     const Reader::Step step = reader_.next();
     if (step == Reader::Step::end) return false;
@@ -163,7 +163,7 @@ bool ReplaySource::next(storage::TelemetryFrame& frame) {
   return true;
 }
 
-double ReplaySource::progress() const {
+double ReplayStream::progress() const {
   return static_cast<double>(rows_done_) / static_cast<double>(plan_.rows);
 }
 

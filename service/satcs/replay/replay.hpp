@@ -1,8 +1,8 @@
-// Recorded telemetry in a CSV file as a source of frames: one frame a row, one parameter a column.
+// Recorded telemetry in a CSV file as a stream of frames: one frame a row, one parameter a column.
 //
 // The file is read twice: once to see that all of it can be replayed and what it holds, before
 // anything is published, and once to replay it. It must not change in between: a row that cannot be
-// read the second time breaks the source.
+// read the second time breaks the stream.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "service/satcs/frame_source.hpp"
+#include "service/satcs/frame_stream.hpp"
 #include "service/support/csv.hpp"
 
 namespace reident::satcs {
@@ -70,10 +70,10 @@ std::variant<ReplayPlan, csv::Error> plan_replay(const ReplayOptions& options);
 /// Rows in the order of the file, whatever their times are, each received when it was generated. A
 /// cell without a finite number becomes a sample of quality invalid whose value is NaN, or none
 /// where it is blank and blanks are skipped.
-class ReplaySource : public FrameSource {
+class ReplayStream : public FrameStream {
  public:
   /// Throws std::runtime_error when the file cannot be opened any more.
-  ReplaySource(ReplayPlan plan, Sender sender);
+  ReplayStream(ReplayPlan plan, Sender sender);
 
   std::vector<storage::ParameterDescriptor> parameters() const override;
   bool next(storage::TelemetryFrame& frame) override;

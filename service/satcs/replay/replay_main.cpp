@@ -63,7 +63,7 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
       ->type_name("TIME|OFFSET");
 }
 
-ReplaySource open_replay(const ReplayOptions& options, const Sender& sender) {
+ReplayStream open_replay(const ReplayOptions& options, const Sender& sender) {
   auto planned = plan_replay(options);
   if (const auto* error = std::get_if<reident::csv::Error>(&planned)) {
     throw BadRequest(error->message);
@@ -72,7 +72,7 @@ ReplaySource open_replay(const ReplayOptions& options, const Sender& sender) {
   for (const auto& column : plan.left_out) {
     reident::log::info("satcs", "column left out, there is no number in it", {{"column", column}});
   }
-  return ReplaySource(std::move(plan), sender);
+  return ReplayStream(std::move(plan), sender);
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   add_publisher_options(app, sender, publisher, json);
   app.get_option("--spacecraft")->required();
   return run_program(app, argc, argv, [&] {
-    ReplaySource source = open_replay(replay, sender);
-    return publish_and_report(source, sender, publisher, json);
+    ReplayStream stream = open_replay(replay, sender);
+    return publish_and_report(stream, sender, publisher, json);
   });
 }

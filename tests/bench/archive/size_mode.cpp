@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <variant>
 
-#include "service/satcs/reference/reference_source.hpp"
+#include "service/satcs/reference/reference_stream.hpp"
 #include "service/satcs/replay/replay.hpp"
 #include "tests/bench/archive/modes.hpp"
 
@@ -16,8 +16,8 @@ struct SizeOptions {
   std::size_t batch = 512;
 };
 
-std::vector<std::unique_ptr<satcs::FrameSource>> sources_of(const SizeOptions& options) {
-  std::vector<std::unique_ptr<satcs::FrameSource>> sources;
+std::vector<std::unique_ptr<satcs::FrameStream>> streams_of(const SizeOptions& options) {
+  std::vector<std::unique_ptr<satcs::FrameStream>> streams;
   const satcs::Sender sender{.source = "bench"};
   for (const std::string& file : options.csv) {
     satcs::ReplayOptions replay;
@@ -25,21 +25,21 @@ std::vector<std::unique_ptr<satcs::FrameSource>> sources_of(const SizeOptions& o
     auto plan = satcs::plan_replay(replay);
     if (const auto* error = std::get_if<csv::Error>(&plan))
       throw std::runtime_error(error->message);
-    sources.push_back(std::make_unique<satcs::ReplaySource>(
+    streams.push_back(std::make_unique<satcs::ReplayStream>(
         std::get<satcs::ReplayPlan>(std::move(plan)), sender));
   }
   if (options.reference_s > 0) {
     satcs::ReferenceOptions reference;
     reference.duration_ns = options.reference_s * 1'000'000'000;
-    sources.push_back(satcs::reference_source(reference, sender));
+    streams.push_back(satcs::reference_stream(reference, sender));
   }
-  return sources;
+  return streams;
 }
 
-/// All of the source in both files; returns how many samples there were.
-std::uint64_t store_all(satcs::FrameSource& source, TelemetryStore& archive, TelemetryStore& plain,
+/// All of the stream in both files; returns how many samples there were.
+std::uint64_t store_all(satcs::FrameStream& stream, TelemetryStore& archive, TelemetryStore& plain,
                         std::size_t batch_frames, std::uint64_t& sequence) {
-  auto descriptors = source.parameters();
+  auto descriptors = stream.parameters();
   for (auto& descriptor : descriptors) descriptor.spacecraft = mission;
   archive.describe(descriptors);
   std::vector<storage::TelemetryFrame> batch;
@@ -48,7 +48,7 @@ std::uint64_t store_all(satcs::FrameSource& source, TelemetryStore& archive, Tel
   while (more) {
     batch.resize(batch_frames);
     std::size_t count = 0;
-    while (count < batch.size() && (more = source.next(batch[count]))) {
+    while (count < batch.size() && (more = stream.next(batch[count]))) {
       auto& frame = batch[count];
       frame.spacecraft = mission;
       frame.sequence = ++sequence;
@@ -70,8 +70,8 @@ void run(const SizeOptions& options) {
   {
     const auto archive = open_store(StoreKind::archive, archive_file, Access::write);
     const auto plain = open_store(StoreKind::plain, plain_file, Access::write);
-    for (const auto& source : sources_of(options))
-      samples += store_all(*source, *archive, *plain, options.batch, sequence);
+    for (const auto& stream : streams_of(options))
+      samples += store_all(*stream, *archive, *plain, options.batch, sequence);
     archive->settle();
   }
   const auto archive_bytes = bytes_in_use(archive_file), plain_bytes = bytes_in_use(plain_file);

@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 
 #include "service/history/remote_history.hpp"
-#include "service/history/remote_sources.hpp"
-#include "service/history/stored_sources.hpp"
+#include "service/history/remote_readers.hpp"
+#include "service/history/stored_readers.hpp"
 #include "storage/registry/registry.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -66,8 +66,8 @@ TEST_F(HistoryDesk, GivesEveryRowThroughAsManyPagesAsItTakes) {
   add_attempts(100, "{\"why\":\"" + std::string(10'000, 'x') + "\"}");
   run();
   RemoteHistory remote(console_, "first");
-  const history::RemoteHistorySource source(history::RemoteRows(remote, 10s));
-  const auto attempts = source.attempts({});
+  const history::RemoteHistoryReader reader(history::RemoteRows(remote, 10s));
+  const auto attempts = reader.attempts({});
   const auto stored = history::StoredHistory(database_).attempts({});
   ASSERT_EQ(attempts.size(), stored.size());
   for (std::size_t i = 0; i < stored.size(); ++i) {
@@ -76,7 +76,7 @@ TEST_F(HistoryDesk, GivesEveryRowThroughAsManyPagesAsItTakes) {
   }
   storage::HistoryFilter newest;
   newest.last = 3;
-  const auto last = source.attempts(newest);
+  const auto last = reader.attempts(newest);
   ASSERT_EQ(last.size(), 3U);
   EXPECT_EQ(last.front().id, 98);
   EXPECT_EQ(last.back().id, 100);

@@ -11,7 +11,7 @@
 namespace reident::satcs::csv_export_test {
 namespace {
 
-class ThreeRows : public FrameSource {
+class ThreeRows : public FrameStream {
  public:
   std::vector<storage::ParameterDescriptor> parameters() const override {
     std::vector<storage::ParameterDescriptor> two(2);
@@ -41,8 +41,8 @@ class ThreeRows : public FrameSource {
 TEST(CsvExport, WritesEveryDigitAndBlanksForInvalidAndForNoSamples) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("reident-export-" + std::to_string(getpid()) + ".csv");
-  ThreeRows source;
-  write_csv(source, path);
+  ThreeRows stream;
+  write_csv(stream, path);
   std::stringstream text;
   text << std::ifstream(path).rdbuf();
   std::filesystem::remove(path);
@@ -52,9 +52,9 @@ TEST(CsvExport, WritesEveryDigitAndBlanksForInvalidAndForNoSamples) {
 }
 
 TEST(CsvExport, SaysWhyAFileCannotBeWritten) {
-  ThreeRows source;
+  ThreeRows stream;
   try {
-    write_csv(source, "/nowhere/t.csv");
+    write_csv(stream, "/nowhere/t.csv");
     FAIL() << "written";
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "/nowhere/t.csv: cannot be written: No such file or directory");

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "service/history/stored_sources.hpp"
+#include "service/history/stored_readers.hpp"
 #include "service/transfer/export.hpp"
 #include "service/transfer/import.hpp"
 #include "tests/storage/fixture.hpp"

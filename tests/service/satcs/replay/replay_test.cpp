@@ -206,7 +206,7 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
   write("t,a,b\n10,1,x\n9.5,,2\n9.5,nan,-0.5\n20,1e400,3\n");
   const auto replayed = plan();
   EXPECT_EQ(replayed.rows, 4U);
-  ReplaySource source(replayed, {"station", storage::Origin::simulated, 7});
+  ReplayStream stream(replayed, {"station", storage::Origin::simulated, 7});
   std::uint64_t sequence = 7;
   struct Row {
     std::int64_t time;
@@ -216,7 +216,7 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
   for (const Row& row : {Row{10 * second, 1, none}, Row{19 * second / 2, none, 2},
                          Row{19 * second / 2, none, -0.5}, Row{20 * second, none, 3}}) {
     storage::TelemetryFrame frame;
-    ASSERT_TRUE(source.next(frame));
+    ASSERT_TRUE(stream.next(frame));
     EXPECT_EQ(frame.source, "station");
     EXPECT_EQ(frame.origin, storage::Origin::simulated);
     EXPECT_EQ(frame.sequence, sequence++);
@@ -234,32 +234,32 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
     }
   }
   storage::TelemetryFrame frame;
-  EXPECT_FALSE(source.next(frame));
-  EXPECT_EQ(source.progress(), 1);
+  EXPECT_FALSE(stream.next(frame));
+  EXPECT_EQ(stream.progress(), 1);
 }
 
 TEST_F(Replay, SkipsBlankCellsWhereAsked) {
   write("t,a,b\n1,1, \n2,,nan\n3,4,5\n");
   options_.skip_blanks = true;
-  ReplaySource source(plan(), {"station"});
+  ReplayStream stream(plan(), {"station"});
   storage::TelemetryFrame frame;
-  ASSERT_TRUE(source.next(frame));
+  ASSERT_TRUE(stream.next(frame));
   ASSERT_EQ(frame.samples.size(), 1U);
   EXPECT_EQ(frame.samples[0].value, 1);
-  ASSERT_TRUE(source.next(frame));
+  ASSERT_TRUE(stream.next(frame));
   ASSERT_EQ(frame.samples.size(), 1U);
   EXPECT_EQ(frame.samples[0].quality, storage::Quality::invalid);
-  ASSERT_TRUE(source.next(frame));
+  ASSERT_TRUE(stream.next(frame));
   EXPECT_EQ(frame.samples.size(), 2U);
 }
 
 TEST_F(Replay, KeepsToTheStretchAskedFor) {
   write("t,a\n12,3\n10,1\n11,2\n13,4\n");
   const auto values = [&] {
-    ReplaySource source(plan(), {"station"});
+    ReplayStream stream(plan(), {"station"});
     std::vector<double> result;
     storage::TelemetryFrame frame;
-    while (source.next(frame)) result.push_back(frame.samples[0].value);
+    while (stream.next(frame)) result.push_back(frame.samples[0].value);
     return result;
   };
   options_.start = ReplayBound{true, second};  // from the earliest row, not the first
@@ -278,12 +278,12 @@ TEST_F(Replay, FailsWhenTheFileChangesUnderIt) {
   write("t,a\n1,2\n2,3\n");
   const auto replayed = plan();
   write("t,a\n1,2\nnoon,3\n");
-  ReplaySource source(replayed, {"station"});
+  ReplayStream stream(replayed, {"station"});
   storage::TelemetryFrame frame;
-  EXPECT_TRUE(source.next(frame));
-  EXPECT_THROW(source.next(frame), std::runtime_error);
+  EXPECT_TRUE(stream.next(frame));
+  EXPECT_THROW(stream.next(frame), std::runtime_error);
   std::filesystem::remove(options_.file);
-  EXPECT_THROW(ReplaySource(replayed, {"station"}), std::runtime_error);
+  EXPECT_THROW(ReplayStream(replayed, {"station"}), std::runtime_error);
 }
 
 }  // namespace

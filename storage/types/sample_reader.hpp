@@ -24,9 +24,9 @@ struct Series {
 };
 
 /// Reads telemetry. What it reads does not change it.
-class SampleSource {
+class SampleReader {
  public:
-  virtual ~SampleSource() = default;
+  virtual ~SampleReader() = default;
 
   /// The descriptor of a parameter by its name; of several with one name that of the lowest id.
   /// Absent where no descriptor has the name.

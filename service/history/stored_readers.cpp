@@ -1,4 +1,4 @@
-#include "service/history/stored_sources.hpp"
+#include "service/history/stored_readers.hpp"
 
 #include <utility>
 

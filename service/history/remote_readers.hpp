@@ -1,14 +1,14 @@
-// The sources of a running service. Each throws Error where no answer comes, and dds::Error where
-// the middleware fails. What a call asks for may take several pages: rows that are added meanwhile
-// may be among them, and a row comes once. One thread at a time, also for all that share a
-// RemoteHistory.
+// The readers of a running service's history. Each throws Error where no answer comes, and
+// dds::Error where the middleware fails. What a call asks for may take several pages: rows that are
+// added meanwhile may be among them, and a row comes once. One thread at a time, also for all that
+// share a RemoteHistory.
 #pragma once
 
 #include <functional>
 
+#include "service/history/readers.hpp"
 #include "service/history/remote_history.hpp"
 #include "service/history/rows.hpp"
-#include "service/history/sources.hpp"
 
 namespace reident::history {
 
@@ -78,9 +78,9 @@ class RemoteRows {
 };
 
 /// What was tried and decided, as the service's registry has it.
-class RemoteHistorySource final : public HistorySource {
+class RemoteHistoryReader final : public HistoryReader {
  public:
-  explicit RemoteHistorySource(const RemoteRows& rows) : rows_(rows) {}
+  explicit RemoteHistoryReader(const RemoteRows& rows) : rows_(rows) {}
 
   std::vector<storage::EquipmentName> equipment() const override;
   std::optional<storage::Hold> hold(const storage::EquipmentName& equipment) const override;
@@ -102,9 +102,9 @@ class RemoteHistorySource final : public HistorySource {
 
 /// What was archived, as the service's database has it. Chunks are decoded by the service, samples
 /// are columns on the way.
-class RemoteTelemetrySource final : public TelemetrySource {
+class RemoteTelemetryReader final : public TelemetryReader {
  public:
-  explicit RemoteTelemetrySource(const RemoteRows& rows) : rows_(rows) {}
+  explicit RemoteTelemetryReader(const RemoteRows& rows) : rows_(rows) {}
 
   std::optional<storage::ParameterDescriptor> parameter(const std::string& spacecraft,
                                                         const std::string& name) const override;

@@ -1,19 +1,19 @@
-// A source of frames as the ground receives it through a FaultInjector.
+// A stream of frames as the ground receives it through a FaultInjector.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "service/satcs/faults/fault_injector.hpp"
-#include "service/satcs/frame_source.hpp"
+#include "service/satcs/frame_stream.hpp"
 
 namespace reident::satcs {
 
 /// Frames in the order of reception, with their senders. Progress is that of the truth.
-class FaultySource : public FrameSource {
+class FaultyStream : public FrameStream {
  public:
   /// Owns the truth. Throws std::invalid_argument when a fault cannot be applied to it.
-  FaultySource(std::unique_ptr<FrameSource> truth, std::span<const Fault> faults,
+  FaultyStream(std::unique_ptr<FrameStream> truth, std::span<const Fault> faults,
                const FaultInjectorOptions& options);
 
   std::vector<storage::ParameterDescriptor> parameters() const override {
@@ -23,7 +23,7 @@ class FaultySource : public FrameSource {
   double progress() const override { return truth_->progress(); }
 
  private:
-  std::unique_ptr<FrameSource> truth_;
+  std::unique_ptr<FrameStream> truth_;
   FaultInjector injector_;
   std::vector<storage::TelemetryFrame> received_;
   std::size_t handed_out_ = 0;  // of those received

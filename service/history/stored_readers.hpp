@@ -1,8 +1,8 @@
-// The sources of a database file, also while a service writes it. Each call reads what is committed
+// The readers of a database file, also while a service writes it. Each call reads what is committed
 // then: two calls are no snapshot.
 #pragma once
 
-#include "service/history/sources.hpp"
+#include "service/history/readers.hpp"
 #include "storage/archive/archive.hpp"
 #include "storage/archive/holdings.hpp"
 #include "storage/registry/registry.hpp"
@@ -10,7 +10,7 @@
 namespace reident::history {
 
 /// The registry of a database, which must outlive it. Throws storage::Error.
-class StoredHistory final : public HistorySource {
+class StoredHistory final : public HistoryReader {
  public:
   explicit StoredHistory(storage::Database& database) : registry_(database) {}
 
@@ -33,7 +33,7 @@ class StoredHistory final : public HistorySource {
 };
 
 /// The archive of a database, which must outlive it. Throws storage::Error.
-class StoredTelemetry final : public TelemetrySource {
+class StoredTelemetry final : public TelemetryReader {
  public:
   explicit StoredTelemetry(storage::Database& database) : database_(database), archive_(database) {}
 

@@ -1,4 +1,4 @@
-#include "service/satcs/reference/reference_source.hpp"
+#include "service/satcs/reference/reference_stream.hpp"
 
 #include <utility>
 
@@ -12,9 +12,9 @@ namespace {
 
 /// `Model` is read and advanced second by second.
 template <class Model>
-class SecondsSource : public FrameSource {
+class SecondsStream : public FrameStream {
  public:
-  SecondsSource(Model model, const ReferenceOptions& options, Sender sender,
+  SecondsStream(Model model, const ReferenceOptions& options, Sender sender,
                 std::vector<storage::ParameterDescriptor> descriptors)
       : model_(std::move(model)),
         sender_(std::move(sender)),
@@ -48,31 +48,31 @@ class SecondsSource : public FrameSource {
 };
 
 template <class Model, class Constants>
-std::unique_ptr<FrameSource> source_of(const Constants& constants, const ReferenceOptions& options,
+std::unique_ptr<FrameStream> stream_of(const Constants& constants, const ReferenceOptions& options,
                                        Sender sender,
                                        std::vector<storage::ParameterDescriptor> descriptors) {
-  return std::make_unique<SecondsSource<Model>>(
+  return std::make_unique<SecondsStream<Model>>(
       Model(constants, options.life, options.start, options.seed), options, std::move(sender),
       std::move(descriptors));
 }
 
 }  // namespace
 
-std::unique_ptr<FrameSource> reference_source(const ReferenceOptions& options, Sender sender) {
+std::unique_ptr<FrameStream> reference_stream(const ReferenceOptions& options, Sender sender) {
   auto descriptors = family_descriptors(options.family, {});
   if (options.family == Family::platform)
-    return source_of<platform::PlatformSpacecraft>(platform::Constants{}, options,
+    return stream_of<platform::PlatformSpacecraft>(platform::Constants{}, options,
                                                    std::move(sender), std::move(descriptors));
-  return source_of<reference::Spacecraft>(options.constants, options, std::move(sender),
+  return stream_of<reference::Spacecraft>(options.constants, options, std::move(sender),
                                           std::move(descriptors));
 }
 
-std::unique_ptr<FrameSource> handwritten_source(const ReferenceOptions& options, Sender sender) {
+std::unique_ptr<FrameStream> handwritten_stream(const ReferenceOptions& options, Sender sender) {
   auto descriptors = simulated_descriptors(options.family, {});
   if (options.family == Family::platform)
-    return source_of<platform::HandwrittenPlatform>(platform::Constants{}, options,
+    return stream_of<platform::HandwrittenPlatform>(platform::Constants{}, options,
                                                     std::move(sender), std::move(descriptors));
-  return source_of<HandwrittenEps>(options.constants, options, std::move(sender),
+  return stream_of<HandwrittenEps>(options.constants, options, std::move(sender),
                                    std::move(descriptors));
 }
 

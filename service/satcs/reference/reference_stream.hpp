@@ -1,10 +1,10 @@
-// The reference spacecraft, and its hand-written simulation, as sources of frames at 1 Hz.
+// The reference spacecraft, and its hand-written simulation, as streams of frames at 1 Hz.
 #pragma once
 
 #include <memory>
 
 #include "service/satcs/family.hpp"
-#include "service/satcs/frame_source.hpp"
+#include "service/satcs/frame_stream.hpp"
 #include "service/satcs/reference/reference_life.hpp"
 
 namespace reident::satcs {
@@ -20,8 +20,8 @@ struct ReferenceOptions {
 };
 
 /// The true telemetry of the family's spacecraft; its frames are received when they are generated.
-std::unique_ptr<FrameSource> reference_source(const ReferenceOptions& options, Sender sender);
+std::unique_ptr<FrameStream> reference_stream(const ReferenceOptions& options, Sender sender);
 /// The hand-written simulator's telemetry at the same times.
-std::unique_ptr<FrameSource> handwritten_source(const ReferenceOptions& options, Sender sender);
+std::unique_ptr<FrameStream> handwritten_stream(const ReferenceOptions& options, Sender sender);
 
 }  // namespace reident::satcs

@@ -1,4 +1,4 @@
-// A source that reads each stretch of each parameter once, and from then on gives what it read.
+// A reader that reads each stretch of each parameter once, and from then on gives what it read.
 //
 // For one reading of a window: several relations bind the parameters that an equipment has too.
 // What is stored meanwhile does not change what it gives.
@@ -11,16 +11,16 @@
 #include <tuple>
 #include <utility>
 
-#include "storage/types/sample_source.hpp"
+#include "storage/types/sample_reader.hpp"
 
 namespace reident {
 
 /// Keeps all that it has read until it ends, which is at the end of one load. One thread at a time.
-/// Throws what its source throws, and keeps nothing then.
-class CachingSource final : public storage::SampleSource {
+/// Throws what its reader throws, and keeps nothing then.
+class CachingReader final : public storage::SampleReader {
  public:
-  /// `source` must outlive this.
-  explicit CachingSource(const storage::SampleSource& source) : source_(source) {}
+  /// `reader` must outlive this.
+  explicit CachingReader(const storage::SampleReader& reader) : reader_(reader) {}
 
   /// Absent where it was absent at the first call.
   std::optional<storage::ParameterDescriptor> parameter(const std::string& spacecraft,
@@ -30,7 +30,7 @@ class CachingSource final : public storage::SampleSource {
                        std::uint32_t parameter, storage::TimeRange range) const override;
 
  private:
-  const storage::SampleSource& source_;
+  const storage::SampleReader& reader_;
   mutable std::map<std::pair<std::string, std::string>, std::optional<storage::ParameterDescriptor>>
       described_;
   mutable std::map<

@@ -1,5 +1,5 @@
 // The questions that programs ask the registry and the archive, wherever these are: in a file
-// (stored_sources.hpp), or behind a running service (remote_sources.hpp). Both give the same
+// (stored_readers.hpp), or behind a running service (remote_readers.hpp). Both give the same
 // answers to the last bit; nothing here changes what it reads.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 #include "storage/types/records.hpp"
 #include "storage/types/sample_columns.hpp"
-#include "storage/types/sample_source.hpp"
+#include "storage/types/sample_reader.hpp"
 #include "storage/types/series.hpp"
 #include "storage/types/time_bins.hpp"
 
@@ -34,9 +34,9 @@ class Error : public std::runtime_error {
 
 /// What was tried and decided. One thread at a time. Where an answer is absent, so is what was
 /// asked for; every call throws where there can be no answer (Error, storage::Error).
-class HistorySource {
+class HistoryReader {
  public:
-  virtual ~HistorySource() = default;
+  virtual ~HistoryReader() = default;
 
   /// The equipment with attempts, in alphabetical order.
   virtual std::vector<storage::EquipmentName> equipment() const = 0;
@@ -63,7 +63,7 @@ class HistorySource {
       std::optional<storage::Time> time = std::nullopt) const = 0;
 };
 
-/// One series read forward, see storage::SeriesBatches. Its source has to outlive it.
+/// One series read forward, see storage::SeriesBatches. Its reader has to outlive it.
 class SampleBatches {
  public:
   virtual ~SampleBatches() = default;
@@ -71,9 +71,9 @@ class SampleBatches {
   virtual bool next(storage::SampleColumns& stretch) = 0;
 };
 
-/// What was archived. One thread at a time. Throws as HistorySource does; storage::Error (corrupt)
+/// What was archived. One thread at a time. Throws as HistoryReader does; storage::Error (corrupt)
 /// or Error (refused) where samples cannot be decoded.
-class TelemetrySource : public storage::SampleSource {
+class TelemetryReader : public storage::SampleReader {
  public:
   /// The series with samples, by spacecraft, origin and name.
   virtual std::vector<storage::SeriesInfo> series() const = 0;

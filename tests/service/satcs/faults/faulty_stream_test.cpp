@@ -1,19 +1,19 @@
-#include "service/satcs/faults/faulty_source.hpp"
+#include "service/satcs/faults/faulty_stream.hpp"
 
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "service/satcs/reference/reference_source.hpp"
+#include "service/satcs/reference/reference_stream.hpp"
 #include "tests/service/satcs/faults/faults_fixture.hpp"
 
-namespace reident::satcs::faulty_source_test {
+namespace reident::satcs::faulty_stream_test {
 namespace {
 
 using namespace test;
 using storage::TelemetryFrame;
 
-class Recorded : public FrameSource {
+class Recorded : public FrameStream {
  public:
   std::vector<storage::ParameterDescriptor> parameters() const override {
     return test::parameters();
@@ -32,32 +32,32 @@ class Recorded : public FrameSource {
   std::size_t handed_out_ = 0;
 };
 
-TEST(FaultySource, HandsOutAllThatIsReceivedAndAtItsEndWhatIsOnTheWay) {
+TEST(FaultyStream, HandsOutAllThatIsReceivedAndAtItsEndWhatIsOnTheWay) {
   const std::vector<Fault> faults = {fault_of("frames_lost" + stretch),
                                      fault_of("repeated_day@+50min/+60min*86400")};
   const auto expected = received(true_frames(), faults);
-  FaultySource source(std::make_unique<Recorded>(), faults, {});
-  EXPECT_EQ(source.parameters(), parameters());
+  FaultyStream stream(std::make_unique<Recorded>(), faults, {});
+  EXPECT_EQ(stream.parameters(), parameters());
   TelemetryFrame frame;
   for (const TelemetryFrame& one : expected) {
-    ASSERT_TRUE(source.next(frame));
+    ASSERT_TRUE(stream.next(frame));
     EXPECT_TRUE(same(frame, one));
   }
-  EXPECT_FALSE(source.next(frame));
-  EXPECT_FALSE(source.next(frame));
-  EXPECT_EQ(source.progress(), 1);
+  EXPECT_FALSE(stream.next(frame));
+  EXPECT_FALSE(stream.next(frame));
+  EXPECT_EQ(stream.progress(), 1);
 }
 
-TEST(FaultySource, RefusesWhatCannotBeToldOfItsTruth) {
+TEST(FaultyStream, RefusesWhatCannotBeToldOfItsTruth) {
   const std::vector<Fault> faults = {fault_of("stuck" + stretch + ":X")};
-  EXPECT_THROW(FaultySource(std::make_unique<Recorded>(), faults, {}), std::invalid_argument);
+  EXPECT_THROW(FaultyStream(std::make_unique<Recorded>(), faults, {}), std::invalid_argument);
 }
 
-TEST(ReferenceSource, NumbersItsFramesAndReceivesThemWhenTheyAreGenerated) {
+TEST(ReferenceStream, NumbersItsFramesAndReceivesThemWhenTheyAreGenerated) {
   ReferenceOptions options;
   options.duration_ns = 3 * second;
-  const auto real = reference_source(options, {.source = "station", .first_sequence = 7});
-  const auto simulated = handwritten_source(options, {"simulator", storage::Origin::simulated});
+  const auto real = reference_stream(options, {.source = "station", .first_sequence = 7});
+  const auto simulated = handwritten_stream(options, {"simulator", storage::Origin::simulated});
   TelemetryFrame frame;
   for (int k = 0; k < 3; ++k) {
     const Time time = options.start + k * second;
@@ -78,4 +78,4 @@ TEST(ReferenceSource, NumbersItsFramesAndReceivesThemWhenTheyAreGenerated) {
 }
 
 }  // namespace
-}  // namespace reident::satcs::faulty_source_test
+}  // namespace reident::satcs::faulty_stream_test

@@ -1,4 +1,4 @@
-// Telemetry as a stream of frames: what a source gives, whoever publishes or writes it.
+// Telemetry as a stream of frames: what it has and in which order, whoever publishes or writes it.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace reident::satcs {
 
-/// Who sends the frames of a source, and from which number on it counts them.
+/// Who sends the frames of a stream, and from which number on it counts them.
 struct Sender {
   std::string source;
   storage::Origin origin = storage::Origin::real;
@@ -18,16 +18,16 @@ struct Sender {
 
 /// Where frames come from: a recorded file, the reference spacecraft. It is read once, forward, by
 /// one thread at a time.
-class FrameSource {
+class FrameStream {
  public:
-  virtual ~FrameSource() = default;
+  virtual ~FrameStream() = default;
 
   /// What the samples are; whoever sends them on fills in the spacecraft.
   virtual std::vector<storage::ParameterDescriptor> parameters() const = 0;
   /// All of the next frame but its spacecraft, in the order of reception; false when there is none.
-  /// The frame's memory is used again. Throws std::runtime_error when the source breaks.
+  /// The frame's memory is used again. Throws std::runtime_error when the stream breaks.
   virtual bool next(storage::TelemetryFrame& frame) = 0;
-  /// The share of the source that was handed out, in [0, 1].
+  /// The share of the stream that was handed out, in [0, 1].
   virtual double progress() const = 0;
 };
 

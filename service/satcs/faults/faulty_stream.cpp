@@ -1,14 +1,14 @@
-#include "service/satcs/faults/faulty_source.hpp"
+#include "service/satcs/faults/faulty_stream.hpp"
 
 #include <utility>
 
 namespace reident::satcs {
 
-FaultySource::FaultySource(std::unique_ptr<FrameSource> truth, std::span<const Fault> faults,
+FaultyStream::FaultyStream(std::unique_ptr<FrameStream> truth, std::span<const Fault> faults,
                            const FaultInjectorOptions& options)
     : truth_(std::move(truth)), injector_(faults, truth_->parameters(), options) {}
 
-bool FaultySource::next(storage::TelemetryFrame& frame) {
+bool FaultyStream::next(storage::TelemetryFrame& frame) {
   while (handed_out_ == received_.size()) {
     received_.clear();
     handed_out_ = 0;

@@ -1,4 +1,4 @@
-#include "service/history/remote_sources.hpp"
+#include "service/history/remote_readers.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -68,19 +68,19 @@ void RemoteRows::refuse_row(const std::exception& mistake) {
                   mistake.what() + "); bring both to the same version");
 }
 
-std::vector<EquipmentName> RemoteHistorySource::equipment() const {
+std::vector<EquipmentName> RemoteHistoryReader::equipment() const {
   std::vector<EquipmentName> names;
   for (EquipmentRow& row : rows_.all<EquipmentRow>(about("equipment")))
     names.push_back(std::move(row.name));
   return names;
 }
 
-std::optional<storage::Hold> RemoteHistorySource::hold(const EquipmentName& equipment) const {
+std::optional<storage::Hold> RemoteHistoryReader::hold(const EquipmentName& equipment) const {
   auto row = rows_.first<EquipmentRow>(about("equipment", equipment));
   return row ? std::move(row->hold) : std::nullopt;
 }
 
-std::vector<storage::Attempt> RemoteHistorySource::attempts(
+std::vector<storage::Attempt> RemoteHistoryReader::attempts(
     const storage::HistoryFilter& filter) const {
   HistoryQuery query = about("attempts", {filter.spacecraft, filter.equipment});
   if (filter.window) query.range = *filter.window;
@@ -95,12 +95,12 @@ std::vector<storage::Attempt> RemoteHistorySource::attempts(
   return attempts;
 }
 
-std::optional<storage::Attempt> RemoteHistorySource::attempt(const EquipmentName& equipment,
+std::optional<storage::Attempt> RemoteHistoryReader::attempt(const EquipmentName& equipment,
                                                              std::int64_t version) const {
   return rows_.first<storage::Attempt>(about("attempts", equipment, version));
 }
 
-std::vector<storage::VersionSummary> RemoteHistorySource::summaries(
+std::vector<storage::VersionSummary> RemoteHistoryReader::summaries(
     const EquipmentName& equipment) const {
   std::vector<storage::VersionSummary> summaries;
   for (storage::Version& version : rows_.all<storage::Version>(about("versions", equipment)))
@@ -108,18 +108,18 @@ std::vector<storage::VersionSummary> RemoteHistorySource::summaries(
   return summaries;
 }
 
-std::optional<storage::Version> RemoteHistorySource::version(const EquipmentName& equipment,
+std::optional<storage::Version> RemoteHistoryReader::version(const EquipmentName& equipment,
                                                              std::int64_t number) const {
   if (number == 0) return std::nullopt;  // it would select every one
   return rows_.first<storage::Version>(about("model", equipment, number));
 }
 
-std::vector<storage::Decision> RemoteHistorySource::decisions(
+std::vector<storage::Decision> RemoteHistoryReader::decisions(
     const EquipmentName& equipment, std::optional<std::int64_t> version) const {
   return rows_.all<storage::Decision>(about("decisions", equipment, version));
 }
 
-std::optional<storage::Decision> RemoteHistorySource::champion_decision(
+std::optional<storage::Decision> RemoteHistoryReader::champion_decision(
     const EquipmentName& equipment, std::optional<storage::Time> time) const {
   HistoryQuery query = about("champion", equipment);
   if (time)
@@ -128,7 +128,7 @@ std::optional<storage::Decision> RemoteHistorySource::champion_decision(
   return row ? std::move(row->decision) : std::nullopt;
 }
 
-std::optional<storage::ParameterDescriptor> RemoteTelemetrySource::parameter(
+std::optional<storage::ParameterDescriptor> RemoteTelemetryReader::parameter(
     const std::string& spacecraft, const std::string& name) const {
   std::optional<storage::ParameterDescriptor> found;
   rows_.each<storage::ParameterDescriptor>(about("parameters", {spacecraft, ""}),
@@ -139,7 +139,7 @@ std::optional<storage::ParameterDescriptor> RemoteTelemetrySource::parameter(
   return found;
 }
 
-storage::Series RemoteTelemetrySource::read(const std::string& spacecraft, storage::Origin origin,
+storage::Series RemoteTelemetryReader::read(const std::string& spacecraft, storage::Origin origin,
                                             std::uint32_t parameter,
                                             storage::TimeRange range) const {
   storage::Series series;
@@ -154,7 +154,7 @@ storage::Series RemoteTelemetrySource::read(const std::string& spacecraft, stora
   return series;
 }
 
-std::vector<storage::SeriesInfo> RemoteTelemetrySource::series() const {
+std::vector<storage::SeriesInfo> RemoteTelemetryReader::series() const {
   auto all = rows_.all<storage::SeriesInfo>(about("series"));
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
     return std::tie(a.spacecraft, a.origin, a.name, a.parameter) <
@@ -163,21 +163,21 @@ std::vector<storage::SeriesInfo> RemoteTelemetrySource::series() const {
   return all;
 }
 
-std::map<std::int64_t, std::string> RemoteTelemetrySource::source_names() const {
+std::map<std::int64_t, std::string> RemoteTelemetryReader::source_names() const {
   std::map<std::int64_t, std::string> names;
   for (auto& source : rows_.all<std::pair<std::int64_t, std::string>>(about("sources")))
     names.insert(std::move(source));
   return names;
 }
 
-std::unique_ptr<SampleBatches> RemoteTelemetrySource::stretches(
+std::unique_ptr<SampleBatches> RemoteTelemetryReader::stretches(
     const storage::SeriesInfo& series, storage::TimeRange range, std::size_t /*chunks*/,
     storage::WantedColumns /*wanted*/) const {
   return std::make_unique<Pages>(
       rows_, samples_of(series.spacecraft, series.origin, series.parameter, range));
 }
 
-std::vector<storage::BinCounts> RemoteTelemetrySource::completeness(
+std::vector<storage::BinCounts> RemoteTelemetryReader::completeness(
     const storage::SeriesInfo& series, const storage::TimeBins& bins, storage::Time until) const {
   HistoryQuery query = samples_of(series.spacecraft, series.origin, series.parameter, bins.range());
   query.subject = "completeness";
@@ -192,7 +192,7 @@ std::vector<storage::BinCounts> RemoteTelemetrySource::completeness(
   return counts;
 }
 
-std::vector<storage::SequenceGap> RemoteTelemetrySource::sequence_gaps() const {
+std::vector<storage::SequenceGap> RemoteTelemetryReader::sequence_gaps() const {
   return rows_.all<storage::SequenceGap>(about("sequence_gaps"));
 }
 

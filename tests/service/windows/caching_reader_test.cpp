@@ -1,12 +1,12 @@
-#include "service/windows/caching_source.hpp"
+#include "service/windows/caching_reader.hpp"
 
 #include <gtest/gtest.h>
 
-namespace reident::caching_source_test {
+namespace reident::caching_reader_test {
 namespace {
 
 /// Counts what it is asked for; its samples show by whom.
-class Counted final : public storage::SampleSource {
+class Counted final : public storage::SampleReader {
  public:
   std::optional<storage::ParameterDescriptor> parameter(const std::string&,
                                                         const std::string& name) const override {
@@ -24,9 +24,9 @@ class Counted final : public storage::SampleSource {
   mutable int asked = 0;
 };
 
-TEST(CachingSource, AsksForEachParameterAndStretchOnceAndGivesTheSame) {
-  const Counted source;
-  const CachingSource once(source);
+TEST(CachingReader, AsksForEachParameterAndStretchOnceAndGivesTheSame) {
+  const Counted reader;
+  const CachingReader once(reader);
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(once.parameter("SAT", "u")->name, "u");
     EXPECT_FALSE(once.parameter("SAT", "unknown"));
@@ -38,17 +38,17 @@ TEST(CachingSource, AsksForEachParameterAndStretchOnceAndGivesTheSame) {
         EXPECT_EQ(series.value.front(), parameter);
       }
   }
-  EXPECT_EQ(source.asked, 2 + 6);
+  EXPECT_EQ(reader.asked, 2 + 6);
 }
 
-TEST(CachingSource, KeepsSpacecraftAndOriginsApart) {
-  const Counted source;
-  const CachingSource once(source);
+TEST(CachingReader, KeepsSpacecraftAndOriginsApart) {
+  const Counted reader;
+  const CachingReader once(reader);
   once.read("SAT", storage::Origin::real, 1, {0, 10});
   once.read("SAT", storage::Origin::simulated, 1, {0, 10});
   once.read("SAT-2", storage::Origin::real, 1, {0, 10});
-  EXPECT_EQ(source.asked, 3);
+  EXPECT_EQ(reader.asked, 3);
 }
 
 }  // namespace
-}  // namespace reident::caching_source_test
+}  // namespace reident::caching_reader_test
