@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "service/model/model_version.hpp"
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 
 namespace reident {
 

@@ -1,5 +1,5 @@
-// One window from its seal to its record, and what becomes of versions on probation, wherever the
-// database's writer is.
+// One window from its seal to its attempt in the registry, and what becomes of versions on
+// probation, wherever the database's writer is.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 #include "storage/types/sample_columns.hpp"
 #include "storage/types/series.hpp"
 #include "storage/types/time_bins.hpp"

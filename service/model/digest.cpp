@@ -57,9 +57,9 @@ class CanonicalEncoder {
   void put(const std::optional<Value>& value) {
     if (value) put(*value);
   }
-  template <class Record>
-  requires std::is_class_v<Record>
-  void put(const Record& record) { visit_fields(record, *this); }
+  template <class Struct>
+  requires std::is_class_v<Struct>
+  void put(const Struct& value) { visit_fields(value, *this); }
   const std::string& bytes() const { return bytes_; }
 
  private:

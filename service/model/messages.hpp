@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 #include "storage/types/telemetry.hpp"
 
 namespace reident {

@@ -33,7 +33,7 @@ enum class Presence {
 struct Field {
   std::string_view name;  // in JSON
   Digest digest = Digest::undigested;
-  /// A MATLAB file's variable; for a record, what the variables of its fields begin with. Empty:
+  /// A MATLAB file's variable; for a struct, what the variables of its fields begin with. Empty:
   /// the file does not have it.
   std::string_view mat = {};
   Extent rows = Extent::one;
@@ -52,13 +52,13 @@ bool is_absent(const Value& value) {
     return false;
 }
 
-/// A record to read, or one to set.
-template <class Record, class Type>
-concept RecordOf = std::same_as<std::remove_const_t<Record>, Type>;
+/// A struct to read, or one to set.
+template <class Struct, class Type>
+concept StructOf = std::same_as<std::remove_const_t<Struct>, Type>;
 
-// visit_fields(record, visit) calls visit(Field, member) for each field, in the order of JSON and
+// visit_fields(value, visit) calls visit(Field, member) for each field, in the order of JSON and
 // of the digest. A member that follows from others, and is not to be set, is const. Each
-// visit_fields names all members of its record: it does not compile when one is added or removed.
+// visit_fields names all members of its struct: it does not compile when one is added or removed.
 
 /// visit(Field, pointer to member), for lists of signals that are handled field by field.
 template <class Visit>
@@ -73,21 +73,21 @@ void visit_signal_members(Visit&& visit) {
 }
 
 template <class Visit>
-void visit_fields(RecordOf<Signal> auto& signal, Visit&& visit) {
+void visit_fields(StructOf<Signal> auto& signal, Visit&& visit) {
   [[maybe_unused]] const auto& [name, unit, low, high, expression] = signal;
   visit_signal_members(
       [&](const Field& field, const auto member) { visit(field, signal.*member); });
 }
 
 template <class Visit>
-void visit_fields(RecordOf<storage::TimeRange> auto& range, Visit&& visit) {
+void visit_fields(StructOf<storage::TimeRange> auto& range, Visit&& visit) {
   auto& [begin, end] = range;
   visit({"begin_ns"}, begin);
   visit({"end_ns"}, end);
 }
 
 template <class Visit>
-void visit_fields(RecordOf<identification::Score> auto& score, Visit&& visit) {
+void visit_fields(StructOf<identification::Score> auto& score, Visit&& visit) {
   using enum Digest;
   auto& [mrse_percent, fit_percent, rows] = score;
   visit({"mrse_percent", undigested, {}, Extent::p}, mrse_percent);
@@ -96,7 +96,7 @@ void visit_fields(RecordOf<identification::Score> auto& score, Visit&& visit) {
 }
 
 template <class Visit>
-void visit_fields(RecordOf<EquipmentModel::Tracking> auto& tracking, Visit&& visit) {
+void visit_fields(StructOf<EquipmentModel::Tracking> auto& tracking, Visit&& visit) {
   using enum Digest;
   using enum Extent;
   auto& [gain, validation] = tracking;
@@ -108,7 +108,7 @@ void visit_fields(RecordOf<EquipmentModel::Tracking> auto& tracking, Visit&& vis
 }
 
 template <class Visit>
-void visit_fields(RecordOf<EquipmentModel> auto& model, Visit&& visit) {
+void visit_fields(StructOf<EquipmentModel> auto& model, Visit&& visit) {
   using enum Digest;
   using enum Extent;
   auto& [spacecraft, equipment, inputs, outputs, dynamics, sample_hold_ns, identified_from,
@@ -139,7 +139,7 @@ void visit_fields(RecordOf<EquipmentModel> auto& model, Visit&& visit) {
 /// What a version has in addition to its model. The names are those of a simulator's own file;
 /// exported files have service/model_export/version_head.hpp.
 template <class Visit>
-void visit_fields(RecordOf<ModelVersion> auto& version, Visit&& visit) {
+void visit_fields(StructOf<ModelVersion> auto& version, Visit&& visit) {
   auto& [model, number, digest, decided, decided_by, rollback, program_version] = version;
   visit({"number"}, number);
   visit({"digest"}, digest);

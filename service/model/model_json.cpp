@@ -19,8 +19,8 @@ Json number_to_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-template <class Record>
-Json object_of(const Record& record);
+template <class Struct>
+Json object_of(const Struct& value);
 
 template <class Value>
 Json json_of(const Value& value) {
@@ -51,10 +51,10 @@ Json json_of(const std::optional<Value>& value) {
   return value ? json_of(*value) : Json(nullptr);
 }
 
-template <class Record>
-Json object_of(const Record& record) {
+template <class Struct>
+Json object_of(const Struct& value) {
   Json object = Json::object();
-  visit_fields(record, [&object](const Field& field, const auto& member) {
+  visit_fields(value, [&object](const Field& field, const auto& member) {
     if (field.presence == Presence::optional && is_absent(member)) return;
     object[std::string(field.name)] = json_of(member);
   });
@@ -140,16 +140,16 @@ void check_expression(const Entry& signal) {
     entry.refuse_value(mistake->message);
 }
 
-/// Sets each field that it visits from the entry of its record.
+/// Sets each field that it visits from the entry of its struct.
 class JsonReader {
  public:
-  JsonReader(const Entry& document, const Entry& record) : document_(document), record_(record) {}
+  JsonReader(const Entry& document, const Entry& fields) : document_(document), fields_(fields) {}
 
   template <class Member>
   void operator()(const Field& field, Member& member) const {
     const std::string key(field.name);
-    if (field.presence == Presence::optional && !record_.has(key)) return;
-    read(record_[key], field, member);
+    if (field.presence == Presence::optional && !fields_.has(key)) return;
+    read(fields_[key], field, member);
   }
 
  private:
@@ -201,13 +201,13 @@ class JsonReader {
   void read(const Entry& entry, const Field& field, std::optional<Value>& value) const {
     read(entry, field, value.emplace());
   }
-  template <class Record>
-  void read(const Entry& entry, const Field&, Record& record) const {
-    visit_fields(record, JsonReader(document_, entry));
+  template <class Struct>
+  void read(const Entry& entry, const Field&, Struct& value) const {
+    visit_fields(value, JsonReader(document_, entry));
   }
 
   const Entry& document_;
-  const Entry& record_;
+  const Entry& fields_;
 };
 
 }  // namespace

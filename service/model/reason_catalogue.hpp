@@ -14,7 +14,7 @@
 #include <optional>
 #include <string_view>
 
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 
 namespace reident {
 

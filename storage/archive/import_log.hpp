@@ -47,14 +47,14 @@ class ImportLog {
   /// check, by the digest.
   std::vector<Unfinished> unfinished(const std::string& request) const;
 
-  /// Records that an import of `file` begins. Returns its id.
+  /// Stores that an import of `file` begins. Returns its id.
   std::int64_t begin(const std::string& file, const std::string& request, Time now);
   /// Describes the parameters, appends the frames, adds what became of their samples to the counts
   /// of `at`, and keeps `at`, all in one transaction. Throws Error where it cannot; then nothing is
   /// stored and `at` is as it was.
   AppendReport append(std::int64_t import, std::span<const ParameterDescriptor> descriptors,
                       std::span<const TelemetryFrame> frames, ImportPosition& at);
-  /// Records that the import came to its end: unfinished() does not give it any more.
+  /// Stores that the import came to its end: unfinished() does not give it any more.
   void finish(std::int64_t import, Time now);
 
  private:

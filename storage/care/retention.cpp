@@ -59,8 +59,8 @@ void find_ends(SeriesHead& series, ChunkStore& chunks) {
 
 /// One row for each stretch in which nothing was left; what was removed before and is next to it is
 /// of that stretch.
-void record(sqlite::Connection& connection, ChunkStore& chunks, const ChunkWalk::Step& removed,
-            Time now) {
+void add_removal(sqlite::Connection& connection, ChunkStore& chunks, const ChunkWalk::Step& removed,
+                 Time now) {
   const char* name = removed.cause == Cause::age ? "age" : "size";
   const std::int64_t series = removed.row.series;
   const Time end = just_after(removed.row.last);
@@ -143,7 +143,7 @@ bool Retention::step() {
       if (holds_recent(series, step.row)) return true;
       writer.chunks().discard(step.row);
       series.samples -= std::min<std::uint64_t>(series.samples, step.row.samples);
-      record(db, writer.chunks(), step, now_);
+      add_removal(db, writer.chunks(), step, now_);
       touched.insert(series.id);
       count(done, step);
       ++chunks;

@@ -8,7 +8,7 @@
 
 namespace reident::storage {
 
-/// SQLite's own check: pages, records, indexes, and references between tables. False when
+/// SQLite's own check: pages, rows, indexes, and references between tables. False when
 /// `go_on`, which is asked about every 10 ms, said no.
 bool verify_pages(sqlite::Connection& connection, bool quick, VerifyReport& report,
                   const std::function<bool()>& go_on);

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "storage/database/database.hpp"
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 #include "storage/types/telemetry.hpp"
 
 namespace reident::storage {

@@ -14,7 +14,7 @@
 
 namespace reident::test {
 
-/// Calls leaf(path, Field, member) for each text, number and matrix below a record, such as
+/// Calls leaf(path, Field, member) for each text, number and matrix below a struct, such as
 /// "inputs[0].name". Optional fields that are absent have none.
 template <class Leaf>
 class LeafWalk {
@@ -47,11 +47,11 @@ class LeafWalk {
 };
 
 template <class Leaf>
-void visit_leaves(RecordOf<EquipmentModel> auto& model, Leaf&& leaf) {
+void visit_leaves(StructOf<EquipmentModel> auto& model, Leaf&& leaf) {
   visit_fields(model, LeafWalk("", leaf));
 }
 template <class Leaf>
-void visit_leaves(RecordOf<ModelVersion> auto& version, Leaf&& leaf) {
+void visit_leaves(StructOf<ModelVersion> auto& version, Leaf&& leaf) {
   visit_fields(version, LeafWalk("", leaf));
   visit_leaves(version.model, leaf);
 }
@@ -85,18 +85,18 @@ inline std::string bits_of(const identification::Matrix& matrix) {
   return text;
 }
 
-template <class Record>
-std::map<std::string, std::string> bits_of_leaves(const Record& record) {
+template <class Struct>
+std::map<std::string, std::string> bits_of_leaves(const Struct& value) {
   std::map<std::string, std::string> leaves;
-  visit_leaves(record, [&leaves](const std::string& path, const Field&, const auto& leaf) {
+  visit_leaves(value, [&leaves](const std::string& path, const Field&, const auto& leaf) {
     leaves[path] = bits_of(leaf);
   });
   return leaves;
 }
 
 /// The paths of the fields that one has and the other has not, or with other bits.
-template <class Record>
-std::vector<std::string> differing_fields(const Record& a, const Record& b) {
+template <class Struct>
+std::vector<std::string> differing_fields(const Struct& a, const Struct& b) {
   std::vector<std::string> paths;
   const auto of_a = bits_of_leaves(a), of_b = bits_of_leaves(b);
   for (const auto& [path, bits] : of_a)
@@ -157,9 +157,9 @@ class DistinctValues {
     set(field, value.emplace());
   }
   void set(const Field&, const identification::Index&) {}
-  template <class Record>
-  void set(const Field&, Record& record) {
-    visit_fields(record, *this);
+  template <class Struct>
+  void set(const Field&, Struct& value) {
+    visit_fields(value, *this);
   }
 
   int last_ = 0;
@@ -195,10 +195,10 @@ inline void change(identification::Vector& vector) {
   change(vector(vector.size() - 1));
 }
 
-/// Calls visit(path, Field, changed record) once for each field, where that alone is changed.
-template <class Record, class Visit>
-void for_each_change(const Record& record, Visit&& visit) {
-  Record changed = record;
+/// Calls visit(path, Field, changed struct) once for each field, where that alone is changed.
+template <class Struct, class Visit>
+void for_each_change(const Struct& value, Visit&& visit) {
+  Struct changed = value;
   visit_leaves(changed, [&](const std::string& path, const Field& field, auto& leaf) {
     if constexpr (!std::is_const_v<std::remove_reference_t<decltype(leaf)>>) {
       const auto before = leaf;

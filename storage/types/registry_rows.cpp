@@ -1,4 +1,4 @@
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 
 #include <algorithm>
 #include <array>
