@@ -29,7 +29,7 @@ constexpr double common_noise_factor = 2;
 constexpr double noise_deviation_share = 0.02;
 
 /// Rows [begin, end) of one segment in which a channel repeats one value.
-struct Run {
+struct Plateau {
   Index begin = 0, end = 0;
   double value = 0;
   std::size_t segment = 0;
@@ -40,22 +40,22 @@ struct Channel {
   Eigen::Ref<const Vector> values;
   bool is_analog = false;
   double low = 0, high = 0;
-  std::vector<Run> runs;
+  std::vector<Plateau> plateaus;
   double least_jump = 0;  // of analog channels; any change of the others is one
 
   double range() const { return high - low; }
 };
 
-std::vector<Run> runs_of(const Eigen::Ref<const Vector>& values,
-                         const std::vector<Segment>& segments) {
-  std::vector<Run> runs;
+std::vector<Plateau> plateaus_of(const Eigen::Ref<const Vector>& values,
+                                 const std::vector<Segment>& segments) {
+  std::vector<Plateau> plateaus;
   for (std::size_t s = 0; s < segments.size(); ++s)
     for (Index row = segments[s].begin; row < segments[s].end; ++row) {
-      if (row == segments[s].begin || values(row) != runs.back().value)
-        runs.push_back({row, row, values(row), s});
-      runs.back().end = row + 1;
+      if (row == segments[s].begin || values(row) != plateaus.back().value)
+        plateaus.push_back({row, row, values(row), s});
+      plateaus.back().end = row + 1;
     }
-  return runs;
+  return plateaus;
 }
 
 TickRange ticks_of(const Record& record, std::size_t segment, Index begin, Index end) {
@@ -64,43 +64,46 @@ TickRange ticks_of(const Record& record, std::size_t segment, Index begin, Index
   return {first, first + (end - begin)};
 }
 
-bool another_moves(const std::vector<Channel>& channels, std::size_t self, const Run& run) {
+bool another_moves(const std::vector<Channel>& channels, std::size_t self, const Plateau& plateau) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (c == self || !channels[c].is_analog) continue;
     // Its middle: where it began and ended, the channel stood still for other reasons.
-    const auto there = channels[c].values.segment(run.begin + run.size() / 4, run.size() / 2);
+    const auto there =
+        channels[c].values.segment(plateau.begin + plateau.size() / 4, plateau.size() / 2);
     if (there.maxCoeff() - there.minCoeff() > moving_share * channels[c].range()) return true;
   }
   return false;
 }
 
-bool is_repeated_elsewhere(const std::vector<Run>& runs, const Run& run) {
-  const double least = repeated_share * double(run.size());
-  return std::any_of(runs.begin(), runs.end(), [&](const Run& other) {
-    return other.begin != run.begin && other.value == run.value && double(other.size()) >= least;
+bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& plateau) {
+  const double least = repeated_share * double(plateau.size());
+  return std::any_of(plateaus.begin(), plateaus.end(), [&](const Plateau& other) {
+    return other.begin != plateau.begin && other.value == plateau.value &&
+           double(other.size()) >= least;
   });
 }
 
-std::vector<Run> stuck_runs(const std::vector<Channel>& channels, std::size_t self) {
+std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::size_t self) {
   const Channel& channel = channels[self];
-  std::vector<Run> longest = channel.runs;
+  std::vector<Plateau> longest = channel.plateaus;
   const std::size_t looked_at = std::min(longest.size(), most_stuck + 1);
   std::partial_sort(longest.begin(), longest.begin() + static_cast<std::ptrdiff_t>(looked_at),
-                    longest.end(), [](const Run& a, const Run& b) {
+                    longest.end(), [](const Plateau& a, const Plateau& b) {
                       return a.size() != b.size() ? a.size() > b.size() : a.begin < b.begin;
                     });
   if (looked_at <= most_stuck) return {};  // hardly any samples to compare with
   const double usual = double(longest[most_stuck].size());
-  std::vector<Run> stuck;
+  std::vector<Plateau> stuck;
   for (std::size_t i = 0; i < most_stuck; ++i) {
-    const Run& run = longest[i];
-    if (run.size() < least_stuck_rows || double(run.size()) < stuck_factor * usual) break;
-    if (run.value == channel.low || run.value == channel.high) continue;
-    if (is_repeated_elsewhere(channel.runs, run) || !another_moves(channels, self, run)) continue;
-    stuck.push_back(run);
+    const Plateau& plateau = longest[i];
+    if (plateau.size() < least_stuck_rows || double(plateau.size()) < stuck_factor * usual) break;
+    if (plateau.value == channel.low || plateau.value == channel.high) continue;
+    if (is_repeated_elsewhere(channel.plateaus, plateau) || !another_moves(channels, self, plateau))
+      continue;
+    stuck.push_back(plateau);
   }
   std::sort(stuck.begin(), stuck.end(),
-            [](const Run& a, const Run& b) { return a.begin < b.begin; });
+            [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });
   return stuck;
 }
 
@@ -112,17 +115,17 @@ double quantile(std::vector<double> values, double share) {
 
 /// The least change from one value to the next that is no usual one.
 double least_jump(const Channel& channel) {
-  const std::vector<Run>& runs = channel.runs;
+  const std::vector<Plateau>& plateaus = channel.plateaus;
   std::vector<double> steps;
-  for (std::size_t i = 1; i < runs.size(); ++i)
-    if (runs[i].segment == runs[i - 1].segment)
-      steps.push_back(std::abs(runs[i].value - runs[i - 1].value));
+  for (std::size_t i = 1; i < plateaus.size(); ++i)
+    if (plateaus[i].segment == plateaus[i - 1].segment)
+      steps.push_back(std::abs(plateaus[i].value - plateaus[i - 1].value));
   const double usual = steps.empty() ? 0 : quantile(std::move(steps), 0.5);
   return std::max(spike_steps * usual, spike_range_share * channel.range());
 }
 
 /// Whether another channel jumps next to the spike, so that it may be what the equipment does then.
-bool another_jumps(const std::vector<Channel>& channels, std::size_t self, const Run& spike) {
+bool another_jumps(const std::vector<Channel>& channels, std::size_t self, const Plateau& spike) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (c == self || !(channels[c].range() > 0)) continue;
     const auto there = channels[c].values.segment(spike.begin - 1, spike.size() + 2);
@@ -131,25 +134,25 @@ bool another_jumps(const std::vector<Channel>& channels, std::size_t self, const
   return false;
 }
 
-/// Runs that stand out from both neighbours.
-std::vector<Run> spikes_of(const Channel& channel) {
-  const std::vector<Run>& runs = channel.runs;
+/// Plateaus that stand out from both neighbours.
+std::vector<Plateau> spikes_of(const Channel& channel) {
+  const std::vector<Plateau>& plateaus = channel.plateaus;
   std::vector<double> lengths;
-  for (const Run& run : runs) lengths.push_back(double(run.size()));
-  if (runs.size() < 3) return {};
+  for (const Plateau& plateau : plateaus) lengths.push_back(double(plateau.size()));
+  if (plateaus.size() < 3) return {};
   const double least = channel.least_jump;
   const double longest = 2 * quantile(lengths, 0.5);
-  std::vector<Run> spikes;
-  for (std::size_t i = 1; i + 1 < runs.size(); ++i) {
-    const Run &before = runs[i - 1], &run = runs[i], &after = runs[i + 1];
-    if (before.segment != run.segment || after.segment != run.segment) continue;
-    const double up = run.value - before.value, down = run.value - after.value;
+  std::vector<Plateau> spikes;
+  for (std::size_t i = 1; i + 1 < plateaus.size(); ++i) {
+    const Plateau &before = plateaus[i - 1], &plateau = plateaus[i], &after = plateaus[i + 1];
+    if (before.segment != plateau.segment || after.segment != plateau.segment) continue;
+    const double up = plateau.value - before.value, down = plateau.value - after.value;
     const double height = std::min(std::abs(up), std::abs(down));
-    if (up * down > 0 && height > least && double(run.size()) <= longest &&
+    if (up * down > 0 && height > least && double(plateau.size()) <= longest &&
         std::abs(after.value - before.value) < neighbours_agree * height)
-      spikes.push_back(run);
+      spikes.push_back(plateau);
   }
-  if (double(spikes.size()) > most_spikes * double(runs.size())) return {};
+  if (double(spikes.size()) > most_spikes * double(plateaus.size())) return {};
   return spikes;
 }
 
@@ -245,7 +248,7 @@ std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<b
         {values, analog[static_cast<std::size_t>(c)], values.minCoeff(), values.maxCoeff(), {}, 0});
     Channel& channel = channels.back();
     if (!channel.is_analog) continue;
-    channel.runs = runs_of(values, record.segments);
+    channel.plateaus = plateaus_of(values, record.segments);
     channel.least_jump = least_jump(channel);
   }
   const std::vector<Block> blocks = blocks_of(record);
@@ -256,9 +259,9 @@ std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<b
     const auto add = [&](SensorFaultKind kind, TickRange ticks) {
       faults.push_back({kind, static_cast<Index>(c), ticks});
     };
-    for (const Run& run : stuck_runs(channels, c))
-      add(SensorFaultKind::stuck, ticks_of(record, run.segment, run.begin, run.end));
-    for (const Run& spike : spikes_of(channels[c]))
+    for (const Plateau& plateau : stuck_plateaus(channels, c))
+      add(SensorFaultKind::stuck, ticks_of(record, plateau.segment, plateau.begin, plateau.end));
+    for (const Plateau& spike : spikes_of(channels[c]))
       if (!another_jumps(channels, c, spike))
         add(SensorFaultKind::spike, ticks_of(record, spike.segment, spike.begin, spike.end));
     if (ratios[c].empty()) continue;

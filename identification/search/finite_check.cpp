@@ -6,9 +6,9 @@
 
 namespace reident::identification {
 
-bool all_finite(const StretchSums& sums) {
-  return std::all_of(sums.runs.begin(), sums.runs.end(), [](const RunSums& run) {
-    return run.sum().allFinite() && run.products().allFinite();
+bool all_finite(const RangeSums& sums) {
+  return std::all_of(sums.segments.begin(), sums.segments.end(), [](const SegmentSums& segment) {
+    return segment.sum().allFinite() && segment.products().allFinite();
   });
 }
 

@@ -13,7 +13,7 @@
 namespace reident::identification {
 
 /// Whether the sums hold no such sample. Requires sums of all channels.
-bool all_finite(const StretchSums& sums);
+bool all_finite(const RangeSums& sums);
 
 /// Returns the verdict non_finite for the first such sample in the rows, by channel and row, with
 /// the names of the options; absent where there is none.

@@ -131,7 +131,7 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
                               std::vector<HeldOutErrors>& errors) {
   const Record& record = data_.normalised;
   const Fold fold = data_.folds[fold_index].with_tune_of(rows_scored_quickly());
-  const StretchSums& sums = data_.sums[fold_index];
+  const RangeSums& sums = data_.sums[fold_index];
   const Projection projection(compress(sums, data_.normalisation, record,
                                        segments_within(record, fold.fit),
                                        space_.horizons[horizon_index]));

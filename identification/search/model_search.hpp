@@ -40,7 +40,7 @@ struct SearchData {
   const Record& normalised;
   const Normalisation& normalisation;
   const std::vector<Fold>& folds;
-  const std::vector<StretchSums>& sums;
+  const std::vector<RangeSums>& sums;
 };
 
 /// How far the search goes, in multiply-adds of free runs and regressions. Each stage has a third

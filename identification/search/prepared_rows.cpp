@@ -43,7 +43,7 @@ std::optional<Verdict> PreparedRows::prepare(std::vector<std::string>& warnings)
   return std::nullopt;
 }
 
-StretchSums PreparedRows::sums_of(RowRange part) {
+RangeSums PreparedRows::sums_of(RowRange part) {
   const std::vector<Segment> parts =
       segments_within(record_, {fitted_.begin + part.begin, fitted_.begin + part.end});
   if (parts.empty()) return {};

@@ -48,8 +48,8 @@ class PreparedRows {
   std::string input_name(Index input) const;
 
   /// Return the sums, in units, of all fitted rows, and of a part of them counted from the first.
-  const StretchSums& sums() const { return sums_; }
-  StretchSums sums_of(RowRange part);
+  const RangeSums& sums() const { return sums_; }
+  RangeSums sums_of(RowRange part);
   /// Returns the fitted and the tuning rows, normalised, without the channels left out. Made when
   /// first asked for: a model that follows from the sums alone needs no rows.
   const Record& normalised();
@@ -75,7 +75,7 @@ class PreparedRows {
   const IdentifyOptions& options_;
   LagSums& lag_sums_;
   bool keep_;
-  StretchSums sums_;
+  RangeSums sums_;
   Normalisation normalisation_;
   std::vector<Segment> segments_;
   std::optional<Record> normalised_;

@@ -120,7 +120,7 @@ std::variant<RecipeChoice, Verdict> choose_recipes(PreparedRows& rows,
   if (given) return without_choice(*given, options, warnings);
 
   SearchEffort effort{options.search_budget, 0};
-  std::vector<StretchSums> fold_sums;
+  std::vector<RangeSums> fold_sums;
   for (const Fold& fold : folds) fold_sums.push_back(rows.sums_of(fold.fit));
   const SearchData data{rows.normalised(), rows.normalisation(), folds, fold_sums};
   const ForEach for_each = options.for_each ? options.for_each : in_sequence;

@@ -22,11 +22,11 @@ namespace {
 /// of products to keep enough of its digits.
 constexpr double enough_share = 1e-9;
 
-/// What the Hankel products of one run are made of, in the channels that take part, scaled.
-struct ScaledRun {
+/// What the Hankel products of one segment are made of, in the channels that take part, scaled.
+struct ScaledSegment {
   Index count;
-  Matrix products;     // L w x w, as RunSums::products
-  Matrix first, last;  // w x (L - 1), the ends of the run
+  Matrix products;     // L w x w, as SegmentSums::products
+  Matrix first, last;  // w x (L - 1), the ends of the segment
   Vector sum;
 };
 
@@ -43,42 +43,45 @@ ChosenChannels chosen_channels(const Normalisation& normalisation) {
   return chosen;
 }
 
-ScaledRun scaled(RunSums run, const Vector& mean, const ChosenChannels& chosen, Index L) {
-  run.refer_to(mean);
+ScaledSegment scaled(SegmentSums segment, const Vector& mean, const ChosenChannels& chosen,
+                     Index L) {
+  segment.refer_to(mean);
   const Index width = mean.size(), w = chosen.weight.size();
   const auto weigh = chosen.weight.asDiagonal();
-  ScaledRun result{run.count(), Matrix(L * w, w),
-                   weigh * run.first().leftCols(L - 1)(chosen.index, Eigen::all),
-                   weigh * run.last().rightCols(L - 1)(chosen.index, Eigen::all),
-                   weigh * run.sum()(chosen.index)};
+  ScaledSegment result{segment.count(), Matrix(L * w, w),
+                       weigh * segment.first().leftCols(L - 1)(chosen.index, Eigen::all),
+                       weigh * segment.last().rightCols(L - 1)(chosen.index, Eigen::all),
+                       weigh * segment.sum()(chosen.index)};
   for (Index tau = 0; tau < L; ++tau)
     result.products.middleRows(tau * w, w) =
-        weigh * run.products().middleRows(tau * width, width)(chosen.index, chosen.index) * weigh;
+        weigh * segment.products().middleRows(tau * width, width)(chosen.index, chosen.index) *
+        weigh;
   return result;
 }
 
-/// Adds the run's part of H H', rows 1, z[t], ..., z[t+L-1], to the lower triangle of G: the first
-/// block column is made of the lag products, and every other one is its left neighbour, one block
-/// up, with the terms that enter and leave.
-void add_run(const ScaledRun& run, Index L, Matrix& G) {
-  const Index w = run.sum.size();
-  G(0, 0) += double(run.count - L + 1);
-  Vector sum = run.sum - run.last.rowwise().sum();
-  Matrix column = run.products;  // block i: sum over the columns of z[t+i] z[t+j]', from block j on
+/// Adds the segment's part of H H', rows 1, z[t], ..., z[t+L-1], to the lower triangle of G: the
+/// first block column is made of the lag products, and every other one is its left neighbour, one
+/// block up, with the terms that enter and leave.
+void add_segment(const ScaledSegment& segment, Index L, Matrix& G) {
+  const Index w = segment.sum.size();
+  G(0, 0) += double(segment.count - L + 1);
+  Vector sum = segment.sum - segment.last.rowwise().sum();
+  Matrix column =
+      segment.products;  // block i: sum over the columns of z[t+i] z[t+j]', from block j on
   for (Index i = 0; i + 1 < L; ++i)
     column.middleRows(i * w, w) -=
-        run.last.rightCols(L - 1 - i) * run.last.leftCols(L - 1 - i).transpose();
-  const Eigen::Map<const Vector> entering(run.last.data(), run.last.size());
-  const Eigen::Map<const Vector> leaving(run.first.data(), run.first.size());
+        segment.last.rightCols(L - 1 - i) * segment.last.leftCols(L - 1 - i).transpose();
+  const Eigen::Map<const Vector> entering(segment.last.data(), segment.last.size());
+  const Eigen::Map<const Vector> leaving(segment.first.data(), segment.first.size());
   for (Index j = 0; j < L; ++j) {
     const Index below = (L - j) * w;
     G.block(1 + j * w, 0, w, 1) += sum;
     G.block(1 + j * w, 1 + j * w, below, w) += column.topRows(below);
     if (j + 1 == L) break;
-    sum += run.last.col(j) - run.first.col(j);
+    sum += segment.last.col(j) - segment.first.col(j);
     for (Index c = 0; c < w; ++c)
-      column.col(c).head(below - w) +=
-          entering.tail(below - w) * run.last(c, j) - leaving.tail(below - w) * run.first(c, j);
+      column.col(c).head(below - w) += entering.tail(below - w) * segment.last(c, j) -
+                                       leaving.tail(below - w) * segment.first(c, j);
   }
 }
 
@@ -98,7 +101,7 @@ std::vector<Index> ordered_rows(Index m, Index p, Index s) {
 
 }  // namespace
 
-std::optional<HankelFactor> factor_of_sums(const StretchSums& sums,
+std::optional<HankelFactor> factor_of_sums(const RangeSums& sums,
                                            const Normalisation& normalisation, Index horizon) {
   const Index L = 2 * horizon, m = static_cast<Index>(normalisation.inputs.size());
   const Index p = static_cast<Index>(normalisation.outputs.size()), size = 1 + L * (m + p);
@@ -106,10 +109,10 @@ std::optional<HankelFactor> factor_of_sums(const StretchSums& sums,
   const Vector mean = sums.mean();
   HankelFactor factor{m, p, horizon, 0, Matrix(size, size), 1};
   Matrix G = Matrix::Zero(size, size);
-  for (const RunSums& run : sums.runs) {
-    if (run.count() < L) continue;
-    factor.columns += run.count() - L + 1;
-    add_run(scaled(run, mean, chosen, L), L, G);
+  for (const SegmentSums& segment : sums.segments) {
+    if (segment.count() < L) continue;
+    factor.columns += segment.count() - L + 1;
+    add_segment(scaled(segment, mean, chosen, L), L, G);
   }
   const std::vector<Index> rows = ordered_rows(m, p, horizon);
   for (Index j = 0; j < size; ++j)
@@ -160,7 +163,7 @@ HankelFactor factor_of_rows(const Record& normalised, const std::vector<Segment>
   return factor;
 }
 
-HankelFactor compress(const StretchSums& sums, const Normalisation& normalisation,
+HankelFactor compress(const RangeSums& sums, const Normalisation& normalisation,
                       const Record& normalised, const std::vector<Segment>& segments,
                       Index horizon) {
   if (auto factor = factor_of_sums(sums, normalisation, horizon)) return std::move(*factor);

@@ -30,7 +30,7 @@ Index hankel_columns(const std::vector<Segment>& segments, Index block_rows);
 
 /// Returns the factor from sums of at least 2 * horizon block rows. Absent where they have lost too
 /// many digits (noise-free data, nearly predictable inputs): then the rows have to be factored.
-std::optional<HankelFactor> factor_of_sums(const StretchSums& sums,
+std::optional<HankelFactor> factor_of_sums(const RangeSums& sums,
                                            const Normalisation& normalisation, Index horizon);
 
 /// Returns the factor to full accuracy from the rows of a normalised record, by orthogonal
@@ -40,7 +40,7 @@ HankelFactor factor_of_rows(const Record& normalised, const std::vector<Segment>
 
 /// Returns the factor of the sums where these keep their digits, else that of the rows, which have
 /// to be those summed.
-HankelFactor compress(const StretchSums& sums, const Normalisation& normalisation,
+HankelFactor compress(const RangeSums& sums, const Normalisation& normalisation,
                       const Record& normalised, const std::vector<Segment>& segments,
                       Index horizon);
 

@@ -31,7 +31,7 @@ Matrix side_by_side(const Matrix& left, const Matrix& right) {
 
 }  // namespace
 
-RunSums::RunSums(const Matrix& z, std::int64_t first_tick, Index block_rows)
+SegmentSums::SegmentSums(const Matrix& z, std::int64_t first_tick, Index block_rows)
     : block_rows_(block_rows),
       first_tick_(first_tick),
       count_(z.cols()),
@@ -48,7 +48,7 @@ RunSums::RunSums(const Matrix& z, std::int64_t first_tick, Index block_rows)
   add_lag_products(centred, centred, block_rows, F_);
 }
 
-void RunSums::refer_to(const Vector& reference) {
+void SegmentSums::refer_to(const Vector& reference) {
   const Vector d = reference_ - reference;
   const Index width = d.size();
   // With N(tau) pairs at lag tau: (z[t+tau] + d)(z[t] + d)' summed over them.
@@ -68,7 +68,7 @@ void RunSums::refer_to(const Vector& reference) {
   reference_ = reference;
 }
 
-void RunSums::append(RunSums next) {
+void SegmentSums::append(SegmentSums next) {
   assert(next.first_tick_ == ticks().end && next.block_rows_ == block_rows_);
   next.refer_to(reference_);
   F_ += next.F_;
@@ -92,51 +92,51 @@ void RunSums::append(RunSums next) {
   count_ += next.count_;
 }
 
-void StretchSums::append(StretchSums later) {
-  for (RunSums& run : later.runs) {
-    assert(runs.empty() || run.ticks().begin >= runs.back().ticks().end);
-    if (!runs.empty() && runs.back().ticks().end == run.ticks().begin)
-      runs.back().append(std::move(run));
+void RangeSums::append(RangeSums later) {
+  for (SegmentSums& segment : later.segments) {
+    assert(segments.empty() || segment.ticks().begin >= segments.back().ticks().end);
+    if (!segments.empty() && segments.back().ticks().end == segment.ticks().begin)
+      segments.back().append(std::move(segment));
     else
-      runs.push_back(std::move(run));
+      segments.push_back(std::move(segment));
   }
 }
 
-Index StretchSums::rows() const {
+Index RangeSums::rows() const {
   Index rows = 0;
-  for (const RunSums& run : runs) rows += run.count();
+  for (const SegmentSums& segment : segments) rows += segment.count();
   return rows;
 }
 
-Vector StretchSums::mean() const {
-  const Vector& reference = runs.front().reference();
+Vector RangeSums::mean() const {
+  const Vector& reference = segments.front().reference();
   Vector sum = Vector::Zero(reference.size());
-  for (const RunSums& run : runs)
-    sum += run.sum() + double(run.count()) * (run.reference() - reference);
+  for (const SegmentSums& segment : segments)
+    sum += segment.sum() + double(segment.count()) * (segment.reference() - reference);
   return reference + sum / double(rows());
 }
 
-Vector StretchSums::least() const {
-  Vector least = runs.front().least();
-  for (const RunSums& run : runs) least = least.cwiseMin(run.least());
+Vector RangeSums::least() const {
+  Vector least = segments.front().least();
+  for (const SegmentSums& segment : segments) least = least.cwiseMin(segment.least());
   return least;
 }
 
-Vector StretchSums::greatest() const {
-  Vector greatest = runs.front().greatest();
-  for (const RunSums& run : runs) greatest = greatest.cwiseMax(run.greatest());
+Vector RangeSums::greatest() const {
+  Vector greatest = segments.front().greatest();
+  for (const SegmentSums& segment : segments) greatest = greatest.cwiseMax(segment.greatest());
   return greatest;
 }
 
-StretchSums sums_of_rows(const Record& record, TickRange ticks, Index block_rows) {
-  StretchSums sums;
+RangeSums sums_of_rows(const Record& record, TickRange ticks, Index block_rows) {
+  RangeSums sums;
   const Index m = record.u.cols(), p = record.y.cols();
   const RowRange rows{first_row_at(record, ticks.begin), first_row_at(record, ticks.end)};
   for (const Segment& part : segments_within(record, rows)) {
     Matrix z(m + p, part.size());
     z.topRows(m) = record.u.middleRows(part.begin, part.size()).transpose();
     z.bottomRows(p) = record.y.middleRows(part.begin, part.size()).transpose();
-    sums.runs.emplace_back(z, part.first_tick, block_rows);
+    sums.segments.emplace_back(z, part.first_tick, block_rows);
   }
   return sums;
 }
@@ -160,9 +160,9 @@ std::vector<LagSums::Node> LagSums::nodes_of(TickRange ticks) const {
   return nodes;
 }
 
-StretchSums LagSums::sum_node(Node node, const Record& record, Nodes* keep) const {
+RangeSums LagSums::sum_node(Node node, const Record& record, Nodes* keep) const {
   if (const auto kept = nodes_.find(node); kept != nodes_.end()) return kept->second;
-  StretchSums sums;
+  RangeSums sums;
   if (node.level == 0) {
     sums = sums_of_rows(record, ticks_of(node), shape_.block_rows);
   } else if (!is_empty(node, record)) {
@@ -181,21 +181,21 @@ bool LagSums::is_empty(Node node, const Record& record) const {
   return chunk == nodes_.end() || chunk->first >= Node{0, (node.index + 1) << node.level};
 }
 
-StretchSums LagSums::sum(TickRange ticks, const Record& record, Nodes* keep) const {
+RangeSums LagSums::sum(TickRange ticks, const Record& record, Nodes* keep) const {
   const std::vector<Node> nodes = nodes_of(ticks);
   if (nodes.empty()) return sums_of_rows(record, ticks, shape_.block_rows);
   const TickRange whole{ticks_of(nodes.front()).begin, ticks_of(nodes.back()).end};
-  StretchSums sums = sums_of_rows(record, {ticks.begin, whole.begin}, shape_.block_rows);
+  RangeSums sums = sums_of_rows(record, {ticks.begin, whole.begin}, shape_.block_rows);
   for (const Node& node : nodes) sums.append(sum_node(node, record, keep));
   sums.append(sums_of_rows(record, {whole.end, ticks.end}, shape_.block_rows));
   return sums;
 }
 
-StretchSums LagSums::over(TickRange ticks, const Record& record) const {
+RangeSums LagSums::over(TickRange ticks, const Record& record) const {
   return sum(ticks, record, nullptr);
 }
 
-StretchSums LagSums::keep_over(TickRange ticks, const Record& record) {
+RangeSums LagSums::keep_over(TickRange ticks, const Record& record) {
   return sum(ticks, record, &nodes_);
 }
 

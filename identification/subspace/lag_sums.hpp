@@ -1,10 +1,10 @@
-// Statistics of stretches of samples that add up: what N4SID needs of a window, at a cost that does
+// Statistics of ranges of samples that add up: what N4SID needs of a window, at a cost that does
 // not depend on its length (METHOD.md, section 2).
 //
-// z[t] = [u[t]; y[t]] are the samples of a run (consecutive ticks), w = m + p channels in their
+// z[t] = [u[t]; y[t]] are the samples of a segment (consecutive ticks), w = m + p channels in their
 // units. The lag products are F(tau) = sum_t z[t+tau] z[t]', 0 <= tau < L. Those of two adjacent
-// runs add up with the products across the seam, which the samples at the ends give. Sums are of z
-// less a reference near it, so that an operating point far above the signal costs no digits.
+// segments add up with the products across the seam, which the samples at the ends give. Sums are
+// of z less a reference near it, so that an operating point far above the signal costs no digits.
 //
 // L, the block rows, is 2 s for the horizon s and is the same in all sums that meet. Nothing here
 // throws.
@@ -19,18 +19,19 @@
 
 namespace reident::identification {
 
-/// The statistics of one run.
-class RunSums {
+/// The statistics of one segment.
+class SegmentSums {
  public:
   /// Sums the samples `z` (w x N, one column a tick) from `first_tick` on. The reference is their
   /// mean. Requires N >= 1 and block_rows >= 1.
-  RunSums(const Matrix& z, std::int64_t first_tick, Index block_rows);
+  SegmentSums(const Matrix& z, std::int64_t first_tick, Index block_rows);
 
   Index count() const { return count_; }
   TickRange ticks() const { return {first_tick_, first_tick_ + count_}; }
 
-  /// Takes in a later run, whatever its reference. Requires its first tick to be this one's end.
-  void append(RunSums next);
+  /// Takes in a later segment, whatever its reference. Requires its first tick to be this one's
+  /// end.
+  void append(SegmentSums next);
   /// Moves the sums to another reference (w), exact to rounding.
   void refer_to(const Vector& reference);
 
@@ -51,29 +52,29 @@ class RunSums {
   Matrix F_, first_, last_;
 };
 
-/// The statistics of the runs in a stretch of time, ascending and apart from each other.
-struct StretchSums {
-  std::vector<RunSums> runs;
+/// The statistics of the segments in a range of time, ascending and apart from each other.
+struct RangeSums {
+  std::vector<SegmentSums> segments;
 
-  /// Takes in a stretch that begins where this one ends, or later; a run that continues the last
+  /// Takes in a range that begins where this one ends, or later; a segment that continues the last
   /// one is joined to it.
-  void append(StretchSums later);
-  /// Returns the number of samples of all runs.
+  void append(RangeSums later);
+  /// Returns the number of samples of all segments.
   Index rows() const;
-  /// Return the mean and the range of every channel (w). Require at least one run.
+  /// Return the mean and the range of every channel (w). Require at least one segment.
   Vector mean() const;
   Vector least() const;
   Vector greatest() const;
 };
 
-/// Returns the statistics of the record's rows at `ticks`, summed as one stretch.
-StretchSums sums_of_rows(const Record& record, TickRange ticks, Index block_rows);
+/// Returns the statistics of the record's rows at `ticks`, summed as one range.
+RangeSums sums_of_rows(const Record& record, TickRange ticks, Index block_rows);
 
 /// Statistics kept between windows. Time is cut into chunks [k c, (k + 1) c) ticks; pairs of
-/// chunks, pairs of pairs and so on are nodes of a binary tree over time. A stretch is the sum of
+/// chunks, pairs of pairs and so on are nodes of a binary tree over time. A range is the sum of
 /// the largest nodes in it, in their order. So its bits depend on its samples alone, neither on
 /// when they arrived nor on what was kept. A window that slides by a chunk costs that chunk and a
-/// few additions, however long it is. Memory grows with what is kept: L w^2 numbers a run.
+/// few additions, however long it is. Memory grows with what is kept: L w^2 numbers a segment.
 class LagSums {
  public:
   struct Shape {
@@ -89,10 +90,10 @@ class LagSums {
 
   /// Returns the sums over the ticks. Samples are read from the record, which has w channels, where
   /// no kept node stands for them.
-  StretchSums over(TickRange ticks, const Record& record) const;
+  RangeSums over(TickRange ticks, const Record& record) const;
 
   /// Returns what over() does and keeps the nodes within `ticks` for later windows.
-  StretchSums keep_over(TickRange ticks, const Record& record);
+  RangeSums keep_over(TickRange ticks, const Record& record);
 
   /// Returns the ticks that have to be read for `ticks`: chunks not kept, and the partial ones at
   /// both ends. Ascending, adjacent ones joined.
@@ -110,16 +111,16 @@ class LagSums {
     std::int64_t index;
     auto operator<=>(const Node&) const = default;
   };
-  using Nodes = std::map<Node, StretchSums>;
+  using Nodes = std::map<Node, RangeSums>;
 
   TickRange ticks_of(Node node) const;
   /// The largest nodes that make up the chunks within `ticks`, ascending.
   std::vector<Node> nodes_of(TickRange ticks) const;
-  StretchSums sum_node(Node node, const Record& record, Nodes* keep) const;
+  RangeSums sum_node(Node node, const Record& record, Nodes* keep) const;
   /// Neither the record nor what is kept has samples in the node: then its parts need no look,
   /// so that cost and memory follow the samples, not the length of the gaps.
   bool is_empty(Node node, const Record& record) const;
-  StretchSums sum(TickRange ticks, const Record& record, Nodes* keep) const;
+  RangeSums sum(TickRange ticks, const Record& record, Nodes* keep) const;
   void add_missing(Node node, std::vector<TickRange>& found) const;
 
   Shape shape_;

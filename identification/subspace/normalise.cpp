@@ -17,19 +17,19 @@ Matrix apply(const Matrix& channels, RowRange rows, const Vector& mean, const Ve
 }
 
 /// About the mean of all (w x w).
-Matrix covariance_of(const StretchSums& sums) {
+Matrix covariance_of(const RangeSums& sums) {
   const Vector mean = sums.mean();
   Matrix squares = Matrix::Zero(mean.size(), mean.size());
-  for (RunSums run : sums.runs) {
-    run.refer_to(mean);
-    squares += run.products().topRows(mean.size());
+  for (SegmentSums segment : sums.segments) {
+    segment.refer_to(mean);
+    squares += segment.products().topRows(mean.size());
   }
   return squares / double(sums.rows());
 }
 
 }  // namespace
 
-Normalisation normalisation_of(const StretchSums& sums, Index inputs) {
+Normalisation normalisation_of(const RangeSums& sums, Index inputs) {
   const Vector mean = sums.mean();
   const Index width = mean.size();
   const Matrix covariance = covariance_of(sums);
@@ -49,7 +49,7 @@ Normalisation normalisation_of(const StretchSums& sums, Index inputs) {
   return result;
 }
 
-Matrix input_correlation(const StretchSums& sums, const Normalisation& normalisation) {
+Matrix input_correlation(const RangeSums& sums, const Normalisation& normalisation) {
   const auto weigh = normalisation.u_scale(normalisation.inputs).cwiseInverse().asDiagonal();
   return weigh * covariance_of(sums)(normalisation.inputs, normalisation.inputs) * weigh;
 }

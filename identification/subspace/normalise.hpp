@@ -21,10 +21,10 @@ struct Normalisation {
 
 /// Returns the normalisation of the channels, the first `inputs` of which are inputs. A channel
 /// takes part where its deviation is above 1e-13 of its mean. Requires at least one row.
-Normalisation normalisation_of(const StretchSums& sums, Index inputs);
+Normalisation normalisation_of(const RangeSums& sums, Index inputs);
 
 /// Returns the correlations of the inputs that take part. Requires at least one row.
-Matrix input_correlation(const StretchSums& sums, const Normalisation& normalisation);
+Matrix input_correlation(const RangeSums& sums, const Normalisation& normalisation);
 
 /// Returns the rows `rows` of the channels that take part, normalised.
 Record normalised(const Record& record, RowRange rows, const Normalisation& normalisation);

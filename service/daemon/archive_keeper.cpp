@@ -16,8 +16,8 @@ void ArchiveKeeper::look() {
   if (rule_.keeps_everything() || is_running_) return;
   const storage::Time now = clock_();
   // A clock that was set back is no reason to wait.
-  if (last_run_ && now >= *last_run_ && now - *last_run_ < interval) return;
-  last_run_ = now;
+  if (last_begin_ && now >= *last_begin_ && now - *last_begin_ < interval) return;
+  last_begin_ = now;
   is_running_ = true;
   post_step();
 }
@@ -39,18 +39,18 @@ void ArchiveKeeper::step(const storage::Registry& registry, storage::Archive& ar
   try {
     // Decisions are made on this thread alone: none falls between this look and the step.
     const std::int64_t decision = registry.last_decision();
-    if (!run_)
-      run_.emplace(archive, rule_, protection(registry, archive), clock_());
+    if (!retention_)
+      retention_.emplace(archive, rule_, protection(registry, archive), clock_());
     else if (decision != last_decision_)
-      run_->protect(protection(registry, archive));
+      retention_->protect(protection(registry, archive));
     last_decision_ = decision;
-    if (run_->step()) return post_step();
-    conclude(run_->report());
+    if (retention_->step()) return post_step();
+    conclude(retention_->report());
   } catch (const storage::Error& error) {
     log::warning("archive", "old telemetry could not be removed; tried again in some minutes",
                  {{"error", error.what()}});
   }
-  run_.reset();
+  retention_.reset();
   is_running_ = false;
 }
 

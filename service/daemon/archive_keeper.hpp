@@ -16,8 +16,9 @@ class ArchiveKeeper {
   /// Configuration and writer must outlive the keeper, and the keeper the writer's thread.
   ArchiveKeeper(const Config& config, ArchiveWriter& writer, Clock clock);
 
-  /// Starts a run where one is due: at the start of the service, and `interval` after the last one
-  /// began. A run is posted to the writer step by step, so that telemetry is stored in between.
+  /// Starts a retention where one is due: at the start of the service, and `interval` after the
+  /// last one began. A retention is posted to the writer step by step, so that telemetry is stored
+  /// in between.
   void look();
 
   static constexpr Duration interval = 5LL * 60 * 1'000'000'000;
@@ -33,12 +34,12 @@ class ArchiveKeeper {
   const storage::RetentionRule rule_;
   ArchiveWriter& writer_;
   const Clock clock_;
-  std::optional<storage::Time> last_run_;
+  std::optional<storage::Time> last_begin_;
   std::atomic<bool> is_running_ = false;
 
-  // State of the run, on the writer's thread.
-  std::optional<storage::Retention> run_;
-  std::int64_t last_decision_ = 0;  // that the run's protection knows of
+  // State of the retention, on the writer's thread.
+  std::optional<storage::Retention> retention_;
+  std::int64_t last_decision_ = 0;  // that the retention's protection knows of
   bool was_too_large_ = false;
 };
 

@@ -16,7 +16,7 @@ namespace reident {
 namespace {
 
 /// Windows that one thread works on in a row: what it keeps of one serves the next.
-constexpr std::size_t run_length = 4;
+constexpr std::size_t windows_per_task = 4;
 
 struct Plan {
   const std::string* spacecraft;
@@ -83,13 +83,14 @@ class Backfill {
   /// False when it was stopped.
   bool run(const Plan& plan) {
     progress_.equipment = *plan.spacecraft + "/" + plan.equipment->name;
-    const std::size_t batch = run_length * usable_cores();
+    const std::size_t batch = windows_per_task * usable_cores();
     for (std::size_t begin = 0; begin < plan.ends.size(); begin += batch) {
       const std::size_t end = std::min(plan.ends.size(), begin + batch);
       archive_.seal(*plan.spacecraft, plan.ends[end - 1]);
       std::vector<std::optional<PreparedWindow>> prepared(end - begin);
-      workers_.for_each((end - begin + run_length - 1) / run_length,
-                        [&](std::size_t run) { prepare(plan, begin, run * run_length, prepared); });
+      workers_.for_each(
+          (end - begin + windows_per_task - 1) / windows_per_task,
+          [&](std::size_t task) { prepare(plan, begin, task * windows_per_task, prepared); });
       for (std::size_t i = 0; i < prepared.size(); ++i)
         if (!record(request_of_window(plan, plan.ends[begin + i]), std::move(*prepared[i])))
           return false;
@@ -116,7 +117,7 @@ class Backfill {
     storage::Database database(config_.database, storage::Database::Mode::read_only);
     const storage::Archive archive(database);
     WindowCache kept = window_cache_of(*plan.spacecraft, *plan.equipment);
-    for (std::size_t i = first; i < std::min(first + run_length, prepared.size()); ++i)
+    for (std::size_t i = first; i < std::min(first + windows_per_task, prepared.size()); ++i)
       prepared[i] = prepare_window(archive, request_of_window(plan, plan.ends[begin + i]), kept,
                                    on_all_cores(), [] { return false; });
   }

@@ -38,10 +38,10 @@ std::int32_t history_of_restarts(std::size_t parameters) {
          1;
 }
 
-/// One run of publish().
-class Run {
+/// One call of publish().
+class Publication {
  public:
-  Run(FrameStream& stream, const PublisherOptions& options, const std::stop_token& stop)
+  Publication(FrameStream& stream, const PublisherOptions& options, const std::stop_token& stop)
       : stream_(stream),
         options_(options),
         stop_(stop),
@@ -77,7 +77,7 @@ class Run {
   PublisherSummary summary_;
 };
 
-Outcome Run::all() {
+Outcome Publication::all() {
   for (auto descriptor : stream_.parameters()) {
     descriptor.spacecraft = options_.spacecraft;
     descriptors_.write(descriptor);
@@ -93,7 +93,7 @@ Outcome Run::all() {
   return wait_for_acknowledgments();
 }
 
-Outcome Run::write_frames() {
+Outcome Publication::write_frames() {
   storage::TelemetryFrame frame;
   if (const Outcome outcome = wait_for_readers(); outcome != Outcome::complete) return outcome;
   while (stream_.next(frame)) {
@@ -110,7 +110,7 @@ Outcome Run::write_frames() {
   return Outcome::complete;
 }
 
-Outcome Run::wait_for_readers() {
+Outcome Publication::wait_for_readers() {
   constexpr auto look_again = std::chrono::milliseconds(20);
   const auto began = Clock::now();
   bool told = false;
@@ -134,7 +134,7 @@ Outcome Run::wait_for_readers() {
   return Outcome::stopped;
 }
 
-Outcome Run::wait_for_acknowledgments() {
+Outcome Publication::wait_for_acknowledgments() {
   constexpr auto slice = std::chrono::milliseconds(100);
   const auto began = Clock::now();
   while (!descriptors_.wait_for_acknowledgments(slice) ||
@@ -147,7 +147,7 @@ Outcome Run::wait_for_acknowledgments() {
   return Outcome::complete;
 }
 
-void Run::count(const storage::TelemetryFrame& frame) {
+void Publication::count(const storage::TelemetryFrame& frame) {
   if (summary_.frames == 0) {
     summary_.first_sequence = frame.sequence;
     summary_.first_time = frame.generation_time;
@@ -161,7 +161,7 @@ void Run::count(const storage::TelemetryFrame& frame) {
       [](const storage::Sample& sample) { return sample.quality == storage::Quality::invalid; }));
 }
 
-void Run::show_progress(const storage::TelemetryFrame& frame) {
+void Publication::show_progress(const storage::TelemetryFrame& frame) {
   if (!progress_.due()) return;
   progress_.update(stream_.progress(),
                    fmt::format("{} frames, {}", summary_.frames, time_text(frame.generation_time)));
@@ -185,7 +185,7 @@ std::string_view name(Outcome outcome) {
 
 PublisherSummary publish(FrameStream& stream, const PublisherOptions& options,
                          const std::stop_token& stop) {
-  return Run(stream, options, stop)();
+  return Publication(stream, options, stop)();
 }
 
 }  // namespace reident::satcs

@@ -36,10 +36,10 @@ void Compaction::step(std::size_t samples) {
 }
 
 void Compaction::gather(const SeriesHead& series) {
-  std::vector<const SampleColumns*> runs;
-  for (const SeriesHead::Run& run : series.runs)
-    if (run.batch <= round_->batch) runs.push_back(&run.samples);
-  overlay(round_->samples, runs);
+  std::vector<const SampleColumns*> fragments;
+  for (const SeriesHead::Fragment& fragment : series.fragments)
+    if (fragment.batch <= round_->batch) fragments.push_back(&fragment.samples);
+  overlay(round_->samples, fragments);
 }
 
 std::size_t Compaction::move_stretch(std::int64_t series) {

@@ -1,9 +1,9 @@
 // Moves recent samples into chunks, a bounded step at a time. Private to storage.
 //
 // A round moves what was recent when it began. A step rewrites some stretches of some series and
-// may end anywhere: recent runs lie over chunks, so samples that are in both are there once. Only
-// when all of a series is in chunks are its runs passed over (`series.moved`), and only when that
-// holds for every series are their rows removed.
+// may end anywhere: fragments lie over chunks, so samples that are in both are there once. Only
+// when all of a series is in chunks are its fragments passed over (`series.moved`), and only when
+// that holds for every series are their rows removed.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ class Compaction {
   struct Round {
     std::int64_t batch = 0;            // the last one that moves
     std::vector<std::int64_t> series;  // that still have to move, the next one last
-    SampleColumns samples{};           // of the next one, from its runs
+    SampleColumns samples{};           // of the next one, from its fragments
     std::size_t done = 0;              // of `samples`
   };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "storage/archive/damage.hpp"
-#include "storage/chunks/recent_run.hpp"
+#include "storage/chunks/fragment.hpp"
 
 namespace reident::storage {
 namespace {
@@ -14,7 +14,7 @@ constexpr TimeRange all_times{std::numeric_limits<Time>::min(), std::numeric_lim
 
 RecentTier::RecentTier(sqlite::Connection& connection) : connection_(connection) {
   load_series();
-  load_runs();
+  load_fragments();
 }
 
 void RecentTier::load_series() {
@@ -34,7 +34,7 @@ void RecentTier::load_series() {
   }
 }
 
-void RecentTier::load_runs() {
+void RecentTier::load_fragments() {
   std::vector<std::pair<std::int64_t, std::int64_t>> damaged;
   {
     sqlite::Query row = connection_.query(
@@ -53,16 +53,16 @@ void RecentTier::load_runs() {
                         "with 'sqlite3 FILE .recover'");
       SeriesHead& head = known->second;
       if (batch <= head.moved) continue;
-      SeriesHead::Run run{batch, {}};
-      if (const auto error = decode_run(row.bytes(5), all_times, run.samples.target())) {
+      SeriesHead::Fragment fragment{batch, {}};
+      if (const auto error = decode_fragment(row.bytes(5), all_times, fragment.samples.target())) {
         set_aside(connection_,
                   {head.id, row.integer(2), row.integer(3), row.integer<std::size_t>(4)},
                   row.bytes(5), *error);
         damaged.emplace_back(batch, head.id);
         continue;
       }
-      samples_ += run.samples.size();
-      head.runs.push_back(std::move(run));
+      samples_ += fragment.samples.size();
+      head.fragments.push_back(std::move(fragment));
     }
   }
   for (const auto& [batch, series] : damaged) {
@@ -85,8 +85,8 @@ SeriesHead& RecentTier::series(const std::string& spacecraft, Origin origin,
 }
 
 std::optional<Held> RecentTier::find(const SeriesHead& series, Time time) {
-  for (auto run = series.runs.rbegin(); run != series.runs.rend(); ++run) {
-    const SampleColumns& samples = run->samples;
+  for (auto fragment = series.fragments.rbegin(); fragment != series.fragments.rend(); ++fragment) {
+    const SampleColumns& samples = fragment->samples;
     if (time < samples.time.front() || time > samples.time.back()) continue;
     const auto found = std::lower_bound(samples.time.begin(), samples.time.end(), time);
     if (*found != time) continue;
@@ -98,7 +98,7 @@ std::optional<Held> RecentTier::find(const SeriesHead& series, Time time) {
 
 void RecentTier::add(SeriesHead& series, std::int64_t batch, SampleColumns&& samples) {
   bytes_.clear();
-  encode_run(samples.samples(), bytes_);
+  encode_fragment(samples.samples(), bytes_);
   connection_
       .query(
           "INSERT INTO recent (batch, series, samples, first_time, last_time, data) "
@@ -108,13 +108,13 @@ void RecentTier::add(SeriesHead& series, std::int64_t batch, SampleColumns&& sam
   last_batch_ = std::max(last_batch_, batch);
   ++rows_[batch];
   samples_ += samples.size();
-  series.runs.push_back({batch, std::move(samples)});
+  series.fragments.push_back({batch, std::move(samples)});
 }
 
 std::vector<std::int64_t> RecentTier::waiting() const {
   std::vector<std::int64_t> ids;
   for (const auto& [id, head] : series_)
-    if (!head.runs.empty()) ids.push_back(id);
+    if (!head.fragments.empty()) ids.push_back(id);
   std::sort(ids.begin(), ids.end());
   return ids;
 }
@@ -122,10 +122,12 @@ std::vector<std::int64_t> RecentTier::waiting() const {
 void RecentTier::moved(SeriesHead& series, std::int64_t batch) {
   connection_.query("UPDATE series SET moved = ? WHERE id = ?").run(batch, series.id);
   series.moved = batch;
-  const auto kept = std::find_if(series.runs.begin(), series.runs.end(),
-                                 [batch](const SeriesHead::Run& run) { return run.batch > batch; });
-  for (auto run = series.runs.begin(); run != kept; ++run) samples_ -= run->samples.size();
-  series.runs.erase(series.runs.begin(), kept);
+  const auto kept = std::find_if(
+      series.fragments.begin(), series.fragments.end(),
+      [batch](const SeriesHead::Fragment& fragment) { return fragment.batch > batch; });
+  for (auto fragment = series.fragments.begin(); fragment != kept; ++fragment)
+    samples_ -= fragment->samples.size();
+  series.fragments.erase(series.fragments.begin(), kept);
 }
 
 bool RecentTier::remove_rows(std::int64_t batch, std::size_t rows) {

@@ -6,8 +6,8 @@
 
 #include "storage/archive/damage.hpp"
 #include "storage/archive/revision.hpp"
+#include "storage/chunks/fragment.hpp"
 #include "storage/chunks/overlay.hpp"
-#include "storage/chunks/recent_run.hpp"
 
 namespace reident::storage {
 namespace {
@@ -96,11 +96,11 @@ SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedCol
   std::vector<SampleColumns> recent;
   each_recent(series, range.begin, last, [&](const sqlite::Query& row) {
     recent.emplace_back();
-    if (const auto error = decode_run(row.bytes(3), range, recent.back().target(wanted)))
+    if (const auto error = decode_fragment(row.bytes(3), range, recent.back().target(wanted)))
       throw damage(connection_, stretch_of(series, row), *error);
   });
   std::vector<const SampleColumns*> newer;
-  for (const SampleColumns& run : recent) newer.push_back(&run);
+  for (const SampleColumns& fragment : recent) newer.push_back(&fragment);
   overlay(samples, newer);
   if (as_of) undo_revisions(connection_, decoder_, series, *as_of, range, wanted, samples);
   return samples;

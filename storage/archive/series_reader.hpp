@@ -25,7 +25,7 @@ class SeriesReader {
   std::optional<Time> last_at_or_before(std::int64_t series, Time time);
 
  private:
-  /// Calls `use(first, last, bytes, row)` for each recent run that meets [first, last].
+  /// Calls `use(first, last, bytes, row)` for each fragment that meets [first, last].
   template <typename Use>
   void each_recent(std::int64_t series, Time first, Time last, const Use& use);
 

@@ -31,11 +31,12 @@ void count(RetentionReport& report, const ChunkWalk::Step& step) {
 }
 
 bool holds_recent(const SeriesHead& series, const ChunkRow& row) {
-  return std::any_of(series.runs.begin(), series.runs.end(), [&row](const SeriesHead::Run& run) {
-    const auto& time = run.samples.time;
-    const auto at = std::lower_bound(time.begin(), time.end(), row.first);
-    return at != time.end() && *at <= row.last;
-  });
+  return std::any_of(series.fragments.begin(), series.fragments.end(),
+                     [&row](const SeriesHead::Fragment& fragment) {
+                       const auto& time = fragment.samples.time;
+                       const auto at = std::lower_bound(time.begin(), time.end(), row.first);
+                       return at != time.end() && *at <= row.last;
+                     });
 }
 
 /// First and last time of what is left.
@@ -53,8 +54,8 @@ void find_ends(SeriesHead& series, ChunkStore& chunks) {
     if (!oldest) oldest = chunks.after(series.id, earliest);
     include(oldest->first, newest->last);
   }
-  for (const SeriesHead::Run& run : series.runs)
-    include(run.samples.time.front(), run.samples.time.back());
+  for (const SeriesHead::Fragment& fragment : series.fragments)
+    include(fragment.samples.time.front(), fragment.samples.time.back());
 }
 
 /// One row for each stretch in which nothing was left; what was removed before and is next to it is

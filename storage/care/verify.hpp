@@ -53,7 +53,7 @@ struct VerifyReport {
   std::uint64_t found = 0;        // all
   std::uint64_t series = 0;       // looked at
   std::uint64_t chunks = 0;
-  std::uint64_t samples = 0;  // in chunks and recent runs
+  std::uint64_t samples = 0;  // in chunks and fragments
   std::uint64_t versions = 0;
   bool complete = true;  // false when it was stopped
 

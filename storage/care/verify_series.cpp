@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "storage/chunks/recent_run.hpp"
+#include "storage/chunks/fragment.hpp"
 
 namespace reident::storage {
 namespace {
@@ -127,11 +127,11 @@ void SeriesVerifier::read_recent(std::int64_t series) {
     if (!row.bind(batch, series).step()) continue;
     const Time first = row.integer(0), last = row.integer(1);
     samples_ = {};
-    const auto error = decode_run(row.bytes(3), all_times, samples_.target());
+    const auto error = decode_fragment(row.bytes(3), all_times, samples_.target());
     if (error) {
       seen_.undecodable = true;
       add("recent", first, last,
-          std::to_string(row.integer(2)) + " recent samples cannot be read: their run " +
+          std::to_string(row.integer(2)) + " recent samples cannot be read: their fragment " +
               error->message,
           restore_samples);
       continue;

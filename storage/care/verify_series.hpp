@@ -1,4 +1,4 @@
-// The part of verify that looks at one series: its chunks, recent runs and gaps. Private to
+// The part of verify that looks at one series: its chunks, fragments and gaps. Private to
 // storage.
 #pragma once
 
@@ -90,7 +90,7 @@ class SeriesVerifier {
   std::uint64_t set_aside_ = 0;
   std::optional<Time> first_, last_;
   std::int64_t moved_ = 0;
-  std::vector<Time> recent_;  // times in recent runs, ascending
+  std::vector<Time> recent_;  // times in fragments, ascending
   Seen seen_;
 };
 

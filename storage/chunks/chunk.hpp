@@ -51,7 +51,7 @@ struct ChunkError {
   std::string message;
 };
 
-/// The most samples that a chunk or a recent run holds.
+/// The most samples that a chunk or a fragment holds.
 inline constexpr std::size_t most_samples = 131072;
 
 /// Reads the summary of the chunk that starts with `bytes`, of which there are at least

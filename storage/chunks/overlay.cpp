@@ -8,30 +8,31 @@ namespace {
 
 struct Place {
   Time time;
-  std::uint32_t run;
+  std::uint32_t fragment;
   std::uint32_t at;
 };
 
 bool follow_each_other(const SampleColumns& base, const std::vector<const SampleColumns*>& newer) {
   const SampleColumns* last = &base;
-  for (const SampleColumns* run : newer) {
-    if (run->empty()) continue;
-    if (!last->empty() && last->time.back() >= run->time.front()) return false;
-    last = run;
+  for (const SampleColumns* fragment : newer) {
+    if (fragment->empty()) continue;
+    if (!last->empty() && last->time.back() >= fragment->time.front()) return false;
+    last = fragment;
   }
   return true;
 }
 
-/// All samples of the runs in order of time, the one that stays at each time alone.
-std::vector<Place> in_order(const std::vector<const SampleColumns*>& runs) {
+/// All samples of the fragments in order of time, the one that stays at each time alone.
+std::vector<Place> in_order(const std::vector<const SampleColumns*>& fragments) {
   std::vector<Place> places;
-  for (std::uint32_t r = 0; r < runs.size(); ++r)
-    for (std::uint32_t i = 0; i < runs[r]->size(); ++i) places.push_back({runs[r]->time[i], r, i});
-  const auto later_run_first = [](const Place& a, const Place& b) {
-    return a.time != b.time ? a.time < b.time : a.run > b.run;
+  for (std::uint32_t r = 0; r < fragments.size(); ++r)
+    for (std::uint32_t i = 0; i < fragments[r]->size(); ++i)
+      places.push_back({fragments[r]->time[i], r, i});
+  const auto later_fragment_first = [](const Place& a, const Place& b) {
+    return a.time != b.time ? a.time < b.time : a.fragment > b.fragment;
   };
-  if (!std::is_sorted(places.begin(), places.end(), later_run_first))
-    std::sort(places.begin(), places.end(), later_run_first);
+  if (!std::is_sorted(places.begin(), places.end(), later_fragment_first))
+    std::sort(places.begin(), places.end(), later_fragment_first);
   const auto at_one_time = [](const Place& a, const Place& b) { return a.time == b.time; };
   places.erase(std::unique(places.begin(), places.end(), at_one_time), places.end());
   return places;
@@ -41,7 +42,7 @@ std::vector<Place> in_order(const std::vector<const SampleColumns*>& runs) {
 
 void overlay(SampleColumns& base, const std::vector<const SampleColumns*>& newer) {
   if (follow_each_other(base, newer)) {
-    for (const SampleColumns* run : newer) base.append(*run, 0, run->size());
+    for (const SampleColumns* fragment : newer) base.append(*fragment, 0, fragment->size());
     return;
   }
   const std::vector<Place> places = in_order(newer);
@@ -58,7 +59,7 @@ void overlay(SampleColumns& base, const std::vector<const SampleColumns*>& newer
         base.time.begin());
     merged.append(base, next, before);
     next = before < base.size() && base.time[before] == place.time ? before + 1 : before;
-    merged.append(*newer[place.run], place.at, place.at + 1);
+    merged.append(*newer[place.fragment], place.at, place.at + 1);
   }
   merged.append(base, next, base.size());
   base = std::move(merged);

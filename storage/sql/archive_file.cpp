@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "storage/chunks/fragment.hpp"
 #include "storage/chunks/overlay.hpp"
-#include "storage/chunks/recent_run.hpp"
 #include "storage/database/schema.hpp"
 #include "storage/types/utc_text.hpp"
 
@@ -174,29 +174,29 @@ void ArchiveFile::decode(const SeriesName& series, const ChunkEntry& chunk, Time
   rows.reset();
 }
 
-// A series' runs stay the same for as long as the user's statement runs.
-const std::vector<ArchiveFile::Run>& ArchiveFile::runs(const SeriesName& series) {
-  const auto [place, is_new] = runs_.try_emplace(series.id);
+// A series' fragments stay the same for as long as the user's statement runs.
+const std::vector<ArchiveFile::Fragment>& ArchiveFile::fragments(const SeriesName& series) {
+  const auto [place, is_new] = fragments_.try_emplace(series.id);
   if (!is_new) return place->second;
   Statement& batches = prepared(batches_, "SELECT min(batch), max(batch) FROM main.recent");
   if (!batches.bind().step() || batches.is_null(0)) return place->second;
   const std::int64_t begin = std::max(batches.integer(0), series.moved + 1);
   const std::int64_t last = batches.integer(1);
-  Statement& run = prepared(
-      run_, "SELECT first_time, last_time FROM main.recent WHERE batch = ?1 AND series = ?2");
+  Statement& fragment = prepared(
+      fragment_, "SELECT first_time, last_time FROM main.recent WHERE batch = ?1 AND series = ?2");
   for (std::int64_t batch = begin; batch <= last; ++batch)
-    if (run.bind(batch, series.id).step())
-      place->second.push_back({batch, {run.integer(0), run.integer(1)}});
+    if (fragment.bind(batch, series.id).step())
+      place->second.push_back({batch, {fragment.integer(0), fragment.integer(1)}});
   return place->second;
 }
 
-std::optional<TimeBounds> ArchiveFile::next_run(const SeriesName& series, TimeBounds bounds,
-                                                bool descending) {
+std::optional<TimeBounds> ArchiveFile::next_fragment(const SeriesName& series, TimeBounds bounds,
+                                                     bool descending) {
   std::optional<TimeBounds> next;
-  for (const Run& run : runs(series)) {
-    if (!meet(run.time, bounds)) continue;
-    if (!next || (descending ? run.time.last > next->last : run.time.first < next->first))
-      next = run.time;
+  for (const Fragment& fragment : fragments(series)) {
+    if (!meet(fragment.time, bounds)) continue;
+    if (!next || (descending ? fragment.time.last > next->last : fragment.time.first < next->first))
+      next = fragment.time;
   }
   return next;
 }
@@ -205,19 +205,20 @@ void ArchiveFile::lay_recent_over(SampleColumns& base, const SeriesName& series,
                                   WantedColumns wanted) {
   std::vector<SampleColumns> found;
   Statement& rows =
-      prepared(run_bytes_, "SELECT data FROM main.recent WHERE batch = ?1 AND series = ?2");
-  for (const Run& run : runs(series)) {
-    if (!meet(run.time, bounds)) continue;
-    const std::span<const std::uint8_t> bytes =
-        rows.bind(run.batch, series.id).step() ? rows.blob(0) : std::span<const std::uint8_t>();
+      prepared(fragment_bytes_, "SELECT data FROM main.recent WHERE batch = ?1 AND series = ?2");
+  for (const Fragment& fragment : fragments(series)) {
+    if (!meet(fragment.time, bounds)) continue;
+    const std::span<const std::uint8_t> bytes = rows.bind(fragment.batch, series.id).step()
+                                                    ? rows.blob(0)
+                                                    : std::span<const std::uint8_t>();
     const ChunkTarget target = found.emplace_back().target(wanted);
-    if (const auto error = decode_run(bytes, range_of(bounds), target))
-      fail_damaged(series, run.time, *error);
+    if (const auto error = decode_fragment(bytes, range_of(bounds), target))
+      fail_damaged(series, fragment.time, *error);
     drop_behind(bounds.last, target, 0);
   }
   rows.reset();
   std::vector<const SampleColumns*> newer;
-  for (const SampleColumns& run : found) newer.push_back(&run);
+  for (const SampleColumns& fragment : found) newer.push_back(&fragment);
   overlay(base, newer);
 }
 

@@ -63,8 +63,9 @@ class ArchiveFile {
   void decode(const SeriesName& series, const ChunkEntry& chunk, TimeBounds bounds,
               const ChunkTarget& target);
 
-  /// Where the recent run lies that starts first within `bounds`, or of those that end in it last.
-  std::optional<TimeBounds> next_run(const SeriesName& series, TimeBounds bounds, bool descending);
+  /// Where the fragment lies that starts first within `bounds`, or of those that end in it last.
+  std::optional<TimeBounds> next_fragment(const SeriesName& series, TimeBounds bounds,
+                                          bool descending);
   /// Lays the recent samples with times within `bounds` over those of chunks.
   void lay_recent_over(SampleColumns& base, const SeriesName& series, TimeBounds bounds,
                        WantedColumns wanted);
@@ -76,11 +77,11 @@ class ArchiveFile {
   std::string_view source_name(std::int64_t id);
 
  private:
-  struct Run {
+  struct Fragment {
     std::int64_t batch = 0;
     TimeBounds time;
   };
-  const std::vector<Run>& runs(const SeriesName& series);
+  const std::vector<Fragment>& fragments(const SeriesName& series);
   [[noreturn]] void fail_damaged(const SeriesName& series, TimeBounds of,
                                  const ChunkError& error) const;
   void refuse_others();
@@ -91,8 +92,8 @@ class ArchiveFile {
   sqlite3* connection_;
   NamePool& names_;
   std::unique_ptr<Statement> all_series_, named_series_, chunk_before_, chunk_after_, bytes_,
-      batches_, run_, run_bytes_, source_;
-  std::unordered_map<std::int64_t, std::vector<Run>> runs_;  // by series
+      batches_, fragment_, fragment_bytes_, source_;
+  std::unordered_map<std::int64_t, std::vector<Fragment>> fragments_;  // by series
   std::unordered_map<std::int64_t, std::string_view> sources_;
   ChunkDecoder decoder_;
 };

@@ -68,9 +68,9 @@ bool SeriesBlocks::load() {
   if (left_.empty()) return false;
   TimeBounds piece = left_;
   const auto chunk = next_chunk();
-  const auto run = file_.next_run(series_, left_, options_.descending);
-  if (run && (!chunk || comes_before(*run, *chunk))) {
-    end_with(*run, piece);
+  const auto fragment = file_.next_fragment(series_, left_, options_.descending);
+  if (fragment && (!chunk || comes_before(*fragment, *chunk))) {
+    end_with(*fragment, piece);
     if (chunk) end_before(*chunk, piece);
   } else if (chunk) {
     load_chunk(*chunk, piece);
@@ -100,7 +100,7 @@ std::optional<ChunkEntry> SeriesBlocks::take_undecoded(
     return std::nullopt;
   TimeBounds piece = left_;
   end_with({chunk->first_time, chunk->last_time}, piece);
-  if (file_.next_run(series_, piece, options_.descending)) return std::nullopt;
+  if (file_.next_fragment(series_, piece, options_.descending)) return std::nullopt;
   leave(piece);
   return chunk;
 }
@@ -109,10 +109,10 @@ bool SeriesBlocks::filters() const {
   return selection_.by_value || !selection_.quality.all() || !selection_.source.all();
 }
 
-// Whether some of the run lies on this side of the chunk.
-bool SeriesBlocks::comes_before(TimeBounds run, const ChunkEntry& chunk) const {
-  return options_.descending ? std::min(run.last, left_.last) > chunk.last_time
-                             : std::max(run.first, left_.first) < chunk.first_time;
+// Whether some of the fragment lies on this side of the chunk.
+bool SeriesBlocks::comes_before(TimeBounds fragment, const ChunkEntry& chunk) const {
+  return options_.descending ? std::min(fragment.last, left_.last) > chunk.last_time
+                             : std::max(fragment.first, left_.first) < chunk.first_time;
 }
 
 void SeriesBlocks::end_before(const ChunkEntry& chunk, TimeBounds& piece) const {

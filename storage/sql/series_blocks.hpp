@@ -37,7 +37,7 @@ class SeriesBlocks {
   bool filters() const;
   void leave(TimeBounds piece);
   std::optional<ChunkEntry> next_chunk();
-  bool comes_before(TimeBounds run, const ChunkEntry& chunk) const;
+  bool comes_before(TimeBounds fragment, const ChunkEntry& chunk) const;
   void end_before(const ChunkEntry& chunk, TimeBounds& piece) const;
   void end_with(TimeBounds stretch, TimeBounds& piece) const;
   void load_chunk(const ChunkEntry& chunk, TimeBounds& piece);

@@ -1,4 +1,4 @@
-// Samples of one series in columns, as chunks and recent runs hold them.
+// Samples of one series in columns, as chunks and fragments hold them.
 //
 // Row i of every column is one sample. Times are nanoseconds and ascend strictly, so that a time
 // names a sample. Values are in the parameter's unit, every bit of them kept, NaN and -0.0 too.

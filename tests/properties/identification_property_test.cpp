@@ -29,7 +29,7 @@ struct Compressed {
 Compressed compressed(const Record& record, Index horizon) {
   const TickRange all{std::numeric_limits<std::int64_t>::min(),
                       std::numeric_limits<std::int64_t>::max()};
-  const StretchSums sums = sums_of_rows(record, all, 2 * horizon);
+  const RangeSums sums = sums_of_rows(record, all, 2 * horizon);
   const Normalisation normalisation = normalisation_of(sums, record.u.cols());
   const Record work = normalised(record, record.all(), normalisation);
   return {normalisation, work, compress(sums, normalisation, work, work.segments, horizon)};

@@ -57,7 +57,7 @@ RC_GTEST_PROP(LagSums, AWindowHasTheSameBitsWhateverWasKeptAndForgottenBefore, (
       kept.keep_over(any_range(record), record);
   }
   const TickRange window = any_range(record);
-  const StretchSums fresh = LagSums(shape).over(window, record);
+  const RangeSums fresh = LagSums(shape).over(window, record);
   RC_ASSERT(same_bits(kept.over(window, record), fresh));
   RC_ASSERT(same_bits(kept.keep_over(window, record), fresh));
   RC_ASSERT(same_bits(kept.keep_over(window, record), fresh));
@@ -133,26 +133,26 @@ RC_GTEST_PROP(LagSums, AddUpToTheProductsOfTheSamples, ()) {
   const Record record = any_record(400);
   const LagSums::Shape shape = any_shape(record);
   const TickRange window = any_range(record);
-  const StretchSums sums = LagSums(shape).over(window, record);
+  const RangeSums sums = LagSums(shape).over(window, record);
   const Record inside = test::rows_where(
       record, [window](std::int64_t tick) { return window.begin <= tick && tick < window.end; });
-  RC_ASSERT(sums.runs.size() == inside.segments.size());
+  RC_ASSERT(sums.segments.size() == inside.segments.size());
   const Index w = shape.channels;
-  for (std::size_t i = 0; i < sums.runs.size(); ++i) {
-    RunSums run = sums.runs[i];
+  for (std::size_t i = 0; i < sums.segments.size(); ++i) {
+    SegmentSums summed = sums.segments[i];
     const Segment& segment = inside.segments[i];
-    RC_ASSERT(run.ticks().begin == segment.first_tick);
-    RC_ASSERT(run.count() == segment.size());
+    RC_ASSERT(summed.ticks().begin == segment.first_tick);
+    RC_ASSERT(summed.count() == segment.size());
     Matrix z(w, segment.size());
     z << inside.u.middleRows(segment.begin, segment.size()).transpose(),
         inside.y.middleRows(segment.begin, segment.size()).transpose();
-    run.refer_to(z.rowwise().mean());
+    summed.refer_to(z.rowwise().mean());
     const Matrix centred = z.colwise() - Vector(z.rowwise().mean());
     for (Index tau = 0; tau < shape.block_rows; ++tau) {
       const Index pairs = std::max<Index>(0, z.cols() - tau);
       const Matrix F = centred.rightCols(pairs) * centred.leftCols(pairs).transpose();
       // Operating points up to 1e6 leave ten digits of the samples themselves.
-      RC_ASSERT((run.products().middleRows(tau * w, w) - F).norm() <= 1e-8 * double(z.cols()));
+      RC_ASSERT((summed.products().middleRows(tau * w, w) - F).norm() <= 1e-8 * double(z.cols()));
     }
   }
 }
@@ -164,7 +164,7 @@ RC_GTEST_PROP(LagSums, GiveTheFactorThatTheRowsGive, ()) {
   const Index horizon = test::any_of(2, 8), m = record.u.cols();
   const LagSums::Shape shape{m + record.y.cols(), 2 * horizon + test::any_of(0, 9),
                              test::any_of<Index>(1, 130)};
-  const StretchSums sums = LagSums(shape).over(ticks_of(record), record);
+  const RangeSums sums = LagSums(shape).over(ticks_of(record), record);
   const Normalisation normalisation = normalisation_of(sums, m);
   const Record work = normalised(record, record.all(), normalisation);
   const auto of_sums = factor_of_sums(sums, normalisation, horizon);

@@ -24,7 +24,7 @@ bool same(const Matrix& a, const Matrix& b) {
                     [](double x, double y) { return same(x, y); });
 }
 
-bool same(const RunSums& a, const RunSums& b) {
+bool same(const SegmentSums& a, const SegmentSums& b) {
   return a.ticks() == b.ticks() && same(a.reference(), b.reference()) && same(a.sum(), b.sum()) &&
          same(a.least(), b.least()) && same(a.greatest(), b.greatest()) &&
          same(a.products(), b.products()) && same(a.first(), b.first()) && same(a.last(), b.last());
@@ -53,9 +53,9 @@ bool same(const Identified& a, const Identified& b) {
 
 }  // namespace
 
-bool same_bits(const StretchSums& a, const StretchSums& b) {
-  return std::equal(a.runs.begin(), a.runs.end(), b.runs.begin(), b.runs.end(),
-                    [](const RunSums& x, const RunSums& y) { return same(x, y); });
+bool same_bits(const RangeSums& a, const RangeSums& b) {
+  return std::equal(a.segments.begin(), a.segments.end(), b.segments.begin(), b.segments.end(),
+                    [](const SegmentSums& x, const SegmentSums& y) { return same(x, y); });
 }
 
 bool same_bits(const IdentifyResult& a, const IdentifyResult& b) {

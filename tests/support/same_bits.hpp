@@ -6,7 +6,7 @@
 
 namespace reident::test {
 
-bool same_bits(const identification::StretchSums& a, const identification::StretchSums& b);
+bool same_bits(const identification::RangeSums& a, const identification::RangeSums& b);
 
 /// Models with all that is said of them, or the same verdict in the same words.
 bool same_bits(const identification::IdentifyResult& a, const identification::IdentifyResult& b);

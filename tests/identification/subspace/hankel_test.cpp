@@ -45,7 +45,7 @@ TEST(Hankel, FactorsKeepEveryInnerProductOfTheRows) {
   test::Noise noise(1);
   const Record record = gapped(noise);
   const Index s = 4;
-  const StretchSums sums = sums_of_rows(record, all_ticks, 2 * s);
+  const RangeSums sums = sums_of_rows(record, all_ticks, 2 * s);
   const Normalisation normalisation = normalisation_of(sums, 2);
   const Record work = normalised(record, record.all(), normalisation);
   const Matrix H = explicit_hankel(work, s), gram = H * H.transpose();
@@ -62,7 +62,7 @@ TEST(Hankel, FactorsKeepEveryInnerProductOfTheRows) {
 TEST(Hankel, SumsOfMoreBlockRowsServeAShorterHorizon) {
   test::Noise noise(2);
   const Record record = gapped(noise);
-  const StretchSums sums = sums_of_rows(record, all_ticks, 24);
+  const RangeSums sums = sums_of_rows(record, all_ticks, 24);
   const Normalisation normalisation = normalisation_of(sums, 2);
   const auto longer = factor_of_sums(sums, normalisation, 4);
   const auto exact = factor_of_sums(sums_of_rows(record, all_ticks, 8), normalisation, 4);
@@ -79,7 +79,7 @@ TEST(Hankel, AnOperatingPointAMillionTimesTheSignalCostsNoDigits) {
   large.y.array() -= 3e6;
   const Index s = 4;
   const auto factor = [&](const Record& record) {
-    const StretchSums sums = sums_of_rows(record, all_ticks, 2 * s);
+    const RangeSums sums = sums_of_rows(record, all_ticks, 2 * s);
     return factor_of_sums(sums, normalisation_of(sums, 2), s).value().L;
   };
   // The samples themselves are rounded to 1e-10 of the signal.
@@ -90,7 +90,7 @@ TEST(Hankel, SumsThatLostTooMuchAreRefused) {
   test::Noise noise(4);
   Record record = gapped(noise);
   record.u.col(1) = record.u.col(0) + 1e-7 * record.u.col(1);
-  const StretchSums sums = sums_of_rows(record, all_ticks, 8);
+  const RangeSums sums = sums_of_rows(record, all_ticks, 8);
   EXPECT_FALSE(factor_of_sums(sums, normalisation_of(sums, 2), 4));
 }
 

@@ -25,7 +25,7 @@ Record noise_record(Index rows, double offset = 0) {
                            noise.normal(rows, 1).array() - offset);
 }
 
-/// The definition: sums of z[t+tau] z[t]' over a run, z less its mean.
+/// The definition: sums of z[t+tau] z[t]' over a segment, z less its mean.
 Matrix lag_products(const Matrix& z) {
   const Matrix centred = z.colwise() - Vector(z.rowwise().mean());
   Matrix F = Matrix::Zero(L * z.rows(), z.rows());
@@ -36,37 +36,37 @@ Matrix lag_products(const Matrix& z) {
 }
 
 /// Relative to products of samples of deviation 1.
-double distance(RunSums a, const Matrix& z) {
+double distance(SegmentSums a, const Matrix& z) {
   a.refer_to(z.rowwise().mean());
   return (a.products() - lag_products(z)).norm() / double(z.cols());
 }
 
-TEST(RunSums, AreTheLagProductsOfTheCentredSamples) {
+TEST(SegmentSums, AreTheLagProductsOfTheCentredSamples) {
   for (const Index rows : {1, 3, 5, 6, 7, 100}) {
     const Matrix z = channels(noise_record(rows));
-    EXPECT_LT(distance(RunSums(z, 0, L), z), 1e-13) << rows;
+    EXPECT_LT(distance(SegmentSums(z, 0, L), z), 1e-13) << rows;
   }
 }
 
-TEST(RunSums, OfAdjacentRunsAddUpHoweverShortTheyAre) {
+TEST(SegmentSums, OfAdjacentSegmentsAddUpHoweverShortTheyAre) {
   const Matrix z = channels(noise_record(40));
   for (const Index cut : {1, 2, 4, 5, 6, 20, 36, 39}) {
-    RunSums sums(z.leftCols(cut), 7, L);
-    sums.append(RunSums(z.rightCols(40 - cut), 7 + cut, L));
+    SegmentSums sums(z.leftCols(cut), 7, L);
+    sums.append(SegmentSums(z.rightCols(40 - cut), 7 + cut, L));
     EXPECT_EQ(sums.ticks(), (TickRange{7, 47}));
     EXPECT_LT(distance(sums, z), 1e-13) << "cut at " << cut;
     EXPECT_LT((sums.first().colwise() + sums.reference() - z.leftCols(L - 1)).norm(), 1e-13);
     EXPECT_LT((sums.last().colwise() + sums.reference() - z.rightCols(L - 1)).norm(), 1e-13);
   }
-  RunSums one_by_one(z.col(0), 0, L);
-  for (Index t = 1; t < 40; ++t) one_by_one.append(RunSums(z.col(t), t, L));
+  SegmentSums one_by_one(z.col(0), 0, L);
+  for (Index t = 1; t < 40; ++t) one_by_one.append(SegmentSums(z.col(t), t, L));
   EXPECT_LT(distance(one_by_one, z), 1e-13);
 }
 
-TEST(RunSums, KeepTheirDigitsBesideAnOperatingPointAMillionTimesTheSignal) {
+TEST(SegmentSums, KeepTheirDigitsBesideAnOperatingPointAMillionTimesTheSignal) {
   const Matrix z = channels(noise_record(300, 1e6));
-  RunSums sums(z.leftCols(100), 0, L);
-  sums.append(RunSums(z.rightCols(200), 100, L));
+  SegmentSums sums(z.leftCols(100), 0, L);
+  sums.append(SegmentSums(z.rightCols(200), 100, L));
   EXPECT_LT(distance(sums, z), 1e-13);
 }
 
@@ -83,17 +83,17 @@ TEST(LagSums, AWindowIsTheSameToTheLastBitHoweverItsSumsCameAbout) {
 
 TEST(LagSums, AgreeWithOneSumOverTheWindow) {
   const Record record = noise_record(500);
-  const StretchSums sums = LagSums({3, L, 32}).over({10, 490}, record);
-  ASSERT_EQ(sums.runs.size(), 1u);
-  EXPECT_LT(distance(sums.runs[0], channels(record).middleCols(10, 480)), 1e-13);
+  const RangeSums sums = LagSums({3, L, 32}).over({10, 490}, record);
+  ASSERT_EQ(sums.segments.size(), 1u);
+  EXPECT_LT(distance(sums.segments[0], channels(record).middleCols(10, 480)), 1e-13);
 }
 
 TEST(LagSums, SplitAtGaps) {
   const Record record = test::with_gap(noise_record(200), 90, 95);
-  const StretchSums sums = LagSums({3, L, 32}).over({0, 200}, record);
-  ASSERT_EQ(sums.runs.size(), 2u);
-  EXPECT_EQ(sums.runs[0].ticks(), (TickRange{0, 90}));
-  EXPECT_EQ(sums.runs[1].ticks(), (TickRange{95, 200}));
+  const RangeSums sums = LagSums({3, L, 32}).over({0, 200}, record);
+  ASSERT_EQ(sums.segments.size(), 2u);
+  EXPECT_EQ(sums.segments[0].ticks(), (TickRange{0, 90}));
+  EXPECT_EQ(sums.segments[1].ticks(), (TickRange{95, 200}));
   EXPECT_EQ(sums.rows(), 195);
 }
 
@@ -113,8 +113,8 @@ TEST(LagSums, CostWhatTheSamplesCostHoweverLongTheGaps) {
   constexpr std::int64_t far = 1'000'000'000'000;
   record.segments = {{0, 200, 0}, {200, 400, far}};
   LagSums kept({3, L, 50});
-  const StretchSums sums = kept.keep_over({0, far + 200}, record);
-  ASSERT_EQ(sums.runs.size(), 2u);
+  const RangeSums sums = kept.keep_over({0, far + 200}, record);
+  ASSERT_EQ(sums.segments.size(), 2u);
   EXPECT_EQ(sums.rows(), 400);
   EXPECT_LT(kept.kept_nodes(), 200u);
   EXPECT_TRUE(test::same_bits(kept.keep_over({0, far + 200}, record), sums));
@@ -123,9 +123,9 @@ TEST(LagSums, CostWhatTheSamplesCostHoweverLongTheGaps) {
 TEST(LagSums, WindowsBeforeTheEpochAreCutLikeOthers) {
   Record record = noise_record(300);
   record.segments[0].first_tick = -130;
-  const StretchSums sums = LagSums({3, L, 50}).over({-130, 170}, record);
-  ASSERT_EQ(sums.runs.size(), 1u);
-  EXPECT_LT(distance(sums.runs[0], channels(record)), 1e-13);
+  const RangeSums sums = LagSums({3, L, 50}).over({-130, 170}, record);
+  ASSERT_EQ(sums.segments.size(), 1u);
+  EXPECT_LT(distance(sums.segments[0], channels(record)), 1e-13);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Recent runs become chunks in bounded steps, and nothing changes for a reader.
+// Fragments become chunks in bounded steps, and nothing changes for a reader.
 #include <limits>
 
 #include "storage/database/connection.hpp"
@@ -167,7 +167,7 @@ TEST_F(CompactionTest, TakesNothingFromAChunkThatItsRowDoesNotDescribe) {
               ElementsAre("90|holds other samples than its row says"));
 }
 
-TEST_F(CompactionTest, SetsAsideARecentRunThatItCannotRead) {
+TEST_F(CompactionTest, SetsAsideAFragmentThatItCannotRead) {
   open({});
   append(0, 10);
   append(10, 20);

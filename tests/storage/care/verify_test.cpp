@@ -88,7 +88,7 @@ TEST_F(Verify, FindsNothingInASoundFile) {
     EXPECT_GE(found.chunks, 3U * 9);
     EXPECT_EQ(found.versions, 1U);
   }
-  // Every sample that is in a chunk or in a run, the 40 late ones of each among them.
+  // Every sample that is in a chunk or in a fragment, the 40 late ones of each among them.
   EXPECT_EQ(report().samples, 3U * (600 + 60 + 40));
 }
 

@@ -9,15 +9,15 @@
 namespace reident::storage::test::overlay_test {
 namespace {
 
-SampleColumns run_of(const std::vector<Time>& times, double value) {
-  SampleColumns run;
+SampleColumns fragment_of(const std::vector<Time>& times, double value) {
+  SampleColumns fragment;
   for (const Time time : times) {
-    run.time.push_back(time);
-    run.value.push_back(value);
-    run.quality.push_back(Quality::good);
-    run.source.push_back(static_cast<std::int64_t>(value));
+    fragment.time.push_back(time);
+    fragment.value.push_back(value);
+    fragment.quality.push_back(Quality::good);
+    fragment.source.push_back(static_cast<std::int64_t>(value));
   }
-  return run;
+  return fragment;
 }
 
 std::map<Time, double> as_map(const SampleColumns& samples) {
@@ -31,15 +31,15 @@ std::map<Time, double> as_map(const SampleColumns& samples) {
 }
 
 TEST(Overlay, PutsWhatFollowsBehind) {
-  SampleColumns base = run_of({1, 2}, 1);
-  const SampleColumns first = run_of({3}, 2), second = run_of({7, 9}, 3);
+  SampleColumns base = fragment_of({1, 2}, 1);
+  const SampleColumns first = fragment_of({3}, 2), second = fragment_of({7, 9}, 3);
   overlay(base, {&first, &second});
   EXPECT_EQ(as_map(base), (std::map<Time, double>{{1, 1}, {2, 1}, {3, 2}, {7, 3}, {9, 3}}));
 }
 
 TEST(Overlay, OfSeveralSamplesAtOneTimeTheLastLaidOnStays) {
-  SampleColumns base = run_of({1, 2, 3, 4}, 1);
-  const SampleColumns first = run_of({0, 2, 3}, 2), second = run_of({3, 5}, 3);
+  SampleColumns base = fragment_of({1, 2, 3, 4}, 1);
+  const SampleColumns first = fragment_of({0, 2, 3}, 2), second = fragment_of({3, 5}, 3);
   overlay(base, {&first, &second});
   EXPECT_EQ(as_map(base), (std::map<Time, double>{{0, 2}, {1, 1}, {2, 2}, {3, 3}, {4, 1}, {5, 3}}));
 }
@@ -57,19 +57,19 @@ TEST(Overlay, IsWhatAMapWouldHold) {
   std::mt19937 random(20170717);
   for (int round = 0; round < 500; ++round) {
     std::map<Time, double> expected;
-    std::vector<SampleColumns> runs;
+    std::vector<SampleColumns> fragments;
     const std::size_t count = 1 + random() % 5;
     for (std::size_t r = 0; r < count; ++r) {
       std::vector<Time> times;
       const Time begin = static_cast<Time>(random() % 40);
       for (Time t = begin; t < begin + 20; ++t)
         if (random() % 3 != 0) times.push_back(t);
-      runs.push_back(run_of(times, static_cast<double>(r)));
+      fragments.push_back(fragment_of(times, static_cast<double>(r)));
       for (const Time time : times) expected[time] = static_cast<double>(r);
     }
     std::vector<const SampleColumns*> newer;
-    for (std::size_t r = 1; r < count; ++r) newer.push_back(&runs[r]);
-    SampleColumns base = runs[0];
+    for (std::size_t r = 1; r < count; ++r) newer.push_back(&fragments[r]);
+    SampleColumns base = fragments[0];
     overlay(base, newer);
     ASSERT_EQ(as_map(base), expected) << "round " << round;
   }

@@ -20,7 +20,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-// Few identities, so that runs lie over chunks, and values that are hard to keep.
+// Few identities, so that fragments lie over chunks, and values that are hard to keep.
 rc::Gen<TelemetryFrame> frames() {
   const auto samples = rc::gen::build<Sample>(
       rc::gen::set(&Sample::parameter, rc::gen::inRange(1U, 5U)),

@@ -307,7 +307,7 @@ TEST_F(SqlExtensionTest, ADamagedChunkEndsTheQuestionAndIsNamed) {
   EXPECT_THAT(ask("SELECT value FROM telemetry"), ElementsAre(HasSubstr("is cut short")));
 }
 
-TEST_F(SqlExtensionTest, ADamagedRecentRunEndsTheQuestionToo) {
+TEST_F(SqlExtensionTest, ADamagedFragmentEndsTheQuestionToo) {
   append_ramp(10);
   rows(path, "UPDATE recent SET data = substr(data, 1, 20)");
   EXPECT_THAT(ask("SELECT value FROM telemetry"), ElementsAre(HasSubstr("'reident verify")));

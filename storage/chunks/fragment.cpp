@@ -1,4 +1,4 @@
-#include "storage/chunks/recent_run.hpp"
+#include "storage/chunks/fragment.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -33,8 +33,8 @@ std::uint8_t flags_of(const ChunkSamples& samples) {
                                    (all_equal(samples.source) ? one_source : 0));
 }
 
-/// A run laid open: the columns still in their bytes, but for the times.
-struct Run {
+/// A fragment laid open: the columns still in their bytes, but for the times.
+struct Fragment {
   std::vector<Time> time;
   Bytes value;
   std::vector<Quality> quality;
@@ -57,7 +57,7 @@ bool read_times(ByteReader& in, bool steady, std::size_t count, std::vector<Time
   return !in.failed();
 }
 
-std::optional<ChunkError> read_run(Bytes bytes, Run& run) {
+std::optional<ChunkError> read_fragment(Bytes bytes, Fragment& fragment) {
   if (bytes.size() < checksum_bytes + 3) return damaged("is cut short");
   const Bytes body = bytes.first(bytes.size() - checksum_bytes);
   if (ByteReader(bytes.subspan(body.size())).fixed(8) != xxh64(body))
@@ -70,25 +70,25 @@ std::optional<ChunkError> read_run(Bytes bytes, Run& run) {
   const std::uint8_t flags = in.byte();
   const std::uint64_t count = in.varint();
   if (flags > every_flag || count == 0 || count > most_samples)
-    return damaged("claims what no run has");
+    return damaged("claims what no fragment has");
   const auto samples = static_cast<std::size_t>(count);
-  if (!read_times(in, (flags & one_step) != 0, samples, run.time))
+  if (!read_times(in, (flags & one_step) != 0, samples, fragment.time))
     return damaged("has times that do not ascend");
-  run.value = in.bytes(count * sizeof(double));
+  fragment.value = in.bytes(count * sizeof(double));
   for (std::size_t i = 0; i < ((flags & one_quality) != 0 ? 1 : samples); ++i) {
     const auto quality = quality_of_wire(in.byte());
     if (!quality) return damaged("has a quality that is none");
-    run.quality.push_back(*quality);
+    fragment.quality.push_back(*quality);
   }
   for (std::size_t i = 0; i < ((flags & one_source) != 0 ? 1 : samples); ++i)
-    run.source.push_back(from_zigzag(in.varint()));
+    fragment.source.push_back(from_zigzag(in.varint()));
   if (in.failed() || !in.at_end()) return damaged("has another length than it says");
   return std::nullopt;
 }
 
 }  // namespace
 
-void encode_run(const ChunkSamples& samples, std::vector<std::uint8_t>& out) {
+void encode_fragment(const ChunkSamples& samples, std::vector<std::uint8_t>& out) {
   const std::size_t count = samples.time.size(), start = out.size();
   assert(count > 0 && count <= most_samples && samples.value.size() == count &&
          samples.quality.size() == count && samples.source.size() == count);
@@ -110,14 +110,14 @@ void encode_run(const ChunkSamples& samples, std::vector<std::uint8_t>& out) {
   writer.fixed(xxh64(Bytes(out).subspan(start)), checksum_bytes);
 }
 
-std::optional<ChunkError> decode_run(Bytes bytes, TimeRange range, const ChunkTarget& target) {
-  Run run;
-  if (auto error = read_run(bytes, run)) return error;
-  const auto first = std::lower_bound(run.time.begin(), run.time.end(), range.begin);
+std::optional<ChunkError> decode_fragment(Bytes bytes, TimeRange range, const ChunkTarget& target) {
+  Fragment fragment;
+  if (auto error = read_fragment(bytes, fragment)) return error;
+  const auto first = std::lower_bound(fragment.time.begin(), fragment.time.end(), range.begin);
   const bool to_the_end = range.end == std::numeric_limits<Time>::max();
   const auto last =
-      to_the_end ? run.time.end() : std::lower_bound(first, run.time.end(), range.end);
-  const auto begin = static_cast<std::size_t>(first - run.time.begin());
+      to_the_end ? fragment.time.end() : std::lower_bound(first, fragment.time.end(), range.end);
+  const auto begin = static_cast<std::size_t>(first - fragment.time.begin());
   const auto count = static_cast<std::size_t>(std::max<std::ptrdiff_t>(last - first, 0));
   const auto copy = [begin, count](const auto& from, auto* to) {
     if (to == nullptr) return;
@@ -132,10 +132,10 @@ std::optional<ChunkError> decode_run(Bytes bytes, TimeRange range, const ChunkTa
   if (target.value != nullptr) {
     target.value->resize(target.value->size() + count);
     std::memcpy(target.value->data() + (target.value->size() - count),
-                run.value.data() + begin * sizeof(double), count * sizeof(double));
+                fragment.value.data() + begin * sizeof(double), count * sizeof(double));
   }
-  copy(run.quality, target.quality);
-  copy(run.source, target.source);
+  copy(fragment.quality, target.quality);
+  copy(fragment.source, target.source);
   return std::nullopt;
 }
 

@@ -1,5 +1,5 @@
-// Recent runs: every bit comes back, and damage is reported.
-#include "storage/chunks/recent_run.hpp"
+// Fragments: every bit comes back, and damage is reported.
+#include "storage/chunks/fragment.hpp"
 
 #include <limits>
 #include <random>
@@ -8,20 +8,20 @@
 
 #include "tests/storage/chunks/chunk_fixture.hpp"
 
-namespace reident::storage::test::recent_run_test {
+namespace reident::storage::test::fragment_test {
 namespace {
 
 constexpr TimeRange always{std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()};
 
 std::vector<std::uint8_t> encoded(const Columns& columns) {
   std::vector<std::uint8_t> bytes;
-  encode_run(columns.samples(), bytes);
+  encode_fragment(columns.samples(), bytes);
   return bytes;
 }
 
 Columns decoded(const std::vector<std::uint8_t>& bytes, TimeRange range = always) {
   Columns columns;
-  const auto error = decode_run(bytes, range, columns.target());
+  const auto error = decode_fragment(bytes, range, columns.target());
   EXPECT_FALSE(error) << error->message;
   return columns;
 }
@@ -41,7 +41,7 @@ Columns any_columns(std::mt19937_64& random, std::size_t count, bool odd) {
   return columns;
 }
 
-TEST(RecentRun, GivesEveryBitBack) {
+TEST(Fragment, GivesEveryBitBack) {
   std::mt19937_64 random(20170717);
   for (const std::size_t count : {1U, 2U, 3U, 100U, 5000U})
     for (const bool odd : {false, true}) {
@@ -50,7 +50,7 @@ TEST(RecentRun, GivesEveryBitBack) {
     }
 }
 
-TEST(RecentRun, GivesEachQualityBackAndNoOther) {
+TEST(Fragment, GivesEachQualityBackAndNoOther) {
   Columns columns = columns_of(std::vector<double>(qualities.size(), 28.5));
   std::copy(qualities.begin(), qualities.end(), columns.quality.begin());
   EXPECT_TRUE(same(decoded(encoded(columns)), columns));
@@ -60,11 +60,11 @@ TEST(RecentRun, GivesEachQualityBackAndNoOther) {
   }
   columns.quality.back() = static_cast<Quality>(qualities.size());
   Columns target;
-  const auto error = decode_run(encoded(columns), always, target.target());
+  const auto error = decode_fragment(encoded(columns), always, target.target());
   EXPECT_EQ(error ? error->message : "none", "has a quality that is none");
 }
 
-TEST(RecentRun, GivesTheSamplesOfARangeAlone) {
+TEST(Fragment, GivesTheSamplesOfARangeAlone) {
   std::mt19937_64 random(7);
   const Columns columns = any_columns(random, 200, true);
   const auto bytes = encoded(columns);
@@ -74,12 +74,12 @@ TEST(RecentRun, GivesTheSamplesOfARangeAlone) {
   }
 }
 
-TEST(RecentRun, OfOneSampleIsSmall) {
+TEST(Fragment, OfOneSampleIsSmall) {
   Columns columns = columns_of({28.5});
   EXPECT_LE(encoded(columns).size(), 29U);
 }
 
-TEST(RecentRun, TellsEachDamagedByteAndLeavesTheTargetAsItWas) {
+TEST(Fragment, TellsEachDamagedByteAndLeavesTheTargetAsItWas) {
   std::mt19937_64 random(8);
   const Columns columns = any_columns(random, 20, true);
   const auto whole = encoded(columns);
@@ -87,13 +87,13 @@ TEST(RecentRun, TellsEachDamagedByteAndLeavesTheTargetAsItWas) {
     auto bytes = whole;
     bytes[i] ^= static_cast<std::uint8_t>(1 + random() % 255);
     Columns target = columns_of({1, 2});
-    EXPECT_TRUE(decode_run(bytes, always, target.target())) << "byte " << i;
+    EXPECT_TRUE(decode_fragment(bytes, always, target.target())) << "byte " << i;
     EXPECT_TRUE(same(target, columns_of({1, 2})));
     bytes = whole;
     bytes.resize(i);
-    EXPECT_TRUE(decode_run(bytes, always, target.target())) << "cut at " << i;
+    EXPECT_TRUE(decode_fragment(bytes, always, target.target())) << "cut at " << i;
   }
 }
 
 }  // namespace
-}  // namespace reident::storage::test::recent_run_test
+}  // namespace reident::storage::test::fragment_test
