@@ -123,7 +123,7 @@ std::vector<TrackingSearch> every_placement(const StateSpaceModel& model,
   return found;
 }
 
-/// The one of the consecutive stretches of `first_rows` in which the outputs move most: at rest all
+/// The one of the consecutive ranges of `first_rows` in which the outputs move most: at rest all
 /// placements err alike.
 RowRange liveliest(const Record& record, RowRange rows, const Vector& error_limit) {
   RowRange best{rows.begin, std::min(rows.end, rows.begin + first_rows)};

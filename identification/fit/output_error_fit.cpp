@@ -72,22 +72,22 @@ Fitted fit(const StateSpaceModel& dynamics, bool direct, const Record& record,
 /// Rows that count as one in the errors of the output whose errors last longest.
 double correlated_rows_of_errors(const Fitted& fitted, const Record& record,
                                  const std::vector<Segment>& segments) {
-  std::vector<RowRange> stretches;
+  std::vector<RowRange> ranges;
   Index rows = 0;
   for (const Segment& segment : segments) {
-    stretches.push_back({rows, rows + segment.size()});
+    ranges.push_back({rows, rows + segment.size()});
     rows += segment.size();
   }
   Matrix errors(rows, record.y.cols());
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const RowRange of_segment{segments[i].begin, segments[i].end};
-    errors.middleRows(stretches[i].begin, stretches[i].size()) =
+    errors.middleRows(ranges[i].begin, ranges[i].size()) =
         record.y.middleRows(of_segment.begin, of_segment.size()) -
         free_run(fitted.model, record, of_segment, fitted.x0[i]);
   }
   double most = 1;
   for (Index q = 0; q < errors.cols(); ++q) {
-    Series series(errors.col(q), stretches);
+    Series series(errors.col(q), ranges);
     most = std::max(most, correlated_rows(series));
   }
   return most;

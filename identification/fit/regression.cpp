@@ -10,10 +10,10 @@
 namespace reident::identification {
 namespace {
 
-constexpr Index stretch = 64;
+constexpr Index tile_rows = 64;
 /// Rows that are folded into a triangular factor at once: fewer cost more for the factor that comes
 /// with them, more leave the cache.
-constexpr Index rows_at_once = 8 * stretch;
+constexpr Index rows_at_once = 8 * tile_rows;
 
 /// The dual system of one output: since C A^j B is linear in B, the regressors of a column of B are
 /// the states of x[k+1] = A' x[k] + c' v[k] driven by that column's input. All inputs v at once.
@@ -34,7 +34,7 @@ class DualFilters {
   Matrix states_;
 };
 
-/// The state of the model along a stretch, and C x.
+/// The state of the model along a tile, and C x.
 struct Trajectory {
   Matrix states;   // n x count
   Matrix outputs;  // p x count
@@ -77,9 +77,9 @@ void walk_regression(const Columns& columns, const StateSpaceModel& model, const
     filters.emplace_back(model.A, model.C.row(q).transpose(), std::move(states));
   }
   Vector x = x0;
-  Matrix values(width, stretch), driving = Matrix::Zero(1 + m + extra, stretch);
-  for (Index begin = segment.begin; begin < segment.end; begin += stretch) {
-    const Index count = std::min(stretch, segment.end - begin);
+  Matrix values(width, tile_rows), driving = Matrix::Zero(1 + m + extra, tile_rows);
+  for (Index begin = segment.begin; begin < segment.end; begin += tile_rows) {
+    const Index count = std::min(tile_rows, segment.end - begin);
     driving.block(1, 0, m, count) = record.u.middleRows(begin, count).transpose();
     Trajectory trajectory;
     if (columns.moves) {

@@ -35,14 +35,14 @@ struct Columns {
   Index count() const { return target() + 1; }
 };
 
-/// A stretch of the rows that belong to one output. Column t of `values` holds, for one time, the
+/// A tile of the rows that belong to one output. Column t of `values` holds, for one time, the
 /// columns before output(0), those of the output, and the target. All others are zero.
 struct RegressionRows {
   Index output;
   Eigen::Ref<const Matrix> values;
 };
 
-/// Walks the regression over a segment of the record in stretches, so that memory does not follow
+/// Walks the regression over a segment of the record in tiles, so that memory does not follow
 /// its length, and hands each to `visit`, output by output. With `columns.moves`, B, D and y0 of
 /// the model and the segment's initial state `x0` (n) give the trajectory about which the dynamics
 /// move. Without, `x0` is not read.

@@ -1,7 +1,7 @@
 // Samples on a uniform grid of time, holes left out. Nothing here throws.
 //
 // Row r of `u` (N x m) and `y` (N x p) holds the inputs and outputs at one tick of the grid. Rows
-// are ascending in time; a segment is a stretch of rows whose ticks follow each other without a
+// are ascending in time; a segment is a range of rows whose ticks follow each other without a
 // hole, and the next segment starts after one. Only rows with every channel valid are kept, so
 // memory follows the samples, not the length of the gaps.
 #pragma once
@@ -28,7 +28,7 @@ struct TickRange {
   bool operator==(const TickRange&) const = default;
 };
 
-/// A stretch without a hole: the rows [begin, end), of which each is a tick behind the one before.
+/// Rows [begin, end) without a hole: each is a tick behind the one before.
 struct Segment {
   Index begin = 0;
   Index end = 0;
@@ -37,7 +37,7 @@ struct Segment {
   bool operator==(const Segment&) const = default;
 };
 
-/// The samples of a stretch of time.
+/// The samples of a range of time.
 struct Record {
   double period_s = 1;            // from one tick to the next [s], positive
   Matrix u;                       // N x m, in the units of the inputs
@@ -64,7 +64,7 @@ std::vector<Segment> segments_from(const Record& record, RowRange rows);
 /// none.
 Record rows_at(const Record& record, TickRange ticks);
 
-/// Returns one record of the rows of all; stretches that follow each other without a hole become
+/// Returns one record of the rows of all; segments that follow each other without a hole become
 /// one segment. Requires at least one part, ascending in time and of the same channels.
 Record joined(const std::vector<const Record*>& parts);
 

@@ -1,4 +1,4 @@
-// Why a stretch of telemetry gives no result: a code for programs and a sentence for an operator.
+// Why a range of telemetry gives no result: a code for programs and a sentence for an operator.
 // Expected failures are values: whatever telemetry holds, a function returns a verdict and throws
 // nothing. Wrong arguments, such as sizes that disagree, are mistakes of the program (assert).
 #pragma once

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Index level_rows = 121;
 constexpr Index shift_rows = 1201;
-/// Left out on both sides: where the median turns is known to a part of its stretch.
+/// Left out on both sides: where the median turns is known to a part of its range.
 constexpr Index margin_rows = 60;
 /// A shift counts from this share of the tolerance on.
 constexpr double shift_share = 0.5;
@@ -22,11 +22,11 @@ double median(std::vector<double> sorted) {
   return *middle;
 }
 
-/// The rows of whose surrounding stretch of `length` rows more than half are more than `limit` away
-/// from `centre`: on one side of it, or on both together. At either end the stretch is the first
+/// The rows of whose surrounding range of `length` rows more than half are more than `limit` away
+/// from `centre`: on one side of it, or on both together. At either end the range is the first
 /// or the last.
-std::vector<RowRange> stretches_beyond(const Vector& r, double centre, double limit, Index length,
-                                       bool on_one_side) {
+std::vector<RowRange> ranges_beyond(const Vector& r, double centre, double limit, Index length,
+                                    bool on_one_side) {
   const Index rows = r.size();
   Index above = 0, below = 0;
   const auto count = [&](Index row, Index one) {
@@ -73,7 +73,7 @@ std::vector<Inconsistency> inconsistencies(const Record& residual, double tolera
   std::vector<Inconsistency> found;
   const auto take = [&](double centre, double limit, Index length, bool is_shift) {
     if (r.size() < length) return;
-    for (const RowRange& rows : stretches_beyond(r, centre, limit, length, is_shift)) {
+    for (const RowRange& rows : ranges_beyond(r, centre, limit, length, is_shift)) {
       const RowRange wide{std::max<Index>(0, rows.begin - margin_rows),
                           std::min(r.size(), rows.end + margin_rows)};
       found.push_back({{tick_of(residual, wide.begin), tick_of(residual, wide.end - 1) + 1},

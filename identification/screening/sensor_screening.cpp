@@ -11,7 +11,7 @@ namespace {
 
 constexpr Index least_stuck_rows = 60;
 constexpr double stuck_factor = 5;
-constexpr std::size_t most_stuck = 3;  // stretches of one channel
+constexpr std::size_t most_stuck = 3;  // plateaus of one channel
 constexpr double repeated_share = 1.0 / 3;
 /// What another channel moves meanwhile, as a share of its range.
 constexpr double moving_share = 0.1;
@@ -201,8 +201,8 @@ std::vector<std::vector<double>> rough_ratios(const std::vector<Channel>& channe
   return ratios;
 }
 
-std::vector<RowRange> noisy_stretches(const std::vector<std::vector<double>>& ratios,
-                                      std::size_t self, const std::vector<Block>& blocks) {
+std::vector<RowRange> noisy_ranges(const std::vector<std::vector<double>>& ratios, std::size_t self,
+                                   const std::vector<Block>& blocks) {
   std::vector<RowRange> found;
   const auto is_noisy = [&](std::size_t block) {
     if (!(ratios[self][block] > noise_factor)) return false;
@@ -265,7 +265,7 @@ std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<b
       if (!another_jumps(channels, c, spike))
         add(SensorFaultKind::spike, ticks_of(record, spike.segment, spike.begin, spike.end));
     if (ratios[c].empty()) continue;
-    for (const RowRange& rows : noisy_stretches(ratios, c, blocks)) {
+    for (const RowRange& rows : noisy_ranges(ratios, c, blocks)) {
       const auto segment = std::partition_point(
           record.segments.begin(), record.segments.end(),
           [&](const Segment& one) { return one.end <= rows.begin + noise_block; });

@@ -13,8 +13,8 @@ Predictor::Predictor(const StateSpaceModel& model, const Record& record, RowRang
   const Matrix F = model.A - model.K * model.C;
   const Matrix Ke = model.K * (record.y.middleRows(run.begin, run.size()) - y_free_).transpose();
   for (const Segment& segment : segments_within(record, run)) {
-    stretches_.push_back({segment.begin - run.begin, segment.end - run.begin});
-    const auto [begin, end] = stretches_.back();
+    segments_.push_back({segment.begin - run.begin, segment.end - run.begin});
+    const auto [begin, end] = segments_.back();
     d_.col(begin).setZero();
     for (Index k = begin; k + 1 < end; ++k) {
       d_.col(k + 1) = Ke.col(k);
@@ -28,11 +28,11 @@ Matrix Predictor::outputs(Index steps) const {
   Matrix gain = C_;
   for (Index step = 1; step < steps; ++step) gain = (gain * A_).eval();
   Matrix y_hat = y_free_;
-  for (const RowRange& stretch : stretches_) {
-    const Index count = stretch.size() - (steps - 1);
+  for (const RowRange& segment : segments_) {
+    const Index count = segment.size() - (steps - 1);
     if (count > 0)
-      y_hat.middleRows(stretch.end - count, count) +=
-          (gain * d_.middleCols(stretch.begin, count)).transpose();
+      y_hat.middleRows(segment.end - count, count) +=
+          (gain * d_.middleCols(segment.begin, count)).transpose();
   }
   return y_hat;
 }

@@ -26,7 +26,7 @@ class Predictor {
   Matrix A_, C_;
   Matrix y_free_;
   Matrix d_;  // n x N: state of the innovations form less that of the free run
-  std::vector<RowRange> stretches_;
+  std::vector<RowRange> segments_;
 };
 
 }  // namespace reident::identification

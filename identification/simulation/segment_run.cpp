@@ -8,14 +8,14 @@ namespace reident::identification {
 
 Vector run_segment(const StateSpaceModel& model, const Record& record, const Segment& segment,
                    Vector x, Matrix& y_hat, Index out) {
-  constexpr Index stretch = 1024;  // of rows at once, so that the work space stays small
+  constexpr Index tile_rows = 1024;  // at once, so that the work space stays small
   const Index n = model.order(), m = model.inputs(), p = model.outputs();
   Matrix M(n + p, n + m);
   M << model.A, model.B, model.C, model.D;
   Vector work(n + p);
-  Matrix du(m, stretch), y(p, stretch);
-  for (Index begin = segment.begin; begin < segment.end; begin += stretch) {
-    const Index count = std::min(stretch, segment.end - begin);
+  Matrix du(m, tile_rows), y(p, tile_rows);
+  for (Index begin = segment.begin; begin < segment.end; begin += tile_rows) {
+    const Index count = std::min(tile_rows, segment.end - begin);
     for (Index i = 0; i < m; ++i)
       du.row(i).head(count) =
           record.u.col(i).segment(begin, count).transpose().array() - model.u0(i);

@@ -5,15 +5,15 @@
 
 namespace reident::identification {
 
-SquareChanges square_changes(const Matrix& signals, const std::vector<RowRange>& stretches) {
+SquareChanges square_changes(const Matrix& signals, const std::vector<RowRange>& segments) {
   constexpr double median_of_a_normal = 0.4549;  // of chi-squared with one degree of freedom
   const Index m = signals.cols();
   SquareChanges result{Vector::Zero(m), Vector::Zero(m)};
   std::vector<double> squares;
   for (Index j = 0; j < m; ++j) {
     squares.clear();
-    for (const RowRange& stretch : stretches)
-      for (Index k = stretch.begin + 1; k < stretch.end; ++k) {
+    for (const RowRange& segment : segments)
+      for (Index k = segment.begin + 1; k < segment.end; ++k) {
         const double change = signals(k, j) - signals(k - 1, j);
         squares.push_back(change * change);
       }
@@ -28,9 +28,9 @@ SquareChanges square_changes(const Matrix& signals, const std::vector<RowRange>&
 }
 
 SquareChanges square_changes(const Record& record) {
-  std::vector<RowRange> stretches;
-  for (const Segment& segment : record.segments) stretches.push_back({segment.begin, segment.end});
-  return square_changes(record.u, stretches);
+  std::vector<RowRange> segments;
+  for (const Segment& segment : record.segments) segments.push_back({segment.begin, segment.end});
+  return square_changes(record.u, segments);
 }
 
 }  // namespace reident::identification

@@ -14,9 +14,9 @@ struct SquareChanges {
   Vector usual;  // the median, over that of the square of a unit normal: without rare steps
 };
 
-/// Returns the changes of signals (N x m) within the stretches of their rows; 0 where no two rows
-/// of a stretch follow each other.
-SquareChanges square_changes(const Matrix& signals, const std::vector<RowRange>& stretches);
+/// Returns the changes of signals (N x m) within the segments of their rows; 0 where no two rows
+/// of a segment follow each other.
+SquareChanges square_changes(const Matrix& signals, const std::vector<RowRange>& segments);
 /// Returns those of the record's inputs.
 SquareChanges square_changes(const Record& record);
 

@@ -13,8 +13,8 @@ namespace reident::identification {
 namespace {
 
 constexpr Index most_blocks = 50;
-/// No single stretch of this share of the rows may decide.
-constexpr double stretch_share = 0.05;
+/// No single range of this share of the rows may decide.
+constexpr double range_share = 0.05;
 /// A run without error errs by this share of the output all the same, so that it has a logarithm.
 constexpr double least_error = 1e-12;
 
@@ -48,12 +48,12 @@ Array influence(const Matrix& squares, const Array& totals, const Array& y) {
 }
 
 Index block_rows_for(const Matrix& incumbent, const Matrix& candidate, const Sums& sums,
-                     const std::vector<RowRange>& stretches) {
+                     const std::vector<RowRange>& segments) {
   const Index rows = incumbent.rows();
   Series difference(
       (influence(incumbent, sums.incumbent, sums.y) - influence(candidate, sums.candidate, sums.y))
           .matrix(),
-      stretches);
+      segments);
   const double length = 3 * optimal_block_rows(correlated_rows(difference), rows);
   return std::clamp(static_cast<Index>(std::ceil(length)), (rows + most_blocks - 1) / most_blocks,
                     rows / least_blocks);
@@ -88,11 +88,11 @@ Deviation deviation(const Array& values, Stationarity stationarity) {
   return {std::sqrt(variance * neighbour_factor(left)), degrees_of_freedom};
 }
 
-/// The least logarithm that remains without one stretch of rows.
+/// The least logarithm that remains without one range of rows.
 template <class Over>
-double least_without_a_stretch(const Sums& all, Index rows, const Over& over) {
-  constexpr Index steps = 5;  // of a stretch from one to the next
-  const auto length = static_cast<Index>(std::ceil(stretch_share * double(rows)));
+double least_without_a_range(const Sums& all, Index rows, const Over& over) {
+  constexpr Index steps = 5;  // in a range, from one to the next
+  const auto length = static_cast<Index>(std::ceil(range_share * double(rows)));
   const Index step = std::max<Index>(1, length / steps);
   double least = log_ratio(all);
   for (Index begin = 0; begin < rows; begin += step) {
@@ -106,7 +106,7 @@ double least_without_a_stretch(const Sums& all, Index rows, const Over& over) {
 
 std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incumbent,
                                              const Matrix& candidate,
-                                             const std::vector<RowRange>& stretches,
+                                             const std::vector<RowRange>& segments,
                                              double confidence, Stationarity stationarity) {
   assert(y.rows() == incumbent.rows() && y.cols() == incumbent.cols());
   assert(y.rows() == candidate.rows() && y.cols() == candidate.cols());
@@ -126,7 +126,7 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
     return std::nullopt;
 
   PairedComparison result;
-  result.block_rows = block_rows_for(of_incumbent, of_candidate, all, stretches);
+  result.block_rows = block_rows_for(of_incumbent, of_candidate, all, segments);
   result.blocks = rows / result.block_rows;
   const double phi = log_ratio(all);
   Array pseudo(result.blocks);
@@ -142,21 +142,21 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
   const double quantile = student_quantile(confidence, chance.degrees_of_freedom);
   result.reduction = 1 - std::exp(-phi);
   const double low =
-      std::min(phi - quantile * chance.of_mean, least_without_a_stretch(all, rows, over));
+      std::min(phi - quantile * chance.of_mean, least_without_a_range(all, rows, over));
   result.low = 1 - std::exp(-low);
   return result;
 }
 
-double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& stretches) {
+double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& segments) {
   Array squares(y.cols());
   for (Index q = 0; q < y.cols(); ++q) {
     const Vector errors = y.col(q) - run.col(q);
     std::vector<double> fresh;  // errors where a sample is new
     std::vector<RowRange> of_fresh;
     Index pairs = 0, changes = 0;
-    for (const RowRange& stretch : stretches) {
+    for (const RowRange& segment : segments) {
       const auto first = static_cast<Index>(fresh.size());
-      for (Index k = stretch.begin + 1; k < stretch.end; ++k) {
+      for (Index k = segment.begin + 1; k < segment.end; ++k) {
         ++pairs;
         if (y(k, q) == y(k - 1, q)) continue;
         ++changes;
@@ -168,7 +168,7 @@ double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRa
         2 * changes < pairs
             ? square_changes(Eigen::Map<const Vector>(fresh.data(), std::ssize(fresh)), of_fresh)
                   .usual(0)
-            : square_changes(errors, stretches).usual(0);
+            : square_changes(errors, segments).usual(0);
   }
   return 100 * errors_of(squares / 2, y.cwiseAbs2().colwise().mean().transpose()).mean();
 }

@@ -22,17 +22,17 @@ struct PairedComparison {
   Index block_rows = 0;
 };
 
-/// Compares two runs. y and both runs are N x p; `stretches` cover the rows, without a gap in each.
+/// Compares two runs. y and both runs are N x p; `segments` cover the rows, without a gap in each.
 /// `confidence` in (0.5, 1) is that of the bound. Absent for fewer than 50 rows, an output of zeros
 /// and errors that are not finite. The cost is linear in the rows.
 std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incumbent,
                                              const Matrix& candidate,
-                                             const std::vector<RowRange>& stretches,
+                                             const std::vector<RowRange>& segments,
                                              double confidence, Stationarity stationarity);
 
 /// Returns the MRSE, in percent, that the noise of the sensors alone would give a run: that of the
 /// usual change of its errors from row to row. Where an output's samples are held, new ones count.
-/// Requires finite y and run (N x p), N >= 1, and stretches that cover the rows.
-double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& stretches);
+/// Requires finite y and run (N x p), N >= 1, and segments that cover the rows.
+double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& segments);
 
 }  // namespace reident::identification

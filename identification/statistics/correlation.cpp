@@ -14,21 +14,21 @@ namespace {
 constexpr double confidence = 0.95;
 const double two_sided = normal_quantile((1 + confidence) / 2);
 
-/// sum a[t - lag] b[t] within the stretches, for `count` lags from `first_lag` (at least 0) on. Of
+/// sum a[t - lag] b[t] within the segments, for `count` lags from `first_lag` (at least 0) on. Of
 /// `taken` samples of a at once, each meets as many of b for its lags: those at a constant lag lie
 /// on a diagonal of the outer products.
-Vector lagged_products(const Vector& a, const Vector& b, const std::vector<RowRange>& stretches,
+Vector lagged_products(const Vector& a, const Vector& b, const std::vector<RowRange>& segments,
                        Index first_lag, Index count) {
   constexpr Index taken = 6;
   const Index met = count + taken - 1;
   Matrix products = Matrix::Zero(met, taken);
-  for (const RowRange& stretch : stretches) {
-    const Index pairs = stretch.size() - first_lag;
+  for (const RowRange& segment : segments) {
+    const Index pairs = segment.size() - first_lag;
     if (pairs < 1) continue;
     const Index blocks = (pairs + taken - 1) / taken;
     Vector early = Vector::Zero(blocks * taken), late = Vector::Zero((blocks - 1) * taken + met);
-    early.head(pairs) = a.segment(stretch.begin, pairs);
-    late.head(pairs) = b.segment(stretch.begin + first_lag, pairs);
+    early.head(pairs) = a.segment(segment.begin, pairs);
+    late.head(pairs) = b.segment(segment.begin + first_lag, pairs);
     add_outer_products({late.data(), met, taken}, {early.data(), taken, taken}, blocks,
                        Triangle::full, products.data());
   }
@@ -43,7 +43,7 @@ double normalised(double product, double energy) {
 
 /// The largest lag up to `lags` that the rows can say something of.
 Index reach_within(const Series& series, Index lags) {
-  return std::max<Index>(0, std::min({lags, series.rows() / 4, series.longest_stretch() - 1}));
+  return std::max<Index>(0, std::min({lags, series.rows() / 4, series.longest_segment() - 1}));
 }
 
 /// 1 + 2 sum term(k) over the window, at least 1.
@@ -60,8 +60,8 @@ double windowed_sum(const Series& series, Term term) {
 
 }  // namespace
 
-Series::Series(Vector values, std::vector<RowRange> stretches)
-    : centred_(std::move(values)), stretches_(std::move(stretches)) {
+Series::Series(Vector values, std::vector<RowRange> segments)
+    : centred_(std::move(values)), segments_(std::move(segments)) {
   // The mean of a constant may be rounded: it does not move all the same.
   const bool constant = centred_.size() == 0 || centred_.maxCoeff() == centred_.minCoeff();
   if (constant)
@@ -71,15 +71,15 @@ Series::Series(Vector values, std::vector<RowRange> stretches)
   energy_ = centred_.squaredNorm();
 }
 
-Index Series::longest_stretch() const {
+Index Series::longest_segment() const {
   Index longest = 0;
-  for (const RowRange& stretch : stretches_) longest = std::max(longest, stretch.size());
+  for (const RowRange& segment : segments_) longest = std::max(longest, segment.size());
   return longest;
 }
 
 Index Series::pairs(Index lag) const {
   Index count = 0;
-  for (const RowRange& stretch : stretches_) count += std::max<Index>(0, stretch.size() - lag);
+  for (const RowRange& segment : segments_) count += std::max<Index>(0, segment.size() - lag);
   return count;
 }
 
@@ -87,7 +87,7 @@ double Series::autocorrelation(Index lag) {
   constexpr Index at_once = 27;
   while (static_cast<Index>(known_.size()) <= lag) {
     const auto next = static_cast<Index>(known_.size());
-    for (const double product : lagged_products(centred_, centred_, stretches_, next, at_once))
+    for (const double product : lagged_products(centred_, centred_, segments_, next, at_once))
       known_.push_back(normalised(product, energy_));
   }
   return known_[static_cast<std::size_t>(lag)];
@@ -111,8 +111,8 @@ Correlogram cross_correlogram(Series& input, Series& residual, Index lags) {
   const double energy = u.norm() * e.norm();
   const double deviation = std::sqrt(bartlett_factor(input, residual)) / double(input.rows());
   Correlogram result{-reach, Vector(2 * reach + 1), Vector(2 * reach + 1)};
-  const Vector before = lagged_products(e, u, input.stretches(), 1, reach);
-  const Vector behind = lagged_products(u, e, input.stretches(), 0, reach + 1);
+  const Vector before = lagged_products(e, u, input.segments(), 1, reach);
+  const Vector behind = lagged_products(u, e, input.segments(), 0, reach + 1);
   for (Index lag = -reach; lag <= reach; ++lag) {
     result.r(lag + reach) = normalised(lag < 0 ? before(-lag - 1) : behind(lag), energy);
     result.bound(lag + reach) =

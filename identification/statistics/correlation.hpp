@@ -1,10 +1,10 @@
 // What is left in residuals: their correlation with their own past and with the inputs (METHOD.md,
-// section 11, "Residuals"). Products are summed within stretches of rows without a gap.
+// section 11, "Residuals"). Products are summed within segments of rows without a gap.
 //
 // With N rows, of which N(tau) pairs are tau apart, independent series have correlations r(tau) of
 // mean 0 and variance P N(tau) / N^2, where P is the sum over k of r_aa(k) r_bb(k). Sums over k end
 // where k exceeds five times the sum, after `longest_sum` lags, after a quarter of the rows or with
-// the longest stretch. The cost is linear in the rows. Nothing here throws.
+// the longest segment. The cost is linear in the rows. Nothing here throws.
 #pragma once
 
 #include <vector>
@@ -18,23 +18,23 @@ class Series {
  public:
   static constexpr Index longest_sum = 250;
 
-  /// Centres the values (N). Requires ascending stretches that cover them; rows of two stretches
+  /// Centres the values (N). Requires ascending segments that cover them; rows of two segments
   /// are never multiplied.
-  Series(Vector values, std::vector<RowRange> stretches);
+  Series(Vector values, std::vector<RowRange> segments);
 
   Index rows() const { return centred_.size(); }
-  Index longest_stretch() const;
+  Index longest_segment() const;
   /// Returns N(lag).
   Index pairs(Index lag) const;
   const Vector& centred() const { return centred_; }
-  const std::vector<RowRange>& stretches() const { return stretches_; }
+  const std::vector<RowRange>& segments() const { return segments_; }
 
   /// Returns r(lag), lag >= 0; 0 for a signal that does not move.
   double autocorrelation(Index lag);
 
  private:
   Vector centred_;
-  std::vector<RowRange> stretches_;
+  std::vector<RowRange> segments_;
   double energy_;
   std::vector<double> known_;  // at the lags 0, 1, ...
 };
@@ -46,7 +46,7 @@ struct Correlogram {
   Vector bound;
 };
 
-/// Returns the lags 1 to `lags`, but at most a quarter of the rows and within the longest stretch;
+/// Returns the lags 1 to `lags`, but at most a quarter of the rows and within the longest segment;
 /// bounds are those of a white signal.
 Correlogram autocorrelogram(Series& series, Index lags);
 

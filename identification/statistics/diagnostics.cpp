@@ -16,26 +16,26 @@ constexpr Index prediction_steps[] = {1, 2, 5, 10, 20, 50, 100};
 struct Scored {
   Matrix y;
   std::vector<Series> inputs;
-  std::vector<RowRange> stretches;
-  Index longest_stretch = 0;
+  std::vector<RowRange> segments;
+  Index longest_segment = 0;
 };
 
 Scored scored_part(const Record& record, RowRange rows) {
   Scored part;
   part.y = record.y.middleRows(rows.begin, rows.size());
   for (const Segment& segment : segments_within(record, rows)) {
-    part.stretches.push_back({segment.begin - rows.begin, segment.end - rows.begin});
-    part.longest_stretch = std::max(part.longest_stretch, segment.size());
+    part.segments.push_back({segment.begin - rows.begin, segment.end - rows.begin});
+    part.longest_segment = std::max(part.longest_segment, segment.size());
   }
   for (Index j = 0; j < record.u.cols(); ++j)
-    part.inputs.emplace_back(record.u.col(j).segment(rows.begin, rows.size()), part.stretches);
+    part.inputs.emplace_back(record.u.col(j).segment(rows.begin, rows.size()), part.segments);
   return part;
 }
 
 std::vector<Series> residuals_of(const Scored& part, const Matrix& y_hat) {
   std::vector<Series> residuals;
   for (Index q = 0; q < y_hat.cols(); ++q)
-    residuals.emplace_back(part.y.col(q) - y_hat.col(q), part.stretches);
+    residuals.emplace_back(part.y.col(q) - y_hat.col(q), part.segments);
   return residuals;
 }
 
@@ -78,7 +78,7 @@ Diagnostics diagnose(const StateSpaceModel& model, const Record& record, RowRang
   if (result.predicted) {
     const Predictor predictor(model, record, run, y_run);
     for (const Index steps : prediction_steps) {
-      if (steps > 1 && steps >= part.longest_stretch) break;
+      if (steps > 1 && steps >= part.longest_segment) break;
       const Matrix y_hat = in_part(predictor.outputs(steps));
       result.predictions.push_back({steps, score(part.y, y_hat)});
       if (steps > 1) continue;
@@ -90,7 +90,7 @@ Diagnostics diagnose(const StateSpaceModel& model, const Record& record, RowRang
     result.whiteness = whiteness_of(free_residuals);
   }
   result.free_run = score(part.y, y_free);
-  result.interval = error_interval(part.y, y_free, part.stretches);
+  result.interval = error_interval(part.y, y_free, part.segments);
   result.spread = error_spread(part.y, y_free);
   return result;
 }

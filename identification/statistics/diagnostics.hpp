@@ -1,4 +1,4 @@
-// What a model leaves unexplained on a stretch of rows, and how certain its error figure is
+// What a model leaves unexplained on a range of rows, and how certain its error figure is
 // (METHOD.md, section 11). Nothing here throws.
 //
 //   - The residuals of the one-step prediction are white where the model and its K hold all that

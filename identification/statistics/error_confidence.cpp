@@ -18,8 +18,8 @@ constexpr Index replicates = 1000;
 constexpr double lengthening = 3;
 constexpr std::uint32_t seed = 20170717;
 
-double optimal_block(const Vector& e2, const Vector& y2, const std::vector<RowRange>& stretches) {
-  Series psi(e2 / e2.mean() - y2 / y2.mean(), stretches);
+double optimal_block(const Vector& e2, const Vector& y2, const std::vector<RowRange>& segments) {
+  Series psi(e2 / e2.mean() - y2 / y2.mean(), segments);
   return optimal_block_rows(correlated_rows(psi), e2.size());
 }
 
@@ -88,7 +88,7 @@ double optimal_block_rows(double correlated_rows, Index rows) {
 }
 
 std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat,
-                                            const std::vector<RowRange>& stretches) {
+                                            const std::vector<RowRange>& segments) {
   assert(y.rows() == y_hat.rows() && y.cols() == y_hat.cols());
   const Index N = y.rows(), p = y.cols();
   if (N < least_rows) return std::nullopt;
@@ -100,7 +100,7 @@ std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat
 
   double optimal = 0;
   for (Index q = 0; q < p; ++q)
-    optimal = std::max(optimal, optimal_block(e2.col(q), y2.col(q), stretches));
+    optimal = std::max(optimal, optimal_block(e2.col(q), y2.col(q), segments));
   const Index longest = N / least_blocks;
   const Index shortest = (N + most_interval_blocks - 1) / most_interval_blocks;
   ErrorInterval result{Vector(p), Vector(p)};

@@ -29,11 +29,11 @@ struct ErrorInterval {
   bool too_few_rows = false;
 };
 
-/// Returns the intervals for the run y_hat. `stretches` cover the rows, without a gap in each.
+/// Returns the intervals for the run y_hat. `segments` cover the rows, without a gap in each.
 /// Absent for fewer than 50 rows, an output of zeros, a run without error in an output or one that
 /// is not finite. The seed is fixed: equal samples have equal intervals.
 std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat,
-                                            const std::vector<RowRange>& stretches);
+                                            const std::vector<RowRange>& segments);
 
 /// The error of equal parts of the rows, one entry an output (p): the root mean square error of a
 /// part in percent of the root mean square of the output over all rows. So a part in which the

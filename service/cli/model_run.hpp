@@ -12,14 +12,14 @@
 
 namespace reident::cli {
 
-/// --begin and --end of a stretch of telemetry.
+/// --begin and --end of a range of telemetry.
 struct RangeOptions {
   std::optional<std::string> begin, end;
 };
 
 void add_range_options(CLI::App& command, RangeOptions& options, const std::string& otherwise);
 
-/// The stretch that was asked for; a bound that is left out is that of `otherwise`.
+/// The range that was asked for; a bound that is left out is that of `otherwise`.
 std::variant<storage::TimeRange, Refusal> range_of(const RangeOptions& options,
                                                    storage::TimeRange otherwise);
 
@@ -35,7 +35,7 @@ struct ModelRun {
   std::optional<Tracked> tracked;
 };
 
-/// The model's free run over the telemetry in `range`, the state at the beginning of each stretch
+/// The model's free run over the telemetry in `range`, the state at the beginning of each segment
 /// without holes estimated from its first rows; or the reason why there is none. The scores are of
 /// the rows at `scored_from` or later.
 std::variant<ModelRun, std::string> run_model(const storage::SampleReader& archive,

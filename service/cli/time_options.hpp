@@ -1,4 +1,4 @@
-// --from and --to: the stretch of time that a command works on.
+// --from and --to: the range of time that a command works on.
 #pragma once
 
 #include <optional>

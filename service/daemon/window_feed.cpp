@@ -89,7 +89,7 @@ void WindowFeed::touch_each_slide(std::size_t equipment, const std::string& spac
         archive.first_at_or_after(spacecraft, storage::Origin::real, parameter, time);
     if (!sample || *sample > *last) return;
     scheduler_.touched(equipment, *sample, now);
-    time = (floor_divide(*sample, slide) + 1) * slide;  // the next stretch
+    time = (floor_divide(*sample, slide) + 1) * slide;  // the next slide
   }
 }
 

@@ -90,7 +90,7 @@ class WindowFeed : public ArchiveListener {
   /// stored before it was described.
   void join(const storage::ParameterDescriptor& descriptor, const storage::Archive& archive)
       REIDENT_REQUIRES(mutex_);
-  /// Touches each stretch of `slide` in `range` that holds a stored sample of the parameter. Where
+  /// Touches each range of `slide` in `range` that holds a stored sample of the parameter. Where
   /// the archive cannot be read the log says so: neither start nor ingest depends on it.
   void touch_stored(std::size_t equipment, const std::string& spacecraft, std::uint32_t parameter,
                     storage::TimeRange range, const storage::Archive& archive)

@@ -67,8 +67,8 @@ class HistoryReader {
 class SampleBatches {
  public:
   virtual ~SampleBatches() = default;
-  /// The next samples in place of those that `stretch` held; false, and none, at the end.
-  virtual bool next(storage::SampleColumns& stretch) = 0;
+  /// The next samples in place of those that `batch` held; false, and none, at the end.
+  virtual bool next(storage::SampleColumns& batch) = 0;
 };
 
 /// What was archived. One thread at a time. Throws as HistoryReader does; storage::Error (corrupt)
@@ -81,9 +81,9 @@ class TelemetryReader : public storage::SampleReader {
   virtual std::map<std::int64_t, std::string> source_names() const = 0;
   /// The samples of a series in `range`, in order of time. `chunks` bounds the memory, as for
   /// storage::SeriesBatches; columns that are not `wanted` may be empty.
-  virtual std::unique_ptr<SampleBatches> stretches(const storage::SeriesInfo& series,
-                                                   storage::TimeRange range, std::size_t chunks,
-                                                   storage::WantedColumns wanted) const = 0;
+  virtual std::unique_ptr<SampleBatches> batches(const storage::SeriesInfo& series,
+                                                 storage::TimeRange range, std::size_t chunks,
+                                                 storage::WantedColumns wanted) const = 0;
   /// What came and what is missing in each bin, as storage::completeness counts it. `until`: how
   /// far the spacecraft's telemetry reaches.
   virtual std::vector<storage::BinCounts> completeness(const storage::SeriesInfo& series,

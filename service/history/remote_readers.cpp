@@ -33,18 +33,18 @@ class Pages final : public SampleBatches {
  public:
   Pages(const RemoteRows& rows, HistoryQuery query) : rows_(rows), query_(std::move(query)) {}
 
-  bool next(storage::SampleColumns& stretch) override {
-    stretch = {};
-    while (!at_end_ && stretch.empty()) {
+  bool next(storage::SampleColumns& batch) override {
+    batch = {};
+    while (!at_end_ && batch.empty()) {
       HistoryPage page = rows_.page(query_);
       for (const std::string& text : page.rows) {
         const auto row = RemoteRows::read<storage::SampleColumns>(text);
-        stretch.append(row, 0, row.size());
+        batch.append(row, 0, row.size());
       }
       query_.cursor = std::move(page.next_cursor);
       at_end_ = query_.cursor.empty();
     }
-    return !stretch.empty();
+    return !batch.empty();
   }
 
  private:
@@ -145,11 +145,11 @@ storage::Series RemoteTelemetryReader::read(const std::string& spacecraft, stora
   storage::Series series;
   if (range.begin >= range.end) return series;
   Pages pages(rows_, samples_of(spacecraft, origin, parameter, range));
-  storage::SampleColumns stretch;
-  while (pages.next(stretch)) {
-    series.time.insert(series.time.end(), stretch.time.begin(), stretch.time.end());
-    series.value.insert(series.value.end(), stretch.value.begin(), stretch.value.end());
-    series.quality.insert(series.quality.end(), stretch.quality.begin(), stretch.quality.end());
+  storage::SampleColumns batch;
+  while (pages.next(batch)) {
+    series.time.insert(series.time.end(), batch.time.begin(), batch.time.end());
+    series.value.insert(series.value.end(), batch.value.begin(), batch.value.end());
+    series.quality.insert(series.quality.end(), batch.quality.begin(), batch.quality.end());
   }
   return series;
 }
@@ -170,7 +170,7 @@ std::map<std::int64_t, std::string> RemoteTelemetryReader::source_names() const 
   return names;
 }
 
-std::unique_ptr<SampleBatches> RemoteTelemetryReader::stretches(
+std::unique_ptr<SampleBatches> RemoteTelemetryReader::batches(
     const storage::SeriesInfo& series, storage::TimeRange range, std::size_t /*chunks*/,
     storage::WantedColumns /*wanted*/) const {
   return std::make_unique<Pages>(

@@ -113,10 +113,10 @@ class RemoteTelemetryReader final : public TelemetryReader {
                        std::uint32_t parameter, storage::TimeRange range) const override;
   std::vector<storage::SeriesInfo> series() const override;
   std::map<std::int64_t, std::string> source_names() const override;
-  /// A stretch is a page with all columns, whatever `chunks` and `wanted` say.
-  std::unique_ptr<SampleBatches> stretches(const storage::SeriesInfo& series,
-                                           storage::TimeRange range, std::size_t chunks,
-                                           storage::WantedColumns wanted) const override;
+  /// A batch is a page with all columns, whatever `chunks` and `wanted` say.
+  std::unique_ptr<SampleBatches> batches(const storage::SeriesInfo& series,
+                                         storage::TimeRange range, std::size_t chunks,
+                                         storage::WantedColumns wanted) const override;
   std::vector<storage::BinCounts> completeness(const storage::SeriesInfo& series,
                                                const storage::TimeBins& bins,
                                                storage::Time until) const override;

@@ -72,13 +72,13 @@ std::map<std::int64_t, std::string> StoredTelemetry::source_names() const {
   return storage::source_names(database_);
 }
 
-std::unique_ptr<SampleBatches> StoredTelemetry::stretches(const storage::SeriesInfo& series,
-                                                          storage::TimeRange range,
-                                                          std::size_t chunks,
-                                                          storage::WantedColumns wanted) const {
+std::unique_ptr<SampleBatches> StoredTelemetry::batches(const storage::SeriesInfo& series,
+                                                        storage::TimeRange range,
+                                                        std::size_t chunks,
+                                                        storage::WantedColumns wanted) const {
   struct OfFile final : SampleBatches {
-    explicit OfFile(storage::SeriesBatches&& stretches) : reader(std::move(stretches)) {}
-    bool next(storage::SampleColumns& stretch) override { return reader.next(stretch); }
+    explicit OfFile(storage::SeriesBatches&& batches) : reader(std::move(batches)) {}
+    bool next(storage::SampleColumns& batch) override { return reader.next(batch); }
     storage::SeriesBatches reader;
   };
   return std::make_unique<OfFile>(

@@ -116,9 +116,9 @@ HistoryPage samples_page(storage::Database& database, const HistoryQuery& query)
     range.begin = last + 1;
   }
   if (!series || range.begin >= range.end) return maker.page();
-  storage::SeriesBatches stretches(database, series->id, range, 1, {});
+  storage::SeriesBatches batches(database, series->id, range, 1, {});
   storage::SampleColumns samples;
-  while (stretches.next(samples))
+  while (batches.next(samples))
     for (std::size_t first = 0; first < samples.size(); first += samples_of_row) {
       const std::size_t last = std::min(first + samples_of_row, samples.size());
       if (!maker.add(row_of(samples, first, last), Json::array({samples.time[last - 1]})))

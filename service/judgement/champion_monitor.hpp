@@ -1,8 +1,8 @@
 // Scores the champion of an equipment on new telemetry, block by block, and finds when its errors
 // have grown for good.
 //
-// A block is a sixteenth of the stretch that the champion was validated on, and as many rows as its
-// initial state needs at least; that stretch's blocks are the reference
+// A block is a sixteenth of the range that the champion was validated on, and as many rows as its
+// initial state needs at least; that range's blocks are the reference
 // (identification/statistics/change_detection.hpp). The free run goes on from block to block, as a
 // simulator's does; after a gap its state is the one that agrees with the first telemetry behind.
 // Excluded telemetry (telemetry_checks.hpp), checked together with the blocks before and those that

@@ -22,16 +22,16 @@ storage::Time before(storage::Time time, Duration by) {
   return time < earliest + by ? earliest : time - by;
 }
 
-void add(std::vector<ProtectedRange>& stretches, const std::string& spacecraft,
+void add(std::vector<ProtectedRange>& ranges, const std::string& spacecraft,
          const Descriptors& descriptors, const std::vector<std::string>& names, TimeRange range) {
   for (const std::string& name : names) {
     bool is_known = false;
     for (const storage::ParameterDescriptor& descriptor : descriptors) {
       if (descriptor.name != name) continue;
-      stretches.push_back({spacecraft, descriptor.id, range});
+      ranges.push_back({spacecraft, descriptor.id, range});
       is_known = true;
     }
-    if (!is_known) stretches.push_back({spacecraft, std::nullopt, range});
+    if (!is_known) ranges.push_back({spacecraft, std::nullopt, range});
   }
 }
 
@@ -43,7 +43,7 @@ std::vector<std::string> parameters_of(const EquipmentModel& model) {
 }
 
 /// What the version was made from, and all of `range`.
-void add(std::vector<ProtectedRange>& stretches, const Descriptors& descriptors,
+void add(std::vector<ProtectedRange>& ranges, const Descriptors& descriptors,
          const storage::Version& version, TimeRange range) {
   try {
     const EquipmentModel model = equipment_model_from_json(version.model_json);
@@ -55,9 +55,9 @@ void add(std::vector<ProtectedRange>& stretches, const Descriptors& descriptors,
     std::vector<std::string> names = parameters_of(model);
     for (const Relation& relation : relations_of(version))
       for (std::string& name : parameters_of(relation)) names.push_back(std::move(name));
-    add(stretches, version.spacecraft, descriptors, names, range);
+    add(ranges, version.spacecraft, descriptors, names, range);
   } catch (const std::invalid_argument&) {
-    stretches.push_back({version.spacecraft, std::nullopt, range});
+    ranges.push_back({version.spacecraft, std::nullopt, range});
   }
 }
 
@@ -65,7 +65,7 @@ void add(std::vector<ProtectedRange>& stretches, const Descriptors& descriptors,
 
 std::vector<ProtectedRange> telemetry_of_versions(const storage::Archive& archive,
                                                   const storage::Registry& registry) {
-  std::vector<ProtectedRange> stretches;
+  std::vector<ProtectedRange> ranges;
   for (const storage::EquipmentName& equipment : registry.equipment()) {
     std::set<std::int64_t> published;
     for (const storage::Decision& decision :
@@ -76,31 +76,31 @@ std::vector<ProtectedRange> telemetry_of_versions(const storage::Archive& archiv
     const Descriptors descriptors = archive.parameters(equipment.spacecraft);
     for (const std::int64_t number : published)
       if (const auto version = registry.version(equipment.spacecraft, equipment.equipment, number))
-        add(stretches, descriptors, *version, version->window);
+        add(ranges, descriptors, *version, version->window);
   }
-  return stretches;
+  return ranges;
 }
 
 std::vector<ProtectedRange> telemetry_still_needed(const storage::Archive& archive,
                                                    const storage::Registry& registry,
                                                    const Config& config, storage::Time now) {
-  std::vector<ProtectedRange> stretches;
+  std::vector<ProtectedRange> ranges;
   for (const SpacecraftConfig& spacecraft : config.spacecraft) {
     const auto extent = archive.extent(spacecraft.name, storage::Origin::real);
     if (!extent) continue;
     const storage::Time newest = std::min(extent->end, now);
     const Descriptors descriptors = archive.parameters(spacecraft.name);
     for (const EquipmentConfig& equipment : spacecraft.equipment) {
-      add(stretches, spacecraft.name, descriptors, parameters_of(equipment),
+      add(ranges, spacecraft.name, descriptors, parameters_of(equipment),
           {before(newest, equipment.window + equipment.slide + equipment.sample_hold),
            std::numeric_limits<storage::Time>::max()});
       for (const storage::Version& version : on_probation(registry, spacecraft.name, equipment))
-        add(stretches, descriptors, version,
+        add(ranges, descriptors, version,
             {before(version.window.begin, longest_run_up(equipment)),
              version.window.end + 2 * equipment.confirmation});
     }
   }
-  return stretches;
+  return ranges;
 }
 
 }  // namespace reident

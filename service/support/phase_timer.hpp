@@ -33,7 +33,7 @@ class PhaseTimer {
     running_ = none;
   }
 
-  /// Name and time [ms] of each phase; that of the running one is without its current stretch.
+  /// Name and time [ms] of each phase; that of the running one is without its current interval.
   const std::vector<std::pair<std::string, double>>& phases() const { return phases_; }
 
  private:

@@ -114,7 +114,7 @@ class Export {
 
   bool write_long();
 
-  void write_samples(const SeriesInfo& series, const SampleColumns& stretch);
+  void write_samples(const SeriesInfo& series, const SampleColumns& batch);
 
   const std::string& name_of_source(std::int64_t id) {
     // Not known: its first sample came after the last look.
@@ -125,18 +125,18 @@ class Export {
   /// A series on its way into the columns of a wide file.
   struct Column {
     std::unique_ptr<history::SampleBatches> reader;
-    SampleColumns stretch;
+    SampleColumns batch;
     std::size_t at = 0;
     bool at_end = false;
 
     void refill() {
       at = 0;
-      at_end = !reader->next(stretch);
+      at_end = !reader->next(batch);
     }
     void advance() {
-      if (++at == stretch.size()) refill();
+      if (++at == batch.size()) refill();
     }
-    Time time() const { return stretch.time[at]; }
+    Time time() const { return batch.time[at]; }
   };
 
   bool write_wide();
@@ -167,40 +167,40 @@ bool Export::write_long() {
   for (const std::string_view column : long_columns)
     line.append(line.empty() ? "" : ",").append(column);
   text_.end_line();
-  SampleColumns stretch;
+  SampleColumns batch;
   for (const SeriesInfo& series : series_) {
-    const auto reader = telemetry_.stretches(series, options_.range, chunks_at_once, {});
-    while (reader->next(stretch)) {
-      write_samples(series, stretch);
+    const auto reader = telemetry_.batches(series, options_.range, chunks_at_once, {});
+    while (reader->next(batch)) {
+      write_samples(series, batch);
       if (!go_on()) return false;
     }
   }
   return true;
 }
 
-void Export::write_samples(const SeriesInfo& series, const SampleColumns& stretch) {
+void Export::write_samples(const SeriesInfo& series, const SampleColumns& batch) {
   std::string before;
   append_text(before, series.spacecraft);
   append_text(before += ',', series.name);
   before.append(",").append(storage::name(series.origin)).append(",");
   std::int64_t source = 0;
   std::string source_text;
-  for (std::size_t i = 0; i < stretch.size(); ++i) {
-    if (i == 0 || stretch.source[i] != source) {
-      source = stretch.source[i];
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    if (i == 0 || batch.source[i] != source) {
+      source = batch.source[i];
       append_text(source_text = before, name_of_source(source));
       source_text += ',';
     }
     std::string& line = text_.line();
     line += source_text;
-    append_time(line, stretch.time[i]);
+    append_time(line, batch.time[i]);
     line += ',';
-    append_value(line, stretch.value[i]);
-    line.append(",").append(storage::name(stretch.quality[i]));
+    append_value(line, batch.value[i]);
+    line.append(",").append(storage::name(batch.quality[i]));
     text_.end_line();
   }
-  report_.samples += stretch.size();
-  report_.rows += stretch.size();
+  report_.samples += batch.size();
+  report_.rows += batch.size();
 }
 
 bool Export::write_wide() {
@@ -212,7 +212,7 @@ bool Export::write_wide() {
   const std::size_t chunks = std::max<std::size_t>(1, chunks_at_once / series_.size());
   for (const SeriesInfo& series : series_)
     columns.push_back(
-        {telemetry_.stretches(series, options_.range, chunks, {.quality = false, .source = false}),
+        {telemetry_.batches(series, options_.range, chunks, {.quality = false, .source = false}),
          {},
          0,
          false});
@@ -237,7 +237,7 @@ void Export::write_row(std::vector<Column>& columns, Time time) {
   for (Column& column : columns) {
     text_.line() += ',';
     if (column.at_end || column.time() != time) continue;
-    append_value(text_.line(), column.stretch.value[column.at]);
+    append_value(text_.line(), column.batch.value[column.at]);
     column.advance();
     ++report_.samples;
   }

@@ -1,4 +1,4 @@
-// A reader that reads each stretch of each parameter once, and from then on gives what it read.
+// A reader that reads each range of each parameter once, and from then on gives what it read.
 //
 // For one reading of a window: several relations bind the parameters that an equipment has too.
 // What is stored meanwhile does not change what it gives.

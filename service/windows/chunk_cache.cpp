@@ -41,15 +41,15 @@ Record ChunkCache::over(TickRange ticks, const Read& read) {
     tick = next;
   }
   std::map<std::int64_t, Record> fresh;  // by first tick: what was read now
-  for (const TickRange& stretch : missing) fresh[stretch.begin] = read_and_keep(stretch, read);
+  for (const TickRange& range : missing) fresh[range.begin] = read_and_keep(range, read);
 
   std::optional<Record> first;  // of a chunk that begins before
   std::vector<const Record*> parts;
-  auto stretch = missing.begin();
+  auto range = missing.begin();
   for (std::int64_t tick = ticks.begin; tick < ticks.end;) {
-    if (stretch != missing.end() && stretch->begin == tick) {
+    if (range != missing.end() && range->begin == tick) {
       parts.push_back(&fresh.at(tick));
-      tick = stretch++->end;
+      tick = range++->end;
       continue;
     }
     const Record& chunk = chunks_.at(floor_divide(tick, chunk_ticks));

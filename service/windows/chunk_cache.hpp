@@ -19,7 +19,7 @@ class ChunkCache {
   /// Returns the rows at these ticks, from the archive. What it throws is thrown by over().
   using Read = std::function<identification::Record(identification::TickRange)>;
 
-  /// Returns the rows at `ticks`; what lies before is forgotten. Reads each stretch that is not
+  /// Returns the rows at `ticks`; what lies before is forgotten. Reads each range that is not
   /// kept once. The bits are those of one read of all: a row must depend on its tick alone.
   identification::Record over(identification::TickRange ticks, const Read& read);
 

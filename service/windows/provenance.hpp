@@ -15,7 +15,7 @@ namespace reident {
 /// Requires a candidate.
 storage::NewVersion version_of(const RefreshRequest& request, const PreparedWindow& prepared);
 
-/// SHA-256, hexadecimal, of the samples on the grid, all parts of the window: for each stretch its
+/// SHA-256, hexadecimal, of the samples on the grid, all parts of the window: for each segment its
 /// first tick, its number of rows and the inputs and outputs row by row, as little-endian 64-bit
 /// integers and doubles, after the names of inputs and outputs, each ended by a line feed.
 std::string digest_of_samples(const identification::Record& record, const WindowRequest& request);

@@ -25,7 +25,7 @@ struct Checks {
 /// Returns the checks that the configuration asks for.
 Checks checks_of(const EquipmentConfig& equipment);
 
-/// The checks of one equipment over stretches of time; what it keeps of a window serves the next.
+/// The checks of one equipment over ranges of time; what it keeps of a window serves the next.
 /// One thread at a time.
 class PlausibilityChecks {
  public:
@@ -61,11 +61,11 @@ class PlausibilityChecks {
 /// Requires at least one tick.
 double fault_share(const Plausibility& plausibility, identification::TickRange ticks);
 
-/// Returns what an attempt's evidence says (`implausible`). Of more than 20 stretches the longest
+/// Returns what an attempt's evidence says (`implausible`). Of more than 20 ranges the longest
 /// are listed. `period`: of a tick [ns].
 nlohmann::ordered_json to_json(const Plausibility& plausibility, Duration period);
 
-/// Returns what an operator has to know, as a sentence: the longest stretch that was excluded, by
+/// Returns what an operator has to know, as a sentence: the longest range that was excluded, by
 /// which check and since when. Requires that any was found.
 std::string worst_of(const Plausibility& plausibility, Duration period);
 

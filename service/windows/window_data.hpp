@@ -44,7 +44,7 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
-/// A stretch that is excluded.
+/// A range of time that is excluded.
 struct Implausible {
   std::string check;                    // "relation", "shift", "stuck", "spike" or "noise"
   Relation relation;                    // of the first two

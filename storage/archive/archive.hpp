@@ -32,7 +32,7 @@ struct AppendReport {
   std::uint64_t late = 0;        // stored behind a newer sample of its series
   std::uint64_t non_finite = 0;  // NaN or infinite, repeated ones too; stored as invalid
 
-  /// The stretch of time in which samples of one series landed or changed.
+  /// The range of time in which samples of one series landed or changed.
   struct Touched {
     std::string spacecraft;
     Origin origin = Origin::real;
@@ -54,8 +54,8 @@ struct ArchiveOptions {
   std::size_t step_samples = 65536;        // that a transaction moves at least: a few milliseconds
 };
 
-/// A stretch of sealed time (see Archive::seal) in which samples of one series landed or changed.
-/// Stretches of a series that are no more than 10 minutes apart are one.
+/// A range of sealed time (see Archive::seal) in which samples of one series landed or changed.
+/// Ranges of a series that are no more than 10 minutes apart are one.
 struct LateRange {
   std::int64_t id = 0;  // never used again
   std::string spacecraft;

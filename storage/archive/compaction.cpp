@@ -25,7 +25,7 @@ void Compaction::step(std::size_t samples) {
     if (work >= samples) return;
     SeriesHead& series = recent_.series(round_->series.back());
     if (round_->samples.empty()) gather(series);
-    while (round_->done < round_->samples.size() && work < samples) work += move_stretch(series.id);
+    while (round_->done < round_->samples.size() && work < samples) work += move_range(series.id);
     if (round_->done < round_->samples.size()) return;
     recent_.moved(series, round_->batch);
     round_->series.pop_back();
@@ -42,7 +42,7 @@ void Compaction::gather(const SeriesHead& series) {
   overlay(round_->samples, fragments);
 }
 
-std::size_t Compaction::move_stretch(std::int64_t series) {
+std::size_t Compaction::move_range(std::int64_t series) {
   const std::vector<Time>& time = round_->samples.time;
   const std::size_t first = round_->done;
   const std::optional<ChunkRow> base = chunks_.at_or_before(series, time[first]);
@@ -50,7 +50,7 @@ std::size_t Compaction::move_stretch(std::int64_t series) {
   const auto limit = next ? std::lower_bound(time.begin() + static_cast<std::ptrdiff_t>(first),
                                              time.end(), next->first)
                           : time.end();
-  // No more than a chunk can take in, so that a stretch is a bounded piece of work.
+  // No more than a chunk can take in, so that a range is a bounded piece of work.
   const std::size_t last =
       std::min(static_cast<std::size_t>(limit - time.begin()), first + 4 * chunk_samples_);
   round_->done = last;

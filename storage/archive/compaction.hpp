@@ -1,6 +1,6 @@
 // Moves recent samples into chunks, a bounded step at a time. Private to storage.
 //
-// A round moves what was recent when it began. A step rewrites some stretches of some series and
+// A round moves what was recent when it began. A step rewrites some ranges of some series and
 // may end anywhere: fragments lie over chunks, so samples that are in both are there once. Only
 // when all of a series is in chunks are its fragments passed over (`series.moved`), and only when
 // that holds for every series are their rows removed.
@@ -38,8 +38,8 @@ class Compaction {
   };
 
   void gather(const SeriesHead& series);
-  /// Moves samples of one stretch between two chunks; returns how many samples it wrote.
-  std::size_t move_stretch(std::int64_t series);
+  /// Moves samples of one range between two chunks; returns how many samples it wrote.
+  std::size_t move_range(std::int64_t series);
   std::vector<std::size_t> piece_ends(std::size_t samples, bool at_the_end) const;
 
   RecentTier& recent_;

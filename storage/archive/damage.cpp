@@ -4,7 +4,7 @@
 
 namespace reident::storage {
 
-Error damage(sqlite::Connection& connection, const Stretch& where, const ChunkError& error) {
+Error damage(sqlite::Connection& connection, const SampleRange& where, const ChunkError& error) {
   sqlite::Query name = connection.query(
       "SELECT coalesce(name, CAST(series.parameter AS TEXT)) || ' of ' || series.spacecraft "
       "FROM series LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft "
@@ -22,7 +22,7 @@ Error damage(sqlite::Connection& connection, const Stretch& where, const ChunkEr
                                     "'reident import' brings them back"};
 }
 
-void set_aside(sqlite::Connection& connection, const Stretch& where,
+void set_aside(sqlite::Connection& connection, const SampleRange& where,
                std::span<const std::uint8_t> bytes, const ChunkError& error) {
   if (error.kind == ChunkError::Kind::newer) throw damage(connection, where, error);
   connection

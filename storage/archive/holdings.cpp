@@ -65,9 +65,9 @@ SeriesBatches::SeriesBatches(const Database& database, std::int64_t series, Time
                              std::size_t chunks, WantedColumns wanted)
     : database_(&database), series_(series), range_(range), chunks_(chunks), wanted_(wanted) {}
 
-bool SeriesBatches::next(SampleColumns& stretch) {
-  stretch = {};
-  while (!at_end_ && stretch.empty()) {
+bool SeriesBatches::next(SampleColumns& batch) {
+  batch = {};
+  while (!at_end_ && batch.empty()) {
     Time end = range_.end;
     {
       sqlite::Query row = database_->impl().connection->query(
@@ -76,11 +76,11 @@ bool SeriesBatches::next(SampleColumns& stretch) {
           series_, range_.begin, chunks_ - 1);
       if (row.step()) end = std::min(end, row.integer(0));
     }
-    stretch = archive_access(*database_).reader().read(series_, {range_.begin, end}, wanted_);
+    batch = archive_access(*database_).reader().read(series_, {range_.begin, end}, wanted_);
     at_end_ = end == range_.end;
     range_.begin = end;
   }
-  return !stretch.empty();
+  return !batch.empty();
 }
 
 }  // namespace reident::storage

@@ -1,4 +1,4 @@
-// What is archived, series by series, and its samples in stretches: for those who read a whole
+// What is archived, series by series, and its samples in batches: for those who read a whole
 // archive, such as an export. All of it works on a database that is opened for reading, and throws
 // Error where the file cannot be read.
 #pragma once
@@ -31,21 +31,21 @@ void each_sequence_gap(const Database& database, const std::optional<GapKey>& be
 /// Names of all sources by the ids that samples have (SampleColumns::source).
 std::map<std::int64_t, std::string> source_names(const Database& database);
 
-/// Reads one series forward, a stretch at a time. Each stretch is a snapshot of its own, so that a
+/// Reads one series forward, a batch at a time. Each batch is a snapshot of its own, so that a
 /// long reading does not keep the log from being folded. What lands before the place that it has
 /// reached is not seen.
 class SeriesBatches {
  public:
   /// Reads the samples of `series`, an id, in `range`. `chunks`, at least 1, bounds the memory: a
-  /// stretch has the samples of so many chunks, and what is recent. Columns that are not `wanted`
+  /// batch has the samples of so many chunks, and what is recent. Columns that are not `wanted`
   /// stay empty. The database must outlive this object.
   SeriesBatches(const Database& database, std::int64_t series, TimeRange range, std::size_t chunks,
                 WantedColumns wanted);
 
-  /// Puts the next samples in the place of those that `stretch` held, ascending in time and at
-  /// least one. False, with an empty stretch, at the end. Throws Error (corrupt) where samples
+  /// Puts the next samples in the place of those that `batch` held, ascending in time and at
+  /// least one. False, with an empty batch, at the end. Throws Error (corrupt) where samples
   /// cannot be decoded.
-  bool next(SampleColumns& stretch);
+  bool next(SampleColumns& batch);
 
  private:
   const Database* database_;

@@ -30,12 +30,12 @@ TimeRange from_to(Time first, Time last) {
   return {first, last == latest ? latest : last + 1};
 }
 
-Stretch stretch_of(std::int64_t series, const sqlite::Query& row) {
+SampleRange range_of(std::int64_t series, const sqlite::Query& row) {
   return {series, row.integer(0), row.integer(1), row.integer<std::size_t>(2)};
 }
 
 // In [first, last], at the rate of this chunk: so that vectors are made once, not grown by copying.
-std::size_t samples_expected(const Stretch& chunk, Time first, Time last) {
+std::size_t samples_expected(const SampleRange& chunk, Time first, Time last) {
   constexpr double most = 1 << 22;
   const double rate = static_cast<double>(chunk.samples) /
                       (static_cast<double>(chunk.last) - static_cast<double>(chunk.first) + 1);
@@ -87,7 +87,7 @@ SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedCol
   {
     sqlite::Query row = connection_.query(chunks_in_range, series, range.begin, last);
     while (row.step()) {
-      const Stretch chunk = stretch_of(series, row);
+      const SampleRange chunk = range_of(series, row);
       if (samples.empty()) samples.reserve(samples_expected(chunk, range.begin, last), wanted);
       if (const auto error = decoder_.decode(row.bytes(3), range, samples.target(wanted)))
         throw damage(connection_, chunk, *error);
@@ -97,7 +97,7 @@ SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedCol
   each_recent(series, range.begin, last, [&](const sqlite::Query& row) {
     recent.emplace_back();
     if (const auto error = decode_fragment(row.bytes(3), range, recent.back().target(wanted)))
-      throw damage(connection_, stretch_of(series, row), *error);
+      throw damage(connection_, range_of(series, row), *error);
   });
   std::vector<const SampleColumns*> newer;
   for (const SampleColumns& fragment : recent) newer.push_back(&fragment);

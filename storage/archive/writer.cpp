@@ -50,7 +50,7 @@ bool Writer::compact_all_step() {
 
 std::vector<std::string> Writer::take_damages() {
   std::vector<std::string> damages;
-  std::vector<std::pair<Stretch, std::string>> found;
+  std::vector<std::pair<SampleRange, std::string>> found;
   {
     sqlite::Query row = connection_.query(
         "SELECT id, series, first_time, last_time, samples, reason FROM damaged_chunk "

@@ -60,10 +60,10 @@ ChunkWalk::ChunkWalk(sqlite::Connection& connection, const RetentionRule& rule,
 
 void ChunkWalk::protect(const std::vector<ProtectedRange>& protection) {
   for (Place& place : places_)
-    for (const ProtectedRange& stretch : protection)
-      if (stretch.spacecraft == place.spacecraft &&
-          (!stretch.parameter || *stretch.parameter == place.parameter))
-        add(place.kept, stretch.range);
+    for (const ProtectedRange& one : protection)
+      if (one.spacecraft == place.spacecraft &&
+          (!one.parameter || *one.parameter == place.parameter))
+        add(place.kept, one.range);
 }
 
 bool ChunkWalk::is_kept(const Place& place, const ChunkRow& row) const {

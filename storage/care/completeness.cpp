@@ -17,7 +17,7 @@ double distance(Time from, Time to) {
   return static_cast<double>(to) - static_cast<double>(from);
 }
 
-/// A stretch of a series between whose ends there are no samples but its own.
+/// A range of a series between whose ends there are no samples but its own.
 struct Piece {
   Time first = 0;
   Time last = 0;

@@ -1,4 +1,4 @@
-// How many samples came, and how many are missing, in each stretch of time.
+// How many samples came, and how many are missing, in each range of time.
 //
 // Missing samples are those that would stand in the gaps of a series (sample_gaps.hpp), one for
 // each step of the chunks at the gap: the larger step of the two. A gap counts in the bin in

@@ -58,8 +58,8 @@ void find_ends(SeriesHead& series, ChunkStore& chunks) {
     include(fragment.samples.time.front(), fragment.samples.time.back());
 }
 
-/// One row for each stretch in which nothing was left; what was removed before and is next to it is
-/// of that stretch.
+/// One row for each range in which nothing was left; what was removed before and is next to it is
+/// of that range.
 void add_removal(sqlite::Connection& connection, ChunkStore& chunks, const ChunkWalk::Step& removed,
                  Time now) {
   const char* name = removed.cause == Cause::age ? "age" : "size";

@@ -1,7 +1,7 @@
 // How long telemetry is kept, and in how much room.
 //
 // What is removed are whole chunks, the oldest first, of every series. Chunks that hold time of a
-// protected stretch stay, and so do samples that are not in chunks yet. What was removed is
+// protected range stay, and so do samples that are not in chunks yet. What was removed is
 // recorded in the table `removal`. Pages that become free are used again; the file does not shrink.
 // What has to be protected is the caller's to say: storage cannot read models.
 #pragma once
@@ -71,7 +71,7 @@ class Retention {
   /// Removes at most `chunks_of_step` chunks in one transaction. False when nothing is left to
   /// remove. Throws Error where the file or the disk refuses; then nothing of the step is removed.
   bool step();
-  /// Protects these stretches too, from now on.
+  /// Protects these ranges too, from now on.
   void protect(const std::vector<ProtectedRange>& protection);
   /// What the steps so far removed.
   const RetentionReport& report() const { return report_; }

@@ -57,7 +57,7 @@ void OrderedRows::start_group() {
                  [this](const Head& a, const Head& b) { return is_behind(a, b); });
 }
 
-std::size_t OrderedRows::end_of_run(const Head& head) const {
+std::size_t OrderedRows::end_of_range(const Head& head) const {
   const std::vector<Time>& time = head.blocks->block().time;
   if (heap_.empty()) return time.size();
   const Head& other = heap_.front();
@@ -69,7 +69,7 @@ std::size_t OrderedRows::end_of_run(const Head& head) const {
   return end;
 }
 
-std::optional<OrderedRows::Stretch> OrderedRows::next() {
+std::optional<OrderedRows::Range> OrderedRows::next() {
   const auto behind = [this](const Head& a, const Head& b) { return is_behind(a, b); };
   if (current_) {
     if (current_->row == current_->blocks->block().time.size()) {
@@ -89,10 +89,10 @@ std::optional<OrderedRows::Stretch> OrderedRows::next() {
   std::pop_heap(heap_.begin(), heap_.end(), behind);
   current_ = std::move(heap_.back());
   heap_.pop_back();
-  const Stretch stretch{&current_->blocks->series(), &current_->blocks->block(), current_->row,
-                        end_of_run(*current_)};
-  current_->row = stretch.end;
-  return stretch;
+  const Range range{&current_->blocks->series(), &current_->blocks->block(), current_->row,
+                    end_of_range(*current_)};
+  current_->row = range.end;
+  return range;
 }
 
 }  // namespace reident::storage::sql

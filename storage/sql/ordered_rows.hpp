@@ -23,13 +23,13 @@ class OrderedRows {
   OrderedRows& operator=(const OrderedRows&) = delete;
 
   /// Rows [begin, end) of `columns`, not empty, that come next. Valid until the next call.
-  struct Stretch {
+  struct Range {
     const SeriesName* series = nullptr;
     const SampleColumns* columns = nullptr;
     std::size_t begin = 0;
     std::size_t end = 0;
   };
-  std::optional<Stretch> next();
+  std::optional<Range> next();
 
  private:
   struct Head {
@@ -40,7 +40,7 @@ class OrderedRows {
   };
   bool is_behind(const Head& a, const Head& b) const;
   void start_group();
-  std::size_t end_of_run(const Head& head) const;
+  std::size_t end_of_range(const Head& head) const;
 
   ArchiveFile& file_;
   Plan plan_;

@@ -123,11 +123,11 @@ void SeriesBlocks::end_before(const ChunkEntry& chunk, TimeBounds& piece) const 
   }
 }
 
-void SeriesBlocks::end_with(TimeBounds stretch, TimeBounds& piece) const {
+void SeriesBlocks::end_with(TimeBounds range, TimeBounds& piece) const {
   if (options_.descending) {
-    piece.first = std::max(piece.first, stretch.first);
+    piece.first = std::max(piece.first, range.first);
   } else {
-    piece.last = std::min(piece.last, stretch.last);
+    piece.last = std::min(piece.last, range.last);
   }
 }
 

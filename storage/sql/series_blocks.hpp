@@ -39,7 +39,7 @@ class SeriesBlocks {
   std::optional<ChunkEntry> next_chunk();
   bool comes_before(TimeBounds fragment, const ChunkEntry& chunk) const;
   void end_before(const ChunkEntry& chunk, TimeBounds& piece) const;
-  void end_with(TimeBounds stretch, TimeBounds& piece) const;
+  void end_with(TimeBounds range, TimeBounds& piece) const;
   void load_chunk(const ChunkEntry& chunk, TimeBounds& piece);
   void filter();
 

@@ -1,7 +1,7 @@
 // Many samples in one row: their number, mean, extremes, ends.
 //
 // SQLite asks a virtual table for each row and column by itself, which costs more than decoding the
-// sample. Here whole columns are taken at once, and a chunk that lies in one stretch is not even
+// sample. Here whole columns are taken at once, and a chunk that lies in one range is not even
 // decoded where its row in the table chunk says enough.
 #pragma once
 
@@ -16,10 +16,9 @@
 
 namespace reident::storage::sql {
 
-/// Samples of one stretch of time of a series. Values that are NaN count as samples alone.
+/// Samples of one range of time of a series. Values that are NaN count as samples alone.
 struct Summary {
-  std::optional<Time>
-      bucket{};  // begin of the stretch, a multiple of the step; none without a step
+  std::optional<Time> bucket{};  // begin of the range, a multiple of the step; none without a step
   Time first_time = 0;
   Time last_time = 0;
   std::uint64_t samples = 0;
@@ -33,12 +32,12 @@ struct Summary {
 
 struct SummaryRequest {
   Selection selection;
-  std::optional<std::int64_t> step;  // [ns], > 0; one stretch in all without one
+  std::optional<std::int64_t> step;  // [ns], > 0; one range in all without one
   bool extremes = false;             // least and greatest are asked for
   bool values = false;               // sum, numbers, first and last value are
 };
 
-/// Summaries of the stretches that have samples, series by series, each in order of time.
+/// Summaries of the ranges that have samples, series by series, each in order of time.
 class Summaries {
  public:
   /// `file` must outlive it.

@@ -18,7 +18,7 @@ struct Cursor : sqlite3_vtab_cursor {
 
   std::size_t row = 0;
   std::size_t end = 0;         // row == end only behind the last one
-  const Time* time = nullptr;  // of the stretch's columns
+  const Time* time = nullptr;  // of the range's columns
   const double* value = nullptr;
   const Quality* quality = nullptr;
   const std::int64_t* source = nullptr;
@@ -31,17 +31,17 @@ struct Cursor : sqlite3_vtab_cursor {
   std::optional<ArchiveFile> file;
   std::optional<OrderedRows> rows;
 
-  void next_stretch() {
+  void next_range() {
     row = end = 0;
-    const auto stretch = rows->next();
-    if (!stretch) return;
-    row = stretch->begin;
-    end = stretch->end;
-    time = stretch->columns->time.data();
-    value = stretch->columns->value.data();
-    quality = stretch->columns->quality.data();
-    source = stretch->columns->source.data();
-    series = stretch->series;
+    const auto range = rows->next();
+    if (!range) return;
+    row = range->begin;
+    end = range->end;
+    time = range->columns->time.data();
+    value = range->columns->value.data();
+    quality = range->columns->quality.data();
+    source = range->columns->source.data();
+    series = range->series;
   }
 };
 
@@ -69,14 +69,14 @@ int filter(sqlite3_vtab_cursor* base, int columns, const char* text, int operand
     if (!cursor.file) cursor.file.emplace(cursor.table.connection, cursor.table.names);
     cursor.rows.emplace(*cursor.file,
                         understand(columns, text, {values, static_cast<std::size_t>(operands)}));
-    cursor.next_stretch();
+    cursor.next_range();
   });
 }
 
 int next(sqlite3_vtab_cursor* base) {
   Cursor& cursor = cursor_of(base);
   if (++cursor.row != cursor.end) return SQLITE_OK;
-  return guarded(&base->pVtab->zErrMsg, [&] { cursor.next_stretch(); });
+  return guarded(&base->pVtab->zErrMsg, [&] { cursor.next_range(); });
 }
 
 int at_end(sqlite3_vtab_cursor* base) {

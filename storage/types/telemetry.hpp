@@ -15,7 +15,7 @@ namespace reident::storage {
 using Time = std::int64_t;
 inline constexpr Time second_ns = 1'000'000'000;
 
-/// Half-open stretch of time [begin, end). An end at the greatest Time includes it, so that every
+/// Half-open range of time [begin, end). An end at the greatest Time includes it, so that every
 /// time lies in some range.
 struct TimeRange {
   Time begin = 0;

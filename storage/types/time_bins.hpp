@@ -1,4 +1,4 @@
-// A stretch of time cut into bins, and the counts of samples in each: for tables by the day or by
+// A range of time cut into bins, and the counts of samples in each: for tables by the day or by
 // the hour, whose lines begin at whole days and hours of UTC.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace reident::storage {
 
-/// Neighbouring stretches of time, each but the outer ones `length` long and beginning at a
+/// Neighbouring ranges of time, each but the outer ones `length` long and beginning at a
 /// multiple of it since 1970. The outer ones end where the range does, so that every time of the
 /// range is in one bin.
 class TimeBins {
@@ -21,7 +21,7 @@ class TimeBins {
   std::size_t count() const { return count_; }
   TimeRange range() const { return range_; }
   Time length() const { return length_; }
-  /// The half-open stretch of a bin; bin < count().
+  /// The half-open range of a bin; bin < count().
   TimeRange at(std::size_t bin) const;
   /// The bin that holds `time`, which is in the range.
   std::size_t of(Time time) const;

@@ -54,7 +54,7 @@ struct ChangeScore {
   std::string kind;
   storage::Time begin = 0;
   bool mattered = false;    // the champion of then became worse than the factor allows
-  std::int64_t orbits = 0;  // of honest telemetry, the longest stretch with a champion that was
+  std::int64_t orbits = 0;  // of honest telemetry, the longest range with a champion that was
   double worst_ratio = 0;   // of the champion's error to the oracle's
   ErrorCurve oracle;
   bool missed() const { return mattered && orbits > recovery_orbits; }

@@ -11,7 +11,7 @@
 
 namespace reident::trust {
 
-/// Sums of squared errors over stretches of equal length, so that errors of any span of them follow
+/// Sums of squared errors over ranges of equal length, so that errors of any span of them follow
 /// by addition.
 class ErrorCurve {
  public:
@@ -42,7 +42,7 @@ class ErrorCurve {
   std::vector<Sums> sums_;  // of block b and output q at b * outputs_ + q
 };
 
-/// Extremes of a stretch of a signal.
+/// Extremes of a range of a signal.
 struct Extremes {
   storage::Time time = 0;
   double low = 0;
@@ -65,7 +65,7 @@ class Truth {
   /// converter's quantum together.
   double resolution_percent(storage::TimeRange range) const;
 
-  /// Extremes of the first output over `range`, in stretches of `step`.
+  /// Extremes of the first output over `range`, in ranges of `step`.
   std::vector<Extremes> output_extremes(storage::TimeRange range, Duration step) const;
 
   const EquipmentConfig& equipment() const { return equipment_; }

@@ -51,20 +51,20 @@ polyline{stroke-linejoin:round;stroke-linecap:round}
 )";
 
 /// The values of one column of a matrix over the rows of the run.
-std::vector<Stretch> stretches_of(const PictureData& data, const Vector& values) {
+std::vector<TraceSegment> segments_of(const PictureData& data, const Vector& values) {
   const identification::Record& record = data.run.data.record;
   const double begin = static_cast<double>(data.range.begin) * 1e-9;
-  std::vector<Stretch> stretches;
+  std::vector<TraceSegment> segments;
   for (const identification::Segment& segment : record.segments) {
-    Stretch stretch;
+    TraceSegment drawn;
     for (Index row = segment.begin; row < segment.end; ++row) {
       const auto tick = static_cast<double>(segment.first_tick + (row - segment.begin));
-      stretch.x.push_back(tick * record.period_s - begin);
-      stretch.y.push_back(values(row));
+      drawn.x.push_back(tick * record.period_s - begin);
+      drawn.y.push_back(values(row));
     }
-    stretches.push_back(std::move(stretch));
+    segments.push_back(std::move(drawn));
   }
-  return stretches;
+  return segments;
 }
 
 constexpr double output_height() {
@@ -129,7 +129,7 @@ void draw_line(Svg& svg, const PictureData& data, const std::string& id, const V
       max_trace_bytes / static_cast<double>(data.model.outputs.size()) / (4 * 2 * 12);
   const double column = std::max(1.0, (right - left) / room);
   svg.begin_group(id);
-  for (const auto& line : trace(stretches_of(data, values), time_scale(data), y, column))
+  for (const auto& line : trace(segments_of(data, values), time_scale(data), y, column))
     svg.polyline(line, css_class);
   svg.end_group();
 }

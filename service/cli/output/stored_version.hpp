@@ -37,7 +37,7 @@ struct StoredVersion {
   bool digest_matches = false;
 };
 
-/// The stretch whose samples chose, as the version's provenance says it; absent in versions from
+/// The range whose samples chose, as the version's provenance says it; absent in versions from
 /// before schema 2.
 std::optional<storage::TimeRange> tuned_on(const storage::Version& version);
 

@@ -30,18 +30,18 @@ struct Column {
 
 }  // namespace
 
-std::vector<std::vector<Point>> trace(const std::vector<Stretch>& stretches, const Scale& x_scale,
-                                      const Scale& y_scale, double column) {
+std::vector<std::vector<Point>> trace(const std::vector<TraceSegment>& segments,
+                                      const Scale& x_scale, const Scale& y_scale, double column) {
   std::vector<std::vector<Point>> lines;
   double last_x = -2 * column;
-  for (const Stretch& stretch : stretches) {
-    if (stretch.x.empty()) continue;
-    if (lines.empty() || x_scale(stretch.x.front()) - last_x > column) lines.emplace_back();
+  for (const TraceSegment& segment : segments) {
+    if (segment.x.empty()) continue;
+    if (lines.empty() || x_scale(segment.x.front()) - last_x > column) lines.emplace_back();
     std::vector<Point>& line = lines.back();
     Column current{-1, {}, {}};
-    for (std::size_t i = 0; i < stretch.x.size(); ++i) {
-      const Point point{x_scale(stretch.x[i]),
-                        y_scale(std::clamp(stretch.y[i], y_scale.low, y_scale.high))};
+    for (std::size_t i = 0; i < segment.x.size(); ++i) {
+      const Point point{x_scale(segment.x[i]),
+                        y_scale(std::clamp(segment.y[i], y_scale.low, y_scale.high))};
       const double number = std::floor(point.x / column);
       if (i == 0 || number != current.number) {
         if (i > 0) current.append_to(line);
@@ -51,7 +51,7 @@ std::vector<std::vector<Point>> trace(const std::vector<Stretch>& stretches, con
       }
     }
     current.append_to(line);
-    last_x = x_scale(stretch.x.back());
+    last_x = x_scale(segment.x.back());
     if (line.size() == 1) line.push_back({line.front().x + 1, line.front().y});  // to be seen
   }
   return lines;

@@ -70,18 +70,18 @@ void warn_of_useless_outputs(IdentifyOutcome& outcome) {
 /// What happens to the state in a simulation of `rows`.
 void warn_of_states(const IdentifyData& data, RowRange rows, bool from_x0,
                     std::vector<std::string>& warnings) {
-  const std::size_t stretches = segments_within(data.record, rows).size();
+  const std::size_t segments = segments_within(data.record, rows).size();
   if (!from_x0)
     warnings.push_back(fmt::format(
         "the validation rows begin before the identification rows: their initial state is the "
         "least-squares estimate from their first {} rows",
         identification::state_rows));
-  if (stretches > 1)
+  if (segments > 1)
     warnings.push_back(fmt::format(
         "gaps split the simulated rows into {} stretches: the state goes through short gaps with "
         "interpolated inputs, and behind long ones it is the least-squares estimate from the first "
         "{} rows",
-        stretches, identification::state_rows));
+        segments, identification::state_rows));
 }
 
 /// One simulation from x0 at the first identification row to the last row of both ranges; rows

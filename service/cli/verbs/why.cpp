@@ -63,17 +63,17 @@ void window_sentences(const StoredVersion& story, const ordered_json& evidence,
                                   poles_text(story.model.dynamics)));
 }
 
-/// One of the stretches that was left out (service/windows/telemetry_checks.hpp).
-std::string implausible_text(const ordered_json& stretch) {
-  const auto parameters = stretch.value("parameters", std::vector<std::string>());
-  const std::string when = fmt::format("from {} to {}", time_text(stretch.value("begin_ns", 0LL)),
-                                       time_text(stretch.value("end_ns", 0LL)));
-  const ordered_json* relation = member(stretch, "relation");
+/// One of the ranges that was left out (service/windows/telemetry_checks.hpp).
+std::string implausible_text(const ordered_json& range) {
+  const auto parameters = range.value("parameters", std::vector<std::string>());
+  const std::string when = fmt::format("from {} to {}", time_text(range.value("begin_ns", 0LL)),
+                                       time_text(range.value("end_ns", 0LL)));
+  const ordered_json* relation = member(range, "relation");
   if (!relation)
-    return fmt::format("{} ({}) {}", fmt::join(parameters, ", "), stretch.value("check", ""), when);
+    return fmt::format("{} ({}) {}", fmt::join(parameters, ", "), range.value("check", ""), when);
   return fmt::format("{} {}, where relation {} is {} with a tolerance of {}",
                      fmt::join(parameters, ", "), when, relation->get<std::string>(),
-                     figure(stretch, "residual"), figure(stretch, "tolerance"));
+                     figure(range, "residual"), figure(range, "tolerance"));
 }
 
 void implausible_sentences(const ordered_json& evidence, Sentences& sentences) {
@@ -84,9 +84,9 @@ void implausible_sentences(const ordered_json& evidence, Sentences& sentences) {
     for (std::size_t i = 0; i < std::min(most_told, longest->size()); ++i)
       sentences.push_back(
           fmt::format("Not believed, and left out: {}.", implausible_text((*longest)[i])));
-  if (const auto stretches = implausible->value("stretches", std::size_t{0}); stretches > most_told)
+  if (const auto ranges = implausible->value("stretches", std::size_t{0}); ranges > most_told)
     sentences.push_back(
-        fmt::format("Shorter stretches that were left out too: {}.", stretches - most_told));
+        fmt::format("Shorter stretches that were left out too: {}.", ranges - most_told));
   if (const ordered_json* not_applied = member(*implausible, "not_applied"))
     for (const ordered_json& relation : *not_applied)
       sentences.push_back(

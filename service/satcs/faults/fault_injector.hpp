@@ -2,7 +2,7 @@
 // sensors.
 //
 // A FaultInjector takes true frames and hands out what the ground receives. Each fault is confined
-// to a stretch of true time: frames generated outside it stay as they are to the last bit, and what
+// to a range of true time: frames generated outside it stay as they are to the last bit, and what
 // a fault does depends on its seed and the frame alone. Faults take effect in the order in which
 // they are given, each on what the ones before it left; a frame's true time stays its own through
 // all of them.
@@ -27,7 +27,7 @@ namespace reident::satcs {
 /// faulty sensor stay within those limits, as its converter's do, but for a magnitude of `stuck`.
 enum class FaultKind : std::uint8_t {
   // Faults of one sensor. Magnitude in the parameter's unit.
-  stuck,          // reads the magnitude; by default its first reading in the stretch
+  stuck,          // reads the magnitude; by default its first reading in the range
   bias_step,      // reads the magnitude more; 2 % of the span
   drifting_bias,  // reads more and more, at the end the magnitude; 5 % of the span
   noise_burst,    // white noise with the magnitude as standard deviation; 2 % of the span
@@ -42,10 +42,10 @@ enum class FaultKind : std::uint8_t {
   // Faults of frames.
   frames_lost,  // magnitude: the share that is lost, 0.1
   // Frames in ground contact come at once, the others with the next pass, at 256 times their rate
-  // or, should that come first, at the end of the stretch. Magnitude: the share of the passes that
+  // or, should that come first, at the end of the range. Magnitude: the share of the passes that
   // is lost, with what was on board until then, 0.3.
   passes_lost,
-  // Nothing comes until the end of the stretch and then its frames, the last one first, at 8 times
+  // Nothing comes until the end of the range and then its frames, the last one first, at 8 times
   // their rate. Magnitude: how long after the end that begins [s], 600.
   backwards_playback,
   // The first station hears the first two thirds of every 600 s and a second one, source
@@ -56,7 +56,7 @@ enum class FaultKind : std::uint8_t {
   time_jump,              // generation times are off by the magnitude [s], 3600
   duplicated_day,         // everything comes again so many seconds later, stamped so: 86,400
   repeated_day,           // everything comes again so many seconds later, as it was: 86,400
-  // The hand-written simulator, begun with the stretch, sends its samples with origin real and
+  // The hand-written simulator, begun with the range, sends its samples with origin real and
   // source "simulator", each frame just before the spacecraft's own. No magnitude.
   simulated_as_real,
 };
@@ -100,7 +100,7 @@ struct FaultInjectorOptions {
   Family family = Family::power;
 };
 
-/// One thread at a time. Its memory is that of the frames on their way: those of a stretch, where a
+/// One thread at a time. Its memory is that of the frames on their way: those of a range, where a
 /// fault holds them back.
 class FaultInjector {
  public:

@@ -27,7 +27,7 @@ struct Flight {
 class FaultStage {
  public:
   virtual ~FaultStage() = default;
-  /// Takes a flight that was generated in the fault's stretch and appends what becomes of it.
+  /// Takes a flight that was generated in the fault's range and appends what becomes of it.
   virtual void pass(Flight&& flight, std::vector<Flight>& on) = 0;
 };
 

@@ -34,10 +34,10 @@ class PassesLost : public FaultStage {
 
   void pass(Flight&& flight, std::vector<Flight>& on) override {
     const Time time = flight.generated;
-    if (time < stretch_.begin || time >= stretch_.end) find_stretch(time);
-    const Time contact = in_contact_ ? stretch_.begin : stretch_.end;
+    if (time < interval_.begin || time >= interval_.end) find_interval(time);
+    const Time contact = in_contact_ ? interval_.begin : interval_.end;
     if (contact < fault_.when.end && draw(fault_, contact).uniform() < share_) return;
-    if (!in_contact_) flight.arrive_at(contact + (time - stretch_.begin) / dump_speed);
+    if (!in_contact_) flight.arrive_at(contact + (time - interval_.begin) / dump_speed);
     on.push_back(std::move(flight));
   }
 
@@ -45,20 +45,20 @@ class PassesLost : public FaultStage {
   static constexpr Time dump_speed = 256;
 
   /// Around `time`, in which the spacecraft is or is not in contact all along.
-  void find_stretch(Time time) {
+  void find_interval(Time time) {
     in_contact_ = orbit_.in_contact(time);
-    stretch_ = {time, time};
-    while (stretch_.begin - storage::second_ns >= fault_.when.begin &&
-           orbit_.in_contact(stretch_.begin - storage::second_ns) == in_contact_)
-      stretch_.begin -= storage::second_ns;
-    while (stretch_.end < fault_.when.end && orbit_.in_contact(stretch_.end) == in_contact_)
-      stretch_.end = std::min(stretch_.end + storage::second_ns, fault_.when.end);
+    interval_ = {time, time};
+    while (interval_.begin - storage::second_ns >= fault_.when.begin &&
+           orbit_.in_contact(interval_.begin - storage::second_ns) == in_contact_)
+      interval_.begin -= storage::second_ns;
+    while (interval_.end < fault_.when.end && orbit_.in_contact(interval_.end) == in_contact_)
+      interval_.end = std::min(interval_.end + storage::second_ns, fault_.when.end);
   }
 
   Fault fault_;
   double share_;
   reference::Orbit orbit_;
-  storage::TimeRange stretch_{0, 0};
+  storage::TimeRange interval_{0, 0};
   bool in_contact_ = false;
 };
 

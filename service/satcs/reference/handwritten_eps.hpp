@@ -8,7 +8,7 @@
 //   28 V I_DCnIN = V_n I_DCnOUT / efficiency, V_n constant and the users' currents those of the
 //   plan
 //
-// The orbit and the operations plan, with its safe modes and quiet stretches, are the spacecraft's
+// The orbit and the operations plan, with its safe modes and quiet times, are the spacecraft's
 // own: operators know them. There is no temperature, no thermostat, no dynamics but the charge, no
 // harness, no noise, no sensor and no error amplifier (REFERENCE.md).
 #pragma once

@@ -1,5 +1,5 @@
 // What happens to the reference spacecraft over the years: ageing, faults, switches to redundant
-// units, and stretches of special operations. Each kind is of the power subsystem, of the platform,
+// units, and times of special operations. Each kind is of the power subsystem, of the platform,
 // or of both.
 //
 // Life is nothing but other constants at a time (aged()); the plant takes them second by second, so

@@ -39,7 +39,7 @@ class OperationsPlan {
     bool safe_mode = false;
   };
   /// Over a station the transmitter is on, and in sunlight the cameras with it; besides, one
-  /// recorded imaging session around noon in some orbits. In safe mode and in quiet stretches
+  /// recorded imaging session around noon in some orbits. In safe mode and in quiet times
   /// everything is off.
   On at(storage::Time time) const;
 

@@ -41,7 +41,7 @@ std::variant<Survey, Error> survey(const ReplayOptions& options, std::size_t tim
   return result;
 }
 
-/// The stretch that the options ask for, in a file whose earliest and latest rows are given.
+/// The range that the options ask for, in a file whose earliest and latest rows are given.
 storage::TimeRange chosen_range(const ReplayOptions& options, storage::Time earliest) {
   using Limits = std::numeric_limits<storage::Time>;
   const auto resolve = [&](const std::optional<ReplayBound>& bound, storage::Time absent) {

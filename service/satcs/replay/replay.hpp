@@ -26,7 +26,7 @@ struct ColumnMapping {
 /// Absent where the text is not of that form, or a part but the unit is empty.
 std::optional<ColumnMapping> parse_mapping(std::string_view text);
 
-/// One end of the stretch to replay: a time, or an offset from the earliest row ("+90", "2h").
+/// One end of the range to replay: a time, or an offset from the earliest row ("+90", "2h").
 struct ReplayBound {
   bool relative = false;
   std::int64_t ns = 0;

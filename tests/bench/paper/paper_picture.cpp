@@ -52,14 +52,14 @@ void draw_frame(Svg& svg, const PaperPicture& picture, const Box& box, const Sca
 
 void draw_line(Svg& svg, const PaperPicture& picture, const Vector& values, const Scale& y,
                std::string_view css_class) {
-  std::vector<cli::Stretch> stretches(1);
+  std::vector<cli::TraceSegment> segments(1);
   for (Index row = 0; row < values.size(); ++row)
     if (std::isfinite(values(row))) {
-      stretches[0].x.push_back(picture.x(row));
-      stretches[0].y.push_back(values(row));
+      segments[0].x.push_back(picture.x(row));
+      segments[0].y.push_back(values(row));
     }
   const Scale x{0, double(picture.range.end - picture.range.begin) * 1e-9, left, right};
-  for (const auto& line : cli::trace(stretches, x, y, 1)) svg.polyline(line, css_class);
+  for (const auto& line : cli::trace(segments, x, y, 1)) svg.polyline(line, css_class);
 }
 
 Vector without_gaps(const Vector& values) {

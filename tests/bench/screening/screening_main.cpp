@@ -1,5 +1,5 @@
 // What the screens for sensor faults leave out of a file's telemetry, window by window as the
-// daemon would: rows and stretches by kind. On clean telemetry it is the share of false alarms.
+// daemon would: rows and ranges by kind. On clean telemetry it is the share of false alarms.
 //
 // Prints one JSON object.
 

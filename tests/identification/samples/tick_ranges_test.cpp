@@ -10,7 +10,7 @@ TEST(TickRanges, UniteToAscendingOnesThatAreApart) {
   EXPECT_EQ(united({}), TickSet{});
 }
 
-TEST(TickRanges, AreCutAtTheEndsOfAStretch) {
+TEST(TickRanges, AreCutAtTheEndsOfARange) {
   const TickSet set{{0, 10}, {20, 30}};
   EXPECT_EQ(inside(set, {5, 25}), (TickSet{{5, 10}, {20, 25}}));
   EXPECT_EQ(outside(set, {5, 25}), (TickSet{{0, 5}, {25, 30}}));

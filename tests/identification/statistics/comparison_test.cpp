@@ -235,13 +235,13 @@ TEST(NoisePercent, LooksAtNoDifferenceOverAGap) {
   test::Noise noise(46);
   const Vector sensor = 0.1 * first_order(noise, rows, 0), run = Vector::Constant(rows, 5);
   Vector y = run + sensor;
-  std::vector<RowRange> stretches;
+  std::vector<RowRange> segments;
   for (Index k = 0; k < rows; k += 2) {
-    stretches.push_back({k, k + 2});
+    segments.push_back({k, k + 2});
     y.segment(k, 2).array() += 3 * noise.normal();
   }
   const double expected = 100 * 0.1 / (y.norm() / std::sqrt(double(rows)));
-  EXPECT_NEAR(noise_percent(y, run, stretches), expected, 0.15 * expected);
+  EXPECT_NEAR(noise_percent(y, run, segments), expected, 0.15 * expected);
 }
 
 TEST(NoisePercent, IsTheMeanOfTheOutputs) {

@@ -29,28 +29,28 @@ Series whole(Vector values) {
 TEST(Series, HasTheAutocorrelationOfItsDefinition) {
   test::Noise noise(1);
   const Vector x = coloured(noise, 100, 0.5);
-  const std::vector<RowRange> stretches{{0, 40}, {40, 47}, {47, 100}};
-  Series series(x, stretches);
+  const std::vector<RowRange> segments{{0, 40}, {40, 47}, {47, 100}};
+  Series series(x, segments);
   const Vector centred = x.array() - x.mean();
   for (Index lag = 0; lag < 60; ++lag) {
     double product = 0;
-    for (const RowRange& stretch : stretches)
-      for (Index t = stretch.begin + lag; t < stretch.end; ++t)
+    for (const RowRange& segment : segments)
+      for (Index t = segment.begin + lag; t < segment.end; ++t)
         product += centred(t - lag) * centred(t);
     EXPECT_NEAR(series.autocorrelation(lag), product / centred.squaredNorm(), 1e-14) << lag;
   }
   EXPECT_EQ(series.pairs(3), 37 + 4 + 50);
 }
 
-TEST(Series, StretchesDoNotSpeakToEachOther) {
-  // Each stretch is one pulse; only across the gap are two pulses one row apart.
+TEST(Series, SegmentsDoNotSpeakToEachOther) {
+  // Each segment is one pulse; only across the gap are two pulses one row apart.
   Vector x = Vector::Zero(20);
   x(9) = x(10) = 1;
   Series joined = whole(x), parted(x, {{0, 10}, {10, 20}});
   EXPECT_GT(joined.autocorrelation(1), 0.4);
   EXPECT_LT(parted.autocorrelation(1), 0);
   EXPECT_EQ(parted.pairs(1), 18);
-  EXPECT_EQ(parted.longest_stretch(), 10);
+  EXPECT_EQ(parted.longest_segment(), 10);
 }
 
 TEST(Series, AConstantHasNoCorrelation) {
@@ -61,9 +61,9 @@ TEST(Series, AConstantHasNoCorrelation) {
 
 TEST(Correlogram, HasAsManyLagsAsTheRowsAllow) {
   test::Noise noise(2);
-  const auto lags = [&noise](std::vector<RowRange> stretches) {
-    const Vector values = noise.normal(stretches.back().end, 1);
-    Series series(values, std::move(stretches));
+  const auto lags = [&noise](std::vector<RowRange> segments) {
+    const Vector values = noise.normal(segments.back().end, 1);
+    Series series(values, std::move(segments));
     const Correlogram both = cross_correlogram(series, series, 25);
     const Index count = autocorrelogram(series, 25).r.size();
     EXPECT_EQ(both.r.size(), count == 0 ? 0 : 2 * count + 1);

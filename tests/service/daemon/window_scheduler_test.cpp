@@ -43,7 +43,7 @@ TEST_F(Scheduler, WaitsForStragglers) {
   EXPECT_TRUE(scheduler.next(105));
 }
 
-TEST_F(Scheduler, LeavesOutWindowsWhoseLastStretchIsEmpty) {
+TEST_F(Scheduler, LeavesOutWindowsWhoseLastSlideIsEmpty) {
   telemetry(0, 11, 100);
   telemetry(95, 101, 100);
   EXPECT_EQ(complete(200).window, (storage::TimeRange{-20, 10}));

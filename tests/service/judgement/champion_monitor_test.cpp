@@ -100,7 +100,7 @@ TEST_F(Monitor, BeginsAgainWhereTheArchiveCouldNotBeRead) {
   EXPECT_TRUE(look(day + 50 * minute));
 }
 
-TEST_F(Monitor, DoesNotTakeOneBadStretchForAChange) {
+TEST_F(Monitor, DoesNotTakeOneBadRangeForAChange) {
   auto frames = telemetry(day + 20 * minute + second, 1800);
   for (std::size_t k = 300; k < 310; ++k) frames[k].samples[2].value = 1000;
   archive.append(frames);

@@ -38,7 +38,7 @@ class ProtectedTelemetry : public DaemonTest {
     result.attempt.outcome = outcome;
     return registry.record(result.attempt, result.version, {kind, "gate", "test"});
   }
-  std::vector<ProtectedRange> stretches() const { return telemetry_of_versions(archive, registry); }
+  std::vector<ProtectedRange> ranges() const { return telemetry_of_versions(archive, registry); }
   void remove_all_but(const std::vector<ProtectedRange>& protection) {
     archive.compact();
     storage::Retention retention(archive, {.keep = minute}, protection, latest);
@@ -53,7 +53,7 @@ class ProtectedTelemetry : public DaemonTest {
 
 TEST_F(ProtectedTelemetry, IsThatOfEachSignalInTheWindowAndTheHoldBeforeIt) {
   record(day + 10 * minute);
-  const auto found = stretches();
+  const auto found = ranges();
   ASSERT_THAT(found, SizeIs(3));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(found[i].spacecraft, "SAT");
@@ -65,12 +65,12 @@ TEST_F(ProtectedTelemetry, IsThatOfEachSignalInTheWindowAndTheHoldBeforeIt) {
 TEST_F(ProtectedTelemetry, IsThatOfEveryVersionThatWasEverPublishedAndOfNoOther) {
   record(day + 10 * minute, DecisionKind::reject);
   record(day + 10 * minute, DecisionKind::wait);
-  EXPECT_THAT(stretches(), IsEmpty());
+  EXPECT_THAT(ranges(), IsEmpty());
   const std::int64_t first = record(day + 15 * minute);
   record(day + 20 * minute);
   registry.decide("SAT", "PLANT", 4, {DecisionKind::withdraw, "Ana", "wrong"}, day);
   registry.decide("SAT", "PLANT", first, {DecisionKind::withdraw, "Ana", "wrong"}, day);
-  EXPECT_THAT(stretches(), SizeIs(2 * 3)) << "withdrawn ones were published too";
+  EXPECT_THAT(ranges(), SizeIs(2 * 3)) << "withdrawn ones were published too";
 }
 
 TEST_F(ProtectedTelemetry, OfProbationsGoesFromTheFirstRunToTheLastLook) {
@@ -96,7 +96,7 @@ TEST_F(ProtectedTelemetry, FollowsTheParametersOfAnExpression) {
   EquipmentModel model = equipment_model_from_json(registry.version("SAT", "PLANT", 1)->model_json);
   model.inputs[0] = {"P", "W", 0, 1, "u * v"};
   registry.record(attempt, {to_json(model).dump(), "digest"}, {DecisionKind::approve, "gate", ""});
-  EXPECT_THAT(stretches(), SizeIs(3 + 3)) << "u, v and y of both";
+  EXPECT_THAT(ranges(), SizeIs(3 + 3)) << "u, v and y of both";
 }
 
 TEST_F(ProtectedTelemetry, IsAllOfTheSpacecraftWhereItIsNotKnownWhich) {
@@ -104,15 +104,15 @@ TEST_F(ProtectedTelemetry, IsAllOfTheSpacecraftWhereItIsNotKnownWhich) {
   storage::ParameterDescriptor renamed = descriptors()[0];
   renamed.name = "u_new";
   archive.describe(std::vector{renamed});
-  ASSERT_THAT(stretches(), SizeIs(3));
-  EXPECT_EQ(stretches()[0].parameter, std::nullopt);
+  ASSERT_THAT(ranges(), SizeIs(3));
+  EXPECT_EQ(ranges()[0].parameter, std::nullopt);
 
   storage::NewAttempt attempt;
   attempt.spacecraft = "SAT";
   attempt.equipment = "OTHER";
   attempt.window = {5, 9};
   registry.record(attempt, {"no model", "digest"}, {DecisionKind::approve, "gate", ""});
-  const auto found = stretches();
+  const auto found = ranges();
   ASSERT_THAT(found, SizeIs(4));
   EXPECT_EQ(found[0].parameter, std::nullopt);
   EXPECT_EQ(found[0].range, (storage::TimeRange{5, 9}));
@@ -121,7 +121,7 @@ TEST_F(ProtectedTelemetry, IsAllOfTheSpacecraftWhereItIsNotKnownWhich) {
 TEST_F(ProtectedTelemetry, LeavesAVersionReproducibleToTheLastBit) {
   record(day + 10 * minute);
   const std::uint64_t before = archive.sample_count();
-  remove_all_but(stretches());
+  remove_all_but(ranges());
   EXPECT_LT(archive.sample_count(), before);
   EXPECT_TRUE(reproduce(archive, registry, *registry.version("SAT", "PLANT", 1), {}).same_model);
   remove_all_but({});

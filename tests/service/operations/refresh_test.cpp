@@ -280,7 +280,7 @@ TEST_F(Refresh, GivesTheSameBitsWhateverWasKeptOfEarlierWindows) {
     EXPECT_EQ(slid.evidence.mrse_percent, fresh.evidence.mrse_percent);
   };
   for (int minutes = 40; minutes <= 58; minutes += 9) same_as_from_scratch(day + minutes * minute);
-  // A stretch that was played back late with other values than those it had without it.
+  // A range that was played back late with other values than those it had without it.
   archive.append(telemetry(day + 25 * minute + second / 2, 120, 1.5));
   kept.forget({day + 25 * minute, day + 27 * minute});
   same_as_from_scratch(day + 59 * minute);

@@ -73,8 +73,8 @@ RC_GTEST_PROP(RoundTrip, AnImportedExportHoldsTheSameSamples, ()) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     const auto read = [](const storage::Database& database, const storage::SeriesInfo& one) {
       storage::SampleColumns all;
-      storage::SeriesBatches stretches(database, one.id, test::everything().range, 1, {});
-      for (storage::SampleColumns some; stretches.next(some);) all.append(some, 0, some.size());
+      storage::SeriesBatches batches(database, one.id, test::everything().range, 1, {});
+      for (storage::SampleColumns some; batches.next(some);) all.append(some, 0, some.size());
       return all;
     };
     const auto a = read(first, before[i]), b = read(second, after[i]);

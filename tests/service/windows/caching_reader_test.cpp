@@ -24,7 +24,7 @@ class Counted final : public storage::SampleReader {
   mutable int asked = 0;
 };
 
-TEST(CachingReader, AsksForEachParameterAndStretchOnceAndGivesTheSame) {
+TEST(CachingReader, AsksForEachParameterAndRangeOnceAndGivesTheSame) {
   const Counted reader;
   const CachingReader once(reader);
   for (int i = 0; i < 3; ++i) {

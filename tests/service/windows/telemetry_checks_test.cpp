@@ -143,8 +143,8 @@ TEST_F(FaultySensors, AreKeptWithTheTelemetryOfTheVersion) {
   const RefreshResult result = run(day + 20 * minute);
   registry.record(result.attempt, result.version, *result.decision);
   std::vector<std::uint32_t> parameters;
-  for (const storage::ProtectedRange& stretch : telemetry_of_versions(archive, registry))
-    if (stretch.parameter) parameters.push_back(*stretch.parameter);
+  for (const storage::ProtectedRange& one : telemetry_of_versions(archive, registry))
+    if (one.parameter) parameters.push_back(*one.parameter);
   EXPECT_THAT(parameters, Contains(4U)) << "y2";
 }
 

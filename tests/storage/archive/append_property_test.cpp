@@ -149,16 +149,16 @@ RC_GTEST_PROP(AppendProperty, HoldsWhatTheModelHolds, ()) {
   RC_ASSERT(rows(folder / "a.db", "SELECT count(*) FROM recent") == std::vector<std::string>{"0"});
 }
 
-// Long stretches in few series, which fill, split and join chunks.
-RC_GTEST_PROP(AppendProperty, LongStretchesInAnyOrderStayWhatTheyAre, ()) {
+// Long ranges in few series, which fill, split and join chunks.
+RC_GTEST_PROP(AppendProperty, LongRangesInAnyOrderStayWhatTheyAre, ()) {
   const TemporaryFolder folder;
   const ArchiveOptions some = *options();
   auto database = std::make_unique<Database>(folder / "a.db", Database::Mode::read_write);
   auto archive = std::make_unique<Archive>(*database, some);
   Model model;
-  const auto stretches = *rc::gen::container<std::vector<std::pair<Time, Time>>>(
+  const auto ranges = *rc::gen::container<std::vector<std::pair<Time, Time>>>(
       rc::gen::pair(rc::gen::inRange<Time>(0, 300), rc::gen::inRange<Time>(1, 90)));
-  for (const auto& [begin, length] : stretches) {
+  for (const auto& [begin, length] : ranges) {
     std::vector<TelemetryFrame> batch;
     for (Time t = begin; t < begin + length; ++t)
       batch.push_back(frame(static_cast<std::uint64_t>(t), t,

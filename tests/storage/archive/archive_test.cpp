@@ -304,7 +304,7 @@ TEST_F(ArchiveTest, CountsAsLateWhatIsStoredBehindANewerSampleOfItsSeries) {
       << "within one batch";
 }
 
-TEST_F(ArchiveTest, ReportsTheStretchThatEachSeriesTouched) {
+TEST_F(ArchiveTest, ReportsTheRangeThatEachSeriesTouched) {
   append({frame(1, 50, {{1, Quality::suspect, 5}, {2, Quality::good, 1}})});
   const AppendReport report =
       append({frame(2, 70, {{1, Quality::good, 7}}), frame(3, 60, {{1, Quality::good, 6}}),

@@ -196,7 +196,7 @@ TEST_F(RetentionTest, KeepsAccountOfWhatItRemovedInFewRows) {
                                            "CB4|2|real|0|575|576|age|3000000000000"));
 }
 
-TEST_F(RetentionTest, KeepsAccountOfStretchesApartThatSomethingIsLeftBetween) {
+TEST_F(RetentionTest, KeepsAccountOfRangesApartThatSomethingIsLeftBetween) {
   remove({.keep = 1000 * second}, {{"CB4", 1, {100 * second, 120 * second}}}, 2000 * second);
   EXPECT_THAT(rows(path,
                    "SELECT begin_time / 1000000000, end_time / 1000000000, samples "

@@ -63,12 +63,12 @@ TEST(SampleGaps, TheStepIsTheLowerMedian) {
   EXPECT_EQ(measure({0, 5, 6, 10}).step, 4);
 }
 
-TEST(SampleGaps, ARegularStretchHasNone) {
+TEST(SampleGaps, ARegularRangeHasNone) {
   EXPECT_EQ(measure(regular(chunk)), (Sampling{second, second * 3 / 2}));
   EXPECT_THAT(gaps_in(regular(chunk)), IsEmpty());
 }
 
-TEST(SampleGaps, ARegularStretchShowsEachMissingSampleHoweverShort) {
+TEST(SampleGaps, ARegularRangeShowsEachMissingSampleHoweverShort) {
   for (const std::size_t count : {std::size_t{10}, std::size_t{100}, chunk}) {
     std::vector<Time> times = regular(count);
     const auto missing = times.begin() + static_cast<std::ptrdiff_t>(count / 2);
@@ -132,7 +132,7 @@ TEST(SampleGaps, AChangeOfRateIsNoGap) {
         ++sent;
         return (is_slow ? 10 : 1) * second;
       });
-      // A rate that few samples have may pass for gaps only where it is below 5 % of the stretch.
+      // A rate that few samples have may pass for gaps only where it is below 5 % of the range.
       EXPECT_LE(gaps_in(times).size(), slow < chunk / 20 ? slow : 0) << slow << slow_first;
       const auto& sampling = measure(times);
       EXPECT_EQ(sampling.step, (slow < chunk / 2 ? 1 : 10) * second) << slow;
@@ -152,7 +152,7 @@ TEST(SampleGaps, TheGreatestDistancesDoNotOverflow) {
   EXPECT_THAT(gaps_in({Limits::min(), 0, 1, 2, 3, 4, 5, 6, Limits::max()}), SizeIs(2));
 }
 
-TEST(SampleGaps, BetweenTwoStretchesTheLargerLimitCounts) {
+TEST(SampleGaps, BetweenTwoRangesTheLargerLimitCounts) {
   const Sampling fast = measure(regular(100)), slow = measure(regular(100, 10 * second)), none{};
   const auto across = [](Time distance, const Sampling& before, const Sampling& after) {
     return gap_between(start, before, start + distance, after).has_value();

@@ -56,12 +56,12 @@ TEST(TimeTicks, AreRoundTimesOfUtcWithTheDayWhereItChanges) {
 
 TEST(Trace, KeepsTheExtremesOfEachColumnInTheirOrder) {
   // Two columns of ten values; a peak, then a trough in the first.
-  Stretch stretch;
+  TraceSegment segment;
   for (int k = 0; k < 20; ++k) {
-    stretch.x.push_back(k / 10.0);
-    stretch.y.push_back(k == 3 ? 9 : k == 7 ? -9 : 0);
+    segment.x.push_back(k / 10.0);
+    segment.y.push_back(k == 3 ? 9 : k == 7 ? -9 : 0);
   }
-  const auto lines = trace({stretch}, {0, 2, 0, 2}, {-10, 10, 20, 0}, 1);
+  const auto lines = trace({segment}, {0, 2, 0, 2}, {-10, 10, 20, 0}, 1);
   ASSERT_THAT(lines, SizeIs(1));
   std::vector<double> y;
   for (const Point& point : lines[0]) y.push_back(point.y);
@@ -69,8 +69,8 @@ TEST(Trace, KeepsTheExtremesOfEachColumnInTheirOrder) {
 }
 
 TEST(Trace, BreaksAtGapsThatCanBeSeenAndShowsALonelyValue) {
-  const std::vector<Stretch> stretches = {{{0, 1}, {0, 0}}, {{1.5}, {0}}, {{50}, {0}}};
-  const auto lines = trace(stretches, {0, 100, 0, 100}, {-1, 1, 1, 0}, 1);
+  const std::vector<TraceSegment> segments = {{{0, 1}, {0, 0}}, {{1.5}, {0}}, {{50}, {0}}};
+  const auto lines = trace(segments, {0, 100, 0, 100}, {-1, 1, 1, 0}, 1);
   ASSERT_THAT(lines, SizeIs(2));
   EXPECT_THAT(lines[1], SizeIs(2));
 }

@@ -17,12 +17,12 @@ using storage::Quality;
 using storage::Sample;
 using storage::TelemetryFrame;
 
-/// What becomes of a frame of the stretch.
+/// What becomes of a frame of the range.
 struct Fate {
   FaultKind kind;
-  std::string text;         // behind the kind's name and the stretch
+  std::string text;         // behind the kind's name and the range
   bool by_chance;           // other seeds give other telemetry
-  std::size_t least, most;  // how often each frame of the stretch comes
+  std::size_t least, most;  // how often each frame of the range comes
   double changed;           // share of the samples that differ, at the least
 };
 
@@ -51,7 +51,7 @@ const std::vector<Fate>& fates() {
 }
 
 std::string text_of(const Fate& fate) {
-  return std::string(name(fate.kind)) + stretch + fate.text;
+  return std::string(name(fate.kind)) + fault_range + fate.text;
 }
 
 TEST(Faults, AreAllInTheTable) {
@@ -60,7 +60,7 @@ TEST(Faults, AreAllInTheTable) {
     EXPECT_EQ(fates()[k].kind, static_cast<FaultKind>(k));
 }
 
-TEST(Faults, LeaveFramesOutsideTheirStretchAsTheyAre) {
+TEST(Faults, LeaveFramesOutsideTheirRangeAsTheyAre) {
   const auto truth = true_frames();
   for (const Fate& fate : fates()) {
     std::map<std::uint64_t, std::vector<TelemetryFrame>> by_sequence;
@@ -79,7 +79,7 @@ TEST(Faults, LeaveFramesOutsideTheirStretchAsTheyAre) {
   }
 }
 
-TEST(Faults, ChangeAsManySamplesOfTheirStretchAsTheySay) {
+TEST(Faults, ChangeAsManySamplesOfTheirRangeAsTheySay) {
   const auto truth = true_frames();
   for (const Fate& fate : fates()) {
     double samples = 0, changed = 0;
@@ -122,15 +122,15 @@ TEST(Faults, AreTheSameForTheSameSeedAlone) {
 
 TEST(Faults, AreToldInTheirOrder) {
   const auto truth = true_frames();
-  const auto stuck_first = received(
-      truth, {fault_of("stuck" + stretch + ":A*2"), fault_of("bias_step" + stretch + ":A*1")});
-  const auto bias_first = received(
-      truth, {fault_of("bias_step" + stretch + ":A*1"), fault_of("stuck" + stretch + ":A*2")});
+  const auto stuck_first = received(truth, {fault_of("stuck" + fault_range + ":A*2"),
+                                            fault_of("bias_step" + fault_range + ":A*1")});
+  const auto bias_first = received(truth, {fault_of("bias_step" + fault_range + ":A*1"),
+                                           fault_of("stuck" + fault_range + ":A*2")});
   EXPECT_EQ(stuck_first[from_s].samples[0].value, 3);
   EXPECT_EQ(bias_first[from_s].samples[0].value, 2);
-  // The stretch of the second one is of the true time all the same.
-  const auto jumped = received(
-      truth, {fault_of("time_jump" + stretch + "*86400"), fault_of("stops" + stretch + ":A")});
+  // The range of the second one is of the true time all the same.
+  const auto jumped = received(truth, {fault_of("time_jump" + fault_range + "*86400"),
+                                       fault_of("stops" + fault_range + ":A")});
   EXPECT_EQ(jumped.size(), truth.size());
   for (std::size_t k = from_s; k < to_s; ++k)
     for (const Sample& sample : jumped[k].samples) EXPECT_NE(sample.parameter, a_id);
@@ -138,7 +138,7 @@ TEST(Faults, AreToldInTheirOrder) {
 
 // -- of one sensor
 
-/// What A reads at each second of its stretch under a fault.
+/// What A reads at each second of its range under a fault.
 std::vector<double> readings_of_a(const std::string& text) {
   const auto frames = received(true_frames(), {fault_of(text)});
   std::vector<double> values;
@@ -155,17 +155,17 @@ TEST(SensorFaults, ReadWhatTheySay) {
   const double first = a_at(from_s);
   const auto limited = [](double value) { return std::clamp(value, -10.0, 30.0); };
   for (const auto& [text, reads] : {
-           Case{"stuck" + stretch + ":A", [&](double, double) { return first; }},
-           Case{"stuck" + stretch + ":A*-3.5", [&](double, double) { return -3.5; }},
-           Case{"bias_step" + stretch + ":A",
+           Case{"stuck" + fault_range + ":A", [&](double, double) { return first; }},
+           Case{"stuck" + fault_range + ":A*-3.5", [&](double, double) { return -3.5; }},
+           Case{"bias_step" + fault_range + ":A",
                 [&](double value, double) { return limited(value + 0.02 * span); }},
-           Case{"bias_step" + stretch + ":A*-2.5",
+           Case{"bias_step" + fault_range + ":A*-2.5",
                 [&](double value, double) { return limited(value - 2.5); }},
-           Case{"drifting_bias" + stretch + ":A",
+           Case{"drifting_bias" + fault_range + ":A",
                 [&](double value, double passed) { return limited(value + 0.05 * span * passed); }},
-           Case{"wrong_calibration" + stretch + ":A",
+           Case{"wrong_calibration" + fault_range + ":A",
                 [&](double value, double) { return 10 + 1.05 * (value - 10); }},
-           Case{"wrong_calibration" + stretch + ":A*0.9",
+           Case{"wrong_calibration" + fault_range + ":A*0.9",
                 [&](double value, double) { return 10 + 0.9 * (value - 10); }},
        }) {
     const auto values = readings_of_a(text);
@@ -179,7 +179,7 @@ TEST(SensorFaults, ReadWhatTheySay) {
 TEST(SensorFaults, AddNoiseOfTheirMagnitude) {
   double sum = 0, squares = 0;
   std::size_t count = 0;
-  const auto values = readings_of_a("noise_burst" + stretch + ":A*0.5");
+  const auto values = readings_of_a("noise_burst" + fault_range + ":A*0.5");
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double error = values[k] - a_at(from_s + k);
     if (std::abs(a_at(from_s + k) - 10) > 17) continue;  // may have met a limit
@@ -193,7 +193,7 @@ TEST(SensorFaults, AddNoiseOfTheirMagnitude) {
 
 TEST(SensorFaults, SpikeInOneReadingOfAHundredUpAndDown) {
   std::map<double, int> errors;
-  const auto values = readings_of_a("spikes" + stretch + ":A*4");
+  const auto values = readings_of_a("spikes" + fault_range + ":A*4");
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double value = a_at(from_s + k);
     if (std::abs(value - 10) < 15) ++errors[std::round(values[k] - value)];
@@ -206,7 +206,7 @@ TEST(SensorFaults, SpikeInOneReadingOfAHundredUpAndDown) {
 
 TEST(ParameterFaults, SwapWhatIsThere) {
   const auto truth = true_frames();
-  const auto frames = received(truth, {fault_of("swapped" + stretch + ":A,B")});
+  const auto frames = received(truth, {fault_of("swapped" + fault_range + ":A,B")});
   EXPECT_EQ(frames[from_s].samples[0].parameter, b_id);
   EXPECT_EQ(frames[from_s].samples[0].value, truth[from_s].samples[0].value);
   EXPECT_EQ(frames[from_s].samples[1].parameter, a_id);
@@ -216,7 +216,7 @@ TEST(ParameterFaults, SwapWhatIsThere) {
 }
 
 TEST(ParameterFaults, StopAParameterAndNoFrame) {
-  const auto frames = received(true_frames(), {fault_of("stops" + stretch + ":A")});
+  const auto frames = received(true_frames(), {fault_of("stops" + fault_range + ":A")});
   EXPECT_EQ(frames.size(), truth_s);
   EXPECT_EQ(frames[from_s + 1].samples.size(), 0U);
   EXPECT_EQ(frames[from_s + 2].samples[0].parameter, b_id);
@@ -226,7 +226,7 @@ TEST(ParameterFaults, FlagRightSamplesInvalidAndWrongOnesGood) {
   const auto truth = true_frames();
   auto untrue = truth;
   for (auto& frame : untrue) frame.samples[0].quality = Quality::suspect;
-  const auto frames = received(untrue, {fault_of("wrong_validity" + stretch + ":A*0.5")});
+  const auto frames = received(untrue, {fault_of("wrong_validity" + fault_range + ":A*0.5")});
   double invalid = 0, anything = 0;
   for (std::size_t k = from_s; k < to_s; ++k) {
     const Sample& sample = frames[k].samples[0];

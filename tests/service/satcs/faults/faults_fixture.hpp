@@ -16,7 +16,7 @@ inline constexpr Time start = 1'498'867'200 * second;
 inline constexpr std::uint32_t a_id = 1, b_id = 2, s_id = 3;
 /// So much telemetry there is; faults are from 600 s to 2400 s.
 inline constexpr std::size_t truth_s = 3600, from_s = 600, to_s = 2400;
-inline const std::string stretch = "@+10min/+40min";
+inline const std::string fault_range = "@+10min/+40min";
 
 std::vector<storage::ParameterDescriptor> parameters();
 /// What A measures, in the second k.

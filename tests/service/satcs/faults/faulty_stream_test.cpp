@@ -33,7 +33,7 @@ class Recorded : public FrameStream {
 };
 
 TEST(FaultyStream, HandsOutAllThatIsReceivedAndAtItsEndWhatIsOnTheWay) {
-  const std::vector<Fault> faults = {fault_of("frames_lost" + stretch),
+  const std::vector<Fault> faults = {fault_of("frames_lost" + fault_range),
                                      fault_of("repeated_day@+50min/+60min*86400")};
   const auto expected = received(true_frames(), faults);
   FaultyStream stream(std::make_unique<Recorded>(), faults, {});
@@ -49,7 +49,7 @@ TEST(FaultyStream, HandsOutAllThatIsReceivedAndAtItsEndWhatIsOnTheWay) {
 }
 
 TEST(FaultyStream, RefusesWhatCannotBeToldOfItsTruth) {
-  const std::vector<Fault> faults = {fault_of("stuck" + stretch + ":X")};
+  const std::vector<Fault> faults = {fault_of("stuck" + fault_range + ":X")};
   EXPECT_THROW(FaultyStream(std::make_unique<Recorded>(), faults, {}), std::invalid_argument);
 }
 

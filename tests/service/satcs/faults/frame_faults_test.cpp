@@ -16,9 +16,9 @@ using storage::Sample;
 using storage::TelemetryFrame;
 
 TEST(FrameFaults, LoseTheShareOfFrames) {
-  const auto frames = received(true_frames(), {fault_of("frames_lost" + stretch + "*0.25")});
+  const auto frames = received(true_frames(), {fault_of("frames_lost" + fault_range + "*0.25")});
   EXPECT_NEAR(static_cast<double>(truth_s - frames.size()) / 1800, 0.25, 0.04);
-  EXPECT_EQ(received(true_frames(), {fault_of("frames_lost" + stretch + "*1")}).size(),
+  EXPECT_EQ(received(true_frames(), {fault_of("frames_lost" + fault_range + "*1")}).size(),
             truth_s - 1800);
 }
 
@@ -58,11 +58,12 @@ TEST(FrameFaults, BringWhatIsStoredWithTheNextPassAndLoseWholePasses) {
   EXPECT_LT(lost, passes);
 }
 
-TEST(FrameFaults, PlayAStretchBackwardsAfterItsEnd) {
-  const auto frames = received(true_frames(), {fault_of("backwards_playback" + stretch + "*60")});
+TEST(FrameFaults, PlayARangeBackwardsAfterItsEnd) {
+  const auto frames =
+      received(true_frames(), {fault_of("backwards_playback" + fault_range + "*60")});
   const Time begins = start + (2400 + 60) * second;
   ASSERT_EQ(frames.size(), truth_s);
-  EXPECT_EQ(frames[from_s].sequence, 1000 + to_s);  // nothing of the stretch yet
+  EXPECT_EQ(frames[from_s].sequence, 1000 + to_s);  // nothing of the range yet
   std::uint64_t previous = 1000 + to_s;
   std::size_t played = 0;
   for (const TelemetryFrame& frame : frames) {
@@ -78,7 +79,7 @@ TEST(FrameFaults, PlayAStretchBackwardsAfterItsEnd) {
 TEST(FrameFaults, HearWithTwoStationsWhoseClocksDiffer) {
   for (const auto& [kind, stamps] :
        {std::pair("two_stations", false), {"two_stamping_stations", true}}) {
-    const auto frames = received(true_frames(), {fault_of(kind + stretch + "*0.4")});
+    const auto frames = received(true_frames(), {fault_of(kind + fault_range + "*0.4")});
     std::map<std::uint64_t, std::string> heard;
     for (const TelemetryFrame& frame : frames) {
       const Time true_time = start + static_cast<Time>(frame.sequence - 1000) * second;
@@ -98,8 +99,8 @@ TEST(FrameFaults, HearWithTwoStationsWhoseClocksDiffer) {
 
 TEST(FrameFaults, JumpInTimeAheadAndBack) {
   for (const double jump_s : {7200.0, -1.5}) {
-    const auto frames =
-        received(true_frames(), {fault_of("time_jump" + stretch + "*" + std::to_string(jump_s))});
+    const auto frames = received(
+        true_frames(), {fault_of("time_jump" + fault_range + "*" + std::to_string(jump_s))});
     for (std::size_t k = from_s; k < to_s; ++k) {
       EXPECT_EQ(frames[k].generation_time - frames[k].reception_time,
                 static_cast<Time>(jump_s * 1e9));
@@ -112,7 +113,7 @@ TEST(FrameFaults, SendADayAgainAsAnotherOrAsItWas) {
   const auto truth = true_frames();
   for (const auto& [kind, stamped] : {std::pair("duplicated_day", true), {"repeated_day", false}}) {
     std::map<std::uint64_t, Time> arrived;
-    for (const TelemetryFrame& frame : received(truth, {fault_of(kind + stretch + "*1800")})) {
+    for (const TelemetryFrame& frame : received(truth, {fault_of(kind + fault_range + "*1800")})) {
       const TelemetryFrame& first = truth[frame.sequence - 1000];
       if (arrived.emplace(frame.sequence, frame.reception_time).second) {
         EXPECT_TRUE(same(frame, first));
@@ -130,7 +131,7 @@ TEST(FrameFaults, SendADayAgainAsAnotherOrAsItWas) {
 }
 
 TEST(FrameFaults, SendTheSimulatorAsRealBeforeTheSpacecraft) {
-  const auto frames = received(true_frames(), {fault_of("simulated_as_real" + stretch)});
+  const auto frames = received(true_frames(), {fault_of("simulated_as_real" + fault_range)});
   EXPECT_EQ(frames.size(), truth_s + 1800);
   HandwrittenEps simulator({}, {}, start + 600 * second, 1);
   std::uint64_t sequence = 0;

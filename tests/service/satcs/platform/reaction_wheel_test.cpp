@@ -103,7 +103,7 @@ TEST(AttitudeLoop, UnloadsFromTheLimitUntilTheWheelIsNearItsBias) {
   EXPECT_EQ(loop.unloading_Nm(), c.unload_Nm);
 }
 
-TEST(SlewPlan, TurnsAndTurnsBackAndRestsInQuietStretches) {
+TEST(SlewPlan, TurnsAndTurnsBackAndRestsInQuietTimes) {
   const reference::Orbit orbit{reference::OrbitConstants{}};
   constexpr storage::Time start = 1'498'867'200'000'000'000;
   const SlewPlan plan(orbit, {}, {}, 3);

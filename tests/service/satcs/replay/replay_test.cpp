@@ -253,7 +253,7 @@ TEST_F(Replay, SkipsBlankCellsWhereAsked) {
   EXPECT_EQ(frame.samples.size(), 2U);
 }
 
-TEST_F(Replay, KeepsToTheStretchAskedFor) {
+TEST_F(Replay, KeepsToTheRangeAskedFor) {
   write("t,a\n12,3\n10,1\n11,2\n13,4\n");
   const auto values = [&] {
     ReplayStream stream(plan(), {"station"});
