@@ -42,7 +42,8 @@ bin=$root/build/release/service
 unset CYCLONEDDS_URI  # the programs then stay on the loopback interface
 domain=$((1 + RANDOM % 200))
 endpoint=(--domain "$domain" --partition demo)
-rm -f "$folder"/reident.db "$folder"/reident.db-wal "$folder"/reident.db-shm "$folder"/*.log
+rm -rf "$folder"/reident.db "$folder"/reident.db-wal "$folder"/reident.db-shm "$folder"/*.log \
+  "$folder/cache"
 sed -e "s/^# domain = 0/domain = $domain/" \
     -e 's/^# partition = "operations"/partition = "demo"/' deploy/reident.toml \
     >"$folder/reident.toml"
@@ -60,14 +61,16 @@ pids+=($!)
   --cache "$folder/cache" "${endpoint[@]}" >"$folder/simulator.log" 2>&1 &
 pids+=($!)
 
-echo "A CBERS-4-class power subsystem flies 24 orbits at 1500 times real time. What the service"
-echo "publishes (<) and what the simulator runs (>):"
-tail -n +1 -F "$folder/reidentd.log" 2>/dev/null | sed -un \
-  's/.*window decided equipment=[^/]*\/\([A-Z0-9]*\) .* outcome=approved .*reason="\(.*\)"$/  < \1: \2/p' |
-  cut -c -79 &
-pids+=($!)
-tail -n +1 -F "$folder/simulator.log" 2>/dev/null | sed -un '/running MRSE/!s/^/  > /p' | cut -c -79 &
-pids+=($!)
+# Prints what the sed script makes of a log, line by line, until the process ends that writes it.
+follow() {
+  tail -n +1 -F --pid "$1" "$2" 2>/dev/null | sed -un "$3" | sed -u 's/^\(.\{79\}\).*/\1/' &
+}
+echo "A CBERS-4-class power subsystem flies 24 orbits at 1500 times real time."
+echo "What the service publishes (<) and what the simulator runs (>):"
+follow "${pids[0]}" "$folder/reidentd.log" '
+  s/.*window decided equipment=[^/]*\/\([A-Z0-9]*\) .* outcome=approved .*reason="\(.*\)"$/  < \1: \2/p
+  s/.*version confirmed equipment=[^/]*\/\([A-Z0-9]*\) .*reason="\(.*\)"$/  < \1: \2/p'
+follow "${pids[1]}" "$folder/simulator.log" '/running MRSE/!s/^/  > /p'
 
 flight=(--spacecraft CBERS-4 --duration 2406min --speed 1500 --wait-readers 2 "${endpoint[@]}")
 # The telemetry of the hand-written simulator on the same flight: the baseline of first versions.
@@ -91,7 +94,7 @@ cat <<END
 
 Look further (the simulators at the end: $where/simulators.log):
   PATH=\$PWD/build/release/service/cli:\$PATH
-  reident history --config $where/reident.toml          # all attempts, and why
+  reident history --config $where/reident.toml       # all attempts, and why
   reident why CBERS-4/BDR --config $where/reident.toml
 Picture of the BDR's champion: $where/bdr.svg
 Archive and registry:          $where/reident.db
