@@ -61,8 +61,11 @@ def main():
             print(f"{key:16} {value}")
         if "--suite" in sys.argv:
             clock = Clock()
-            subprocess.run(["ctest", "--test-dir", folder, "-j", str(os.cpu_count())], check=True,
-                           stdout=subprocess.DEVNULL)
+            suite = subprocess.run(["ctest", "--test-dir", folder, "-j", str(os.cpu_count()),
+                                    "--output-on-failure"], stdout=subprocess.PIPE, text=True,
+                                   check=False)
+            if suite.returncode != 0:
+                sys.exit(f"{suite.stdout[-20000:]}\nthe suite failed: nothing is recorded")
             figures["suite_wall_s"] = clock.spent()[1]
             print(f"suite_wall_s     {figures['suite_wall_s']}")
     print(json.dumps(figures))
