@@ -179,7 +179,9 @@ TEST(Betting, ABetterModelIsToldSooner) {
       std::nth_element(needed.begin(), needed.begin() + sequences / 2, needed.end());
       const double cycles = double(needed[sequences / 2]) / cycle;
       printf("%.2f | %s | %.1f\n", ratio, kind.name.c_str(), cycles);
-      if (ratio > 1.3 && kind.name.find("noise of 10") == 0) EXPECT_LE(cycles, 20) << ratio;
+      if (ratio > 1.3 && kind.name.find("noise of 10") == 0) {
+        EXPECT_LE(cycles, 20) << ratio;
+      }
     }
 }
 
