@@ -50,8 +50,8 @@ inline constexpr int platform_numbers = 1000;
 std::vector<LifeGroup> all_groups(const SpacecraftConfig& spacecraft, std::uint64_t draw = 0,
                                   satcs::Family family = satcs::Family::power);
 
-/// Those that go over real DDS too: every 71st, so that lives and faults are different ones. Two are
-/// tuned, three are held out, and three are of the platform.
+/// Those that go over real DDS too: every 71st, so that lives and faults are different ones. Two
+/// are tuned, three are held out, and three are of the platform.
 bool is_of_the_handful(const Scenario& scenario);
 
 /// Number 0, for tests, and no part of the suite: five days in which a sensor faults and, later, a
