@@ -1,6 +1,6 @@
 // For the few functions whose time counts: compiled for the baseline and for AVX2, and chosen by
 // the loader. Both give the same bits, since no sum is reordered and none is fused (METHOD.md,
-// "Speed"). For .cpp files alone: it silences a warning.
+// "Speed"). Private to .cpp files: it silences a warning.
 #pragma once
 
 // Clones need the loader's indirect functions, which sanitizers and clang 14 do not go with. There,
