@@ -25,20 +25,12 @@ constexpr SensorSpec node_temperature{5, 0.05, -60, 90, 12};
 using P = const PlatformPlant&;
 using Read = double (*)(const PlatformPlant&);
 
-constexpr TelemetryPoint analog(std::string_view name, std::string_view unit,
-                                std::string_view description, Rate rate, const SensorSpec& sensor,
-                                Read read) {
-  return reference::analog_point<PlatformPlant>(name, unit, description, rate, sensor, read);
-}
+constexpr auto analog = reference::analog_point<PlatformPlant>;
+constexpr auto digital = reference::digital_point<PlatformPlant>;
 
 constexpr TelemetryPoint current(std::string_view name, std::string_view description,
                                  const SensorSpec& sensor, Read read) {
   return analog(name, "A", description, reference::every_second, sensor, read);
-}
-
-constexpr TelemetryPoint digital(std::string_view name, std::string_view description, Rate rate,
-                                 Read read) {
-  return reference::digital_point<PlatformPlant>(name, description, rate, read);
 }
 
 template <std::size_t node>

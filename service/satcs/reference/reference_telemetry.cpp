@@ -22,18 +22,9 @@ constexpr SensorSpec temperature{5, 0.05, -40, 80, 12};
 constexpr SensorSpec array_temperature{5, 0.1, -120, 120, 12};
 
 using P = const Plant&;
-using Read = double (*)(const Plant&);
 
-constexpr TelemetryPoint analog(std::string_view name, std::string_view unit,
-                                std::string_view description, Rate rate, const SensorSpec& sensor,
-                                Read read) {
-  return analog_point<Plant>(name, unit, description, rate, sensor, read);
-}
-
-constexpr TelemetryPoint digital(std::string_view name, std::string_view description, Rate rate,
-                                 Read read) {
-  return digital_point<Plant>(name, description, rate, read);
-}
+constexpr auto analog = analog_point<Plant>;
+constexpr auto digital = digital_point<Plant>;
 
 double heaters_A(P p) {
   const auto& load_A = p.flows().load_A;

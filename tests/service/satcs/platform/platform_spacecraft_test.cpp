@@ -10,26 +10,17 @@
 #include <gtest/gtest.h>
 
 #include "service/satcs/family.hpp"
+#include "tests/service/satcs/readings.hpp"
 
 namespace reident::satcs::platform::platform_spacecraft_test {
 namespace {
 
 constexpr storage::Time july = 1'498'867'200'000'000'000;  // 2017-07-01T00:00:00Z
 
-std::vector<std::vector<storage::Sample>> readings(std::uint64_t seed, int seconds) {
-  PlatformSpacecraft spacecraft({}, {}, july, seed);
-  std::vector<std::vector<storage::Sample>> result(static_cast<std::size_t>(seconds));
-  for (auto& reading : result) {
-    spacecraft.read(reading);
-    spacecraft.advance();
-  }
-  return result;
-}
+using test::same;
 
-bool same(const std::vector<storage::Sample>& a, const std::vector<storage::Sample>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-    return x.parameter == y.parameter && x.quality == y.quality && x.value == y.value;
-  });
+std::vector<std::vector<storage::Sample>> readings(std::uint64_t seed, int seconds) {
+  return test::readings(PlatformSpacecraft({}, {}, july, seed), seconds);
 }
 
 TEST(PlatformSpacecraft, GivesTheSameTelemetryForTheSameSeed) {
