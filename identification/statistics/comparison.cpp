@@ -147,8 +147,8 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
   return result;
 }
 
-double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& segments) {
-  Array squares(y.cols());
+Vector noise_squares(const Matrix& y, const Matrix& run, const std::vector<RowRange>& segments) {
+  Vector squares(y.cols());
   for (Index q = 0; q < y.cols(); ++q) {
     const Vector errors = y.col(q) - run.col(q);
     std::vector<double> fresh;  // errors where a sample is new
@@ -170,7 +170,13 @@ double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRa
                   .usual(0)
             : square_changes(errors, segments).usual(0);
   }
-  return 100 * errors_of(squares / 2, y.cwiseAbs2().colwise().mean().transpose()).mean();
+  return squares / 2;
+}
+
+double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& segments) {
+  return 100 * errors_of(noise_squares(y, run, segments),
+                         y.cwiseAbs2().colwise().mean().transpose())
+                   .mean();
 }
 
 }  // namespace reident::identification

@@ -34,5 +34,7 @@ std::optional<PairedComparison> compare_runs(const Matrix& y, const Matrix& incu
 /// usual change of its errors from row to row. Where an output's samples are held, new ones count.
 /// Requires finite y and run (N x p), N >= 1, and segments that cover the rows.
 double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& segments);
+/// Returns the same as a mean squared error, in the square of the output's unit (p).
+Vector noise_squares(const Matrix& y, const Matrix& run, const std::vector<RowRange>& segments);
 
 }  // namespace reident::identification

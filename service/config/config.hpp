@@ -50,11 +50,13 @@ struct EquipmentConfig {
   int min_order = 1;
   int max_order = 10;
   std::optional<int> horizon;            // absent: chosen
+  Duration cycle = 6'000'000'000'000;     // of its operation, such as an orbit: errors repeat with it
+  int members = 12;                      // versions that are scored beside the champion
   double max_mrse_percent = 20;          // limit of the gate
   double min_fit_percent = 0;            // limit of the gate, at least 0
   double margin_percent = 15;            // least relative reduction of the champion's error (lower
                                          // confidence bound); a third of it after confirmation
-  double confidence_percent = 99;        // of that bound, one-sided
+  double confidence_percent = 95;        // of that bound, one-sided
   double max_disagreement_percent = 10;  // from the champion where the window was not, of the
                                          // output's range
   Duration min_interval = 0;             // between the windows of two versions; a quarter of slide

@@ -30,7 +30,7 @@ void ArchiveKeeper::post_step() {
 std::vector<storage::ProtectedRange> ArchiveKeeper::protection(
     const storage::Registry& registry, const storage::Archive& archive) const {
   std::vector<storage::ProtectedRange> all = telemetry_of_versions(archive, registry);
-  const auto needed = telemetry_still_needed(archive, registry, config_, clock_());
+  const auto needed = telemetry_still_needed(archive, config_, clock_());
   all.insert(all.end(), needed.begin(), needed.end());
   return all;
 }

@@ -45,9 +45,7 @@ IdentificationReport report_of(const RefreshResult& result) {
   report.order = result.candidate ? static_cast<int>(result.candidate->dynamics.order()) : 0;
   report.mrse_percent = result.candidate ? evidence.mrse_percent : absent;
   report.fit_percent = result.candidate ? evidence.fit_percent : absent;
-  report.champion_mrse_percent = evidence.champion && evidence.champion->comparison
-                                     ? evidence.champion->comparison->rival_mrse_percent
-                                     : absent;
+  report.champion_mrse_percent = absent;
   return report;
 }
 
@@ -72,6 +70,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       queue_({config.queue_frames, config.queue_mib << 20}),
       search_(usable_cores()),
       feed_(config, clock_),
+      leagues_(config),
       writer_(open_for_writing(config), {.recent_samples = config.recent_samples}, queue_,
               config.batch_frames, config.batch_delay, feed_),
       keeper_(config, writer_, clock_),
@@ -147,14 +146,14 @@ void Daemon::identify_windows() {
 }
 
 AttemptContext Daemon::attempt_context(const storage::Registry& registry) {
-  return {config_.digest,
-          [this](const AttemptContext::Task& task) { writer_.post(task).get(); },
-          clock_,
+  return {{[this](const LeagueContext::Task& task) { writer_.post(task).get(); }, clock_,
+           [this] { return stopping_.load(); },
+           [this, &registry](const LeagueDecision& decided) { publish(decided, registry); }},
+          config_.digest,
           [this](std::size_t count, const std::function<void(std::size_t)>& task) {
             search_.for_each(count, task);
           },
-          [this] { return stopping_.load(); },
-          [this, &registry](const ProbationDecision& decided) { publish(decided, registry); }};
+          &leagues_};
 }
 
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
@@ -185,7 +184,7 @@ void Daemon::publish(const RecordedAttempt& attempt, const storage::Registry& re
   log_attempt(report);
 }
 
-void Daemon::publish(const ProbationDecision& decided, const storage::Registry& registry) {
+void Daemon::publish(const LeagueDecision& decided, const storage::Registry& registry) {
   const storage::Version& version = decided.version;
   const bool approved = decided.decision.kind == storage::DecisionKind::approve;
   if (approved) {
@@ -235,15 +234,10 @@ void Daemon::watch_champions() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Archive archive(database);
   const storage::Registry registry(database);
-  ChampionWatch champions(config_);
-  ConfirmationWatch probations(config_);
   const AttemptContext context = attempt_context(registry);
   std::uint64_t seen = 0;
   try {
-    while (feed_.wait_for_telemetry(seen)) {
-      champions.look(archive, registry, feed_, context.stop);
-      probations.look(archive, registry, feed_, context);
-    }
+    while (feed_.wait_for_telemetry(seen)) leagues_.look(archive, registry, feed_, context);
   } catch (const std::future_error&) {  // the writer has ended
   }
 }

@@ -20,9 +20,8 @@
 #include "service/daemon/archive_keeper.hpp"
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
-#include "service/daemon/champion_watch.hpp"
 #include "service/daemon/command_desk.hpp"
-#include "service/daemon/confirmation_watch.hpp"
+#include "service/daemon/league_watch.hpp"
 #include "service/daemon/history_desk.hpp"
 #include "service/daemon/ingest.hpp"
 #include "service/daemon/publisher.hpp"
@@ -62,7 +61,7 @@ class Daemon {
                 const storage::Registry& registry);
   /// What follows from an attempt that was committed.
   void publish(const RecordedAttempt& attempt, const storage::Registry& registry);
-  void publish(const ProbationDecision& decided, const storage::Registry& registry);
+  void publish(const LeagueDecision& decided, const storage::Registry& registry);
   void answer_operators();
   void answer_history();
   void watch_champions();
@@ -73,6 +72,7 @@ class Daemon {
   BoundedQueue<TelemetryEvent> queue_;
   WorkerPool search_;  // shared by the identification threads
   WindowFeed feed_;
+  LeagueWatch leagues_;
   ArchiveWriter writer_;
   ArchiveKeeper keeper_;
   dds::Participant participant_;

@@ -24,37 +24,20 @@ std::optional<std::int64_t> record(const storage::DecisionState& state, RefreshR
   return number;
 }
 
-bool record(const storage::DecisionState& state, const ProbationDecision& found,
-            const AttemptContext& context) {
-  bool recorded = false;
-  context.write([&](storage::Registry& registry, auto&) {
-    recorded = reident::record(registry, state, found, context.clock());
-  });
-  if (recorded && context.decided) context.decided(found);
-  return recorded;
-}
-
 }  // namespace
-
-void decide_probation(const storage::Archive& archive, const storage::Registry& registry,
-                      const std::string& spacecraft, const EquipmentConfig& equipment,
-                      storage::Time since, storage::Time reached, const AttemptContext& context) {
-  look_at_probation(
-      archive, registry, spacecraft, equipment, since, reached,
-      [&context](const storage::DecisionState& state, const ProbationDecision& found) {
-        return record(state, found, context);
-      });
-}
 
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
                                               const storage::Archive& archive,
                                               const storage::Registry& registry, WindowCache& kept,
                                               const AttemptContext& context) {
-  for (const storage::TimeRange& changed : job.changed) kept.forget(changed);
+  for (const storage::TimeRange& changed : job.changed) {
+    kept.forget(changed);
+    context.leagues->forget(job.window.equipment, changed);
+  }
   const storage::Time end = job.window.window.end;
   // From here on the archive marks what still falls into the window.
   context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, end); });
-  decide_probation(archive, registry, *job.spacecraft, *job.equipment, INT64_MIN, end, context);
+  context.leagues->advance(job.window.equipment, archive, registry, end, context);
   // Read before the champion and the hold are looked at.
   const storage::DecisionState state =
       registry.decision_state(*job.spacecraft, job.equipment->name);
@@ -67,6 +50,7 @@ std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
   const auto number = record(state, attempt.result, context);
   if (!number) return std::nullopt;
   attempt.version = *number;
+  context.leagues->advance(job.window.equipment, archive, registry, end, context);
   return attempt;
 }
 

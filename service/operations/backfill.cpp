@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "service/judgement/confirmation.hpp"
+#include "service/operations/league_keeper.hpp"
 #include "service/operations/refresh.hpp"
 #include "service/support/floor_divide.hpp"
 #include "storage/archive/archive.hpp"
@@ -83,6 +83,7 @@ class Backfill {
   /// False when it was stopped.
   bool run(const Plan& plan) {
     progress_.equipment = *plan.spacecraft + "/" + plan.equipment->name;
+    LeagueKeeper league(*plan.spacecraft, *plan.equipment);
     const std::size_t batch = windows_per_task * usable_cores();
     for (std::size_t begin = 0; begin < plan.ends.size(); begin += batch) {
       const std::size_t end = std::min(plan.ends.size(), begin + batch);
@@ -92,7 +93,7 @@ class Backfill {
           (end - begin + windows_per_task - 1) / windows_per_task,
           [&](std::size_t task) { prepare(plan, begin, task * windows_per_task, prepared); });
       for (std::size_t i = 0; i < prepared.size(); ++i)
-        if (!record(request_of_window(plan, plan.ends[begin + i]), std::move(*prepared[i])))
+        if (!record(request_of_window(plan, plan.ends[begin + i]), std::move(*prepared[i]), league))
           return false;
     }
     return true;
@@ -122,12 +123,8 @@ class Backfill {
                                    on_all_cores(), [] { return false; });
   }
 
-  bool record(RefreshRequest request, PreparedWindow&& prepared) {
-    look_at_probation(archive_, registry_, request.spacecraft, request.equipment, INT64_MIN,
-                      request.window.end,
-                      [this](const storage::DecisionState& state, const ProbationDecision& found) {
-                        return record(state, found);
-                      });
+  bool record(RefreshRequest request, PreparedWindow&& prepared, LeagueKeeper& league) {
+    advance(league, request);
     const storage::TimeRange window =
         behind_champion(registry_, request.spacecraft, request.equipment.name, request.window);
     if (window.begin > request.window.begin) {  // it was prepared before the champion was known
@@ -135,23 +132,32 @@ class Backfill {
       WindowCache kept = window_cache_of(request.spacecraft, request.equipment);
       prepared = prepare_window(archive_, request, kept, on_all_cores(), [] { return false; });
     }
-    RefreshResult result = judge(archive_, registry_, request, std::move(prepared));
+    RefreshResult result = judge(registry_, request, std::move(prepared));
     result.attempt.time = clock_();
     if (result.candidate)
       registry_.record(result.attempt, result.version, *result.decision);
     else
       registry_.record(result.attempt);
+    advance(league, request);
     ++progress_.done;
-    if (result.decision && result.decision->kind == storage::DecisionKind::approve)
-      ++progress_.approved;
     progress_.window_end = request.window.end;
     return report_(progress_);
   }
 
-  bool record(const storage::DecisionState& state, const ProbationDecision& found) {
-    const bool recorded = reident::record(registry_, state, found, clock_());
-    if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
-    return recorded;
+  void advance(LeagueKeeper& league, const RefreshRequest& request) {
+    LeagueWriter writer;
+    writer.scores = [&](const auto& block, const auto& scores) {
+      registry_.record_scores(request.spacecraft, request.equipment.name, block, scores);
+    };
+    writer.decide = [&](const storage::DecisionState& standing, const LeagueDecision& found) {
+      const bool recorded = registry_
+                                .decide_if(standing, request.spacecraft, request.equipment.name,
+                                           found.version.number, found.decision, clock_())
+                                .has_value();
+      if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
+      return recorded;
+    };
+    league.advance(archive_, registry_, request.window.end, writer);
   }
 
   const Config& config_;

@@ -5,8 +5,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "service/judgement/confirmation.hpp"
 #include "service/model/model_json.hpp"
+#include "service/windows/block_reader.hpp"
 #include "service/windows/provenance.hpp"
 #include "service/windows/window_data.hpp"
 
@@ -82,7 +82,6 @@ std::vector<ProtectedRange> telemetry_of_versions(const storage::Archive& archiv
 }
 
 std::vector<ProtectedRange> telemetry_still_needed(const storage::Archive& archive,
-                                                   const storage::Registry& registry,
                                                    const Config& config, storage::Time now) {
   std::vector<ProtectedRange> ranges;
   for (const SpacecraftConfig& spacecraft : config.spacecraft) {
@@ -92,12 +91,9 @@ std::vector<ProtectedRange> telemetry_still_needed(const storage::Archive& archi
     const Descriptors descriptors = archive.parameters(spacecraft.name);
     for (const EquipmentConfig& equipment : spacecraft.equipment) {
       add(ranges, spacecraft.name, descriptors, parameters_of(equipment),
-          {before(newest, equipment.window + equipment.slide + equipment.sample_hold),
+          {before(newest, std::max(equipment.window, checked_before_block(equipment)) +
+                              equipment.slide + equipment.sample_hold),
            std::numeric_limits<storage::Time>::max()});
-      for (const storage::Version& version : on_probation(registry, spacecraft.name, equipment))
-        add(ranges, descriptors, version,
-            {before(version.window.begin, longest_run_up(equipment)),
-             version.window.end + 2 * equipment.confirmation});
     }
   }
   return ranges;

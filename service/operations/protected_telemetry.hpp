@@ -19,12 +19,10 @@ std::vector<storage::ProtectedRange> telemetry_of_versions(const storage::Archiv
                                                            const storage::Registry& registry);
 
 /// What the service will still read of each equipment, so that a rule that is too tight does not
-/// take it away: what the next window is read from (the last window and slide before where the
-/// spacecraft's telemetry, or the clock, ends), and what its versions on probation are judged by
-/// (the parameters as above, from where the runs may begin before the window to the last
-/// evaluation). Spacecraft without telemetry have none. Throws storage::Error.
+/// take it away: what the next window and the next block are read from (the last window and slide
+/// before where the spacecraft's telemetry, or the clock, ends). Spacecraft without telemetry have
+/// none. Throws storage::Error.
 std::vector<storage::ProtectedRange> telemetry_still_needed(const storage::Archive& archive,
-                                                            const storage::Registry& registry,
                                                             const Config& config,
                                                             storage::Time now);
 

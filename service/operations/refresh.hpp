@@ -31,8 +31,8 @@ storage::TimeRange behind_champion(const storage::Registry& registry, const std:
 /// Compares the candidate, or the champion adapted to the window, with its rivals, and decides. The
 /// champion is that of the registry now: whoever records checks that it still is. Throws
 /// storage::Error but for damaged telemetry, which is an outcome.
-RefreshResult judge(const storage::Archive& archive, const storage::Registry& registry,
-                    const RefreshRequest& request, PreparedWindow&& prepared);
+RefreshResult judge(const storage::Registry& registry, const RefreshRequest& request,
+                    PreparedWindow&& prepared);
 
 /// prepare_window, then judge; throws as these do.
 RefreshResult refresh(const storage::Archive& archive, const storage::Registry& registry,

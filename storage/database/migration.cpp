@@ -12,6 +12,7 @@ void migrate(sqlite::Connection& connection, std::int64_t version) {
     connection.execute(schema::without_samples_of_2());
   }
   if (version < 4) connection.execute(schema::from_3_to_4());
+  if (version < 6) connection.execute(schema::from_5_to_6());
   connection.execute(schema::user_version());
 }
 

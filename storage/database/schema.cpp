@@ -141,6 +141,26 @@ ALTER TABLE decision ADD COLUMN evidence_json TEXT NOT NULL DEFAULT '';
 CREATE INDEX decision_to_wait ON decision (spacecraft, equipment, version) WHERE kind = 'wait';
 )sql";
 
+// Lists are blobs of little-endian doubles, an entry an output or an input, so that no bit is lost.
+constexpr std::string_view score_tables = R"sql(
+CREATE TABLE block (
+  spacecraft TEXT NOT NULL, equipment TEXT NOT NULL,
+  begin_time INTEGER NOT NULL, end_time INTEGER NOT NULL,
+  rows INTEGER NOT NULL, believed REAL NOT NULL,
+  output_mean BLOB NOT NULL, output_square BLOB NOT NULL,
+  input_low BLOB NOT NULL, input_high BLOB NOT NULL, baseline_square BLOB NOT NULL,
+  PRIMARY KEY (spacecraft, equipment, begin_time)) WITHOUT ROWID;
+
+CREATE TABLE score (
+  spacecraft TEXT NOT NULL, equipment TEXT NOT NULL, version INTEGER NOT NULL,
+  begin_time INTEGER NOT NULL, rows INTEGER NOT NULL,
+  error_mean BLOB NOT NULL, error_square BLOB NOT NULL, noise_square BLOB NOT NULL,
+  state BLOB NOT NULL, state_tick INTEGER, run_square BLOB NOT NULL, run_rows INTEGER NOT NULL,
+  PRIMARY KEY (spacecraft, equipment, version, begin_time),
+  FOREIGN KEY (spacecraft, equipment, version) REFERENCES version (spacecraft, equipment, number))
+  WITHOUT ROWID;
+)sql";
+
 constexpr std::string_view operator_tables = R"sql(
 CREATE TABLE hold (
   id INTEGER PRIMARY KEY,
@@ -314,6 +334,13 @@ std::string append_only_decisions() {
                      "id = NEW.id OR (requester = NEW.requester AND request = NEW.request)");
 }
 
+std::string append_only_scores() {
+  const std::string equipment = "spacecraft = NEW.spacecraft AND equipment = NEW.equipment AND ";
+  return append_only("block", equipment + "begin_time = NEW.begin_time") +
+         append_only("score",
+                     equipment + "version = NEW.version AND begin_time = NEW.begin_time");
+}
+
 std::string joined(std::initializer_list<std::string_view> parts) {
   std::string sql;
   for (const std::string_view part : parts) sql += part;
@@ -324,13 +351,13 @@ std::string joined(std::initializer_list<std::string_view> parts) {
 
 std::string creation() {
   return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
-                 decision_table, decision_of_4, operator_tables, telemetry_views, hole_view,
+                 decision_table, decision_of_4, score_tables, operator_tables, telemetry_views, hole_view,
                  removal_view, lineage_view, registry_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
                      "equipment = NEW.equipment AND number = NEW.number)") +
-         append_only_decisions() + "PRAGMA application_id = " + std::to_string(application_id) +
+         append_only_decisions() + append_only_scores() + "PRAGMA application_id = " + std::to_string(application_id) +
          ";" + user_version();
 }
 
@@ -371,6 +398,10 @@ std::string without_samples_of_2() {
 
 std::string from_3_to_4() {
   return joined({"DROP VIEW lineage;", lineage_view, decision_of_4});
+}
+
+std::string from_5_to_6() {
+  return joined({score_tables}) + append_only_scores();
 }
 
 std::string user_version() {

@@ -230,6 +230,18 @@ std::vector<std::int64_t> Registry::undecided(const std::string& spacecraft,
   return numbers;
 }
 
+std::vector<TimeRange> Registry::windows(const std::string& spacecraft,
+                                         const std::string& equipment,
+                                         const std::string& outcome) const {
+  std::vector<TimeRange> windows;
+  sqlite::Query row = connection(database_).query(
+      "SELECT window_begin, window_end FROM attempt JOIN version ON version.attempt = attempt.id "
+      "WHERE attempt.spacecraft = ? AND attempt.equipment = ? AND outcome = ? ORDER BY attempt.id",
+      spacecraft, equipment, outcome);
+  while (row.step()) windows.push_back({row.integer(0), row.integer(1)});
+  return windows;
+}
+
 std::vector<Decision> Registry::decisions(const std::string& spacecraft,
                                           const std::string& equipment,
                                           std::optional<std::int64_t> version) const {

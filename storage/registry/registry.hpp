@@ -64,6 +64,20 @@ class Registry {
   CommandOutcome execute(const Command& command, Time time,
                          const std::function<CommandOutcome()>& effect);
 
+  /// Adds a block, where one is given, and scores of versions on it or on earlier blocks, in one
+  /// transaction. Throws Error (failed) where the block or a score is there already.
+  void record_scores(const std::string& spacecraft, const std::string& equipment,
+                     const std::optional<Block>& block, const std::vector<BlockScore>& scores);
+  /// Blocks that begin at or behind `since`, ascending.
+  std::vector<Block> blocks(const std::string& spacecraft, const std::string& equipment,
+                            Time since) const;
+  /// End of the newest block; absent before the first.
+  std::optional<Time> last_block_end(const std::string& spacecraft,
+                                     const std::string& equipment) const;
+  /// Scores of a version on blocks that begin at or behind `since`, ascending.
+  std::vector<BlockScore> scores(const std::string& spacecraft, const std::string& equipment,
+                                 std::int64_t version, Time since) const;
+
   /// A version with its model; absent where there is none of that number.
   std::optional<Version> version(const std::string& spacecraft, const std::string& equipment,
                                  std::int64_t number) const;
@@ -86,6 +100,9 @@ class Registry {
   /// Numbers of the versions of attempts with this outcome that wait and nothing more, ascending.
   std::vector<std::int64_t> undecided(const std::string& spacecraft, const std::string& equipment,
                                       const std::string& outcome) const;
+  /// Windows of all attempts with this outcome that gave a version, in the order of recording.
+  std::vector<TimeRange> windows(const std::string& spacecraft, const std::string& equipment,
+                                 const std::string& outcome) const;
   /// Decisions about an equipment, or one version of it, ascending by id.
   std::vector<Decision> decisions(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<std::int64_t> version = std::nullopt) const;

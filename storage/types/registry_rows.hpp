@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "storage/types/telemetry.hpp"
 
@@ -124,6 +125,46 @@ struct DecisionState {
   std::int64_t last_decision = 0;
   std::int64_t last_hold = 0;
   bool operator==(const DecisionState&) const = default;
+};
+
+/// Telemetry of one block of an equipment's time, on which versions are scored. Vectors have an
+/// entry an output, or an input; all are empty without rows.
+struct Block {
+  TimeRange range;
+  /// Samples that are believed, and their share of the block's ticks.
+  std::int64_t rows = 0;
+  double believed = 0;
+  /// Means of y and y^2.
+  std::vector<double> output_mean;
+  std::vector<double> output_square;
+  std::vector<double> input_low;
+  std::vector<double> input_high;
+  /// Mean squared error of the simulator's own model; empty where it sent no telemetry.
+  std::vector<double> baseline_square;
+};
+
+/// Where a free run has come to, so that it goes on behind a restart to the same bits.
+struct RunState {
+  /// State of the model at the tick `tick`; absent before the first row.
+  std::vector<double> x;
+  std::optional<std::int64_t> tick;
+  /// Sums of the squared errors over the run's rows so far.
+  std::vector<double> square_errors;
+  std::int64_t rows = 0;
+};
+
+/// What a version's free run erred on one block.
+struct BlockScore {
+  std::int64_t version = 0;
+  Time begin = 0;
+  std::int64_t rows = 0;
+  /// Means of the error and of its square; an entry an output, not finite where the run is not.
+  std::vector<double> mean;
+  std::vector<double> square;
+  /// The part of `square` that is the sensors' noise.
+  std::vector<double> noise;
+  /// At the end of the block.
+  RunState state;
 };
 
 /// An operator's command. Requester and request identify it: the same pair with the same contents

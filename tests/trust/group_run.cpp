@@ -144,7 +144,9 @@ std::vector<Tenure> tenures_of(const Made& made, const std::string& spacecraft,
                                const std::string& equipment, storage::Time start) {
   std::vector<Tenure> tenures{{start, 0, {}}};
   for (const storage::Decision& decision : made.registry.decisions(spacecraft, equipment)) {
-    if (decision.kind != storage::DecisionKind::approve) continue;
+    if (decision.kind != storage::DecisionKind::approve &&
+        decision.kind != storage::DecisionKind::roll_back)
+      continue;
     const auto version = made.registry.version(spacecraft, equipment, decision.version);
     tenures.push_back({std::max(tenures.back().since, made.published(decision, *version)),
                        decision.version, equipment_model_from_json(version->model_json)});

@@ -16,13 +16,13 @@ SimulatedService::SimulatedService(const Config& config)
       archive_(database_, {.recent_samples = config.recent_samples}),
       registry_(database_),
       feed_(config, [this] { return now_; }),
-      watch_(config),
-      probation_watch_(config),
-      context_{config.digest,
-               [this](const AttemptContext::Task& task) { task(registry_, archive_); },
-               [this] { return now_; },
+      leagues_(config),
+      context_{{[this](const LeagueContext::Task& task) { task(registry_, archive_); },
+                [this] { return now_; },
+                [] { return false; }},
+               config.digest,
                {},
-               [] { return false; }} {
+               &leagues_} {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       kept_.push_back(window_cache_of(spacecraft.name, equipment));
@@ -49,10 +49,9 @@ void SimulatedService::finish() {
 void SimulatedService::commit() {
   feed_.stored(batch_, archive_.append(batch_));
   batch_.clear();
-  for (const ChampionWatch::Drift& drift :
-       watch_.look(archive_, registry_, feed_, [] { return false; }))
+  try_due_windows();
+  for (const LeagueWatch::Drift& drift : leagues_.look(archive_, registry_, feed_, context_))
     drifts_.push_back({drift.equipment->name, now_});
-  probation_watch_.look(archive_, registry_, feed_, context_);
   try_due_windows();
 }
 

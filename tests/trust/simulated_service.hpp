@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "service/config/config.hpp"
-#include "service/daemon/champion_watch.hpp"
-#include "service/daemon/confirmation_watch.hpp"
+#include "service/daemon/league_watch.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"
 #include "storage/archive/archive.hpp"
@@ -62,8 +61,7 @@ class SimulatedService {
   storage::Archive archive_;
   storage::Registry registry_;
   WindowFeed feed_;
-  ChampionWatch watch_;
-  ConfirmationWatch probation_watch_;
+  LeagueWatch leagues_;
   std::vector<WindowCache> kept_;  // by equipment
   AttemptContext context_;
   std::vector<storage::TelemetryFrame> batch_;

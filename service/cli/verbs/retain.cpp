@@ -71,7 +71,7 @@ std::vector<ProtectedRange> protection(const Arguments& arguments, const Request
   const storage::Registry registry(database);
   if (!arguments.including_versions) all = telemetry_of_versions(archive, registry);
   if (request.config) {
-    const auto needed = telemetry_still_needed(archive, registry, *request.config, now);
+    const auto needed = telemetry_still_needed(archive, *request.config, now);
     all.insert(all.end(), needed.begin(), needed.end());
   }
   return all;

@@ -1,0 +1,109 @@
+#include "service/judgement/member_run.hpp"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "identification/simulation/hole_bridging.hpp"
+#include "identification/simulation/initial_state.hpp"
+#include "identification/simulation/square_changes.hpp"
+#include "identification/statistics/comparison.hpp"
+
+namespace reident {
+namespace {
+
+using identification::Index;
+using identification::Matrix;
+using identification::Segment;
+using identification::Vector;
+
+std::vector<double> list(const Vector& values) {
+  return {values.begin(), values.end()};
+}
+
+Vector vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Vector>(values.data(), std::ssize(values));
+}
+
+class Run {
+ public:
+  Run(const identification::StateSpaceModel& model, const identification::Record& record,
+      const storage::RunState& before)
+      : model_(model),
+        record_(record),
+        x_(vector_of(before.x)),
+        tick_(before.tick),
+        square_errors_(before.square_errors.empty() ? Vector(Vector::Zero(model.outputs()))
+                                                    : vector_of(before.square_errors)),
+        rows_(before.rows) {}
+
+  Matrix over(const Segment& segment) {
+    if (tick_ != segment.first_tick) x_ = state_at(segment);
+    Matrix outputs(segment.size(), model_.outputs());
+    for (Index k = 0; k < segment.size(); ++k) {
+      const Vector du = record_.u.row(segment.begin + k).transpose() - model_.u0;
+      outputs.row(k) = (model_.C * x_ + model_.D * du + model_.y0).transpose();
+      x_ = (model_.A * x_ + model_.B * du).eval();
+    }
+    tick_ = segment.first_tick + segment.size();
+    square_errors_ += (record_.y.middleRows(segment.begin, segment.size()) - outputs)
+                          .colwise()
+                          .squaredNorm()
+                          .transpose();
+    rows_ += segment.size();
+    return outputs;
+  }
+
+  storage::RunState state() const {
+    return {list(x_), tick_, list(square_errors_), static_cast<std::int64_t>(rows_)};
+  }
+
+ private:
+  Vector state_at(const Segment& segment) const {
+    const auto before = segments_within(record_, {0, segment.begin});
+    if (rows_ > 0 && !before.empty() && tick_ == before.back().first_tick + before.back().size())
+      if (auto bridged = state_after_hole(model_, record_, before.back(), segment, x_,
+                                          {identification::square_changes(record_),
+                                           square_errors_ / static_cast<double>(rows_)}))
+        return *std::move(bridged);
+    return estimate_initial_state(model_, record_,
+                                  segments_within(record_, {segment.begin, record_.rows()}),
+                                  identification::state_rows);
+  }
+
+  const identification::StateSpaceModel& model_;
+  const identification::Record& record_;
+  Vector x_;
+  std::optional<std::int64_t> tick_;
+  Vector square_errors_;
+  Index rows_;
+};
+
+}  // namespace
+
+storage::BlockScore score_block(const EquipmentModel& model, std::int64_t number,
+                                const BlockSamples& samples, const storage::RunState& before) {
+  storage::BlockScore score;
+  score.version = number;
+  score.begin = samples.block.range.begin;
+  score.rows = samples.block.rows;
+  score.state = before;
+  if (score.rows == 0) return score;
+  const identification::Record& record = samples.record;
+  const Index first = samples.first_row, rows = record.rows() - first;
+  Run run(model.dynamics, record, before);
+  Matrix outputs(rows, record.y.cols());
+  std::vector<identification::RowRange> segments;
+  for (const Segment& segment : segments_within(record, {first, record.rows()})) {
+    outputs.middleRows(segment.begin - first, segment.size()) = run.over(segment);
+    segments.push_back({segment.begin - first, segment.end - first});
+  }
+  const Matrix y = record.y.bottomRows(rows), errors = y - outputs;
+  score.mean = list(errors.colwise().mean().transpose());
+  score.square = list(errors.cwiseAbs2().colwise().mean().transpose());
+  score.noise = list(identification::noise_squares(y, outputs, segments));
+  score.state = run.state();
+  return score;
+}
+
+}  // namespace reident

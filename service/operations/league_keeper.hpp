@@ -1,0 +1,69 @@
+// Keeps the league of an equipment: scores its versions on each block of telemetry, and decides.
+//
+// The daemon and backfill both call it, as telemetry comes: the same telemetry and windows give the
+// same scores to the last bit, and the same decisions.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/judgement/league.hpp"
+#include "service/model/model_version.hpp"
+#include "service/windows/block_reader.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
+
+namespace reident {
+
+/// A decision of the rule about a version.
+struct LeagueDecision {
+  storage::Version version;
+  storage::NewDecision decision;
+};
+
+/// How what was found gets into the registry, by whoever may write.
+struct LeagueWriter {
+  std::function<void(const std::optional<storage::Block>&, const std::vector<storage::BlockScore>&)>
+      scores;
+  /// Whether it was recorded: not where something was decided since `standing`.
+  std::function<bool(const storage::DecisionState&, const LeagueDecision&)> decide;
+};
+
+/// For one equipment and one thread at a time. The configuration must outlive it.
+class LeagueKeeper {
+ public:
+  LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipment);
+
+  /// Scores and decides on every block that telemetry until `reached` completes, oldest first.
+  /// Returns a change of the equipment that was found with one of them.
+  std::optional<Change> advance(const storage::Archive& archive, const storage::Registry& registry,
+                                storage::Time reached, const LeagueWriter& writer);
+
+  /// Forgets what samples in `range` served, since samples were stored there.
+  void forget(storage::TimeRange range);
+
+ private:
+  /// Makes the members those of the registry now; what the registry has of them is read.
+  void read_members(const storage::Registry& registry);
+  const BlockSamples& samples_of(const storage::Archive& archive, storage::Time begin);
+  /// Scores of the member on the blocks up to `end` that it has none of.
+  void catch_up(const storage::Archive& archive, Member& member, storage::Time end,
+                std::vector<storage::BlockScore>& scores);
+  /// Decides until nothing is left to decide now.
+  void decide(const storage::Registry& registry, const LeagueWriter& writer, storage::Time now);
+
+  const std::string spacecraft_;
+  const EquipmentConfig& equipment_;
+  BlockReader reader_;
+  std::map<storage::Time, BlockSamples> samples_;  // of the newest blocks
+  std::optional<storage::DecisionState> standing_;      // that the members are of
+  League league_;
+  std::map<std::int64_t, EquipmentModel> models_;  // of the members
+  std::optional<storage::Time> reached_;           // end of the last block
+};
+
+}  // namespace reident
