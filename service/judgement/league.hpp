@@ -12,7 +12,7 @@
 
 #include "identification/statistics/betting.hpp"
 #include "service/config/config.hpp"
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 
 namespace reident {
 

@@ -7,7 +7,7 @@
 
 #include "service/model/model_version.hpp"
 #include "service/windows/block_reader.hpp"
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 
 namespace reident {
 

@@ -10,7 +10,7 @@
 #include "service/config/config.hpp"
 #include "service/windows/window_cache.hpp"
 #include "storage/archive/archive.hpp"
-#include "storage/types/records.hpp"
+#include "storage/types/registry_rows.hpp"
 
 namespace reident {
 
