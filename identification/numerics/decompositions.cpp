@@ -115,6 +115,7 @@ Matrix Cholesky::solve_transposed(const Matrix& M) const {
 }
 
 SymmetricEigen symmetric_eigen(const Matrix& A) {
+  if (A.rows() == 0) return {Vector(0), Matrix(0, 0), true};
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(A);
   return {eigen.eigenvalues(), eigen.eigenvectors(), eigen.info() == Eigen::Success};
 }

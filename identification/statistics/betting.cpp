@@ -31,7 +31,8 @@ Vector means(const Vector& scores, Index length) {
 double dependence(const ScoreSeries& series) {
   const Index n = series.scores.size();
   const double measured = std::min(1.0, double(n) / double(cycles_to_measure * series.cycle));
-  double largest = measured + (1 - measured) * double(series.cycle);
+  const double assumed = series.assumed > 0 ? series.assumed : double(series.cycle);
+  double largest = measured + (1 - measured) * assumed;
   if (n < 2) return largest;
   const double of_one = variance(series.scores);
   if (!(of_one > 0)) return largest;

@@ -12,8 +12,10 @@ namespace reident::identification {
 struct ScoreSeries {
   Vector scores;
   double bound = 1;
-  /// Scores that are taken together until their dependence is measured: those of a whole cycle.
+  /// Those of a whole cycle.
   Index cycle = 1;
+  /// Dependence that is assumed until it is measured; 0: the cycle's scores count as one.
+  double assumed = 0;
 };
 
 /// Returns by how many times the variance of a mean of the scores exceeds that of as many

@@ -27,6 +27,7 @@ constexpr std::int64_t max_window_ticks = 50'000'000;  // 8 bytes for each chann
 constexpr std::uint64_t least_max_size = 1'000'000;
 constexpr double least_tolerance = 1e-12;
 constexpr int max_order = 100;
+constexpr int max_members = 100;
 constexpr int max_horizon = 500;
 
 template <class Target, class Value>
@@ -277,7 +278,8 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
   // Shorter than it takes to notice that a champion drifts.
   equipment.min_interval =
       reader.duration("min_interval", 0, 3650 * day).value_or(equipment.slide / 4);
-  equipment.confirmation = reader.duration("confirmation", 0, 3650 * day).value_or(equipment.slide);
+  const auto cycle = reader.duration("cycle", *period, 3650 * day);
+  equipment.cycle = cycle.value_or(std::max<std::int64_t>(1, share_ticks) * *period);
   if (slide || !reader.has("slide")) check_slide(reader, equipment);
 }
 
@@ -308,17 +310,26 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
   const bool right = document.mistakes.size() == before && !equipment.outputs.empty();
   read_timing(reader, right, equipment);
   assign(equipment.max_mrse_percent, reader.number("max_mrse", 0, 1e6));
-  assign(equipment.min_fit_percent, reader.number("min_fit", 0, 100));
-  assign(equipment.margin_percent, reader.number("margin", 0, 100));
+  assign(equipment.margin_percent, reader.number("margin", 0, 99));
   assign(equipment.confidence_percent, reader.number("confidence", 50, 99.99));
-  assign(equipment.max_disagreement_percent, reader.number("max_disagreement", 0, 1e6));
+  if (const auto members = reader.integer("members", 1, max_members))
+    equipment.members = static_cast<int>(*members);
   assign(equipment.baseline_mrse_percent, reader.number("baseline_mrse", 0, 1e6));
   read_choice(reader, "approval", equipment.approval,
               {{"automatic", ApprovalPolicy::automatic}, {"by_hand", ApprovalPolicy::by_hand}});
-  read_choice(reader, "unvouched", equipment.unvouched,
-              {{"wait", UnvouchedPolicy::wait}, {"approve", UnvouchedPolicy::approve}});
+  read_choice(reader, "bias", equipment.bias,
+              {{"wait", BiasPolicy::wait}, {"approve", BiasPolicy::approve}});
+  read_choice(reader, "on_failure", equipment.on_failure,
+              {{"keep", FailurePolicy::keep}, {"withdraw", FailurePolicy::withdraw}});
   read_choice(reader, "screening", equipment.screening, {{"on", true}, {"off", false}});
-  reader.refuse_unknown_keys();
+  reader.refuse_unknown_keys(
+      {{"min_fit", "remove it; a version has to err less than the mean of the outputs, and max_mrse "
+                   "limits its error"},
+       {"max_disagreement", "remove it; a version is compared with the champion on telemetry of "
+                            "every operating regime"},
+       {"confirmation", "remove it; every version proves itself on the telemetry after its window, "
+                        "for as long as that takes, beside at most `members` others"},
+       {"unvouched", "use bias, with the same values"}});
   siblings.push_back(std::move(equipment));
 }
 

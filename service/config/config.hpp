@@ -21,9 +21,13 @@ using Duration = std::int64_t;
 
 enum class ApprovalPolicy { automatic, by_hand };
 
-/// What becomes of a candidate whose gain on the champion is a constant offset that a sensor which
-/// no relation binds would show alike.
-enum class UnvouchedPolicy { wait, approve };
+/// What becomes of a version that is better than the champion but for a constant, which a biased
+/// sensor that no relation binds would show too.
+enum class BiasPolicy { wait, approve };
+
+/// What becomes of a champion that errs more than the mean of the outputs, or than the simulator's
+/// own model.
+enum class FailurePolicy { keep, withdraw };
 
 /// What binds parameters of a spacecraft as long as their sensors read right: a sum of currents
 /// at a node, two measurements of one voltage.
@@ -50,22 +54,19 @@ struct EquipmentConfig {
   int min_order = 1;
   int max_order = 10;
   std::optional<int> horizon;            // absent: chosen
-  Duration cycle = 6'000'000'000'000;     // of its operation, such as an orbit: errors repeat with it
-  int members = 12;                      // versions that are scored beside the champion
-  double max_mrse_percent = 20;          // limit of the gate
-  double min_fit_percent = 0;            // limit of the gate, at least 0
-  double margin_percent = 15;            // least relative reduction of the champion's error (lower
-                                         // confidence bound); a third of it after confirmation
-  double confidence_percent = 95;        // of that bound, one-sided
-  double max_disagreement_percent = 10;  // from the champion where the window was not, of the
-                                         // output's range
-  Duration min_interval = 0;             // between the windows of two versions; a quarter of slide
-  Duration confirmation = 0;             // telemetry after its window, or twice as much, that may
-                                         // yet confirm a candidate; default slide, 0: none
+  Duration cycle = 0;              // of its operation, such as an orbit: errors repeat with it;
+                                   // default: the validation part
+  int members = 12;                // versions that are scored beside the champion, at most
+  double max_mrse_percent = 20;    // of a version
+  double margin_percent = 15;      // least reduction of the champion's error
+  double confidence_percent = 95;  // 100 less the percentage of champions that may ever give way to
+                                   // a version that is not better
+  Duration min_interval = 0;       // between two versions; a quarter of slide
   std::optional<double> baseline_mrse_percent;  // error of the simulator's own model, where it
                                                 // sends no telemetry
   ApprovalPolicy approval = ApprovalPolicy::automatic;
-  UnvouchedPolicy unvouched = UnvouchedPolicy::wait;
+  BiasPolicy bias = BiasPolicy::wait;
+  FailurePolicy on_failure = FailurePolicy::keep;
   bool screening = true;            // whether sensor faults are looked for
   std::vector<Relation> relations;  // the spacecraft's that name a parameter of this equipment
 };

@@ -295,11 +295,18 @@ std::vector<const toml::table*> TableReader::sections(std::string_view key) {
   return result;
 }
 
-void TableReader::refuse_unknown_keys() {
+void TableReader::refuse_unknown_keys(std::initializer_list<FormerKey> former) {
   std::string all;
   for (const std::string& key : known_) all += (all.empty() ? "" : ", ") + key;
   for (const auto& [key, node] : table_) {
     if (known_.contains(key.str())) continue;
+    const auto* of_before = std::find_if(former.begin(), former.end(), [&](const FormerKey& one) {
+      return one.key == key.str();
+    });
+    if (of_before != former.end()) {
+      mistake(key.str(), fmt::format("{} is no key any more: {}", key.str(), of_before->remedy));
+      continue;
+    }
     const std::string* nearest = nullptr;
     std::size_t least = std::max<std::size_t>(1, key.str().size() / 3) + 1;
     for (const std::string& candidate : known_)

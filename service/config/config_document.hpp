@@ -4,6 +4,7 @@
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -61,8 +62,12 @@ class TableReader {
   bool has(std::string_view key) const { return table_.contains(key); }
   /// Notes a mistake where the key is absent.
   void require(std::string_view key, std::string_view example);
-  /// Notes every key that nobody asked for, with the nearest one that exists.
-  void refuse_unknown_keys();
+  /// A key of an earlier version, and what to do instead.
+  struct FormerKey {
+    std::string_view key, remedy;
+  };
+  /// Notes every key that nobody asked for, with its remedy or the nearest one that exists.
+  void refuse_unknown_keys(std::initializer_list<FormerKey> former = {});
   /// The line of a key, or of the table where it is absent.
   std::uint32_t line_of(std::string_view key) const;
   /// Notes a mistake at the key's line; the title goes before the message.

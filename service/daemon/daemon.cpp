@@ -186,14 +186,15 @@ void Daemon::publish(const RecordedAttempt& attempt, const storage::Registry& re
 
 void Daemon::publish(const LeagueDecision& decided, const storage::Registry& registry) {
   const storage::Version& version = decided.version;
-  const bool approved = decided.decision.kind == storage::DecisionKind::approve;
-  if (approved) {
-    ++approvals_;
+  using enum storage::DecisionKind;
+  const storage::DecisionKind kind = decided.decision.kind;
+  if (kind == approve) ++approvals_;
+  if (kind != wait && kind != reject)
     publisher_.publish_champion(registry, {version.spacecraft, version.equipment});
-  }
-  log::info("identify", approved ? "version confirmed" : "version not confirmed",
+  log::info("league", "version decided",
             {{"equipment", version.spacecraft + "/" + version.equipment},
              {"version", version.number},
+             {"decision", name(kind)},
              {"reason", decided.decision.reason}});
 }
 

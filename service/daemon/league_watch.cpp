@@ -50,6 +50,10 @@ std::vector<LeagueWatch::Drift> LeagueWatch::advance(std::size_t equipment,
     if (recorded && context.decided) context.decided(found);
     return recorded;
   };
+  writer.failed = [&](const Reason& reason) {
+    log::error("league", "the champion fails",
+               {{"equipment", spacecraft + "/" + name}, {"reason", sentence(reason)}});
+  };
   const auto change = watched.keeper.advance(archive, registry, reached, writer);
   if (!change) return {};
   return {{watched.spacecraft, watched.equipment, *change}};
@@ -83,8 +87,7 @@ std::vector<LeagueWatch::Drift> LeagueWatch::look(const storage::Archive& archiv
     log::warning("league", "the equipment has changed; it is identified again",
                  {{"equipment", *drift.spacecraft + "/" + drift.equipment->name},
                   {"window_begin", time_text(window.begin)},
-                  {"window_end", time_text(window.end)},
-                  {"error_ratio", drift.found.error_ratio}});
+                  {"window_end", time_text(window.end)}});
   }
   return drifts;
 }

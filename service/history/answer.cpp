@@ -30,6 +30,8 @@ constexpr std::array subjects{
     Subject{"model", models_page, true},
     Subject{"decisions", decisions_page, true},
     Subject{"champion", champions_page, true},
+    Subject{"blocks", blocks_page, true},
+    Subject{"scores", scores_page, true},
     Subject{"parameters", parameters_page, false},
     Subject{"series", series_page, false},
     Subject{"sources", sources_page, false},

@@ -61,6 +61,11 @@ class HistoryReader {
   virtual std::optional<storage::Decision> champion_decision(
       const storage::EquipmentName& equipment,
       std::optional<storage::Time> time = std::nullopt) const = 0;
+  /// The blocks of an equipment that versions were scored on, ascending.
+  virtual std::vector<storage::Block> blocks(const storage::EquipmentName& equipment) const = 0;
+  /// The scores of a version, ascending; without the states of its run.
+  virtual std::vector<storage::BlockScore> scores(const storage::EquipmentName& equipment,
+                                                  std::int64_t version) const = 0;
 };
 
 /// One series read forward, see storage::SeriesBatches. Its reader has to outlive it.

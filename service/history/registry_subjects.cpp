@@ -1,3 +1,5 @@
+#include <stdexcept>
+
 #include "service/history/page_maker.hpp"
 #include "service/history/row_values.hpp"
 #include "service/history/subjects.hpp"
@@ -43,6 +45,27 @@ HistoryPage page_by_equipment(storage::Database& database, const HistoryQuery& q
       break;
   }
   return maker.page();
+}
+
+/// Adds rows that ascend by their begin, those of the range if one is asked for.
+template <typename Row>
+HistoryPage page_by_time(const HistoryQuery& query, const std::vector<Row>& rows,
+                         storage::Time (*begin_of)(const Row&)) {
+  PageMaker maker(query);
+  const auto range = wanted_range(query);
+  for (const Row& row : rows) {
+    const storage::Time begin = begin_of(row);
+    if (range && (begin < range->begin || begin >= range->end)) continue;
+    if (!maker.add(row_of(row), Json::array({begin}))) break;
+  }
+  return maker.page();
+}
+
+/// Where rows that ascend by their begin go on.
+storage::Time first_begin(const HistoryQuery& query) {
+  const PageMaker maker(query);
+  if (!maker.beyond()) return INT64_MIN;
+  return maker.beyond()->at(0).get<std::int64_t>() + 1;
 }
 
 }  // namespace
@@ -94,6 +117,25 @@ HistoryPage decisions_page(storage::Database& database, const HistoryQuery& quer
     return maker.add(row_of(decision), Json::array({decision.id}));
   });
   return maker.page();
+}
+
+HistoryPage blocks_page(storage::Database& database, const HistoryQuery& query) {
+  if (query.spacecraft.empty() || query.equipment.empty())
+    throw std::invalid_argument("blocks are of one equipment; name it and its spacecraft");
+  const auto blocks =
+      Registry(database).blocks(query.spacecraft, query.equipment, first_begin(query));
+  return page_by_time<storage::Block>(
+      query, blocks, [](const storage::Block& block) { return block.range.begin; });
+}
+
+HistoryPage scores_page(storage::Database& database, const HistoryQuery& query) {
+  if (query.spacecraft.empty() || query.equipment.empty() || query.version == 0)
+    throw std::invalid_argument(
+        "scores are of one version; name it, its equipment and its spacecraft");
+  const auto scores = Registry(database).scores(query.spacecraft, query.equipment, query.version,
+                                                first_begin(query));
+  return page_by_time<storage::BlockScore>(
+      query, scores, [](const storage::BlockScore& score) { return score.begin; });
 }
 
 }  // namespace reident::history

@@ -128,6 +128,15 @@ std::optional<storage::Decision> RemoteHistoryReader::champion_decision(
   return row ? std::move(row->decision) : std::nullopt;
 }
 
+std::vector<storage::Block> RemoteHistoryReader::blocks(const EquipmentName& equipment) const {
+  return rows_.all<storage::Block>(about("blocks", equipment));
+}
+
+std::vector<storage::BlockScore> RemoteHistoryReader::scores(const EquipmentName& equipment,
+                                                             std::int64_t version) const {
+  return rows_.all<storage::BlockScore>(about("scores", equipment, version));
+}
+
 std::optional<storage::ParameterDescriptor> RemoteTelemetryReader::parameter(
     const std::string& spacecraft, const std::string& name) const {
   std::optional<storage::ParameterDescriptor> found;

@@ -76,4 +76,17 @@ double read_number(const Json& value) {
   throw std::invalid_argument("'" + text + "' is no number");
 }
 
+Json numbers_value(const std::vector<double>& numbers) {
+  Json array = Json::array();
+  for (const double number : numbers) array.push_back(number_value(number));
+  return array;
+}
+
+std::vector<double> read_numbers(const Json& value) {
+  if (!value.is_array()) throw std::invalid_argument("an array of numbers is wanted");
+  std::vector<double> numbers;
+  for (const Json& number : value) numbers.push_back(read_number(number));
+  return numbers;
+}
+
 }  // namespace reident::history

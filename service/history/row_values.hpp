@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "service/history/rows.hpp"
 
@@ -22,6 +23,10 @@ std::string read_document(const Json& value);
 /// A double, also one that is not finite.
 Json number_value(double number);
 double read_number(const Json& value);
+
+/// An array of them.
+Json numbers_value(const std::vector<double>& numbers);
+std::vector<double> read_numbers(const Json& value);
 
 /// A value, or null.
 template <typename T>

@@ -94,6 +94,47 @@ void read_row(const Json& row, storage::Decision& decision) {
   if (row.contains("evidence")) decision.evidence_json = read_document(row["evidence"]);
 }
 
+Json row_of(const storage::Block& block) {
+  return {{"begin_ns", block.range.begin},
+          {"end_ns", block.range.end},
+          {"rows", block.rows},
+          {"believed", number_value(block.believed)},
+          {"output_mean", numbers_value(block.output_mean)},
+          {"output_square", numbers_value(block.output_square)},
+          {"input_low", numbers_value(block.input_low)},
+          {"input_high", numbers_value(block.input_high)},
+          {"baseline_square", numbers_value(block.baseline_square)}};
+}
+
+void read_row(const Json& row, storage::Block& block) {
+  block.range = {row.at("begin_ns").get<storage::Time>(), row.at("end_ns").get<storage::Time>()};
+  block.rows = row.at("rows").get<std::int64_t>();
+  block.believed = read_number(row.at("believed"));
+  block.output_mean = read_numbers(row.at("output_mean"));
+  block.output_square = read_numbers(row.at("output_square"));
+  block.input_low = read_numbers(row.at("input_low"));
+  block.input_high = read_numbers(row.at("input_high"));
+  block.baseline_square = read_numbers(row.at("baseline_square"));
+}
+
+Json row_of(const storage::BlockScore& score) {
+  return {{"version", score.version},
+          {"begin_ns", score.begin},
+          {"rows", score.rows},
+          {"error_mean", numbers_value(score.mean)},
+          {"error_square", numbers_value(score.square)},
+          {"noise_square", numbers_value(score.noise)}};
+}
+
+void read_row(const Json& row, storage::BlockScore& score) {
+  score.version = row.at("version").get<std::int64_t>();
+  score.begin = row.at("begin_ns").get<storage::Time>();
+  score.rows = row.at("rows").get<std::int64_t>();
+  score.mean = read_numbers(row.at("error_mean"));
+  score.square = read_numbers(row.at("error_square"));
+  score.noise = read_numbers(row.at("noise_square"));
+}
+
 Json row_of(const ChampionRow& row) {
   return {{"spacecraft", text_value(row.name.spacecraft)},
           {"equipment", text_value(row.name.equipment)},

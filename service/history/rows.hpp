@@ -47,6 +47,9 @@ Json row_of(const EquipmentRow& row);
 Json row_of(const storage::Attempt& attempt);
 Json row_of(const storage::Decision& decision);
 Json row_of(const ChampionRow& row);
+Json row_of(const storage::Block& block);
+/// Without the state of the run.
+Json row_of(const storage::BlockScore& score);
 /// A version without its model and without its provenance.
 Json summary_row_of(const storage::Version& version);
 Json row_of(const storage::Version& version);
@@ -65,6 +68,8 @@ void read_row(const Json& row, EquipmentRow& equipment);
 void read_row(const Json& row, storage::Attempt& attempt);
 void read_row(const Json& row, storage::Decision& decision);
 void read_row(const Json& row, ChampionRow& champion);
+void read_row(const Json& row, storage::Block& block);
+void read_row(const Json& row, storage::BlockScore& score);
 /// Reads a summary too; the members that it does not have stay empty.
 void read_row(const Json& row, storage::Version& version);
 void read_row(const Json& row, storage::ParameterDescriptor& parameter);

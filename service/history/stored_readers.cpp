@@ -54,6 +54,15 @@ std::optional<storage::Decision> StoredHistory::champion_decision(
   return registry_.champion_decision(equipment.spacecraft, equipment.equipment, time);
 }
 
+std::vector<storage::Block> StoredHistory::blocks(const EquipmentName& equipment) const {
+  return registry_.blocks(equipment.spacecraft, equipment.equipment, INT64_MIN);
+}
+
+std::vector<storage::BlockScore> StoredHistory::scores(const EquipmentName& equipment,
+                                                       std::int64_t version) const {
+  return registry_.scores(equipment.spacecraft, equipment.equipment, version, INT64_MIN);
+}
+
 std::optional<storage::ParameterDescriptor> StoredTelemetry::parameter(
     const std::string& spacecraft, const std::string& name) const {
   return archive_.parameter(spacecraft, name);

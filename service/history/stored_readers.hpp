@@ -27,6 +27,9 @@ class StoredHistory final : public HistoryReader {
                                            std::optional<std::int64_t> version) const override;
   std::optional<storage::Decision> champion_decision(
       const storage::EquipmentName& equipment, std::optional<storage::Time> time) const override;
+  std::vector<storage::Block> blocks(const storage::EquipmentName& equipment) const override;
+  std::vector<storage::BlockScore> scores(const storage::EquipmentName& equipment,
+                                          std::int64_t version) const override;
 
  private:
   storage::Registry registry_;

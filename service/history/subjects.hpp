@@ -21,6 +21,9 @@ HistoryPage versions_page(storage::Database& database, const HistoryQuery& query
 HistoryPage models_page(storage::Database& database, const HistoryQuery& query);
 HistoryPage decisions_page(storage::Database& database, const HistoryQuery& query);
 HistoryPage champions_page(storage::Database& database, const HistoryQuery& query);
+// Of one equipment, and of one of its versions.
+HistoryPage blocks_page(storage::Database& database, const HistoryQuery& query);
+HistoryPage scores_page(storage::Database& database, const HistoryQuery& query);
 
 // From the archive. Parameters are of one spacecraft, samples and completeness of one series.
 HistoryPage parameters_page(storage::Database& database, const HistoryQuery& query);

@@ -1,11 +1,9 @@
-// Whether a candidate is admissible (R4): what its window alone says against it.
+// Whether a candidate may become a challenger (R4): what its window alone says against it.
 //
-// service/DESIGN.md has the table of reasons. An admissible candidate becomes a challenger; the
-// telemetry of its validation part and after its window decides (league.hpp).
+// The telemetry of its validation part and after its window decides on a challenger (league.hpp).
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "service/config/config.hpp"
 #include "service/model/reasons.hpp"
@@ -18,9 +16,8 @@ struct Evidence {
   bool well_formed = false;  // sizes agree, all numbers finite
   double spectral_radius = 0;
   double slowest_over_window = 0;  // the longest time constant over the window's length
-  bool validation_moves = false;   // every output takes more than one value there
   double mrse_percent = 0;
-  double fit_percent = 0;  // the worst output's
+  double fit_percent = 0;  // the worst output's; not a number where an output does not move
 };
 
 /// Returns the evidence of the window's candidate; requires one.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 
+#include "identification/statistics/betting.hpp"
 #include "identification/statistics/change_detection.hpp"
 #include "service/windows/block_reader.hpp"
 
@@ -20,6 +22,7 @@ using identification::Vector;
 using storage::Block;
 using storage::BlockScore;
 using storage::Time;
+using Code = ReasonCode;
 
 constexpr double largest_score = 1;
 /// A block of which less is believed says nothing.
@@ -107,46 +110,62 @@ struct Sums {
     for (std::size_t q = 0; q < error.size(); ++q) sum += std::sqrt(error[q] / y_square[q]);
     return error.empty() ? 0 : 100 * sum / static_cast<double>(error.size());
   }
-  double mean_mrse_percent() const {
-    double sum = 0;
+  /// The worst output's.
+  double fit_percent() const {
+    double worst = 0;
     for (std::size_t q = 0; q < error.size(); ++q)
-      sum += std::sqrt(std::max(0.0, 1 - y[q] * y[q] / rows / y_square[q]));
-    return error.empty() ? 0 : 100 * sum / static_cast<double>(error.size());
+      worst = std::max(worst, std::sqrt(error[q] / (y_square[q] - y[q] * y[q] / rows)));
+    return 100 * (1 - worst);
   }
 };
 
-/// Number of the regime of each block that counts, -1 for others. A block is of the nearest regime
-/// that is near enough, or begins one.
-std::vector<int> regimes_of(const std::vector<Block>& blocks) {
+/// Ranges of the inputs over the cycle that ends with each block; empty of a block that does not
+/// count.
+struct InputRange {
   std::vector<double> low, high;
-  for (const Block& block : blocks) {
-    if (!counts(block)) continue;
-    if (low.empty()) low = block.input_low, high = block.input_high;
+
+  void widen(const std::vector<double>& other_low, const std::vector<double>& other_high) {
+    if (low.empty()) low = other_low, high = other_high;
     for (std::size_t i = 0; i < low.size(); ++i) {
-      low[i] = std::min(low[i], block.input_low[i]);
-      high[i] = std::max(high[i], block.input_high[i]);
+      low[i] = std::min(low[i], other_low[i]);
+      high[i] = std::max(high[i], other_high[i]);
     }
   }
-  std::vector<const Block*> leaders;
+  /// Largest distance of an end from the other's, over the range of `all`.
+  double distance(const InputRange& other, const InputRange& all) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < low.size(); ++i)
+      if (const double range = all.high[i] - all.low[i]; range > 0)
+        largest = std::max({largest, std::abs(low[i] - other.low[i]) / range,
+                            std::abs(high[i] - other.high[i]) / range});
+    return largest;
+  }
+};
+
+/// Number of the operating regime of each block that counts, -1 for others: cycles over which the
+/// inputs have about the same ranges are of one regime. A block is of the nearest regime that is
+/// near enough, or begins one.
+std::vector<int> regimes_of(const std::vector<Block>& blocks) {
+  std::vector<InputRange> cycles(blocks.size());
+  InputRange all;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!counts(blocks[i])) continue;
+    all.widen(blocks[i].input_low, blocks[i].input_high);
+    for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
+      if (counts(blocks[k])) cycles[i].widen(blocks[k].input_low, blocks[k].input_high);
+  }
+  std::vector<const InputRange*> leaders;
   std::vector<int> regimes;
-  for (const Block& block : blocks) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
     regimes.push_back(-1);
-    if (!counts(block)) continue;
+    if (!counts(blocks[i])) continue;
     double nearest = regime_width;
-    for (std::size_t r = 0; r < leaders.size(); ++r) {
-      double distance = 0;
-      for (std::size_t i = 0; i < low.size(); ++i) {
-        const double range = high[i] - low[i];
-        if (!(range > 0)) continue;
-        distance =
-            std::max({distance, std::abs(block.input_low[i] - leaders[r]->input_low[i]) / range,
-                      std::abs(block.input_high[i] - leaders[r]->input_high[i]) / range});
-      }
-      if (distance < nearest) nearest = distance, regimes.back() = static_cast<int>(r);
-    }
+    for (std::size_t r = 0; r < leaders.size(); ++r)
+      if (const double distance = cycles[i].distance(*leaders[r], all); distance < nearest)
+        nearest = distance, regimes.back() = static_cast<int>(r);
     if (regimes.back() < 0) {
       regimes.back() = static_cast<int>(leaders.size());
-      leaders.push_back(&block);
+      leaders.push_back(&cycles[i]);
     }
   }
   return regimes;
@@ -158,9 +177,30 @@ struct Pair {
   Sums member, champion;
 };
 
-ScoreSeries series(const std::vector<double>& scores) {
+ScoreSeries series(const std::vector<double>& scores, double assumed) {
   return {Eigen::Map<const Vector>(scores.data(), std::ssize(scores)), largest_score,
-          blocks_of_cycle};
+          blocks_of_cycle, assumed};
+}
+
+/// Dependence of the scores of the two members with the longest records: what is assumed of
+/// versions whose records are short. 0 where there are no two.
+double usual_dependence(const League& league) {
+  std::vector<const Member*> members;
+  for (const Member& member : league.challengers) members.push_back(&member);
+  if (league.champion) members.push_back(&*league.champion);
+  if (members.size() < 2) return 0;
+  std::partial_sort(members.begin(), members.begin() + 2, members.end(),
+                    [](const Member* a, const Member* b) {
+                      return a->scores.size() > b->scores.size();
+                    });
+  std::vector<double> scores;
+  for (const Block& block : league.blocks) {
+    if (!counts(block)) continue;
+    const BlockScore* one = find(*members[0], block.range.begin);
+    const BlockScore* other = find(*members[1], block.range.begin);
+    if (one && other) scores.push_back(score_of(*one, *other));
+  }
+  return dependence(series(scores, 0));
 }
 
 /// The score of an error that is less by the margin.
@@ -224,28 +264,24 @@ double uncovered_share(const League& league, const std::vector<int>& regimes,
   return all > 0 ? uncovered / all : 0;
 }
 
-bool worse_in_a_regime(const Pair& pair, const EquipmentConfig& limits) {
+bool worse_in_a_regime(const Pair& pair, double assumed, const EquipmentConfig& limits) {
   std::map<int, std::vector<double>> losses;
   for (std::size_t i = 0; i < pair.scores.size(); ++i)
     losses[pair.regimes[i]].push_back(-pair.scores[i]);
   const double threshold = std::log(static_cast<double>(losses.size()) / error_probability(limits));
   return std::any_of(losses.begin(), losses.end(), [&](const auto& of_regime) {
-    const ScoreSeries loss = series(of_regime.second);
+    const ScoreSeries loss = series(of_regime.second, assumed);
     return lower_mean(loss, dependence(loss), threshold) > margin_of(limits);
   });
 }
 
-/// R4: what a version errs, beside the mean of the outputs and the simulator's own model.
-bool is_admissible(const Finding& finding, const EquipmentConfig& limits) {
-  const double error = finding.mrse_percent;
-  return std::isfinite(error) && error <= limits.max_mrse_percent &&
-         error < finding.mean_mrse_percent;
-}
-
-bool beats_baseline(const Finding& finding, const EquipmentConfig& limits) {
-  if (finding.baseline_mrse_percent > 0)
-    return finding.mrse_percent < finding.baseline_mrse_percent;
-  return !limits.baseline_mrse_percent || finding.mrse_percent < *limits.baseline_mrse_percent;
+/// R4, on the record.
+std::optional<Reason> inadmissible(const Finding& finding, const EquipmentConfig& limits) {
+  if (!std::isfinite(finding.mrse_percent)) return because<Code::not_finite>();
+  if (finding.mrse_percent > limits.max_mrse_percent)
+    return because<Code::error_above_limit>(finding.mrse_percent, limits.max_mrse_percent);
+  if (!(finding.fit_percent > 0)) return because<Code::not_better_than_mean>(finding.fit_percent);
+  return std::nullopt;
 }
 
 /// A first version has to be good on telemetry of a whole cycle.
@@ -263,63 +299,103 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
     beside_baseline.add(block, score->square);
   }
   finding.mrse_percent = own.mrse_percent();
-  finding.mean_mrse_percent = own.mean_mrse_percent();
+  finding.fit_percent = own.fit_percent();
   finding.baseline_mrse_percent = baseline.mrse_percent();
-  finding.recent_score = -finding.mrse_percent;
-  const bool holds =
-      finding.blocks >= blocks_of_cycle && is_admissible(finding, limits) &&
-      (baseline.rows == 0 ? beats_baseline(finding, limits)
-                          : beside_baseline.mrse_percent() < finding.baseline_mrse_percent);
-  finding.obstacle = holds ? Obstacle::none : Obstacle::not_admissible;
-  finding.log_wealth = -finding.mrse_percent;
+  finding.recent_score = finding.log_wealth = -finding.mrse_percent;
+  finding.obstacle = [&]() -> std::optional<Reason> {
+    if (finding.blocks < blocks_of_cycle)
+      return because<Code::too_few_blocks>(finding.blocks, std::int64_t{blocks_of_cycle});
+    if (auto reason = inadmissible(finding, limits)) return reason;
+    const double error =
+        baseline.rows > 0 ? beside_baseline.mrse_percent() : finding.mrse_percent;
+    const auto rival = baseline.rows > 0 ? finding.baseline_mrse_percent
+                                         : limits.baseline_mrse_percent.value_or(INFINITY);
+    if (!(error < rival)) return because<Code::not_better_than_simulator>(error, rival);
+    return std::nullopt;
+  }();
   return finding;
 }
 
-Finding judge_against_champion(const League& league, const std::vector<int>& regimes,
-                               const Member& member, Time since,
-                               const EquipmentConfig& limits) {
+/// Where and by what a league is judged.
+struct Standard {
+  const League& league;
+  const EquipmentConfig& limits;
+  Time since;                // records count from here on
+  std::vector<int> regimes;  // of the blocks
+  double assumed;            // dependence of scores
+};
+
+/// R2. Uncovered blocks count as if they were lost entirely.
+std::optional<Reason> unproved_somewhere(const Standard& standard, const Member& member,
+                                         const Pair& pair, Finding& finding) {
+  const std::int64_t champion = standard.league.champion->version;
+  finding.uncovered_share = uncovered_share(standard.league, standard.regimes, member);
+  if (finding.lower_score * (1 - finding.uncovered_share) <
+      largest_score * finding.uncovered_share)
+    return because<Code::not_covered>(champion, 100 * finding.uncovered_share);
+  if (worse_in_a_regime(pair, standard.assumed, standard.limits))
+    return because<Code::worse_in_regime>(champion);
+  return std::nullopt;
+}
+
+/// R3.
+std::optional<Reason> may_be_bias(const Standard& standard, const Pair& pair, Finding& finding) {
+  const std::vector<std::string>& unbound = standard.league.unbound;
+  if (standard.limits.bias == BiasPolicy::approve || unbound.empty()) return std::nullopt;
+  const ScoreSeries without = series(pair.without_offset, standard.assumed);
+  finding.mean_without_offset = without.scores.mean();
+  finding.wealth_without_offset = log_wealth(without, dependence(without), 0);
+  if (finding.wealth_without_offset > finding.log_threshold &&
+      finding.mean_without_offset > margin_of(standard.limits))
+    return std::nullopt;
+  std::string sensors;
+  for (const std::string& name : unbound) sensors += (sensors.empty() ? "" : ", ") + name;
+  return because<Code::bias_unverified>(standard.league.champion->version, sensors);
+}
+
+/// R5.
+std::optional<Reason> too_soon(const Standard& standard, const Member& member) {
+  const Member& champion = *standard.league.champion;
+  const Duration since = member.window.end - champion.window.end;
+  if (since <= 0 || since >= standard.limits.min_interval) return std::nullopt;
+  return because<Code::too_soon>(since, champion.version, standard.limits.min_interval);
+}
+
+Finding judge_against_champion(const Standard& standard, const Member& member) {
+  const EquipmentConfig& limits = standard.limits;
+  const std::int64_t champion = standard.league.champion->version;
   Finding finding;
   finding.version = member.version;
-  const Pair pair = pair_of(league, regimes, member, since);
+  const Pair pair = pair_of(standard.league, standard.regimes, member, standard.since);
   finding.blocks = std::ssize(pair.scores);
-  finding.log_threshold = log_threshold(league, member, since, limits);
+  finding.log_threshold = log_threshold(standard.league, member, standard.since, limits);
+  const auto not_better = [&] {
+    return because<Code::not_better>(champion, finding.mrse_percent, finding.champion_mrse_percent,
+                                     finding.blocks, finding.log_wealth, finding.log_threshold);
+  };
   if (pair.scores.empty()) {
-    finding.obstacle = Obstacle::not_better;
+    finding.obstacle = not_better();
     return finding;
   }
-  const ScoreSeries scores = series(pair.scores);
+  const ScoreSeries scores = series(pair.scores, standard.assumed);
   finding.dependence = dependence(scores);
   finding.log_wealth = log_wealth(scores, finding.dependence, 0);
   finding.mean_score = scores.scores.mean();
   finding.mrse_percent = pair.member.mrse_percent();
+  finding.fit_percent = pair.member.fit_percent();
   finding.champion_mrse_percent = pair.champion.mrse_percent();
-  finding.mean_mrse_percent = pair.member.mean_mrse_percent();
   const Index recent = std::min<Index>(scores.scores.size(), 2 * blocks_of_cycle);
   finding.recent_score = scores.scores.tail(recent).mean();
-
-  const double margin = margin_of(limits);
-  finding.obstacle = [&] {
-    if (!is_admissible(finding, limits)) return Obstacle::not_admissible;
-    if (!(finding.log_wealth > finding.log_threshold)) return Obstacle::not_better;
-    if (!(finding.mean_score > margin)) return Obstacle::within_margin;
+  finding.obstacle = [&]() -> std::optional<Reason> {
+    if (auto reason = inadmissible(finding, limits)) return reason;
+    if (!(finding.log_wealth > finding.log_threshold)) return not_better();
+    if (!(finding.mean_score > margin_of(limits)))
+      return because<Code::within_margin>(champion, limits.margin_percent, finding.mrse_percent,
+                                          finding.champion_mrse_percent, finding.blocks);
     finding.lower_score = lower_mean(scores, finding.dependence, finding.log_threshold);
-    finding.uncovered_share = uncovered_share(league, regimes, member);
-    if (finding.lower_score * (1 - finding.uncovered_share) <
-        largest_score * finding.uncovered_share)
-      return Obstacle::not_covered;
-    if (worse_in_a_regime(pair, limits)) return Obstacle::worse_in_regime;
-    if (limits.unvouched == UnvouchedPolicy::wait && !league.unbound.empty()) {
-      const ScoreSeries without = series(pair.without_offset);
-      finding.mean_without_offset = without.scores.mean();
-      finding.log_wealth_without_offset = log_wealth(without, dependence(without), 0);
-      if (!(finding.log_wealth_without_offset > finding.log_threshold &&
-            finding.mean_without_offset > margin))
-        return Obstacle::bias_unverified;
-    }
-    if (member.window.end > league.champion->window.end &&
-        member.window.end - league.champion->window.end < limits.min_interval)
-      return Obstacle::too_soon;
-    return Obstacle::none;
+    if (auto reason = unproved_somewhere(standard, member, pair, finding)) return reason;
+    if (auto reason = may_be_bias(standard, pair, finding)) return reason;
+    return too_soon(standard, member);
   }();
   return finding;
 }
@@ -392,7 +468,7 @@ std::optional<Change> change_of(const League& league) {
     const Duration length = block.range.end - block.range.begin;
     const auto phase = static_cast<std::size_t>(block.range.begin / length % blocks_of_cycle);
     if (detector.add(phase, error)) {
-      change = Change{since, block.range.end, 0};
+      change = Change{since, block.range.end};
       detector = {};
     } else if (detector.is_calm()) {
       since = block.range.end;
@@ -401,6 +477,16 @@ std::optional<Change> change_of(const League& league) {
   return change;
 }
 
+namespace {
+
+/// Records count from the last change on, or from the champion's window.
+Time counted_since(const League& league) {
+  const auto change = change_of(league);
+  return change ? change->since : league.champion->window.begin;
+}
+
+}  // namespace
+
 std::vector<Finding> judge(const League& league, const EquipmentConfig& limits) {
   std::vector<Finding> findings;
   if (!league.champion) {
@@ -408,19 +494,17 @@ std::vector<Finding> judge(const League& league, const EquipmentConfig& limits) 
       findings.push_back(judge_first(league, member, limits));
     return findings;
   }
-  const auto change = change_of(league);
-  const Time since = change ? change->since : league.champion->window.begin;
-  const std::vector<int> regimes = regimes_of(league.blocks);
+  const Standard standard{league, limits, counted_since(league), regimes_of(league.blocks),
+                          usual_dependence(league)};
   for (const Member& member : league.challengers)
-    findings.push_back(judge_against_champion(league, regimes, member, since, limits));
+    findings.push_back(judge_against_champion(standard, member));
   return findings;
 }
 
 std::optional<Finding> successor(const std::vector<Finding>& findings) {
   std::optional<Finding> best;
   for (const Finding& finding : findings)
-    if (finding.obstacle == Obstacle::none && (!best || finding.recent_score > best->recent_score))
-      best = finding;
+    if (!finding.obstacle && (!best || finding.recent_score > best->recent_score)) best = finding;
   return best;
 }
 
@@ -428,6 +512,54 @@ Finding weakest(const std::vector<Finding>& findings) {
   return *std::min_element(
       findings.begin(), findings.end(),
       [](const Finding& a, const Finding& b) { return a.log_wealth < b.log_wealth; });
+}
+
+std::optional<Reason> failure_of(const League& league, const EquipmentConfig& limits) {
+  if (!league.champion) return std::nullopt;
+  const Time since = counted_since(league);
+  std::vector<std::pair<const Block*, const BlockScore*>> record;
+  std::vector<double> mean;
+  double rows = 0;
+  for (const Block& block : league.blocks) {
+    if (!counts(block) || block.range.begin < since) continue;
+    const BlockScore* score = find(*league.champion, block.range.begin);
+    if (!score) continue;
+    record.push_back({&block, score});
+    mean.resize(block.output_mean.size(), 0);
+    const auto weight = static_cast<double>(block.rows);
+    for (std::size_t q = 0; q < mean.size(); ++q) mean[q] += weight * block.output_mean[q];
+    rows += weight;
+  }
+  for (double& value : mean) value /= rows;
+  // The rival's mean squared error on a block; empty where it is not known.
+  const auto fails_beside =
+      [&](const char* name,
+          const std::function<std::vector<double>(const Block&)>& square) -> std::optional<Reason> {
+    std::vector<double> scores;
+    Sums own, other;
+    for (const auto& [block, score] : record) {
+      BlockScore rival = *score;
+      rival.square = square(*block);
+      if (rival.square.empty()) continue;
+      scores.push_back(score_of(rival, *score));
+      own.add(*block, score->square);
+      other.add(*block, rival.square);
+    }
+    const ScoreSeries found = series(scores, 0);
+    if (!(log_wealth(found, dependence(found), 0) > -std::log(error_probability(limits))))
+      return std::nullopt;
+    return because<Code::champion_failed>(league.champion->version, own.mrse_percent(),
+                                          std::ssize(scores), name, other.mrse_percent());
+  };
+  if (auto reason = fails_beside("a constant at the mean", [&](const Block& block) {
+        std::vector<double> square = block.output_square;
+        for (std::size_t q = 0; q < square.size(); ++q)
+          square[q] += mean[q] * (mean[q] - 2 * block.output_mean[q]);
+        return square;
+      }))
+    return reason;
+  return fails_beside("the simulator's own model",
+                      [](const Block& block) { return block.baseline_square; });
 }
 
 }  // namespace reident

@@ -21,30 +21,17 @@ namespace reident {
 /// What an attempt at a window comes to. One that the identification gives no model for has the
 /// code of its verdict (identification/samples/verdict.hpp) as its outcome instead.
 enum class Outcome {
-  approved,
-  waiting,            // good enough; the policy leaves the decision to an operator
-  unvouched,          // better by a constant offset, which may be a sensor's; waits for an operator
-  held,               // good enough; an operator holds the equipment's version
-  on_probation,       // better, and nothing hurries; telemetry after the window decides
+  challenger,         // telemetry that it was not fitted to decides
   unknown_parameter,  // telemetry has not described a parameter of the equipment yet
   telemetry_damaged,  // samples that the attempt needs cannot be decoded any more
   low_coverage,
   implausible,  // sensors contradict each other, or themselves, on too much of the window
-  validation_says_nothing,
   not_finite,
   unstable,
   slower_than_window,  // a time constant that looks like an integrator's over the window
   error_above_limit,
-  fit_below_limit,
-  residual_out_of_range,
-  inputs_out_of_range,
-  not_better_than_baseline,
-  older_than_champion,
-  telemetry_in_doubt,  // so many sensor faults that more go unnoticed; the champion stays
-  comparison_says_nothing,
+  not_better_than_mean,
   not_better_than_champion,
-  disagrees_with_champion,
-  too_soon,
 };
 
 struct OutcomeRow {
@@ -62,69 +49,33 @@ enum class ReasonCode {
   low_coverage_with_derived,
   implausible,
   no_model,
-  // The gate, against a candidate.
-  validation_says_nothing,
+  // R4, of a candidate on its validation part and of a member on its record.
   not_finite,
   unstable,
   slower_than_window,
   error_above_limit,
-  fit_below_limit,
-  fit_of_few_samples,
-  fit_not_sure,
-  residual_out_of_range,
-  inputs_out_of_range,
+  not_better_than_mean,
   not_better_than_simulator,
-  not_below_baseline,
-  telemetry_in_doubt,
-  comparison_says_nothing,
-  not_surely_better,
-  gain_within_noise,
-  disagrees_with_champion,
-  older_than_champion,
-  too_soon,
-  // The gate, for a candidate.
+  // A candidate enters the league, or would only take another's place.
+  challenger,
+  not_better_where_validated,
+  too_few_blocks,
+  // A member of the league becomes champion.
   first_version,
-  champion_cannot_run,
-  better_than_champion,
-  // The gate, why a candidate waits.
-  held,
-  offset_unvouched,
-  waits_for_operator,
-  offset_not_sure,
-  gain_near_noise,
-  shorter_than_slowest,
-  input_still,
-  operation_unusual,
-  hardly_changed,
-  waits_for_telemetry,
-  // The evaluation of a version on probation: what was compared, and for it.
-  evaluated,
-  evaluated_beside_offset,
-  confirmed,
-  // Against it, without an evaluation.
-  unconfirmed_champion_withdrawn,
-  unconfirmed_confirmation_off,
-  unconfirmed_older,
-  unconfirmed_too_soon,
-  unconfirmed_damaged,
-  unconfirmed_other_outputs,
-  unconfirmed_nothing_left,
-  // Against it, after an evaluation.
-  unconfirmed_in_doubt,
-  unconfirmed_above_limit,
-  unconfirmed_nothing_after,
-  unconfirmed_worse_after,
-  unconfirmed_worse_with_window,
-  unconfirmed_not_surely_less,
-  unconfirmed_not_keeping_up,
-  unconfirmed_within_noise,
-  unconfirmed_input_still,
-  unconfirmed_unusual,
-  unconfirmed_no_change,
-  unconfirmed_after_not_sure,
-  unconfirmed_tenure_excluded,
-  unconfirmed_as_in_tenure,
-  unconfirmed_excursion,
+  better,
+  // It does not: the first condition that its record does not meet.
+  not_better,       // R1
+  within_margin,    // R1
+  not_covered,      // R2
+  worse_in_regime,  // R2
+  bias_unverified,  // R3
+  too_soon,         // R5
+  held,             // R5
+  waits_for_operator,  // R5
+  // It leaves the league.
+  league_full,
+  // The champion.
+  champion_failed,
 };
 
 struct ReasonRow {
@@ -144,30 +95,17 @@ struct Catalogue {
   static constexpr std::nullopt_t none = std::nullopt;
 
   static constexpr OutcomeRow outcomes[] = {
-      {O::approved, "approved", approve},
-      {O::waiting, "waiting", wait},
-      {O::unvouched, "unvouched", wait},
-      {O::held, "held", wait},
-      {O::on_probation, "on_probation", wait},
+      {O::challenger, "challenger", wait},
       {O::unknown_parameter, "unknown_parameter", none},
       {O::telemetry_damaged, "telemetry_damaged", none},
       {O::low_coverage, "low_coverage", none},
       {O::implausible, "implausible", none},
-      {O::validation_says_nothing, "validation_says_nothing", reject},
       {O::not_finite, "not_finite", reject},
       {O::unstable, "unstable", reject},
       {O::slower_than_window, "slower_than_window", reject},
       {O::error_above_limit, "error_above_limit", reject},
-      {O::fit_below_limit, "fit_below_limit", reject},
-      {O::residual_out_of_range, "residual_out_of_range", reject},
-      {O::inputs_out_of_range, "inputs_out_of_range", reject},
-      {O::not_better_than_baseline, "not_better_than_baseline", reject},
-      {O::older_than_champion, "older_than_champion", reject},
-      {O::telemetry_in_doubt, "telemetry_in_doubt", reject},
-      {O::comparison_says_nothing, "comparison_says_nothing", reject},
+      {O::not_better_than_mean, "not_better_than_mean", reject},
       {O::not_better_than_champion, "not_better_than_champion", reject},
-      {O::disagrees_with_champion, "disagrees_with_champion", reject},
-      {O::too_soon, "too_soon", reject},
   };
 
   static constexpr ReasonRow reasons[] = {
@@ -186,9 +124,6 @@ struct Catalogue {
        "{min_coverage_percent:g} % are needed."},
       {no_model, "no_model", none, "{verdict}"},
 
-      {validation_says_nothing, "validation_says_nothing", O::validation_says_nothing,
-       "An output does not move in the validation part, so that no score there can tell a good "
-       "model from a bad one."},
       {not_finite, "not_finite", O::not_finite,
        "The model or its run holds numbers that are not finite."},
       {unstable, "unstable", O::unstable,
@@ -197,163 +132,63 @@ struct Catalogue {
        "Its slowest time constant is {slowest_over_window:.3g} times the window's length, which "
        "cannot tell it: a long run would drift away."},
       {error_above_limit, "error_above_limit", O::error_above_limit,
-       "MRSE {mrse_percent:.3f} % on unseen data is above the limit of {max_mrse_percent:g} %."},
-      {fit_below_limit, "fit_below_limit", O::fit_below_limit,
-       "Fit {fit_percent:.2f} % on unseen data is below the limit of {min_fit_percent:g} % (0 % is "
-       "a constant at the mean)."},
-      {fit_of_few_samples, "fit_of_few_samples", O::fit_below_limit,
-       "Fit {fit_percent:.2f} % on {rows:d} unseen samples may be chance: they are too few, or too "
-       "much of one stretch, to tell."},
-      {fit_not_sure, "fit_not_sure", O::fit_below_limit,
-       "Fit {fit_percent:.2f} % on unseen data may be chance: with a confidence of "
-       "{confidence_percent:g} % it is not above 0 % (a constant at the mean)."},
-      {residual_out_of_range, "residual_out_of_range", O::residual_out_of_range,
-       "The largest error is {residual_over_span:.2f} times the output's range."},
-      {inputs_out_of_range, "inputs_out_of_range", O::inputs_out_of_range,
-       "On {outside_percent:.0f} % of the validation part an input is outside the range that the "
-       "model was identified in: the score there is of an extrapolation."},
-      {not_better_than_simulator, "not_better_than_simulator", O::not_better_than_baseline,
-       "MRSE {mrse_percent:.3f} % does not surely undercut the simulator's own telemetry "
-       "({simulator_mrse_percent:.3f} % on the same samples) by {margin_percent:g} %."},
-      {not_below_baseline, "not_below_baseline", O::not_better_than_baseline,
-       "MRSE {mrse_percent:.3f} % is not below the baseline's {baseline_mrse_percent:.3f} %."},
-      {telemetry_in_doubt, "telemetry_in_doubt", O::telemetry_in_doubt,
-       "{fault_percent:.2f} faults of sensors were found in 100 ticks: others that go unnoticed "
-       "make any comparison doubtful, and champion {champion:d} stays."},
-      {comparison_says_nothing, "comparison_says_nothing", O::comparison_says_nothing,
-       "{rows:d} samples compare the candidate with champion {champion:d}: too few, or too much of "
-       "one stretch, to tell."},
-      {not_surely_better, "not_surely_better", O::not_better_than_champion,
-       "MRSE {mrse_percent:.3f} % does not surely undercut champion {champion:d} "
-       "({champion_mrse_percent:.3f} % on the same samples) by {margin_percent:g} %: the reduction "
-       "is {reduction_percent:.2f} %, and {sure_reduction_percent:.2f} % with a confidence of "
+       "MRSE {mrse_percent:.3f} % on telemetry that it was not fitted to is above the limit of "
+       "{max_mrse_percent:g} %."},
+      {not_better_than_mean, "not_better_than_mean", O::not_better_than_mean,
+       "Fit {fit_percent:.2f} % on telemetry that it was not fitted to: an output's error is not "
+       "below that of a constant at its mean (0 %)."},
+      {not_better_than_simulator, "not_better_than_simulator", none,
+       "MRSE {mrse_percent:.3f} % is not below that of the simulator's own model "
+       "({baseline_mrse_percent:.3f} %)."},
+
+      {challenger, "challenger", O::challenger,
+       "A challenger with MRSE {mrse_percent:.3f} % on its validation part: that and the telemetry "
+       "after its window decide."},
+      {not_better_where_validated, "not_better_where_validated", O::not_better_than_champion,
+       "MRSE {mrse_percent:.3f} % on its validation part, where champion {champion:d} has "
+       "{champion_mrse_percent:.3f} %."},
+
+      {too_few_blocks, "too_few_blocks", none,
+       "{blocks:d} blocks of telemetry that it was not fitted to; a first version needs a whole "
+       "cycle, {needed:d}."},
+      {first_version, "first_version", none,
+       "The first version: MRSE {mrse_percent:.3f} %, fit {fit_percent:.1f} % on {blocks:d} blocks "
+       "of telemetry that it was not fitted to."},
+      {better, "better", none,
+       "MRSE {mrse_percent:.3f} % on {blocks:d} blocks of telemetry that it was not fitted to; "
+       "champion {champion:d} has {champion_mrse_percent:.3f} % there. The mean score is "
+       "{mean_score:.3f}, and at least {lower_score:.3f} with a confidence of "
        "{confidence_percent:g} %."},
-      {gain_within_noise, "gain_within_noise", O::not_better_than_champion,
-       "MRSE {mrse_percent:.3f} % undercuts champion {champion:d} ({champion_mrse_percent:.3f} % "
-       "on the same samples) by too little beside the noise of the sensors ({noise_percent:.3f} "
-       "%)."},
-      {disagrees_with_champion, "disagrees_with_champion", O::disagrees_with_champion,
-       "On {rows:d} samples of the window of champion {champion:d}, with inputs that this one was "
-       "not validated with, the two differ by {disagreement_percent:.1f} % of the output's range, "
-       "above the limit of {max_disagreement_percent:g} %, and the champion is nearer to the "
-       "telemetry of that time."},
-      {older_than_champion, "older_than_champion", O::older_than_champion,
-       "Champion {champion:d} was identified from newer telemetry."},
-      {too_soon, "too_soon", O::too_soon,
+
+      {not_better, "not_better", none,
+       "Not surely better than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
+       "{champion_mrse_percent:.3f} % on {blocks:d} blocks, log of the evidence {log_wealth:.2f} of "
+       "{log_threshold:.2f}."},
+      {within_margin, "within_margin", none,
+       "Better than champion {champion:d} by less than the margin of {margin_percent:g} %: MRSE "
+       "{mrse_percent:.3f} % and {champion_mrse_percent:.3f} % on {blocks:d} blocks."},
+      {not_covered, "not_covered", none,
+       "Champion {champion:d} has served {uncovered_percent:.0f} % of its time in operating regimes "
+       "that this version has not met."},
+      {worse_in_regime, "worse_in_regime", none,
+       "Surely worse than champion {champion:d} in an operating regime that this one has served."},
+      {bias_unverified, "bias_unverified", none,
+       "Better than champion {champion:d} but for a constant, which a biased sensor of {sensors} "
+       "would show too; no relation binds it. Waits for an operator's approval."},
+      {too_soon, "too_soon", none,
        "The window ends {since_ns:duration} after that of champion {champion:d}; versions are at "
        "least {min_interval_ns:duration} apart."},
+      {held, "held", none, "Better; waits: {actor} holds the equipment ({reason})."},
+      {waits_for_operator, "waits_for_operator", none,
+       "Better, with MRSE {mrse_percent:.3f} % on {blocks:d} blocks that it was not fitted to. "
+       "Waits for an operator's approval."},
 
-      {first_version, "first_version", O::approved,
-       "First version: MRSE {mrse_percent:.3f} %, fit {fit_percent:.1f} % on unseen data."},
-      {champion_cannot_run, "champion_cannot_run", O::approved,
-       "MRSE {mrse_percent:.3f} % on unseen data, on which champion {champion:d} cannot run."},
-      {better_than_champion, "better_than_champion", O::approved,
-       "MRSE {mrse_percent:.3f} % on unseen data; champion {champion:d} has "
-       "{champion_mrse_percent:.3f} % on the same samples."},
+      {league_full, "league_full", none,
+       "The league has {members:d} challengers with more evidence for them."},
 
-      {held, "held", O::held, "Waits: {actor} holds the equipment ({reason})."},
-      {offset_unvouched, "offset_unvouched", O::unvouched,
-       "But for a constant offset the champion is not surely worse by {margin_percent:g} %, and a "
-       "sensor of {sensors} would show the same; no relation binds it. Waits for an operator's "
-       "approval."},
-      {waits_for_operator, "waits_for_operator", O::waiting, "Waits for an operator's approval."},
-      {offset_not_sure, "offset_not_sure", none,
-       "But for a constant offset the champion has {champion_mrse_percent:.3f} %, which is not "
-       "surely worse by {needed_percent:g} %."},
-      {gain_near_noise, "gain_near_noise", none,
-       "That is little less beside the noise of the sensors ({noise_percent:.3f} %)."},
-      {shorter_than_slowest, "shorter_than_slowest", none,
-       "But those are fewer than the slowest time constant of the two lasts ({slowest_rows:.0f})."},
-      {input_still, "input_still", none,
-       "But {input} stands still all over the window: it is stuck, or the operation is not the "
-       "usual one."},
-      {operation_unusual, "operation_unusual", none,
-       "The inputs move over {movement_percent:.0f} % of the ranges that the champion was "
-       "identified in: the operation is not the usual one."},
-      {hardly_changed, "hardly_changed", none,
-       "It had {champion_validated_mrse_percent:.3f} % where it was validated, so that the "
-       "equipment has hardly changed."},
-      {waits_for_telemetry, "waits_for_telemetry", O::on_probation,
-       "Waits for {confirmation_ns:duration} of telemetry after its window, or for twice as much."},
-
-      {evaluated, "evaluated", none,
-       "MRSE {mrse_percent:.3f} % on {rows:d} samples of the validation part and after it, until "
-       "{until_ns:time}; champion {champion:d} has {champion_mrse_percent:.3f} % there."},
-      {evaluated_beside_offset, "evaluated_beside_offset", none,
-       "MRSE {mrse_percent:.3f} % on {rows:d} samples of the validation part and after it, until "
-       "{until_ns:time}; champion {champion:d} has {champion_mrse_percent:.3f} % there, "
-       "{without_offset_percent:.3f} % but for a constant offset that no relation vouches for."},
-      {confirmed, "confirmed", none,
-       "Confirmed: the reduction is {reduction_percent:.2f} %, and with a confidence of "
-       "{confidence_percent:g} % at least {sure_reduction_percent:.2f} %."},
-
-      {unconfirmed_champion_withdrawn, "unconfirmed_champion_withdrawn", none,
-       "Not confirmed: the champion that it was to replace was withdrawn; windows that end from "
-       "now on are judged without one."},
-      {unconfirmed_confirmation_off, "unconfirmed_confirmation_off", none,
-       "Not confirmed: `confirmation` is 0 now, so that no version waits for telemetry after its "
-       "window."},
-      {unconfirmed_older, "unconfirmed_older", none,
-       "Not confirmed: champion {champion:d} was identified from newer telemetry."},
-      {unconfirmed_too_soon, "unconfirmed_too_soon", none,
-       "Not confirmed: the window ends {since_ns:duration} after that of champion {champion:d}; "
-       "versions are at least {min_interval_ns:duration} apart."},
-      {unconfirmed_damaged, "unconfirmed_damaged", none,
-       "Not confirmed: version {version:d} is damaged in the registry: {damage}."},
-      {unconfirmed_other_outputs, "unconfirmed_other_outputs", none,
-       "Not confirmed: champion {champion:d} has other outputs."},
-      {unconfirmed_nothing_left, "unconfirmed_nothing_left", none,
-       "Not confirmed: no telemetry to judge it by is left."},
-
-      {unconfirmed_in_doubt, "unconfirmed_in_doubt", none,
-       "Not confirmed: with {fault_percent:.2f} faults of sensors found in 100 ticks any "
-       "comparison is doubtful."},
-      {unconfirmed_above_limit, "unconfirmed_above_limit", none,
-       "Not confirmed: that is above the limit of {max_mrse_percent:g} %."},
-      {unconfirmed_nothing_after, "unconfirmed_nothing_after", none,
-       "Not confirmed: of the telemetry after its window none is believed and says anything."},
-      {unconfirmed_worse_after, "unconfirmed_worse_after", none,
-       "Not confirmed: on the {rows:d} samples after its window alone it has {mrse_percent:.3f} % "
-       "and the champion {champion_mrse_percent:.3f} %."},
-      {unconfirmed_worse_with_window, "unconfirmed_worse_with_window", none,
-       "Not confirmed: over all of its window and what came after it, it has {mrse_percent:.3f} % "
-       "and the champion {champion_mrse_percent:.3f} %."},
-      {unconfirmed_not_surely_less, "unconfirmed_not_surely_less", none,
-       "Not confirmed: that is not {margin_percent:g} % less, and surely {needed_percent:g} %."},
-      {unconfirmed_not_keeping_up, "unconfirmed_not_keeping_up", none,
-       "Not confirmed: that is not {margin_percent:g} % less, and surely {needed_percent:g} %, as "
-       "it has to be of a version that has {after_mrse_percent:.3f} % after its window and had "
-       "{validated_mrse_percent:.3f} % where it was validated."},
-      {unconfirmed_within_noise, "unconfirmed_within_noise", none,
-       "Not confirmed: that is too little less beside the noise of the sensors "
-       "({noise_percent:.3f} %)."},
-      {unconfirmed_input_still, "unconfirmed_input_still", none,
-       "Not confirmed: from the begin of its window on {input} stands still: it is stuck, or the "
-       "operation is not the usual one."},
-      {unconfirmed_unusual, "unconfirmed_unusual", none,
-       "Not confirmed: there the inputs move over {movement_percent:.0f} % of the ranges that the "
-       "champion was identified in: an unusual operation, which says little of the usual one."},
-      {unconfirmed_no_change, "unconfirmed_no_change", none,
-       "Not confirmed: the champion had {champion_validated_mrse_percent:.3f} % where it was "
-       "validated, so that nothing tells of a change; over {rows:d} samples of then and now the "
-       "version has {mrse_percent:.3f} % and the champion {champion_mrse_percent:.3f} %."},
-      {unconfirmed_after_not_sure, "unconfirmed_after_not_sure", none,
-       "Not confirmed: on the {rows:d} samples after its window alone it has {mrse_percent:.3f} % "
-       "and the champion {champion_mrse_percent:.3f} %, which is not surely less."},
-      {unconfirmed_tenure_excluded, "unconfirmed_tenure_excluded", none,
-       "Not confirmed: the champion had {champion_validated_mrse_percent:.3f} % where it was "
-       "validated, and of the telemetry that leads from then to the version's window "
-       "{believed_percent:.0f} % is believed, so that nothing tells of a change."},
-      {unconfirmed_as_in_tenure, "unconfirmed_as_in_tenure", none,
-       "Not confirmed: since the champion was validated it had up to "
-       "{champion_worst_mrse_percent:.3f} % already, so that nothing tells of a change; over "
-       "{rows:d} samples of then and now the version has {mrse_percent:.3f} % and the champion "
-       "{champion_mrse_percent:.3f} %."},
-      {unconfirmed_excursion, "unconfirmed_excursion", none,
-       "Not confirmed: but for a constant the champion has {without_offset_percent:.3f} %, and a "
-       "mode with a time constant of {slowest_rows:.0f} samples may make it for a while; over "
-       "{rows:d} samples since the champion was validated the version has {mrse_percent:.3f} % and "
-       "the champion {champion_mrse_percent:.3f} %."},
+      {champion_failed, "champion_failed", none,
+       "Champion {champion:d} has MRSE {mrse_percent:.3f} % on {blocks:d} blocks, surely more than "
+       "{rival} ({rival_mrse_percent:.3f} %)."},
   };
 };
 

@@ -119,20 +119,7 @@ CommandOutcome approve(const Order& order) {
   if (auto refusal = refuse_what_does_not_wait(order, version)) return *refusal;
   if (const auto hold = order.registry.hold(order.spacecraft(), order.name()))
     return refused(hold_text(order.equipment, *hold) + ": release it first");
-  const auto made = order.registry.champion_decision(order.spacecraft(), order.name());
-  if (version.parent != (made ? std::optional(made->version) : std::nullopt))
-    return refused(fmt::format(
-        "version {} of {} was judged against {}, and {}: reject it and wait for one that is judged "
-        "against today's",
-        version.number, order.full_name(),
-        version.parent ? fmt::format("version {}", *version.parent) : "no champion",
-        champion_text(made)));
   const auto champion = order.registry.champion(order.spacecraft(), order.name());
-  if (champion && version.window.end < champion->window.end)
-    return refused(fmt::format(
-        "the window of version {} of {} ends at {}, before that of champion {} ({}): reject it",
-        version.number, order.full_name(), time_text(version.window.end), champion->number,
-        time_text(champion->window.end)));
   order.decide(version.number, DecisionKind::approve);
   return done(fmt::format("version {} of {} is approved and champion now, {}", version.number,
                           order.full_name(),

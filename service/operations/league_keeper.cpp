@@ -19,21 +19,37 @@ using nlohmann::ordered_json;
 using storage::DecisionKind;
 using storage::Time;
 
-storage::NewDecision decision_of(DecisionKind kind, const Finding& finding, std::string reason) {
-  const ordered_json evidence = {{"blocks", finding.blocks},
-                                 {"dependence", finding.dependence},
-                                 {"log_wealth", finding.log_wealth},
-                                 {"log_threshold", finding.log_threshold},
-                                 {"mean_score", finding.mean_score},
-                                 {"lower_score", finding.lower_score},
-                                 {"mean_without_offset", finding.mean_without_offset},
-                                 {"uncovered_share", finding.uncovered_share},
-                                 {"mrse_percent", finding.mrse_percent},
-                                 {"champion_mrse_percent", finding.champion_mrse_percent},
-                                 {"mean_mrse_percent", finding.mean_mrse_percent},
-                                 {"obstacle", static_cast<int>(finding.obstacle)}};
-  return {kind, "gate", std::move(reason),
+constexpr const char* gate = "gate";  // as who decides
+
+ordered_json to_json(const Finding& finding) {
+  return {{"blocks", finding.blocks},
+          {"dependence", finding.dependence},
+          {"log_wealth", finding.log_wealth},
+          {"log_threshold", finding.log_threshold},
+          {"mean_score", finding.mean_score},
+          {"lower_score", finding.lower_score},
+          {"uncovered_share", finding.uncovered_share},
+          {"mean_without_offset", finding.mean_without_offset},
+          {"log_wealth_without_offset", finding.wealth_without_offset},
+          {"mrse_percent", finding.mrse_percent},
+          {"fit_percent", finding.fit_percent},
+          {"champion_mrse_percent", finding.champion_mrse_percent},
+          {"baseline_mrse_percent", finding.baseline_mrse_percent}};
+}
+
+storage::NewDecision decision_of(DecisionKind kind, const std::vector<Reason>& reasons,
+                                 ordered_json evidence) {
+  evidence["reasons"] = to_json(reasons);
+  return {kind, gate, sentences(reasons),
           evidence.dump(-1, ' ', false, ordered_json::error_handler_t::replace)};
+}
+
+/// The code of the last reason of a decision; empty where it has none.
+std::string last_code(const storage::Decision& decision) {
+  const ordered_json evidence = ordered_json::parse(decision.evidence_json, nullptr, false);
+  if (!evidence.is_object() || !evidence.contains("reasons") || evidence["reasons"].empty())
+    return {};
+  return evidence["reasons"].back().value("code", "");
 }
 
 }  // namespace
@@ -80,25 +96,24 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
     return Member{number, version->window,
                   registry.scores(spacecraft_, equipment_.name, number, INT64_MIN)};
   };
-  std::int64_t champion = 0, before = 0;
-  league_.champion_since = INT64_MIN;
+  std::int64_t passed_over = 0;
   if (const auto made = registry.champion_decision(spacecraft_, equipment_.name)) {
-    champion = made->version;
-    league_.champion = member_of(champion);
-    const ordered_json evidence = ordered_json::parse(made->evidence_json, nullptr, false);
-    if (evidence.is_object() && evidence.contains("until_ns"))
-      league_.champion_since = evidence["until_ns"].get<Time>();
+    league_.champion = member_of(made->version);
+    if (made->actor == gate) {
+      // The champion before may be the better one again, as when a change is undone.
+      if (const auto before = registry.previous_champion(spacecraft_, equipment_.name))
+        if (auto member = member_of(before->number))
+          league_.challengers.push_back(*std::move(member));
+    } else if (made->kind == DecisionKind::roll_back) {
+      passed_over = made->id;  // the operator knew these versions, and chose another one
+    }
   }
-  for (const storage::Decision& decision : registry.decisions(spacecraft_, equipment_.name))
-    if ((decision.kind == DecisionKind::approve || decision.kind == DecisionKind::roll_back) &&
-        decision.version != champion)
-      before = decision.version;
-  // The champion before may be the better one again, as when a change is undone.
-  if (before != 0 && registry.version(spacecraft_, equipment_.name, before)->status == "superseded")
-    if (auto member = member_of(before)) league_.challengers.push_back(*std::move(member));
-  for (const std::int64_t number : registry.undecided(spacecraft_, equipment_.name, "on_probation"))
+  for (const std::int64_t number : registry.waiting(spacecraft_, equipment_.name,
+                                                    std::string(name(Outcome::challenger)),
+                                                    passed_over))
     if (auto member = member_of(number)) league_.challengers.push_back(*std::move(member));
-  league_.admitted = registry.windows(spacecraft_, equipment_.name, "on_probation");
+  league_.admitted =
+      registry.windows(spacecraft_, equipment_.name, std::string(name(Outcome::challenger)));
   standing_ = standing;
 }
 
@@ -135,31 +150,78 @@ void LeagueKeeper::catch_up(const storage::Archive& archive, Member& member, Tim
   }
 }
 
+bool LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter& writer,
+                          const Finding& finding, DecisionKind kind,
+                          const std::vector<Reason>& reasons, Time now) {
+  ordered_json evidence = to_json(finding);
+  evidence["until_ns"] = now;
+  if (league_.champion) evidence["champion"] = league_.champion->version;
+  return writer.decide(*standing_,
+                       {*registry.version(spacecraft_, equipment_.name, finding.version),
+                        decision_of(kind, reasons, std::move(evidence))});
+}
+
+void LeagueKeeper::let_wait(const storage::Registry& registry, const LeagueWriter& writer,
+                            const Finding& finding, const Reason& reason, Time now) {
+  const auto decisions = registry.decisions(spacecraft_, equipment_.name, finding.version);
+  if (decisions.back().kind == DecisionKind::wait && last_code(decisions.back()) != name(reason.code))
+    decide(registry, writer, finding, DecisionKind::wait, {reason}, now);
+}
+
+Reason LeagueKeeper::why_better(const Finding& finding) const {
+  if (!league_.champion)
+    return because<ReasonCode::first_version>(finding.mrse_percent, finding.fit_percent,
+                                              finding.blocks);
+  return because<ReasonCode::better>(finding.mrse_percent, finding.blocks,
+                                     league_.champion->version, finding.champion_mrse_percent,
+                                     finding.mean_score, finding.lower_score,
+                                     equipment_.confidence_percent);
+}
+
 void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter& writer, Time now) {
-  if (league_.challengers.empty() || equipment_.approval == ApprovalPolicy::by_hand ||
-      registry.hold(spacecraft_, equipment_.name))
-    return;
   const std::vector<Finding> findings = judge(league_, equipment_);
-  const auto apply = [&](const Finding& finding, DecisionKind kind, const std::string& reason) {
-    storage::NewDecision decision = decision_of(kind, finding, reason);
-    ordered_json evidence = ordered_json::parse(decision.evidence_json);
-    evidence["until_ns"] = now;
-    decision.evidence_json = evidence.dump();
-    writer.decide(*standing_, {*registry.version(spacecraft_, equipment_.name, finding.version),
-                               std::move(decision)});
-  };
   const auto is_waiting = [&](const Finding& finding) {
     return registry.version(spacecraft_, equipment_.name, finding.version)->status == "waiting";
   };
+  const auto hold = registry.hold(spacecraft_, equipment_.name);
   if (const auto found = successor(findings)) {
-    apply(*found, is_waiting(*found) ? DecisionKind::approve : DecisionKind::roll_back, "better");
-  } else {
-    std::vector<Finding> waiting;
-    std::copy_if(findings.begin(), findings.end(), std::back_inserter(waiting), is_waiting);
-    if (std::ssize(waiting) > equipment_.members)
-      apply(weakest(waiting), DecisionKind::reject, "weakest");
+    const bool waits = is_waiting(*found);
+    if (hold) {
+      if (waits) let_wait(registry, writer, *found, because<ReasonCode::held>(hold->actor, hold->reason), now);
+    } else if (equipment_.approval == ApprovalPolicy::by_hand) {
+      if (waits)
+        let_wait(registry, writer, *found,
+                 because<ReasonCode::waits_for_operator>(found->mrse_percent, found->blocks), now);
+    } else {
+      decide(registry, writer, *found, waits ? DecisionKind::approve : DecisionKind::roll_back,
+             {why_better(*found)}, now);
+      return read_members(registry);
+    }
   }
+  std::vector<Finding> waiting;
+  std::copy_if(findings.begin(), findings.end(), std::back_inserter(waiting), is_waiting);
+  for (const Finding& finding : waiting)
+    if (finding.obstacle && finding.obstacle->code == ReasonCode::bias_unverified)
+      let_wait(registry, writer, finding, *finding.obstacle, now);
+  if (std::ssize(waiting) > equipment_.members) {
+    const Finding last = weakest(waiting);
+    std::vector<Reason> reasons{because<ReasonCode::league_full>(equipment_.members)};
+    if (last.obstacle) reasons.push_back(*last.obstacle);
+    decide(registry, writer, last, DecisionKind::reject, reasons, now);
+  }
+  look_after_champion(registry, writer, hold.has_value(), now);
   read_members(registry);
+}
+
+void LeagueKeeper::look_after_champion(const storage::Registry& registry,
+                                       const LeagueWriter& writer, bool held, Time now) {
+  const auto failure = failure_of(league_, equipment_);
+  if (failure && !has_failed_ && writer.failed) writer.failed(*failure);
+  has_failed_ = failure.has_value();
+  if (!failure || held || equipment_.on_failure == FailurePolicy::keep) return;
+  Finding finding;
+  finding.version = league_.champion->version;
+  decide(registry, writer, finding, DecisionKind::withdraw, {*failure}, now);
 }
 
 std::optional<Change> LeagueKeeper::advance(const storage::Archive& archive,

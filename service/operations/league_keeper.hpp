@@ -31,6 +31,8 @@ struct LeagueWriter {
       scores;
   /// Whether it was recorded: not where something was decided since `standing`.
   std::function<bool(const storage::DecisionState&, const LeagueDecision&)> decide;
+  /// Called when the champion begins to fail (failure_of()); may be empty.
+  std::function<void(const Reason&)> failed{};
 };
 
 /// For one equipment and one thread at a time. The configuration must outlive it.
@@ -53,8 +55,16 @@ class LeagueKeeper {
   /// Scores of the member on the blocks up to `end` that it has none of.
   void catch_up(const storage::Archive& archive, Member& member, storage::Time end,
                 std::vector<storage::BlockScore>& scores);
-  /// Decides until nothing is left to decide now.
+  /// Decides what the records up to `now` say.
   void decide(const storage::Registry& registry, const LeagueWriter& writer, storage::Time now);
+  bool decide(const storage::Registry& registry, const LeagueWriter& writer, const Finding& finding,
+              storage::DecisionKind kind, const std::vector<Reason>& reasons, storage::Time now);
+  /// Records that a waiting version waits for this reason now, unless it does already.
+  void let_wait(const storage::Registry& registry, const LeagueWriter& writer,
+                const Finding& finding, const Reason& reason, storage::Time now);
+  void look_after_champion(const storage::Registry& registry, const LeagueWriter& writer, bool held,
+                           storage::Time now);
+  Reason why_better(const Finding& finding) const;
 
   const std::string spacecraft_;
   const EquipmentConfig& equipment_;
@@ -64,6 +74,7 @@ class LeagueKeeper {
   League league_;
   std::map<std::int64_t, EquipmentModel> models_;  // of the members
   std::optional<storage::Time> reached_;           // end of the last block
+  bool has_failed_ = false;                        // the champion, when it was looked at last
 };
 
 }  // namespace reident

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/simulation/free_run.hpp"
+#include "identification/simulation/scores.hpp"
 #include "service/model/model_json.hpp"
 #include "service/windows/provenance.hpp"
 
@@ -20,11 +21,12 @@ using nlohmann::ordered_json;
 
 ordered_json limits_json(const EquipmentConfig& limits) {
   return {{"max_mrse_percent", limits.max_mrse_percent},
-          {"min_fit_percent", limits.min_fit_percent},
           {"margin_percent", limits.margin_percent},
           {"confidence_percent", limits.confidence_percent},
           {"min_interval_ns", limits.min_interval},
-          {"unvouched", limits.unvouched == UnvouchedPolicy::wait ? "wait" : "approve"},
+          {"cycle_ns", limits.cycle},
+          {"members", limits.members},
+          {"bias", limits.bias == BiasPolicy::wait ? "wait" : "approve"},
           {"approval", limits.approval == ApprovalPolicy::by_hand ? "by_hand" : "automatic"}};
 }
 
@@ -41,30 +43,31 @@ std::optional<EquipmentModel> older_champion(const storage::Registry& registry,
   return champion;
 }
 
-/// Whether the candidate errs less than the champion, as it is, on its validation part: one that
-/// does not would only take another's place in the league.
-bool errs_less(const EquipmentModel& champion, const PreparedWindow& prepared) {
+/// Says so where the candidate errs no less than the champion, as it is, on its validation part: it
+/// would only take another's place in the league.
+std::optional<Reason> errs_no_less(const EquipmentModel& champion, std::int64_t number,
+                                   const PreparedWindow& prepared) {
   const Candidate& candidate = *prepared.candidate;
-  const EquipmentModel& model = candidate.model;
-  if (request_of(champion) != request_of(model)) return true;
+  if (request_of(champion) != request_of(candidate.model)) return std::nullopt;
   const identification::Record& record = prepared.data.record;
-  const Matrix run = free_run(champion.dynamics, record, record.all());
   const RowRange rows = candidate.parts.validate;
-  double score = 0;
-  for (Index q = 0; q < record.y.cols(); ++q) {
-    const auto y = record.y.col(q).segment(rows.begin, rows.size());
-    score += std::log((y - run.col(q).segment(rows.begin, rows.size())).squaredNorm() /
-                      (y - candidate.y_hat.col(q).segment(rows.begin, rows.size())).squaredNorm());
-  }
-  return !(score <= 0);
+  const auto validation = [&](const Matrix& samples) -> Matrix {
+    return samples.middleRows(rows.begin, rows.size());
+  };
+  const double error =
+      identification::score(validation(record.y),
+                            validation(free_run(champion.dynamics, record, record.all())))
+          .mrse();
+  if (!(candidate.model.validation.mrse() >= error)) return std::nullopt;
+  return because<ReasonCode::not_better_where_validated>(candidate.model.validation.mrse(), number,
+                                                         error);
 }
 
 /// Puts the champion, adapted to the window, in the candidate's place where it errs less on the
 /// validation part, or where the candidate is too slow to be admissible.
 std::optional<EquipmentModel> choose_candidate(const storage::Registry& registry,
                                                const RefreshRequest& request,
-                                               PreparedWindow& prepared) {
-  std::int64_t number = 0;
+                                               PreparedWindow& prepared, std::int64_t& number) {
   auto champion = older_champion(registry, prepared, number);
   if (!champion) return champion;
   auto other = adapted_candidate(request, *champion, number, prepared);
@@ -83,6 +86,16 @@ std::optional<EquipmentModel> choose_candidate(const storage::Registry& registry
   return champion;
 }
 
+/// Puts a static gain in the candidate's place where it errs less on the validation part: no
+/// dynamics that are worse than none reach a simulator.
+void prefer_static_gain(const RefreshRequest& request, PreparedWindow& prepared) {
+  Candidate other = static_candidate(request, prepared);
+  const double dynamic = prepared.candidate->model.validation.mrse();
+  const double error = other.model.validation.mrse();
+  prepared.evidence["static_mrse_percent"] = error;
+  if (error < dynamic) prepared.candidate = std::move(other);
+}
+
 }  // namespace
 
 RefreshResult judge(const storage::Registry& registry, const RefreshRequest& request,
@@ -90,18 +103,18 @@ RefreshResult judge(const storage::Registry& registry, const RefreshRequest& req
   RefreshResult result;
   if (prepared.candidate) {
     prepared.timer.begin("adapt");
-    const auto champion = choose_candidate(registry, request, prepared);
+    std::int64_t number = 0;
+    const auto champion = choose_candidate(registry, request, prepared, number);
+    prefer_static_gain(request, prepared);
     prepared.timer.begin("diagnose");
     describe_candidate(prepared);
     result.evidence = evidence_of(prepared, request);
     prepared.evidence["slowest_over_window"] = result.evidence.slowest_over_window;
     prepared.evidence["limits"] = limits_json(request.equipment);
     auto refusal = inadmissible(result.evidence, request.equipment);
-    if (!refusal && champion && !errs_less(*champion, prepared))
-      refusal = because<ReasonCode::comparison_says_nothing>(std::int64_t{0}, std::int64_t{0});
+    if (!refusal && champion) refusal = errs_no_less(*champion, number, prepared);
     const std::vector<Reason> reasons = {
-        refusal ? *refusal
-                : because<ReasonCode::waits_for_telemetry>(request.equipment.confirmation)};
+        refusal ? *refusal : because<ReasonCode::challenger>(result.evidence.mrse_percent)};
     const Outcome outcome = outcome_of(reasons);
     prepared.attempt.outcome = name(outcome);
     prepared.attempt.reason = sentences(reasons);

@@ -7,6 +7,7 @@
 #include "identification/correction/integral_feedback_search.hpp"
 #include "identification/correction/pole_placement_search.hpp"
 #include "identification/fit/adaptation.hpp"
+#include "identification/fit/static_regression.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "identification/simulation/initial_state.hpp"
 #include "service/model/diagnostics_json.hpp"
@@ -189,6 +190,14 @@ std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
                                      parts);
   candidate.adapted_from = number;
   return candidate;
+}
+
+Candidate static_candidate(const RefreshRequest& request, const PreparedWindow& prepared) {
+  const WindowParts& parts = prepared.candidate->parts;
+  return candidate_of(request, prepared.data,
+                      {static_regression(prepared.data.record, parts.fitted()),
+                       "static regression"},
+                      parts);
 }
 
 void describe_candidate(PreparedWindow& prepared) {

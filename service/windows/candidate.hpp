@@ -77,6 +77,10 @@ std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
                                            const EquipmentModel& known, std::int64_t number,
                                            const PreparedWindow& prepared);
 
+/// The regression of the outputs on the inputs without dynamics (order 0), fitted as the window's
+/// candidate was. Requires a candidate.
+Candidate static_candidate(const RefreshRequest& request, const PreparedWindow& prepared);
+
 /// Adds what is to be said of the window's candidate to its evidence: how it was found, its errors
 /// and its diagnostics. Requires a candidate.
 void describe_candidate(PreparedWindow& prepared);

@@ -45,15 +45,14 @@ bool follows(DecisionKind kind, std::string_view status) {
   switch (kind) {
     case DecisionKind::approve:
     case DecisionKind::reject:
+    case DecisionKind::wait:
       return status == "waiting";
     case DecisionKind::roll_back:
       return status == "superseded";
     case DecisionKind::withdraw:
       return status == "approved" || status == "superseded";
-    case DecisionKind::wait:
-      break;
   }
-  return false;  // a version waits from its first decision on, or never
+  return false;
 }
 
 /// The version, which may get a decision of this kind. Throws Error where it may not.
@@ -112,14 +111,6 @@ std::int64_t Registry::decide(const std::string& spacecraft, const std::string& 
   sqlite::Connection& db = connection(database_);
   sqlite::Transaction transaction(db);
   const Version found = version_to_decide(*this, spacecraft, equipment, version, decision.kind);
-  if (decision.kind == DecisionKind::approve) {
-    const auto champion = champion_decision(spacecraft, equipment);
-    if (found.parent != (champion ? std::optional(champion->version) : std::nullopt))
-      throw Error(Error::Kind::failed, "version " + std::to_string(version) + " of " + equipment +
-                                           " of " + spacecraft +
-                                           " was judged against another champion than today's: "
-                                           "it cannot be approved");
-  }
   std::optional<Version> previous;
   if (decision.kind == DecisionKind::withdraw && found.status == "approved")
     previous = previous_champion(spacecraft, equipment);
@@ -142,8 +133,7 @@ std::optional<std::int64_t> Registry::decide_if(const DecisionState& state,
   sqlite::Connection& db = connection(database_);
   sqlite::Transaction transaction(db);
   if (decision_state(spacecraft, equipment) != state) return std::nullopt;
-  version_to_decide(*this, spacecraft, equipment, version, decision.kind);
-  const std::int64_t id = add_decision(db, spacecraft, equipment, version, decision, time);
+  const std::int64_t id = decide(spacecraft, equipment, version, decision, time);
   transaction.commit();
   return id;
 }
@@ -211,21 +201,22 @@ std::vector<VersionSummary> Registry::summaries(const std::string& spacecraft,
   return summaries;
 }
 
-std::vector<std::int64_t> Registry::undecided(const std::string& spacecraft,
-                                              const std::string& equipment,
-                                              const std::string& outcome) const {
+std::vector<std::int64_t> Registry::waiting(const std::string& spacecraft,
+                                            const std::string& equipment,
+                                            const std::string& outcome, std::int64_t after) const {
   std::vector<std::int64_t> numbers;
   sqlite::Query row = connection(database_).query(
-      "SELECT own.version FROM decision AS own "
+      "SELECT DISTINCT own.version FROM decision AS own "
       "JOIN version ON version.spacecraft = ?1 AND version.equipment = ?2 "
       "            AND version.number = own.version "
       "JOIN attempt ON attempt.id = version.attempt "
-      "WHERE own.spacecraft = ?1 AND own.equipment = ?2 AND own.kind = 'wait' AND outcome = ?3 "
+      "WHERE own.spacecraft = ?1 AND own.equipment = ?2 AND own.kind = 'wait' AND own.id > ?4 "
+      "AND outcome = ?3 "
       "AND NOT EXISTS (SELECT 1 FROM decision AS other "
       "                WHERE other.spacecraft = ?1 AND other.equipment = ?2 "
-      "                AND other.version = own.version AND other.id <> own.id) "
+      "                AND other.version = own.version AND other.kind <> 'wait') "
       "ORDER BY own.version",
-      spacecraft, equipment, outcome);
+      spacecraft, equipment, outcome, after);
   while (row.step()) numbers.push_back(row.integer(0));
   return numbers;
 }

@@ -38,16 +38,16 @@ class Registry {
   /// then nothing is recorded.
   std::optional<std::int64_t> record_if(const DecisionState& state, const NewAttempt& attempt,
                                         const NewVersion& version, const NewDecision& decision);
-  /// Records one more decision about a version that exists. A waiting version may be approved, if
-  /// its parent is the champion, or rejected; a superseded one rolled back to; an approved or
+  /// Records one more decision about a version that exists. A waiting version may be approved or
+  /// rejected, or wait for another reason; a superseded one rolled back to; an approved or
   /// superseded one withdrawn. The transaction that withdraws the champion also rolls back to the
   /// previous champion, where there is one. Returns the decision's id. Throws Error (failed) for
   /// any other decision, and where the version does not exist.
   std::int64_t decide(const std::string& spacecraft, const std::string& equipment,
                       std::int64_t version, const NewDecision& decision, Time time);
 
-  /// As decide(), by one who judged a waiting version against today's champion, whatever its parent
-  /// was till then. Absent where the decision state is not the given one; then nothing is recorded.
+  /// As decide(), if the equipment's decision state is still the given one. Absent where it is not;
+  /// then nothing is recorded.
   std::optional<std::int64_t> decide_if(const DecisionState& state, const std::string& spacecraft,
                                         const std::string& equipment, std::int64_t version,
                                         const NewDecision& decision, Time time);
@@ -97,9 +97,10 @@ class Registry {
   /// Every version of an equipment, ascending by number.
   std::vector<VersionSummary> summaries(const std::string& spacecraft,
                                         const std::string& equipment) const;
-  /// Numbers of the versions of attempts with this outcome that wait and nothing more, ascending.
-  std::vector<std::int64_t> undecided(const std::string& spacecraft, const std::string& equipment,
-                                      const std::string& outcome) const;
+  /// Numbers of the waiting versions of attempts with this outcome, ascending: those that began to
+  /// wait after the decision with the id `after`.
+  std::vector<std::int64_t> waiting(const std::string& spacecraft, const std::string& equipment,
+                                    const std::string& outcome, std::int64_t after = 0) const;
   /// Windows of all attempts with this outcome that gave a version, in the order of recording.
   std::vector<TimeRange> windows(const std::string& spacecraft, const std::string& equipment,
                                  const std::string& outcome) const;

@@ -25,7 +25,7 @@ struct NewAttempt {
   std::string trigger;
   /// When it was decided.
   Time time = 0;
-  /// "approved", "waiting", or the code of the reason that speaks against it.
+  /// "challenger", or the code of the reason that speaks against it.
   std::string outcome;
   /// One sentence for an operator.
   std::string reason;
@@ -48,7 +48,7 @@ struct NewVersion {
   std::string samples_digest{};
 };
 
-/// What a decision does to a version. `wait` is only ever a version's first decision.
+/// What a decision does to a version. `wait` follows nothing but `wait`.
 enum class DecisionKind { approve, reject, wait, roll_back, withdraw };
 /// The kind as the database holds it, such as "roll_back".
 std::string_view name(DecisionKind kind);

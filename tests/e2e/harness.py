@@ -181,6 +181,12 @@ class EndToEnd(unittest.TestCase):
 
     # -- what is stored
 
+    def codes(self, kind):
+        """Codes of the reasons of the decisions of this kind that have some."""
+        return [reason["code"] for text, in self.query(
+            "SELECT evidence_json FROM decision WHERE kind = ? AND evidence_json != ''", kind)
+            for reason in json.loads(text).get("reasons", [])]
+
     def champion(self):
         rows = self.query("SELECT version FROM champion")
         return rows[0][0] if rows else None

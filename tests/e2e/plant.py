@@ -29,4 +29,4 @@ def write(path, lines):
 def equipment(**changes):
     """A configuration table of the plant with windows of 10 minutes that slide by 5."""
     return {"name": "PLANT", "inputs": INPUTS, "outputs": OUTPUTS, "sample_period": "1s",
-            "window": "10min", "slide": "5min", "max_mrse": 20.0, **changes}
+            "window": "10min", "slide": "5min", "cycle": "1min", "max_mrse": 20.0, **changes}

@@ -122,6 +122,7 @@ class DaemonTest : public testing::Test {
     equipment.sample_hold = 3 * second;
     equipment.window = 10 * minute;
     equipment.slide = 5 * minute;
+    equipment.cycle = minute;
     return equipment;
   }
 

@@ -58,7 +58,7 @@ outputs = ["V_BAT"]
 sample_period = "1s"
 window = "100min"
 screening = "off"
-unvouched = "approve"
+bias = "approve"
 [[spacecraft.equipment.derived]]
 name = "P"
 expression = "I_BAT * V_BUS"
@@ -76,8 +76,8 @@ tolerance = 1
   EXPECT_THAT(spacecraft.equipment.at(1).relations, ElementsAre(battery));
   EXPECT_TRUE(spacecraft.equipment.at(0).screening);
   EXPECT_FALSE(spacecraft.equipment.at(1).screening);
-  EXPECT_EQ(spacecraft.equipment.at(0).unvouched, UnvouchedPolicy::wait);
-  EXPECT_EQ(spacecraft.equipment.at(1).unvouched, UnvouchedPolicy::approve);
+  EXPECT_EQ(spacecraft.equipment.at(0).bias, BiasPolicy::wait);
+  EXPECT_EQ(spacecraft.equipment.at(1).bias, BiasPolicy::approve);
 }
 
 }  // namespace

@@ -85,13 +85,15 @@ slide = "1.5min"
 validation_share = 0.4
 tune_share = 0.25
 confidence = 95
-max_disagreement = 5
+cycle = "20min"
+members = 7
 min_interval = "3h"
 min_coverage = 0.75
 order = [2, 6]
 horizon = 12
 max_mrse = 15
-min_fit = 10.5
+bias = "approve"
+on_failure = "withdraw"
 margin = 0
 baseline_mrse = 16.4
 approval = "by_hand"
@@ -130,14 +132,16 @@ horizon = "auto"
   EXPECT_EQ(x.validation_share, 0.4);
   EXPECT_EQ(x.tune_share, 0.25);
   EXPECT_EQ(x.confidence_percent, 95);
-  EXPECT_EQ(x.max_disagreement_percent, 5);
+  EXPECT_EQ(x.cycle, 20 * min);
+  EXPECT_EQ(x.members, 7);
   EXPECT_EQ(x.min_interval, 180 * min);
   EXPECT_EQ(x.min_coverage, 0.75);
   EXPECT_EQ(x.min_order, 2);
   EXPECT_EQ(x.max_order, 6);
   EXPECT_EQ(x.horizon, 12);
   EXPECT_EQ(x.max_mrse_percent, 15);
-  EXPECT_EQ(x.min_fit_percent, 10.5);
+  EXPECT_EQ(x.bias, BiasPolicy::approve);
+  EXPECT_EQ(x.on_failure, FailurePolicy::withdraw);
   EXPECT_EQ(x.margin_percent, 0);
   EXPECT_EQ(x.baseline_mrse_percent, 16.4);
   EXPECT_EQ(x.approval, ApprovalPolicy::by_hand);
@@ -263,8 +267,19 @@ const Mistake values[] = {
      "9: equipment BDR: horizon 5 is too short for orders up to 10; make it at least 11"},
     {"short_horizon_for_three_outputs", with(6, "outputs = [\"a\", \"b\", \"c\"]\nhorizon = 4"),
      "7: equipment BDR: horizon 4 is too short for orders up to 10; make it at least 5"},
-    {"negative_fit", minimal + "min_fit = -5",
-     "9: equipment BDR: min_fit must be a number from 0 to 100"},
+    {"former_fit", minimal + "min_fit = 5",
+     "9: equipment BDR: min_fit is no key any more: remove it"},
+    {"former_disagreement", minimal + "max_disagreement = 5",
+     "9: equipment BDR: max_disagreement is no key any more: remove it"},
+    {"former_confirmation", minimal + "confirmation = \"1h\"",
+     "9: equipment BDR: confirmation is no key any more: remove it"},
+    {"former_unvouched", minimal + "unvouched = \"wait\"",
+     "9: equipment BDR: unvouched is no key any more: use bias, with the same values"},
+    {"no_members", minimal + "members = 0",
+     "9: equipment BDR: members must be a whole number from 1 to 100"},
+    {"unknown_bias", minimal + "bias = \"believe\"", "9: equipment BDR: bias must be"},
+    {"unknown_failure", minimal + "on_failure = \"panic\"",
+     "9: equipment BDR: on_failure must be"},
     {"unknown_approval", minimal + "approval = \"by hand\"",
      "9: equipment BDR: approval must be one of \"automatic\", \"by_hand\", not \"by hand\""},
     {"log_level", "[service]\nlog_level = \"loud\"\n" + minimal,
@@ -362,12 +377,12 @@ TEST(Config, AllMistakesAreReportedAtOnceByLine) {
                           "outputs = [\"c\"]\n"
                           "window = 5\n"
                           "horizon = \n"
-                          "min_fit = 101\n"),
+                          "margin = 101\n"),
               ElementsAre(StartsWith("2: mistake in value"), StartsWith("3: [service] workers"),
                           StartsWith("4: [service] lgo_level"), StartsWith("9: mistake in array"),
                           StartsWith("11: equipment X: window"),
                           StartsWith("12: mistake in key-value pair"),
-                          StartsWith("13: equipment X: min_fit")))
+                          StartsWith("13: equipment X: margin")))
       << "what a line with a syntax mistake hides is not reported as missing";
 }
 
@@ -381,6 +396,11 @@ TEST(Config, VersionsAreAQuarterOfTheSlideApart) {
   const EquipmentConfig bdr =
       config_of(minimal + "slide = \"40min\"").spacecraft.at(0).equipment.at(0);
   EXPECT_EQ(bdr.min_interval, 10 * min);
+}
+
+TEST(Config, TheCycleIsTheValidationPart) {
+  const EquipmentConfig bdr = config_of(minimal).spacecraft.at(0).equipment.at(0);
+  EXPECT_EQ(bdr.cycle, 30 * min);
 }
 
 TEST(Config, AWindowThatJustHoldsEnoughIsAccepted) {

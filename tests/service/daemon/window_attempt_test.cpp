@@ -22,18 +22,21 @@ class WindowAttempt : public DaemonTest {
     const WindowFeed::Job job{{0, window, "slide"}, &spacecraft, &equipment, {}};
     WindowCache kept = window_cache_of(spacecraft, equipment);
     return attempt_window(job, archive, registry, kept,
-                          {"digest",
-                           [&](const auto& task) {
-                             before();
-                             task(registry, archive);
-                           },
-                           [] { return day; },
+                          {{[&](const auto& task) {
+                              before();
+                              task(registry, archive);
+                            },
+                            [] { return day; },
+                            [] { return false; }},
+                           "digest",
                            {},
-                           [] { return false; }});
+                           &leagues});
   }
 
-  const std::string spacecraft = "SAT";
-  const EquipmentConfig equipment = plant();
+  const Config all = config();
+  const std::string& spacecraft = all.spacecraft[0].name;
+  const EquipmentConfig& equipment = all.spacecraft[0].equipment[0];
+  LeagueWatch leagues{all};
   storage::Database database = open();
   storage::Archive archive{database};
   storage::Registry registry{database};
@@ -41,7 +44,8 @@ class WindowAttempt : public DaemonTest {
 
 TEST_F(WindowAttempt, TriesNothingThatLiesBeforeTheChampionsWindow) {
   const storage::TimeRange drift{day + 10 * minute, day + 18 * minute};
-  ASSERT_EQ(attempt(drift).result.attempt.outcome, "approved");
+  ASSERT_EQ(attempt(drift).result.attempt.outcome, "challenger");
+  ASSERT_TRUE(registry.champion("SAT", "PLANT")) << "its validation part is enough for the first";
   EXPECT_EQ(attempt({day + 10 * minute, day + 20 * minute}).result.attempt.window,
             (storage::TimeRange{day + 10 * minute, day + 20 * minute}));
   EXPECT_EQ(attempt({day + 9 * minute, day + 19 * minute}).result.attempt.window,

@@ -149,29 +149,10 @@ TEST_F(Commands, what_does_not_wait_is_told_with_who_decided_and_when) {
   }
 }
 
-TEST_F(Commands, a_version_judged_against_another_champion_is_not_approved) {
-  version(wait);
-  version(approve);
-  expect_refused(command("approve", 1),
-                 {"was judged against no champion", "version 2 is champion now", "approved by gate",
-                  "reject it"});
-  version(wait);
-  version(wait);
-  order("approve", 3);
-  expect_refused(command("approve", 4),
-                 {"was judged against version 2", "version 3 is champion now (approved by Ana"});
-  order("withdraw", 3);
-  order("withdraw", 2);
-  expect_refused(command("approve", 4), {"judged against version 2", "there is no champion now"});
-}
-
-TEST_F(Commands, a_version_of_an_older_window_than_the_champions_is_not_approved) {
-  version(approve, 20);
+TEST_F(Commands, a_waiting_version_is_approved_whatever_the_champion_was_when_it_came) {
   version(wait, 10);
-  expect_refused(command("approve", 2), {"the window of version 2 of SAT/PLANT ends at",
-                                         "before that of champion 1", "reject it"});
-  version(wait, 20);
-  expect_done(order("approve", 3), "approved");
+  version(approve, 20);
+  expect_done(order("approve", 1), "approved and champion now, after version 2");
 }
 
 TEST_F(Commands, while_held_nothing_is_approved) {

@@ -73,20 +73,6 @@ TEST_F(ProtectedTelemetry, IsThatOfEveryVersionThatWasEverPublishedAndOfNoOther)
   EXPECT_THAT(ranges(), SizeIs(2 * 3)) << "withdrawn ones were published too";
 }
 
-TEST_F(ProtectedTelemetry, OfProbationsGoesFromTheFirstRunToTheLastLook) {
-  Config config;
-  config.spacecraft = {{"SAT", {plant()}}};
-  config.spacecraft[0].equipment[0].confirmation = 4 * minute;
-  const std::int64_t version = record(day + 10 * minute, DecisionKind::wait, "on_probation");
-  record(day + 15 * minute, DecisionKind::wait, "unvouched");
-  const auto found = telemetry_still_needed(archive, registry, config, latest);
-  ASSERT_THAT(found, SizeIs(3 + 3)) << "the next window's, and one version's";
-  EXPECT_EQ(found[3].range,
-            (storage::TimeRange{day - 30 * minute - plant().sample_hold, day + 18 * minute}));
-  registry.decide("SAT", "PLANT", version, {DecisionKind::reject, "gate", "worse"}, day);
-  EXPECT_THAT(telemetry_still_needed(archive, registry, config, latest), SizeIs(3));
-}
-
 TEST_F(ProtectedTelemetry, FollowsTheParametersOfAnExpression) {
   storage::NewAttempt attempt;
   attempt.spacecraft = "SAT";
@@ -132,11 +118,11 @@ TEST_F(ProtectedTelemetry, OfTheNextWindowsReachesBackFromWhereTelemetryOrTheClo
   Config config;
   config.spacecraft = {{"SAT", {plant()}}, {"NONE", {plant()}}};
   const Duration back = plant().window + plant().slide + plant().sample_hold;
-  auto found = telemetry_still_needed(archive, registry, config, latest);
+  auto found = telemetry_still_needed(archive, config, latest);
   ASSERT_THAT(found, SizeIs(3));
   EXPECT_EQ(found[2].parameter, 3U);
   EXPECT_EQ(found[2].range, (storage::TimeRange{day + 1800 * second + 1 - back, latest}));
-  found = telemetry_still_needed(archive, registry, config, day);
+  found = telemetry_still_needed(archive, config, day);
   EXPECT_EQ(found[0].range.begin, day - back);
 }
 

@@ -165,52 +165,5 @@ TEST_F(FaultySensors, WithoutARelationAreFoundWhereOneIsStuck) {
               testing::Not(HasSubstr("implausible")));
 }
 
-TEST_F(FaultySensors, ThatNothingVouchesForWaitForAnOperator) {
-  EquipmentConfig equipment = bound();
-  equipment.relations[0].tolerance = 0.5;
-  archive.append(frames(day, 1201));
-  const RefreshResult first = run(day + 20 * minute, equipment);
-  registry.record(first.attempt, first.version, *first.decision);
-  auto lied = frames(day + 20 * minute + second, 1200);
-  bias(lied, 0, 1200, 0.4);  // more than a small bias of an input would do
-  archive.append(lied);
-
-  EXPECT_EQ(run(day + 40 * minute, equipment).attempt.outcome, "approved");
-  equipment.relations.clear();
-  const RefreshResult result = run(day + 40 * minute, equipment);
-  EXPECT_EQ(result.attempt.outcome, "unvouched") << result.attempt.reason;
-  EXPECT_EQ(reasons_in(result.attempt.evidence_json).back()["sensors"], "y");
-  ASSERT_TRUE(result.decision);
-  EXPECT_EQ(result.decision->kind, storage::DecisionKind::wait);
-  equipment.unvouched = UnvouchedPolicy::approve;
-  EXPECT_EQ(run(day + 40 * minute, equipment).attempt.outcome, "approved");
-}
-
-TEST_F(FaultySensors, AreNotSuspectedWhereTheEquipmentHasChanged) {
-  EquipmentConfig equipment = bound();
-  equipment.relations.clear();
-  archive.append(frames(day, 1201));
-  const RefreshResult first = run(day + 20 * minute, equipment);
-  registry.record(first.attempt, first.version, *first.decision);
-  archive.append(telemetry(day + 20 * minute + second, 1200, 1.5));
-  EXPECT_EQ(run(day + 40 * minute, equipment).attempt.outcome, "approved");
-}
-
-TEST_F(FaultySensors, AreNoDriftOfTheChampion) {
-  EquipmentConfig equipment = bound();
-  equipment.window = 60 * minute;  // blocks of more than a minute
-  archive.append(frames(day, 3601));
-  const RefreshResult result = run(day + 60 * minute, equipment);
-  registry.record(result.attempt, result.version, *result.decision);
-  auto lied = frames(day + 60 * minute + second, 3600);
-  bias(lied, 100, 3600, 0.5);
-  archive.append(lied);
-  EquipmentConfig believing = equipment;
-  believing.relations.clear();
-  ChampionMonitor monitor("SAT", equipment), believer("SAT", believing);
-  EXPECT_FALSE(monitor.look(archive, registry, day + 120 * minute, 60 * minute));
-  EXPECT_TRUE(believer.look(archive, registry, day + 120 * minute, 60 * minute));
-}
-
 }  // namespace
 }  // namespace reident::test::telemetry_checks_test

@@ -83,20 +83,24 @@ TEST_F(RegistryTest, CountsTheVersionsOfEachEquipmentFromOne) {
   EXPECT_THAT(registry.champions(), SizeIs(3));
 }
 
-TEST_F(RegistryTest, TellsWhichVersionsOfAnOutcomeAreUndecided) {
+TEST_F(RegistryTest, TellsWhichVersionsOfAnOutcomeWait) {
   const auto wait = [this](const std::string& outcome) {
     NewAttempt tried = attempt(1);
     tried.outcome = outcome;
     return registry.record(tried, {"{}", "d"}, decision(DecisionKind::wait));
   };
-  EXPECT_THAT(registry.undecided("CB4", "BDR", "on_probation"), IsEmpty());
-  for (const char* outcome : {"on_probation", "waiting", "on_probation", "on_probation"})
-    wait(outcome);
-  EXPECT_THAT(registry.undecided("CB4", "BDR", "on_probation"), ElementsAre(1, 3, 4));
+  const auto waiting = [this](const char* outcome, std::int64_t after = 0) {
+    return registry.waiting("CB4", "BDR", outcome, after);
+  };
+  EXPECT_THAT(waiting("challenger"), IsEmpty());
+  for (const char* outcome : {"challenger", "waiting", "challenger", "challenger"}) wait(outcome);
+  EXPECT_THAT(waiting("challenger"), ElementsAre(1, 3, 4));
+  EXPECT_THAT(waiting("challenger", 3), ElementsAre(4)) << "behind the third decision";
   decide(3, DecisionKind::reject, 2);
-  EXPECT_THAT(registry.undecided("CB4", "BDR", "on_probation"), ElementsAre(1, 4));
-  EXPECT_THAT(registry.undecided("CB4", "BDR", "waiting"), ElementsAre(2));
-  EXPECT_THAT(registry.undecided("CB4", "MEA", "on_probation"), IsEmpty());
+  decide(1, DecisionKind::wait, 3);
+  EXPECT_THAT(waiting("challenger"), ElementsAre(1, 4)) << "for another reason now";
+  EXPECT_THAT(waiting("waiting"), ElementsAre(2));
+  EXPECT_THAT(registry.waiting("CB4", "MEA", "challenger"), IsEmpty());
 }
 
 TEST_F(RegistryTest, LetsWhoJudgedAnewApproveAfterTheChampionChanged) {
@@ -104,21 +108,28 @@ TEST_F(RegistryTest, LetsWhoJudgedAnewApproveAfterTheChampionChanged) {
   version(20, DecisionKind::wait);
   version(30, DecisionKind::approve);
   const DecisionState state = registry.decision_state("CB4", "BDR");
-  EXPECT_THAT(error_of([&] { decide(2, DecisionKind::approve, 35); }),
-              HasSubstr("judged against another champion"));
-  const NewDecision confirmed{DecisionKind::approve, "gate", "confirmed", R"({"rows":9})"};
-  EXPECT_TRUE(registry.decide_if(state, "CB4", "BDR", 2, confirmed, 40));
+  const NewDecision better{DecisionKind::approve, "gate", "better", R"({"rows":9})"};
+  EXPECT_TRUE(registry.decide_if(state, "CB4", "BDR", 2, better, 40));
   EXPECT_EQ(registry.version("CB4", "BDR", 2)->parent, 3);
   EXPECT_EQ(registry.decisions("CB4", "BDR", 2).back().evidence_json, R"({"rows":9})");
   EXPECT_EQ(champion_at(std::nullopt), 2);
   version(50, DecisionKind::wait);
-  EXPECT_FALSE(registry.decide_if(state, "CB4", "BDR", 4, confirmed, 60))
+  EXPECT_FALSE(registry.decide_if(state, "CB4", "BDR", 4, better, 60))
       << "decisions were made since";
   EXPECT_THAT(error_of([&] {
-                registry.decide_if(registry.decision_state("CB4", "BDR"), "CB4", "BDR", 3,
-                                   confirmed, 60);
+                registry.decide_if(registry.decision_state("CB4", "BDR"), "CB4", "BDR", 3, better,
+                                   60);
               }),
               HasSubstr("is superseded"));
+}
+
+TEST_F(RegistryTest, ReturnsToTheChampionBeforeWhereTheOneThatRunsIsWithdrawnOnACondition) {
+  version(10, DecisionKind::approve);
+  version(20, DecisionKind::approve);
+  const DecisionState state = registry.decision_state("CB4", "BDR");
+  EXPECT_TRUE(registry.decide_if(state, "CB4", "BDR", 2, {DecisionKind::withdraw, "gate", "fails"},
+                                 30));
+  EXPECT_EQ(champion_at(std::nullopt), 1);
 }
 
 TEST_F(RegistryTest, DerivesTheStatusFromTheDecisions) {

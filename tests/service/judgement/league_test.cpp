@@ -1,0 +1,260 @@
+#include "service/judgement/league.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "service/windows/block_reader.hpp"
+
+namespace reident::test::league_test {
+namespace {
+
+using storage::Block;
+using storage::BlockScore;
+using storage::Time;
+using Code = ReasonCode;
+
+constexpr Time length = 15 * 60 * 1'000'000'000LL;
+constexpr Time cycle = length * blocks_of_cycle;
+
+/// What an output errs on a block, by the block's number: mean and mean square.
+struct Error {
+  double mean = 0, square = 0;
+};
+using Errors = std::function<Error(int block)>;
+
+Errors white(double square) {
+  return [square](int) { return Error{0, square}; };
+}
+/// Larger and smaller by a fifth in turn, as errors vary.
+Errors varying(double square) {
+  return [square](int block) { return Error{0, square * (block % 3 == 0 ? 1.2 : 0.8)}; };
+}
+
+/// Records of blocks from 0 on. The output's mean is 10 and its variance 1; the input's range is
+/// -1 to 1.
+class Records {
+ public:
+  explicit Records(int blocks) {
+    limits_.cycle = cycle;
+    for (int i = 0; i < blocks; ++i)
+      league_.blocks.push_back({{i * length, (i + 1) * length}, 100, 1, {10}, {101}, {-1}, {1}, {}});
+  }
+  Records& champion(const Errors& errors, int from = 0) {
+    league_.champion = member(1, {from * length - 5 * cycle, from * length}, errors, from);
+    return *this;
+  }
+  /// A version whose window ends at block `from`, and its record from there on.
+  Records& challenger(const Errors& errors, int from, Time window = 2 * cycle) {
+    const auto number = static_cast<std::int64_t>(league_.admitted.size()) + 2;
+    league_.challengers.push_back(
+        member(number, {from * length - window, from * length}, errors, from));
+    league_.admitted.push_back(league_.challengers.back().window);
+    return *this;
+  }
+  Records& unbound() {
+    league_.unbound = {"y"};
+    return *this;
+  }
+  League& league() { return league_; }
+  EquipmentConfig& limits() { return limits_; }
+  std::vector<Finding> findings() const { return judge(league_, limits_); }
+  /// The code of what is against the first challenger; nothing where it may become champion.
+  std::optional<Code> obstacle() const {
+    const auto found = findings().at(0).obstacle;
+    return found ? std::optional(found->code) : std::nullopt;
+  }
+
+ private:
+  Member member(std::int64_t number, storage::TimeRange window, const Errors& errors,
+                int from) const {
+    Member member{number, window, {}};
+    for (std::size_t i = static_cast<std::size_t>(from); i < league_.blocks.size(); ++i) {
+      const Error error = errors(static_cast<int>(i));
+      member.scores.push_back({number, league_.blocks[i].range.begin, 100, {error.mean},
+                               {error.square + error.mean * error.mean}, {1e-6}, {}});
+    }
+    return member;
+  }
+
+  League league_;
+  EquipmentConfig limits_;
+};
+
+TEST(League, FirstVersionNeedsAWholeCycleOfTelemetryThatItWasNotFittedTo) {
+  EXPECT_EQ(Records(blocks_of_cycle).challenger(white(0.01), 1).obstacle(), Code::too_few_blocks);
+  EXPECT_EQ(Records(blocks_of_cycle).challenger(white(0.01), 0).obstacle(), std::nullopt);
+}
+
+TEST(League, FirstVersionIsBetterThanTheMeanAndTheSimulator) {
+  Records records(8);
+  records.challenger(white(1.1), 0);
+  EXPECT_EQ(records.obstacle(), Code::not_better_than_mean);
+  Records beside(8);
+  beside.challenger(white(0.01), 0);
+  for (Block& block : beside.league().blocks) block.baseline_square = {0.005};
+  EXPECT_EQ(beside.obstacle(), Code::not_better_than_simulator);
+  for (Block& block : beside.league().blocks) block.baseline_square = {0.02};
+  EXPECT_EQ(beside.obstacle(), std::nullopt);
+  Records configured(8);
+  configured.challenger(white(0.01), 0).limits().baseline_mrse_percent = 0.5;
+  EXPECT_EQ(configured.obstacle(), Code::not_better_than_simulator);
+  configured.limits().baseline_mrse_percent = 2;
+  EXPECT_EQ(configured.obstacle(), std::nullopt);
+}
+
+TEST(League, VersionOfWhichTheErrorIsAboveTheLimitOrNotFiniteIsNotAdmissible) {
+  Records records(80);
+  records.champion(white(1)).challenger(white(0.04), 40).limits().max_mrse_percent = 1;
+  EXPECT_EQ(records.obstacle(), Code::error_above_limit);
+  EXPECT_EQ(Records(80)
+                .champion(white(0.5))
+                .challenger(white(std::numeric_limits<double>::infinity()), 40)
+                .obstacle(),
+            Code::not_finite);
+}
+
+TEST(League, VersionThatErrsHalfAsMuchReplacesTheChampionWithinAFewCycles) {
+  int needed = 0;
+  for (int blocks = 40; blocks <= 120; ++blocks)
+    if (!Records(blocks).champion(varying(0.04)).challenger(varying(0.01), 40).obstacle()) {
+      needed = blocks - 40;
+      break;
+    }
+  EXPECT_GT(needed, 2 * blocks_of_cycle);
+  EXPECT_LT(needed, 12 * blocks_of_cycle);
+}
+
+TEST(League, VersionThatIsEquallyGoodNeverReplacesTheChampion) {
+  const Errors one = [](int block) { return Error{0, block % 2 == 0 ? 0.01 : 0.04}; };
+  const Errors other = [](int block) { return Error{0, block % 2 == 0 ? 0.04 : 0.01}; };
+  EXPECT_EQ(Records(400).champion(one).challenger(other, 40).obstacle(), Code::not_better);
+}
+
+TEST(League, VersionThatIsBetterByLessThanTheMarginWaits) {
+  Records records(400);
+  records.champion(white(0.01)).challenger(white(0.0092), 40);
+  EXPECT_EQ(records.obstacle(), Code::within_margin);
+  records.limits().margin_percent = 2;
+  EXPECT_EQ(records.obstacle(), std::nullopt);
+}
+
+TEST(League, VersionThatHasNotMetAnOperatingRegimeOfTheChampionIsNotCovered) {
+  Records records(160);
+  for (int i = 20; i < 60; ++i) {
+    records.league().blocks[static_cast<std::size_t>(i)].input_low = {-5};
+    records.league().blocks[static_cast<std::size_t>(i)].input_high = {5};
+  }
+  records.champion(varying(0.02)).challenger(varying(0.01), 80);
+  EXPECT_EQ(records.obstacle(), Code::not_covered);
+  EXPECT_NEAR(records.findings()[0].uncovered_share, 0.25, 0.01);
+}
+
+TEST(League, VersionThatIsSurelyWorseInARegimeStaysOut) {
+  Records records(200);
+  const auto is_unusual = [](int block) { return block % 40 < 12; };
+  for (int i = 0; i < 200; ++i)
+    if (is_unusual(i)) {
+      records.league().blocks[static_cast<std::size_t>(i)].input_low = {-5};
+      records.league().blocks[static_cast<std::size_t>(i)].input_high = {5};
+    }
+  records.champion(white(0.04))
+      .challenger([&](int block) { return Error{0, is_unusual(block) ? 0.3 : 0.001}; }, 20);
+  EXPECT_EQ(records.obstacle(), Code::worse_in_regime);
+}
+
+TEST(League, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
+  Records records(200);
+  records.champion([](int block) { return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01}; })
+      .challenger(varying(0.01), 100)
+      .unbound();
+  EXPECT_EQ(records.obstacle(), Code::bias_unverified);
+  records.limits().bias = BiasPolicy::approve;
+  EXPECT_EQ(records.obstacle(), std::nullopt);
+  records.limits().bias = BiasPolicy::wait;
+  records.league().unbound.clear();
+  EXPECT_EQ(records.obstacle(), std::nullopt);
+}
+
+TEST(League, VersionThatIsBetterWithoutTheConstantTooIsNoBias) {
+  EXPECT_EQ(Records(200)
+                .champion([](int block) { return block < 100 ? Error{0, 0.01} : Error{0.3, 0.1}; })
+                .challenger(varying(0.01), 100)
+                .unbound()
+                .obstacle(),
+            std::nullopt);
+}
+
+TEST(League, VersionsAreTheLeastIntervalApart) {
+  Records records(200);
+  records.champion(white(0.04), 40).challenger(white(0.01), 42).limits().min_interval = cycle;
+  EXPECT_EQ(records.obstacle(), Code::too_soon);
+  records.limits().min_interval = 0;
+  EXPECT_EQ(records.obstacle(), std::nullopt);
+}
+
+TEST(League, SuccessorIsTheOneWithTheBestRecordOfLate) {
+  Records records(160);
+  records.champion(white(0.04))
+      .challenger(white(0.01), 40)
+      .challenger(white(0.004), 60)
+      .challenger(white(0.02), 150);
+  const auto found = successor(records.findings());
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->version, 3);
+  EXPECT_EQ(weakest(records.findings()).version, 4);
+}
+
+TEST(League, NothingIsDecidedOnBlocksOfWhichLittleIsBelieved) {
+  Records records(160);
+  records.champion(white(0.04)).challenger(white(0.01), 40);
+  for (Block& block : records.league().blocks) block.believed = 0.4;
+  EXPECT_EQ(records.obstacle(), Code::not_better);
+  EXPECT_EQ(records.findings()[0].blocks, 0);
+}
+
+TEST(League, RecordsCountFromTheChangeOfTheEquipmentOn) {
+  // Of old the champion was better; since block 100 it errs ten times as much.
+  Records records(140);
+  records.champion([](int block) { return Error{0, block < 100 ? 0.01 : 0.5}; })
+      .challenger([](int block) { return Error{0, block < 100 ? 0.1 : 0.02}; }, 20);
+  const auto change = change_of(records.league());
+  ASSERT_TRUE(change);
+  EXPECT_NEAR(static_cast<double>(change->since / length), 100, 2);
+  EXPECT_LT(change->found, (100 + 2 * blocks_of_cycle) * length);
+  EXPECT_LT(records.findings()[0].blocks, 45);
+  EXPECT_GT(records.findings()[0].mean_score, 0.8);
+}
+
+TEST(League, AChampionWhoseErrorsVaryAsEverHasNotChanged) {
+  Records records(400);
+  records.champion([](int block) { return Error{0, block % 4 == 0 ? 0.3 : 0.01}; });
+  EXPECT_FALSE(change_of(records.league()));
+}
+
+TEST(League, AChampionFailsThatErrsMoreThanTheMeanOrTheSimulator) {
+  Records good(80);
+  EXPECT_FALSE(failure_of(good.champion(varying(0.3)).league(), good.limits()));
+  Records bad(80);
+  const auto failure = failure_of(bad.champion(varying(4)).league(), bad.limits());
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->code, Code::champion_failed);
+  Records beside(80);
+  beside.champion(varying(0.3));
+  for (Block& block : beside.league().blocks) block.baseline_square = {0.05};
+  EXPECT_TRUE(failure_of(beside.league(), beside.limits()));
+}
+
+TEST(League, EqualRecordsGiveEqualFindings) {
+  Records records(160);
+  records.champion(varying(0.04)).challenger(varying(0.01), 40).unbound();
+  const Finding one = records.findings()[0], two = records.findings()[0];
+  EXPECT_EQ(one.log_wealth, two.log_wealth);
+  EXPECT_EQ(one.lower_score, two.lower_score);
+  EXPECT_EQ(one.dependence, two.dependence);
+}
+
+}  // namespace
+}  // namespace reident::test::league_test
