@@ -172,6 +172,7 @@ std::vector<int> regimes_of(const std::vector<Block>& blocks) {
 }
 
 struct Pair {
+  std::vector<Time> begins;
   std::vector<double> scores, without_offset;
   std::vector<int> regimes;
   Sums member, champion;
@@ -238,6 +239,7 @@ Pair pair_of(const League& league, const std::vector<int>& regimes, const Member
     const BlockScore* other = find(*league.champion, block.range.begin);
     if (!own || !other) continue;
     const std::vector<double> offset = cycle_mean(league, *league.champion, i);
+    pair.begins.push_back(block.range.begin);
     pair.scores.push_back(score_of(*own, *other));
     pair.without_offset.push_back(score_of(*own, *other, &offset));
     pair.regimes.push_back(regimes[i]);
@@ -512,6 +514,23 @@ Finding weakest(const std::vector<Finding>& findings) {
   return *std::min_element(
       findings.begin(), findings.end(),
       [](const Finding& a, const Finding& b) { return a.log_wealth < b.log_wealth; });
+}
+
+std::vector<ComparedBlock> compared_blocks(const League& league, const Member& challenger,
+                                           const EquipmentConfig& limits) {
+  const Time since = counted_since(league);
+  const Pair pair = pair_of(league, regimes_of(league.blocks), challenger, since);
+  const double assumed = usual_dependence(league);
+  const double threshold = log_threshold(league, challenger, since, limits);
+  std::vector<ComparedBlock> blocks;
+  std::vector<double> scores;
+  for (std::size_t i = 0; i < pair.scores.size(); ++i) {
+    scores.push_back(pair.scores[i]);
+    const ScoreSeries found = series(scores, assumed);
+    blocks.push_back({pair.begins[i], pair.scores[i], found.scores.mean(),
+                      lower_mean(found, dependence(found), threshold)});
+  }
+  return blocks;
 }
 
 std::optional<Reason> failure_of(const League& league, const EquipmentConfig& limits) {

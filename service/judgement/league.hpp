@@ -75,6 +75,19 @@ std::optional<Finding> successor(const std::vector<Finding>& findings);
 /// challenger.
 Finding weakest(const std::vector<Finding>& findings);
 
+/// A block on which a challenger and the champion were compared.
+struct ComparedBlock {
+  storage::Time begin = 0;
+  double score = 0;
+  double mean = 0;   // of the scores so far
+  double lower = 0;  // lower end of the confidence sequence so far
+};
+
+/// The blocks of which the finding about `challenger`, one of the league's, is made. Requires a
+/// champion.
+std::vector<ComparedBlock> compared_blocks(const League& league, const Member& challenger,
+                                           const EquipmentConfig& limits);
+
 /// Why the champion fails: it errs surely more than the mean of the outputs, or than the
 /// simulator's own model, since the last change. Absent where it does not.
 std::optional<Reason> failure_of(const League& league, const EquipmentConfig& limits);

@@ -56,10 +56,7 @@ std::string last_code(const storage::Decision& decision) {
 
 LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipment)
     : spacecraft_(std::move(spacecraft)), equipment_(equipment), reader_(spacecraft_, equipment) {
-  league_.unbound = parameters_of(equipment);
-  for (const Relation& relation : equipment.relations)
-    for (const std::string& parameter : parameters_of(relation))
-      std::erase(league_.unbound, parameter);
+  league_.unbound = unbound_parameters(equipment);
 }
 
 void LeagueKeeper::forget(storage::TimeRange range) {

@@ -26,6 +26,7 @@ ordered_json limits_json(const EquipmentConfig& limits) {
           {"min_interval_ns", limits.min_interval},
           {"cycle_ns", limits.cycle},
           {"members", limits.members},
+          {"unbound", unbound_parameters(limits)},
           {"bias", limits.bias == BiasPolicy::wait ? "wait" : "approve"},
           {"approval", limits.approval == ApprovalPolicy::by_hand ? "by_hand" : "automatic"}};
 }

@@ -64,6 +64,13 @@ std::vector<std::string> parameters_of(const Relation& relation) {
   return InputExpressions({relation.name}, {{relation.name, relation.expression, ""}}).parameters();
 }
 
+std::vector<std::string> unbound_parameters(const EquipmentConfig& equipment) {
+  std::vector<std::string> unbound = parameters_of(equipment);
+  for (const Relation& relation : equipment.relations)
+    for (const std::string& parameter : parameters_of(relation)) std::erase(unbound, parameter);
+  return unbound;
+}
+
 std::variant<WindowData, UnknownParameter> describe_window(const storage::SampleReader& archive,
                                                            const WindowRequest& request) {
   WindowData data;

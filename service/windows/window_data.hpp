@@ -35,6 +35,8 @@ WindowRequest request_of(const EquipmentModel& model);
 std::vector<std::string> parameters_of(const EquipmentConfig& equipment);
 /// Returns those that a relation binds.
 std::vector<std::string> parameters_of(const Relation& relation);
+/// Parameters of the equipment that no relation binds: a bias of their sensors goes unnoticed.
+std::vector<std::string> unbound_parameters(const EquipmentConfig& equipment);
 
 /// A parameter as telemetry describes it.
 struct Channel {

@@ -9,8 +9,10 @@
 
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/model_picture.hpp"
+#include "service/cli/output/record_picture.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
@@ -24,6 +26,7 @@ struct Arguments {
   HistoryAccessOptions access;
   std::string subject;
   std::optional<std::string> output;
+  bool record = false;
   RangeOptions range;
 };
 
@@ -71,6 +74,26 @@ std::variant<std::string, Refusal> picture_of(const storage::SampleReader& archi
   return model_picture(data);
 }
 
+std::variant<std::string, Refusal> picture_of_record(const history::HistoryReader& history,
+                                                     const StoredVersion& story) {
+  const storage::Version& version = story.version;
+  const std::string title =
+      fmt::format("{} version {}", full_name({version.spacecraft, version.equipment}),
+                  version.number);
+  const auto record = stored_record(history, story);
+  if (!record)
+    return Refusal{title + " has no record beside a champion: it was the first version, was refused "
+                           "at its window, or waits for its first block"};
+  RecordPictureData data{
+      .title = title + fmt::format(" beside version {}", record->league.champion->version),
+      .subtitle = version.status,
+      .blocks = compared_blocks(record->league, record->member(version.number), record->limits),
+      .change = record->change};
+  if (data.blocks.empty())
+    return Refusal{title + " and its champion have no block in common since the last change"};
+  return record_picture(data);
+}
+
 int write_picture(const std::string& picture, const std::string& path) {
   if (path == "-") {
     fmt::print("{}", picture);
@@ -92,7 +115,9 @@ int write_picture(const std::string& picture, const std::string& path) {
 int run(const Arguments& arguments) {
   return with_version(
       arguments.access, arguments.subject, [&](const Readers& readers, const StoredVersion& story) {
-        const auto picture = picture_of(readers.telemetry, story, arguments.range);
+        const auto picture = arguments.record
+                                 ? picture_of_record(readers.history, story)
+                                 : picture_of(readers.telemetry, story, arguments.range);
         if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
         return write_picture(std::get<std::string>(picture),
                              arguments.output.value_or(fmt::format(
@@ -105,6 +130,8 @@ std::function<int()> declare(CLI::App& command) {
   add_version_argument(command, arguments->subject);
   command.add_option("-o,--output", arguments->output,
                      "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
+  command.add_flag("--record", arguments->record,
+                   "draw its record beside the champion's instead: scores, mean, sure mean, change");
   add_range_options(command, arguments->range, "the window of the version");
   add_access_options(command, arguments->access);
   command.footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");

@@ -10,7 +10,9 @@
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
+#include "service/judgement/conditions.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
@@ -122,6 +124,7 @@ std::string comparison_text(const ordered_json& comparison) {
   return text;
 }
 
+/// Of programs before version 0.2, which compared at the window alone.
 void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
   if (const ordered_json* mean = member(evidence, "mean"))
     sentences.push_back(fmt::format("Beside a constant at the mean: {}.", comparison_text(*mean)));
@@ -133,10 +136,7 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
         fmt::format("The simulator's own model errs by {} %, as the configuration says.",
                     figure(evidence, "baseline_mrse_percent")));
   const ordered_json* champion = member(evidence, "champion");
-  if (!champion) {
-    sentences.push_back("There was no champion with these outputs.");
-    return;
-  }
+  if (!champion) return;
   const std::string version = figure(*champion, "version");
   if (const ordered_json* comparison = member(*champion, "comparison"))
     sentences.push_back(
@@ -180,20 +180,85 @@ Sentences sentences_of(const StoredVersion& story) {
   rival_sentences(evidence, sentences);
   hold_and_warning_sentences(evidence, sentences);
   sentences.push_back(
-      fmt::format("The gate's outcome: {}. {}", story.attempt.outcome, story.attempt.reason));
+      fmt::format("At its window: {}. {}", story.attempt.outcome, story.attempt.reason));
   for (const storage::Decision& decision : story.decisions)
     sentences.push_back(fmt::format("{} {} by {}: {}", time_text(decision.time),
                                     name(decision.kind), decision.actor, decision.reason));
   return sentences;
 }
 
-int print(const StoredVersion& story, bool json) {
+/// The figures of a decision of the league.
+Finding finding_in(const ordered_json& evidence) {
+  Finding finding;
+  const auto read = [&evidence](const char* key, auto& value) {
+    if (const auto found = evidence.find(key); found != evidence.end() && found->is_number())
+      value = found->get<std::remove_reference_t<decltype(value)>>();
+  };
+  read("blocks", finding.blocks);
+  read("log_wealth", finding.log_wealth);
+  read("log_threshold", finding.log_threshold);
+  read("mean_score", finding.mean_score);
+  read("lower_score", finding.lower_score);
+  read("uncovered_share", finding.uncovered_share);
+  read("log_wealth_without_offset", finding.wealth_without_offset);
+  read("mrse_percent", finding.mrse_percent);
+  read("fit_percent", finding.fit_percent);
+  return finding;
+}
+
+struct Verdict {
+  std::string sentence;
+  std::vector<Condition> conditions;  // empty where it was never compared with a champion
+};
+
+Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& story) {
+  const auto record = stored_record(history, story);
+  if (record)
+    if (const auto finding = finding_now(*record, story)) {
+      const std::string_view code = finding->obstacle ? name(finding->obstacle->code) : "";
+      return {finding->obstacle ? "Waits. " + sentence(*finding->obstacle)
+                                : "Waits, and all conditions on its record hold.",
+              conditions_of(*finding, code, record->limits)};
+    }
+  const storage::Decision& last = story.decisions.back();
+  Verdict verdict{fmt::format("{} by {}: {}", name(last.kind), last.actor, last.reason), {}};
+  for (auto one = story.decisions.rbegin(); record && one != story.decisions.rend(); ++one) {
+    const ordered_json evidence = ordered_json::parse(one->evidence_json, nullptr, false);
+    if (!evidence.is_object() || !evidence.contains("log_threshold")) continue;
+    const auto reasons = evidence.value("reasons", ordered_json::array());
+    const std::string code = reasons.empty() ? "" : reasons.back().value("code", "");
+    verdict.conditions = conditions_of(finding_in(evidence), code, record->limits);
+    break;
+  }
+  return verdict;
+}
+
+std::string table_of(const std::vector<Condition>& conditions) {
+  Table table({{"rule"}, {"holds"}, {"asked"}, {"found"}});
+  for (const Condition& condition : conditions)
+    table.add({std::string(condition.rule),
+               condition.holds ? (*condition.holds ? "yes" : "no") : "-", condition.asked,
+               condition.found});
+  return table.text(terminal_width());
+}
+
+int print(const history::HistoryReader& history, const StoredVersion& story, bool json) {
+  const Verdict verdict = verdict_of(history, story);
   const Sentences sentences = sentences_of(story);
   if (json) {
+    ordered_json conditions = ordered_json::array();
+    for (const Condition& condition : verdict.conditions)
+      conditions.push_back({{"rule", condition.rule},
+                            {"asked", condition.asked},
+                            {"found", condition.found},
+                            {"holds", condition.holds ? ordered_json(*condition.holds)
+                                                      : ordered_json()}});
     const ordered_json object = {{"spacecraft", story.version.spacecraft},
                                  {"equipment", story.version.equipment},
                                  {"version", story.version.number},
                                  {"status", story.version.status},
+                                 {"verdict", verdict.sentence},
+                                 {"conditions", std::move(conditions)},
                                  {"outcome", story.attempt.outcome},
                                  {"reason", story.attempt.reason},
                                  {"sentences", sentences},
@@ -203,15 +268,18 @@ int print(const StoredVersion& story, bool json) {
   }
   fmt::print("{} version {}: {}\n", full_name({story.version.spacecraft, story.version.equipment}),
              story.version.number, story.version.status);
+  fmt::print("{}\n", fmt::join(wrapped(verdict.sentence, terminal_width()), "\n  "));
+  if (!verdict.conditions.empty()) fmt::print("\n{}\n", table_of(verdict.conditions));
   for (const std::string& sentence : sentences)
     fmt::print("{}\n", fmt::join(wrapped(sentence, terminal_width()), "\n  "));
   return exit_done;
 }
 
 int run(const Arguments& arguments) {
-  return with_version(
-      arguments.access, arguments.subject,
-      [&](const Readers&, const StoredVersion& story) { return print(story, arguments.json); });
+  return with_version(arguments.access, arguments.subject,
+                      [&](const Readers& readers, const StoredVersion& story) {
+                        return print(readers.history, story, arguments.json);
+                      });
 }
 
 std::function<int()> declare(CLI::App& command) {

@@ -1,0 +1,92 @@
+#include "service/cli/stored_league.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "service/cli/stored.hpp"
+
+namespace reident::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using storage::EquipmentName;
+
+/// The limits that the attempt's evidence holds.
+EquipmentConfig limits_of(const ordered_json& evidence, std::vector<std::string>& unbound) {
+  EquipmentConfig limits;
+  const ordered_json json = evidence.value("limits", ordered_json::object());
+  const auto read = [&json](const char* key, auto& value) {
+    if (const auto found = json.find(key); found != json.end() && !found->is_null())
+      value = found->get<std::remove_reference_t<decltype(value)>>();
+  };
+  read("max_mrse_percent", limits.max_mrse_percent);
+  read("margin_percent", limits.margin_percent);
+  read("confidence_percent", limits.confidence_percent);
+  read("min_interval_ns", limits.min_interval);
+  read("cycle_ns", limits.cycle);
+  read("members", limits.members);
+  read("unbound", unbound);
+  if (json.value("bias", "wait") == "approve") limits.bias = BiasPolicy::approve;
+  return limits;
+}
+
+Member member_of(const history::HistoryReader& history, const EquipmentName& equipment,
+                 std::int64_t version, storage::TimeRange window) {
+  return {version, window, history.scores(equipment, version)};
+}
+
+}  // namespace
+
+const Member& StoredRecord::member(std::int64_t version) const {
+  return *std::find_if(league.challengers.begin(), league.challengers.end(),
+                       [version](const Member& one) { return one.version == version; });
+}
+
+std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
+                                          const StoredVersion& story) {
+  const storage::Version& version = story.version;
+  const EquipmentName equipment{version.spacecraft, version.equipment};
+  std::optional<std::int64_t> rival = version.parent;
+  if (version.status == "waiting") {
+    const auto made = history.champion_decision(equipment);
+    rival = made ? std::optional(made->version) : std::nullopt;
+  }
+  if (!rival) return std::nullopt;
+  StoredRecord record;
+  record.limits = limits_of(evidence_of(story.attempt), record.league.unbound);
+  std::vector<storage::VersionSummary> waiting = history.summaries(equipment);
+  std::erase_if(waiting, [](const auto& one) { return one.status != "waiting"; });
+  storage::HistoryFilter versions;
+  versions.spacecraft = equipment.spacecraft;
+  versions.equipment = equipment.equipment;
+  versions.versions_only = true;
+  for (const storage::Attempt& attempt : history.attempts(versions)) {
+    const std::int64_t number = *attempt.version;
+    if (attempt.outcome == name(Outcome::challenger))
+      record.league.admitted.push_back(attempt.window);
+    const bool waits = std::any_of(waiting.begin(), waiting.end(), [number](const auto& one) {
+      return one.number == number;
+    });
+    if (number == *rival)
+      record.league.champion = member_of(history, equipment, number, attempt.window);
+    else if (number == version.number || (waits && version.status == "waiting"))
+      record.league.challengers.push_back(
+          member_of(history, equipment, number, attempt.window));
+  }
+  if (!record.league.champion || record.league.champion->scores.empty() ||
+      record.member(version.number).scores.empty())
+    return std::nullopt;
+  record.league.blocks = history.blocks(equipment);
+  record.change = change_of(record.league);
+  return record;
+}
+
+std::optional<Finding> finding_now(const StoredRecord& record, const StoredVersion& story) {
+  if (story.version.status != "waiting") return std::nullopt;
+  for (const Finding& finding : judge(record.league, record.limits))
+    if (finding.version == story.version.number) return finding;
+  return std::nullopt;
+}
+
+}  // namespace reident::cli
