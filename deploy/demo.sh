@@ -68,8 +68,7 @@ follow() {
 echo "A CBERS-4-class power subsystem flies 24 orbits at 1500 times real time."
 echo "What the service publishes (<) and what the simulator runs (>):"
 follow "${pids[0]}" "$folder/reidentd.log" '
-  s/.*window decided equipment=[^/]*\/\([A-Z0-9]*\) .* outcome=approved .*reason="\(.*\)"$/  < \1: \2/p
-  s/.*version confirmed equipment=[^/]*\/\([A-Z0-9]*\) .*reason="\(.*\)"$/  < \1: \2/p'
+  s/.*version decided equipment=[^/]*\/\([A-Z0-9]*\) .*decision=approve reason="\(.*\)"$/  < \1: \2/p'
 follow "${pids[1]}" "$folder/simulator.log" '/running MRSE/!s/^/  > /p'
 
 flight=(--spacecraft CBERS-4 --duration 2406min --speed 1500 --wait-readers 2 "${endpoint[@]}")

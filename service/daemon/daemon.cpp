@@ -45,7 +45,7 @@ IdentificationReport report_of(const RefreshResult& result) {
   report.order = result.candidate ? static_cast<int>(result.candidate->dynamics.order()) : 0;
   report.mrse_percent = result.candidate ? evidence.mrse_percent : absent;
   report.fit_percent = result.candidate ? evidence.fit_percent : absent;
-  report.champion_mrse_percent = absent;
+  report.champion_mrse_percent = result.champion_mrse_percent;
   return report;
 }
 
@@ -162,7 +162,7 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
   try {
     const auto attempt =
         attempt_window(job, archive, registry, kept_[job.window.equipment], context);
-    if (attempt) publish(*attempt, registry);
+    if (attempt) publish(*attempt);
     return attempt.has_value();
   } catch (const Stopped&) {
     return false;
@@ -171,13 +171,9 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
   }
 }
 
-void Daemon::publish(const RecordedAttempt& attempt, const storage::Registry& registry) {
+void Daemon::publish(const RecordedAttempt& attempt) {
   const RefreshResult& result = attempt.result;
   ++attempts_;
-  if (result.decision && result.decision->kind == storage::DecisionKind::approve) {
-    ++approvals_;
-    publisher_.publish_champion(registry, {result.attempt.spacecraft, result.attempt.equipment});
-  }
   IdentificationReport report = report_of(result);
   report.version = attempt.version;
   publisher_.report(report);

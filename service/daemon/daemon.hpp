@@ -60,7 +60,7 @@ class Daemon {
   bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
                 const storage::Registry& registry);
   /// What follows from an attempt that was committed.
-  void publish(const RecordedAttempt& attempt, const storage::Registry& registry);
+  void publish(const RecordedAttempt& attempt);
   void publish(const LeagueDecision& decided, const storage::Registry& registry);
   void answer_operators();
   void answer_history();

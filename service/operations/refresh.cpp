@@ -44,24 +44,19 @@ std::optional<EquipmentModel> older_champion(const storage::Registry& registry,
   return champion;
 }
 
-/// Says so where the candidate errs no less than the champion, as it is, on its validation part: it
-/// would only take another's place in the league.
-std::optional<Reason> errs_no_less(const EquipmentModel& champion, std::int64_t number,
-                                   const PreparedWindow& prepared) {
+/// MRSE of the champion, as it is, on the validation part; not a number where it asks for other
+/// telemetry.
+double champion_error(const EquipmentModel& champion, const PreparedWindow& prepared) {
   const Candidate& candidate = *prepared.candidate;
-  if (request_of(champion) != request_of(candidate.model)) return std::nullopt;
+  if (request_of(champion) != request_of(candidate.model))
+    return std::numeric_limits<double>::quiet_NaN();
   const identification::Record& record = prepared.data.record;
   const RowRange rows = candidate.parts.validate;
   const auto validation = [&](const Matrix& samples) -> Matrix {
     return samples.middleRows(rows.begin, rows.size());
   };
-  const double error =
-      identification::score(validation(record.y),
-                            validation(free_run(champion.dynamics, record, record.all())))
-          .mrse();
-  if (!(candidate.model.validation.mrse() >= error)) return std::nullopt;
-  return because<ReasonCode::not_better_where_validated>(candidate.model.validation.mrse(), number,
-                                                         error);
+  const Matrix run = free_run(champion.dynamics, record, record.all());
+  return identification::score(validation(record.y), validation(run)).mrse();
 }
 
 /// Puts the champion, adapted to the window, in the candidate's place where it errs less on the
@@ -111,9 +106,15 @@ RefreshResult judge(const storage::Registry& registry, const RefreshRequest& req
     describe_candidate(prepared);
     result.evidence = evidence_of(prepared, request);
     prepared.evidence["slowest_over_window"] = result.evidence.slowest_over_window;
+    if (champion) result.champion_mrse_percent = champion_error(*champion, prepared);
+    if (std::isfinite(result.champion_mrse_percent))
+      prepared.evidence["champion_mrse_percent"] = result.champion_mrse_percent;
     prepared.evidence["limits"] = limits_json(request.equipment);
     auto refusal = inadmissible(result.evidence, request.equipment);
-    if (!refusal && champion) refusal = errs_no_less(*champion, number, prepared);
+    // One that errs no less than the champion would only take another's place in the league.
+    if (!refusal && result.evidence.mrse_percent >= result.champion_mrse_percent)
+      refusal = because<ReasonCode::not_better_where_validated>(
+          result.evidence.mrse_percent, number, result.champion_mrse_percent);
     const std::vector<Reason> reasons = {
         refusal ? *refusal : because<ReasonCode::challenger>(result.evidence.mrse_percent)};
     const Outcome outcome = outcome_of(reasons);

@@ -1,9 +1,10 @@
-// One attempt at a window: prepare a candidate, measure it against its rivals, decide.
+// One attempt at a window: prepare a candidate, and decide whether it becomes a challenger.
 //
 // Reads the archive and the registry; writes nothing.
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,8 @@ struct RefreshResult {
   storage::NewVersion version;                   // of the candidate
   std::optional<storage::NewDecision> decision;  // present with a candidate
   Evidence evidence;                             // meaningful with a candidate
+  /// Of the champion on the same rows; not a number where it has no run there.
+  double champion_mrse_percent = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The window without what lies before the champion's. That one begins later where it was asked for
@@ -28,8 +31,9 @@ struct RefreshResult {
 storage::TimeRange behind_champion(const storage::Registry& registry, const std::string& spacecraft,
                                    const std::string& equipment, storage::TimeRange window);
 
-/// Compares the candidate, or the champion adapted to the window, with its rivals, and decides. The
-/// champion is that of the registry now: whoever records checks that it still is. Throws
+/// Chooses among the candidate, the champion adapted to the window and a static gain, and decides on
+/// the chosen one. The champion is that of the registry now: whoever records checks that it still
+/// is. Throws
 /// storage::Error but for damaged telemetry, which is an outcome.
 RefreshResult judge(const storage::Registry& registry, const RefreshRequest& request,
                     PreparedWindow&& prepared);

@@ -15,6 +15,8 @@ using identification::Record;
 
 /// Telemetry of so many cycles before a block shows what of it is not believed.
 constexpr int cycles_checked = 4;
+/// With more sensor faults found in a tick, others that are too small to be found spoil the scores.
+constexpr double most_faults = 1.0 / 400;
 
 std::vector<double> list(const identification::Vector& values) {
   return {values.begin(), values.end()};
@@ -76,8 +78,9 @@ BlockSamples BlockReader::read(const storage::Archive& archive, storage::Time be
   samples.block.range = {begin, begin + length_};
   std::variant<WindowData, UnknownParameter> loaded = UnknownParameter{};
   try {
-    loaded = telemetry_.load(archive,
-                             {begin - cycles_checked * blocks_of_cycle * length_, begin + length_});
+    const storage::TimeRange checked{begin - cycles_checked * blocks_of_cycle * length_,
+                                     begin + length_};
+    loaded = telemetry_.load(archive, checked);
     auto* data = std::get_if<WindowData>(&loaded);
     if (!data) return samples;
     samples.record = rows_at(data->record, ticks_of({begin - length_, begin + length_}, period));
@@ -87,7 +90,8 @@ BlockSamples BlockReader::read(const storage::Archive& archive, storage::Time be
     const Matrix u = samples.record.u.bottomRows(rows), y = samples.record.y.bottomRows(rows);
     storage::Block& block = samples.block;
     block.rows = rows;
-    block.believed = static_cast<double>(rows) / static_cast<double>(length_ / period);
+    if (fault_share(data->plausibility, ticks_of(checked, period)) <= most_faults)
+      block.believed = static_cast<double>(rows) / static_cast<double>(length_ / period);
     block.output_mean = list(y.colwise().mean().transpose());
     block.output_square = list(y.cwiseAbs2().colwise().mean().transpose());
     block.input_low = list(u.colwise().minCoeff().transpose());

@@ -317,6 +317,20 @@ CREATE VIEW hold_now AS
                                                   AND other.equipment = last.equipment);
 )sql";
 
+constexpr std::string_view reason_view = R"sql(
+-- Why windows and versions came to what they did: attempts, then the gate's later decisions. JSON
+-- that cannot be read has no code.
+CREATE VIEW gate_reason AS
+  SELECT attempt.spacecraft, attempt.equipment, version.number AS version, attempt.time,
+         'attempt' AS of, outcome AS code
+  FROM attempt LEFT JOIN version ON version.attempt = attempt.id
+  UNION ALL
+  SELECT spacecraft, equipment, version, time, kind,
+         CASE WHEN json_valid(evidence_json)
+              THEN json_extract(evidence_json, '$.reasons[#-1].code') END
+  FROM decision WHERE actor = 'gate' AND evidence_json <> '';
+)sql";
+
 // The insert trigger stops INSERT OR REPLACE, which deletes without asking the delete trigger.
 std::string append_only(const std::string& table, const std::string& same_row) {
   const auto trigger = [&](const std::string& event, const std::string& condition) {
@@ -351,14 +365,14 @@ std::string joined(std::initializer_list<std::string_view> parts) {
 
 std::string creation() {
   return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
-                 decision_table, decision_of_4, score_tables, operator_tables, telemetry_views, hole_view,
-                 removal_view, lineage_view, registry_views}) +
+                 decision_table, decision_of_4, score_tables, operator_tables, telemetry_views,
+                 hole_view, removal_view, lineage_view, registry_views, reason_view}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
                      "equipment = NEW.equipment AND number = NEW.number)") +
-         append_only_decisions() + append_only_scores() + "PRAGMA application_id = " + std::to_string(application_id) +
-         ";" + user_version();
+         append_only_decisions() + append_only_scores() +
+         "PRAGMA application_id = " + std::to_string(application_id) + ";" + user_version();
 }
 
 // A CHECK cannot be altered, so the decisions move to a new table. Dropping the old one drops its
@@ -401,7 +415,7 @@ std::string from_3_to_4() {
 }
 
 std::string from_5_to_6() {
-  return joined({score_tables}) + append_only_scores();
+  return joined({score_tables, reason_view}) + append_only_scores();
 }
 
 std::string user_version() {

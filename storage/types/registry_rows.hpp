@@ -131,7 +131,8 @@ struct DecisionState {
 /// entry an output, or an input; all are empty without rows.
 struct Block {
   TimeRange range;
-  /// Samples that are believed, and their share of the block's ticks.
+  /// Samples that no check excludes, and their share of the block's ticks; a share of 0 where so
+  /// many sensor faults were found that others go unnoticed.
   std::int64_t rows = 0;
   double believed = 0;
   /// Means of y and y^2.

@@ -37,6 +37,10 @@ def archived(programs, database):
     return {(name, at): value for name, at, value in map(json.loads, lines)}
 
 
+def was_approved(attempt):
+    return any(decision["kind"] == "approve" for decision in attempt.get("decisions", []))
+
+
 def summary(attempts):
     """By equipment; `slides` are the models of each slide, whatever the gate decided."""
     by_equipment = collections.defaultdict(list)
@@ -44,8 +48,8 @@ def summary(attempts):
         by_equipment[attempt["equipment"]].append(attempt)
     figures = {}
     for name, tried in by_equipment.items():
-        good = [a for a in tried if a["outcome"] == "approved"]
-        others = collections.Counter(a["outcome"] for a in tried if a["outcome"] != "approved")
+        good = [a for a in tried if was_approved(a)]
+        others = collections.Counter(a["outcome"] for a in tried if not was_approved(a))
         figures[name] = {"tried": len(tried), "approved": len(good),
                          "outcomes": dict(others.most_common())}
         for what, worst in (("mrse_percent", max), ("fit_percent", min)):

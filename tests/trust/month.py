@@ -61,8 +61,8 @@ def measure(programs, configuration, folder, days, speed):
         "frames": sent["frames"], "samples": sent["samples"],
         "samples_stored": status["samples_stored"],
         "windows": len(attempts),
-        "approved": sum(count for (*_, outcome), count in outcomes.items()
-                        if outcome == "approved"),
+        "approved": sum(decision["kind"] == "approve" for attempt in attempts
+                        for decision in attempt.get("decisions", [])),
         "outcomes": {" ".join(key): count for key, count in sorted(outcomes.items())},
         "phases_of_windows_s": {phase: round(spent / 1000, 1)
                                 for phase, spent in phases.most_common()},

@@ -77,7 +77,7 @@ class Service:
         tables = "".join(
             f'[[spacecraft.equipment]]\nname = "{name}"\ninputs = {json.dumps(INPUTS)}\n'
             f'outputs = ["{OUTPUT}"]\norder = 6\nsample_period = "1s"\nwindow = "10min"\n'
-            'slide = "5min"\nconfirmation = "0s"\nmax_mrse = 20.0\n' for name in equipment)
+            'slide = "5min"\ncycle = "1min"\nmax_mrse = 20.0\n' for name in equipment)
         (folder / "reident.toml").write_text(
             f'[archive]\ndatabase = "reident.db"\n[dds]\ndomain = {self.domain}\n'
             f'partition = "{self.partition}"\n[limits]\nsettle = "300ms"\n'

@@ -1,4 +1,5 @@
 // Every row comes back from JSON text as it was, to the last bit.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -156,6 +157,47 @@ RC_GTEST_PROP(HistoryRows, DecisionsChampionsAndHoldsComeBack, ()) {
   if (held.hold)
     RC_ASSERT(std::tie(held.hold->actor, held.hold->reason, held.hold->since) ==
               std::tie(equipment.hold->actor, equipment.hold->reason, equipment.hold->since));
+}
+
+std::vector<double> any_numbers() {
+  std::vector<double> numbers(*rc::gen::inRange<std::size_t>(0, 4));
+  for (double& number : numbers) number = any_number();
+  return numbers;
+}
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](double one, double other) { return bits(one) == bits(other); });
+}
+
+RC_GTEST_PROP(HistoryRows, BlocksAndScoresComeBack, ()) {
+  const storage::Block block{{any_time(), any_time()}, *rc::gen::arbitrary<std::int64_t>(),
+                             any_number(),             any_numbers(),
+                             any_numbers(),            any_numbers(),
+                             any_numbers(),            any_numbers()};
+  const auto again = there_and_back<storage::Block>(row_of(block));
+  RC_ASSERT(again.range == block.range);
+  RC_ASSERT(again.rows == block.rows);
+  RC_ASSERT(bits(again.believed) == bits(block.believed));
+  RC_ASSERT(same(again.output_mean, block.output_mean));
+  RC_ASSERT(same(again.output_square, block.output_square));
+  RC_ASSERT(same(again.input_low, block.input_low));
+  RC_ASSERT(same(again.input_high, block.input_high));
+  RC_ASSERT(same(again.baseline_square, block.baseline_square));
+
+  const storage::BlockScore score{*rc::gen::arbitrary<std::int64_t>(),
+                                  any_time(),
+                                  *rc::gen::arbitrary<std::int64_t>(),
+                                  any_numbers(),
+                                  any_numbers(),
+                                  any_numbers(),
+                                  {}};
+  const auto back = there_and_back<storage::BlockScore>(row_of(score));
+  RC_ASSERT(std::tie(back.version, back.begin, back.rows) ==
+            std::tie(score.version, score.begin, score.rows));
+  RC_ASSERT(same(back.mean, score.mean));
+  RC_ASSERT(same(back.square, score.square));
+  RC_ASSERT(same(back.noise, score.noise));
 }
 
 RC_GTEST_PROP(HistoryRows, SamplesComeBack, ()) {
