@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <map>
 
@@ -65,28 +66,57 @@ double root(double square, double least) {
   return std::sqrt(std::max(square, least));
 }
 
-/// By how much a mean square is below another, relative to the two: 0 where they are equal, 1 where
-/// it is nothing beside the other, so that no block decides alone.
-double below(double one, double other) {
-  if (!std::isfinite(one)) return -1;
-  if (!std::isfinite(other)) return 1;
-  return (other - one) / (other + one);
-}
+/// Mean squared errors of two runs on a block, by output. What is below the noise of the sensors
+/// counts as noise.
+struct Squares {
+  std::vector<double> one, other;
+};
 
-/// The score of `one` against `other` on a block, from -1 to 1: the mean over the outputs. What is
-/// below the noise of the sensors counts as noise. `offset`, where there is one, is taken from the
-/// other's error.
-double score_of(const BlockScore& one, const BlockScore& other,
-                const std::vector<double>* offset = nullptr) {
-  double sum = 0;
+/// `offset`, where there is one, is taken from the other's error.
+Squares squares_of(const BlockScore& one, const BlockScore& other,
+                   const std::vector<double>* offset = nullptr) {
+  Squares squares;
   for (std::size_t q = 0; q < one.square.size(); ++q) {
     const double noise = std::max(std::min(one.noise[q], other.noise[q]), 1e-300);
     double theirs = other.square[q];
     if (offset) theirs += (*offset)[q] * ((*offset)[q] - 2 * other.mean[q]);
-    sum += below(std::max(one.square[q], noise), std::max(theirs, noise));
+    squares.one.push_back(std::max(one.square[q], noise));
+    squares.other.push_back(std::max(theirs, noise));
   }
-  return sum / static_cast<double>(one.square.size());
+  return squares;
 }
+
+/// Scores of one run against another, from -1 to 1: by how much its mean square is below the
+/// other's, over that of both in the last cycle, and the mean over the outputs. A block in which
+/// both err little counts little, and none decides alone.
+class Scores {
+ public:
+  /// Takes the next block in.
+  void add(Squares squares) {
+    cycle_.push_back(std::move(squares));
+    if (cycle_.size() > blocks_of_cycle) cycle_.pop_front();
+    const std::size_t outputs = cycle_.back().one.size();
+    double sum = 0;
+    for (std::size_t q = 0; q < outputs; ++q) sum += score(q);
+    values_.push_back(sum / static_cast<double>(outputs));
+  }
+  const std::vector<double>& values() const { return values_; }
+
+ private:
+  double score(std::size_t q) const {
+    const double one = cycle_.back().one[q], other = cycle_.back().other[q];
+    if (!std::isfinite(one)) return -largest_score;
+    if (!std::isfinite(other)) return largest_score;
+    double both = 0;
+    for (const Squares& block : cycle_)
+      if (std::isfinite(block.one[q] + block.other[q])) both += block.one[q] + block.other[q];
+    return std::clamp((other - one) / both * static_cast<double>(cycle_.size()), -largest_score,
+                      largest_score);
+  }
+
+  std::deque<Squares> cycle_;
+  std::vector<double> values_;
+};
 
 /// Sums from which the MRSE over some blocks follows.
 struct Sums {
@@ -194,20 +224,20 @@ double usual_dependence(const League& league) {
                     [](const Member* a, const Member* b) {
                       return a->scores.size() > b->scores.size();
                     });
-  std::vector<double> scores;
+  Scores scores;
   for (const Block& block : league.blocks) {
     if (!counts(block)) continue;
     const BlockScore* one = find(*members[0], block.range.begin);
     const BlockScore* other = find(*members[1], block.range.begin);
-    if (one && other) scores.push_back(score_of(*one, *other));
+    if (one && other) scores.add(squares_of(*one, *other));
   }
-  return dependence(series(scores, 0));
+  return dependence(series(scores.values(), 0));
 }
 
 /// The score of an error that is less by the margin.
 double margin_of(const EquipmentConfig& limits) {
   const double rest = 1 - limits.margin_percent / 100;
-  return below(rest * rest, 1);
+  return (1 - rest * rest) / (1 + rest * rest);
 }
 
 double error_probability(const EquipmentConfig& limits) {
@@ -232,6 +262,7 @@ double log_threshold(const League& league, const Member& member, Time since,
 Pair pair_of(const League& league, const std::vector<int>& regimes, const Member& member,
              Time since) {
   Pair pair;
+  Scores scores, without_offset;
   for (std::size_t i = 0; i < league.blocks.size(); ++i) {
     const Block& block = league.blocks[i];
     if (!counts(block) || block.range.begin < since) continue;
@@ -240,12 +271,14 @@ Pair pair_of(const League& league, const std::vector<int>& regimes, const Member
     if (!own || !other) continue;
     const std::vector<double> offset = cycle_mean(league, *league.champion, i);
     pair.begins.push_back(block.range.begin);
-    pair.scores.push_back(score_of(*own, *other));
-    pair.without_offset.push_back(score_of(*own, *other, &offset));
+    scores.add(squares_of(*own, *other));
+    without_offset.add(squares_of(*own, *other, &offset));
     pair.regimes.push_back(regimes[i]);
     pair.member.add(block, own->square);
     pair.champion.add(block, other->square);
   }
+  pair.scores = scores.values();
+  pair.without_offset = without_offset.values();
   return pair;
 }
 
@@ -554,21 +587,21 @@ std::optional<Reason> failure_of(const League& league, const EquipmentConfig& li
   const auto fails_beside =
       [&](const char* name,
           const std::function<std::vector<double>(const Block&)>& square) -> std::optional<Reason> {
-    std::vector<double> scores;
+    Scores scores;
     Sums own, other;
     for (const auto& [block, score] : record) {
       BlockScore rival = *score;
       rival.square = square(*block);
       if (rival.square.empty()) continue;
-      scores.push_back(score_of(rival, *score));
+      scores.add(squares_of(rival, *score));
       own.add(*block, score->square);
       other.add(*block, rival.square);
     }
-    const ScoreSeries found = series(scores, 0);
+    const ScoreSeries found = series(scores.values(), 0);
     if (!(log_wealth(found, dependence(found), 0) > -std::log(error_probability(limits))))
       return std::nullopt;
     return because<Code::champion_failed>(league.champion->version, own.mrse_percent(),
-                                          std::ssize(scores), name, other.mrse_percent());
+                                          std::ssize(scores.values()), name, other.mrse_percent());
   };
   if (auto reason = fails_beside("a constant at the mean", [&](const Block& block) {
         std::vector<double> square = block.output_square;

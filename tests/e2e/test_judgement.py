@@ -3,9 +3,13 @@
 import json
 import sys
 import unittest
+from xml.etree import ElementTree
 
 import plant
 from harness import EndToEnd, wait_until
+
+
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 class Judgement(EndToEnd):
@@ -73,6 +77,29 @@ class Judgement(EndToEnd):
         wait_until(lambda: self.champion() != 1, "what came after the window approves a version")
         self.assertEqual(self.slides(), ["challenger", "challenger"])
         wait_until(lambda: "decision=approve" in daemon.text(), "the log says so")
+
+        better = self.champion()
+        status, text = self.reident("why", f"SAT/PLANT@{better}", "--json", "--database",
+                                    self.database)
+        self.assertEqual(status, 0, text)
+        verdict = json.loads(text)
+        self.assertEqual([condition["holds"] for condition in verdict["conditions"]],
+                         [True] * len(verdict["conditions"]), verdict["verdict"])
+        drawing = self.folder / "record.svg"
+        for where in (("--database", self.database), ("--remote", *self.endpoint())):
+            status, text = self.reident("plot", f"SAT/PLANT@{better}", "--record", "-o", drawing,
+                                        *where)
+            self.assertEqual(status, 0, text)
+            groups = {group.get("id"): group
+                      for group in ElementTree.parse(drawing).getroot().iter(f"{SVG}g")}
+            self.assertLessEqual({"scores", "mean", "lower"}, set(groups))
+            self.assertGreater(len(list(groups["scores"])), 10)
+        status, text = self.reident("plot", "SAT/PLANT@1", "--record", "--database", self.database)
+        self.assertEqual(status, 2, text)
+        self.assertIn("has no record beside a champion", text)
+        reasons = dict(self.query("SELECT code, count(*) FROM gate_reason GROUP BY code"))
+        self.assertEqual(reasons["first_version"], 1)
+        self.assertGreaterEqual(reasons["better"], 1)
 
     def replay_two_sensors(self, name, bias=0.0, **keywords):
         """The plant with a second sensor of its output; the first one lies by `bias`."""
