@@ -22,7 +22,7 @@ struct IdentificationReport {
   std::int64_t attempt = 0;
   storage::TimeRange window;
   std::string trigger;
-  std::string outcome;       // "approved", "waiting" or a reason code
+  std::string outcome;       // "challenger" or a reason code
   std::string reason;        // one sentence
   std::int64_t version = 0;  // 0 where there is none
   int order = 0;             // 0 where there is no model

@@ -1,5 +1,5 @@
 // The service without middleware and threads: frames in, in the order of their reception, and the
-// real archive, windows, identification, gate, registry, champion monitors and probation behind
+// real archive, windows, identification, gate, registry and leagues behind
 // them.
 //
 // Everything happens on the calling thread. The clock is the reception time of the frame at hand,
