@@ -7,8 +7,8 @@
 //                                        '- writer <-----' then publisher
 //   command desk thread -> writer thread, then publisher, then the reply
 //   history desk thread (a read-only database) -> pages of rows to whoever asks
-//   monitor thread (a read-only database) -> window feed, when a champion drifts; writer thread and
-//                                            publisher, when a version's probation ends
+//   league thread (a read-only database) -> writer thread, for scores and decisions; publisher, when
+//                                           the champion changes; window feed, when the equipment does
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,4 @@
-// One window from its seal to its attempt in the registry, and what becomes of versions on
-// probation, wherever the database's writer is.
+// One window from its seal to its attempt in the registry, wherever the database's writer is.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +24,9 @@ struct RecordedAttempt {
   std::int64_t version = 0;  // 0 where the window gave no model
 };
 
-/// Seals the window, looks at the equipment's versions on probation with the telemetry up to its
-/// end, tries what of it does not lie before the champion's window and commits what came out;
-/// nothing is published. Absent, and nothing recorded of the window, where the equipment's decision
+/// Seals the window, advances the equipment's league to its end, tries what of it does not lie
+/// before the champion's window, commits what came out, and advances the league again: a first
+/// version may be good enough already. Absent, and nothing recorded of the window, where the equipment's decision
 /// state is not the one that the attempt saw any more. `archive` and `registry` are of the calling
 /// thread; `kept` is of the job's equipment. Throws Stopped where `stop` answered true.
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,

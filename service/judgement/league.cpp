@@ -30,7 +30,7 @@ constexpr double largest_score = 1;
 constexpr double least_believed = 0.5;
 /// Blocks are of one regime where no end of an input's range is further away than this share of
 /// the range that the champion has seen.
-constexpr double regime_width = 0.5;
+constexpr double regime_width = 0.25;
 /// Cycles of the champion's record that a change is measured against.
 constexpr int reference_cycles = 8;
 
