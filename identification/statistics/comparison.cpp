@@ -174,9 +174,9 @@ Vector noise_squares(const Matrix& y, const Matrix& run, const std::vector<RowRa
 }
 
 double noise_percent(const Matrix& y, const Matrix& run, const std::vector<RowRange>& segments) {
-  return 100 * errors_of(noise_squares(y, run, segments),
-                         y.cwiseAbs2().colwise().mean().transpose())
-                   .mean();
+  return 100 *
+         errors_of(noise_squares(y, run, segments), y.cwiseAbs2().colwise().mean().transpose())
+             .mean();
 }
 
 }  // namespace reident::identification

@@ -65,14 +65,12 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
     const std::int64_t number = *attempt.version;
     if (attempt.outcome == name(Outcome::challenger))
       record.league.admitted.push_back(attempt.window);
-    const bool waits = std::any_of(waiting.begin(), waiting.end(), [number](const auto& one) {
-      return one.number == number;
-    });
+    const bool waits = std::any_of(waiting.begin(), waiting.end(),
+                                   [number](const auto& one) { return one.number == number; });
     if (number == *rival)
       record.league.champion = member_of(history, equipment, number, attempt.window);
     else if (number == version.number || (waits && version.status == "waiting"))
-      record.league.challengers.push_back(
-          member_of(history, equipment, number, attempt.window));
+      record.league.challengers.push_back(member_of(history, equipment, number, attempt.window));
   }
   if (!record.league.champion || record.league.champion->scores.empty() ||
       record.member(version.number).scores.empty())

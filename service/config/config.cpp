@@ -323,12 +323,15 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
               {{"keep", FailurePolicy::keep}, {"withdraw", FailurePolicy::withdraw}});
   read_choice(reader, "screening", equipment.screening, {{"on", true}, {"off", false}});
   reader.refuse_unknown_keys(
-      {{"min_fit", "remove it; a version has to err less than the mean of the outputs, and max_mrse "
-                   "limits its error"},
-       {"max_disagreement", "remove it; a version is compared with the champion on telemetry of "
-                            "every operating regime"},
-       {"confirmation", "remove it; every version proves itself on the telemetry after its window, "
-                        "for as long as that takes, beside at most `members` others"},
+      {{"min_fit",
+        "remove it; a version has to err less than the mean of the outputs, and max_mrse "
+        "limits its error"},
+       {"max_disagreement",
+        "remove it; a version is compared with the champion on telemetry of "
+        "every operating regime"},
+       {"confirmation",
+        "remove it; every version proves itself on the telemetry after its window, "
+        "for as long as that takes, beside at most `members` others"},
        {"unvouched", "use bias, with the same values"}});
   siblings.push_back(std::move(equipment));
 }

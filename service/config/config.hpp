@@ -53,7 +53,7 @@ struct EquipmentConfig {
   double min_coverage = 0.5;      // least share of the window's ticks with every channel valid
   int min_order = 1;
   int max_order = 10;
-  std::optional<int> horizon;            // absent: chosen
+  std::optional<int> horizon;      // absent: chosen
   Duration cycle = 0;              // of its operation, such as an orbit: errors repeat with it;
                                    // default: the validation part
   int members = 12;                // versions that are scored beside the champion, at most

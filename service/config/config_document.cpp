@@ -300,9 +300,8 @@ void TableReader::refuse_unknown_keys(std::initializer_list<FormerKey> former) {
   for (const std::string& key : known_) all += (all.empty() ? "" : ", ") + key;
   for (const auto& [key, node] : table_) {
     if (known_.contains(key.str())) continue;
-    const auto* of_before = std::find_if(former.begin(), former.end(), [&](const FormerKey& one) {
-      return one.key == key.str();
-    });
+    const auto* of_before = std::find_if(
+        former.begin(), former.end(), [&](const FormerKey& one) { return one.key == key.str(); });
     if (of_before != former.end()) {
       mistake(key.str(), fmt::format("{} is no key any more: {}", key.str(), of_before->remedy));
       continue;

@@ -70,7 +70,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       queue_({config.queue_frames, config.queue_mib << 20}),
       search_(usable_cores()),
       feed_(config, clock_),
-      leagues_(config),
+      leagues_(config, feed_),
       writer_(open_for_writing(config), {.recent_samples = config.recent_samples}, queue_,
               config.batch_frames, config.batch_delay, feed_),
       keeper_(config, writer_, clock_),
@@ -234,7 +234,7 @@ void Daemon::watch_champions() {
   const AttemptContext context = attempt_context(registry);
   std::uint64_t seen = 0;
   try {
-    while (feed_.wait_for_telemetry(seen)) leagues_.look(archive, registry, feed_, context);
+    while (feed_.wait_for_telemetry(seen)) leagues_.look(archive, registry, context);
   } catch (const std::future_error&) {  // the writer has ended
   }
 }

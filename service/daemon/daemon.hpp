@@ -7,8 +7,10 @@
 //                                        '- writer <-----' then publisher
 //   command desk thread -> writer thread, then publisher, then the reply
 //   history desk thread (a read-only database) -> pages of rows to whoever asks
-//   league thread (a read-only database) -> writer thread, for scores and decisions; publisher, when
-//                                           the champion changes; window feed, when the equipment does
+//   league thread (a read-only database) -> writer thread, for scores and decisions; publisher,
+//   when
+//                                           the champion changes; window feed, when the equipment
+//                                           does
 #pragma once
 
 #include <atomic>
@@ -21,9 +23,9 @@
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
 #include "service/daemon/command_desk.hpp"
-#include "service/daemon/league_watch.hpp"
 #include "service/daemon/history_desk.hpp"
 #include "service/daemon/ingest.hpp"
+#include "service/daemon/league_watch.hpp"
 #include "service/daemon/publisher.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"

@@ -5,30 +5,20 @@
 
 #include "service/support/log.hpp"
 #include "service/support/time_text.hpp"
-#include "service/windows/window_cache.hpp"
 
 namespace reident {
 
-LeagueWatch::LeagueWatch(const Config& config) : settle_(config.settle) {
+LeagueWatch::LeagueWatch(const Config& config, WindowFeed& feed)
+    : settle_(config.settle), feed_(feed) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       watched_.push_back(std::unique_ptr<Watched>(
           new Watched{&spacecraft.name, &equipment, {}, {spacecraft.name, equipment}}));
 }
 
-storage::TimeRange window_behind(const Change& change, const EquipmentConfig& equipment) {
-  const Duration period = equipment.sample_period;
-  const std::int64_t ticks = std::max(equipment.window / 2 / period, least_window_ticks(equipment));
-  const storage::Time end =
-      std::max(change.found, change.since + std::min(equipment.window, ticks * period));
-  return {std::max(change.since, end - equipment.window), end};
-}
-
-std::vector<LeagueWatch::Drift> LeagueWatch::advance(std::size_t equipment,
-                                                     const storage::Archive& archive,
-                                                     const storage::Registry& registry,
-                                                     storage::Time reached,
-                                                     const LeagueContext& context) {
+bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive,
+                          const storage::Registry& registry, storage::Time reached,
+                          const LeagueContext& context) {
   Watched& watched = *watched_[equipment];
   const std::lock_guard lock(watched.mutex);
   const std::string& spacecraft = *watched.spacecraft;
@@ -54,9 +44,15 @@ std::vector<LeagueWatch::Drift> LeagueWatch::advance(std::size_t equipment,
     log::error("league", "the champion fails",
                {{"equipment", spacecraft + "/" + name}, {"reason", sentence(reason)}});
   };
-  const auto change = watched.keeper.advance(archive, registry, reached, writer);
-  if (!change) return {};
-  return {{watched.spacecraft, watched.equipment, *change}};
+  while (const auto window = watched.keeper.advance(archive, registry, reached, writer)) {
+    log::warning("league", "the equipment has changed; it is identified again",
+                 {{"equipment", spacecraft + "/" + name},
+                  {"window_begin", time_text(window->begin)},
+                  {"window_end", time_text(window->end)}});
+    feed_.ask(spacecraft, name, "drift", *window);
+    if (window->end < reached) return false;
+  }
+  return true;
 }
 
 void LeagueWatch::forget(std::size_t equipment, storage::TimeRange range) {
@@ -64,16 +60,13 @@ void LeagueWatch::forget(std::size_t equipment, storage::TimeRange range) {
   watched_[equipment]->keeper.forget(range);
 }
 
-std::vector<LeagueWatch::Drift> LeagueWatch::look(const storage::Archive& archive,
-                                                  const storage::Registry& registry,
-                                                  WindowFeed& feed, const LeagueContext& context) {
-  std::vector<Drift> drifts;
+void LeagueWatch::look(const storage::Archive& archive, const storage::Registry& registry,
+                       const LeagueContext& context) {
   for (std::size_t i = 0; i < watched_.size() && !context.stop(); ++i) {
-    const storage::Time reached = feed.reached(i);
+    const storage::Time reached = feed_.tried_until(i);
     if (reached == INT64_MIN) continue;  // none of its telemetry has come
     try {
-      for (const Drift& drift : advance(i, archive, registry, reached - settle_, context))
-        drifts.push_back(drift);
+      advance(i, archive, registry, reached - settle_, context);
     } catch (const storage::Error& error) {
       if (error.what() != std::exchange(last_error_, error.what()))
         log::error("league", "versions cannot be scored; it is tried again",
@@ -81,15 +74,6 @@ std::vector<LeagueWatch::Drift> LeagueWatch::look(const storage::Archive& archiv
                     {"error", error.what()}});
     }
   }
-  for (const Drift& drift : drifts) {
-    const storage::TimeRange window = window_behind(drift.found, *drift.equipment);
-    feed.ask(*drift.spacecraft, drift.equipment->name, "drift", window);
-    log::warning("league", "the equipment has changed; it is identified again",
-                 {{"equipment", *drift.spacecraft + "/" + drift.equipment->name},
-                  {"window_begin", time_text(window.begin)},
-                  {"window_end", time_text(window.end)}});
-  }
-  return drifts;
 }
 
 }  // namespace reident

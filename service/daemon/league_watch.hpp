@@ -25,27 +25,21 @@ struct LeagueContext {
 
 class LeagueWatch {
  public:
-  struct Drift {
-    const std::string* spacecraft = nullptr;
-    const EquipmentConfig* equipment = nullptr;
-    Change found;
-  };
-
-  /// The configuration must outlive the watch.
-  explicit LeagueWatch(const Config& config);
+  /// Configuration and feed must outlive the watch.
+  LeagueWatch(const Config& config, WindowFeed& feed);
 
   /// Advances the league of an equipment, by its place in the configuration, to `reached`; asks the
-  /// feed for a window where a change was found. `archive` and `registry` are of the calling
-  /// thread. Throws storage::Error.
-  std::vector<Drift> advance(std::size_t equipment, const storage::Archive& archive,
-                             const storage::Registry& registry, storage::Time reached,
-                             const LeagueContext& context);
+  /// feed for a window where a change is found. False where it is not advanced to `reached` because
+  /// such a window, which ends before, has to be tried first. `archive` and `registry` are of the
+  /// calling thread. Throws storage::Error.
+  bool advance(std::size_t equipment, const storage::Archive& archive,
+               const storage::Registry& registry, storage::Time reached,
+               const LeagueContext& context);
 
-  /// Advances every league to where the feed's telemetry has settled, but for those of which a
-  /// window is due or in work. An archive that cannot be read is logged, and read again the next
-  /// time.
-  std::vector<Drift> look(const storage::Archive& archive, const storage::Registry& registry,
-                          WindowFeed& feed, const LeagueContext& context);
+  /// Advances every league to where the feed's telemetry has settled and its windows were tried. An
+  /// archive that cannot be read is logged, and read again the next time.
+  void look(const storage::Archive& archive, const storage::Registry& registry,
+            const LeagueContext& context);
 
   /// Forgets what samples in `range` served.
   void forget(std::size_t equipment, storage::TimeRange range);
@@ -58,13 +52,9 @@ class LeagueWatch {
     LeagueKeeper keeper;
   };
   const Duration settle_;
+  WindowFeed& feed_;
   std::vector<std::unique_ptr<Watched>> watched_;  // in the configuration's order
   std::string last_error_;                         // said once, not at each look
 };
-
-/// The window to identify from behind a change: it begins with it, and ends where that was found,
-/// or later, where half of the configured window, or what a window needs at least, lies behind its
-/// begin.
-storage::TimeRange window_behind(const Change& change, const EquipmentConfig& equipment);
 
 }  // namespace reident

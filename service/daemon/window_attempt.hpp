@@ -26,9 +26,10 @@ struct RecordedAttempt {
 
 /// Seals the window, advances the equipment's league to its end, tries what of it does not lie
 /// before the champion's window, commits what came out, and advances the league again: a first
-/// version may be good enough already. Absent, and nothing recorded of the window, where the equipment's decision
-/// state is not the one that the attempt saw any more. `archive` and `registry` are of the calling
-/// thread; `kept` is of the job's equipment. Throws Stopped where `stop` answered true.
+/// version may be good enough already. Absent, and nothing recorded of the window, where the
+/// equipment's decision state is not the one that the attempt saw any more. `archive` and
+/// `registry` are of the calling thread; `kept` is of the job's equipment. Throws Stopped where
+/// `stop` answered true.
 std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
                                               const storage::Archive& archive,
                                               const storage::Registry& registry, WindowCache& kept,

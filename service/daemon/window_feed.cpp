@@ -227,9 +227,9 @@ bool WindowFeed::wait_for_telemetry(std::uint64_t& seen) {
   return !stopped_;
 }
 
-storage::Time WindowFeed::reached(std::size_t equipment) const {
+storage::Time WindowFeed::tried_until(std::size_t equipment) const {
   MutexLock lock(mutex_);
-  return scheduler_.reached(equipment);
+  return scheduler_.tried_until(equipment);
 }
 
 std::optional<WindowFeed::Job> WindowFeed::take_due(storage::Time now) {

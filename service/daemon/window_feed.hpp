@@ -64,8 +64,10 @@ class WindowFeed : public ArchiveListener {
   /// Waits until telemetry was stored since the last call with the same `seen`, which begins at 0.
   /// False after stop().
   bool wait_for_telemetry(std::uint64_t& seen);
-  /// Where the telemetry of an equipment, by its position in the configuration, ends by now.
-  storage::Time reached(std::size_t equipment) const;
+  /// Where the telemetry of an equipment, by its position in the configuration, ends by now; or the
+  /// end of the first window that has still to be tried, so that a version meets all telemetry that
+  /// follows it in the same order, however fast that comes.
+  storage::Time tried_until(std::size_t equipment) const;
 
   std::size_t pending() const;
   storage::Time newest_telemetry() const;

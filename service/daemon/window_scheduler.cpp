@@ -92,6 +92,18 @@ void WindowScheduler::finished(const Job& job, bool completed, storage::Time now
   state.running.reset();
 }
 
+storage::Time WindowScheduler::tried_until(std::size_t equipment) const {
+  const Equipment& state = equipment_[equipment];
+  storage::Time first = state.reached;
+  const auto limit = [&](storage::Time end) {
+    if (!state.tried.contains(end)) first = std::min(first, end);
+  };
+  if (state.running) limit(state.running->end);
+  for (auto due = state.due.begin(); due != state.due.end() && due->first < first; ++due)
+    limit(due->first);
+  return first;
+}
+
 std::optional<storage::Time> WindowScheduler::next_due() const {
   std::optional<storage::Time> earliest;
   for (const Equipment& state : equipment_) {

@@ -60,6 +60,9 @@ class WindowScheduler {
   /// Where the telemetry of the equipment ends; the lowest time where none came.
   storage::Time reached(std::size_t equipment) const { return equipment_[equipment].reached; }
 
+  /// Telemetry up to here belongs to no window that has still to be tried for the first time.
+  storage::Time tried_until(std::size_t equipment) const;
+
   /// When `next` may give a job without any further call; absent when only new telemetry can.
   std::optional<storage::Time> next_due() const;
   /// Windows due or running, those that settle included.

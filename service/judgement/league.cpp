@@ -1,15 +1,12 @@
 #include "service/judgement/league.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <map>
 
 #include "identification/statistics/betting.hpp"
-#include "identification/statistics/change_detection.hpp"
-#include "service/windows/block_reader.hpp"
+#include "service/judgement/regimes.hpp"
 
 namespace reident {
 namespace {
@@ -25,28 +22,6 @@ using storage::BlockScore;
 using storage::Time;
 using Code = ReasonCode;
 
-constexpr double largest_score = 1;
-/// A block of which less is believed says nothing.
-constexpr double least_believed = 0.5;
-/// Blocks are of one regime where no end of an input's range is further away than this share of
-/// the range that the champion has seen.
-constexpr double regime_width = 0.25;
-/// Cycles of the champion's record that a change is measured against.
-constexpr int reference_cycles = 8;
-
-bool counts(const Block& block) {
-  return block.rows > 0 && block.believed >= least_believed;
-}
-
-/// Rows of a record by the begin of their block.
-const BlockScore* find(const Member& member, Time begin) {
-  const auto found =
-      std::lower_bound(member.scores.begin(), member.scores.end(), begin,
-                       [](const BlockScore& score, Time time) { return score.begin < time; });
-  return found != member.scores.end() && found->begin == begin && found->rows > 0 ? &*found
-                                                                                  : nullptr;
-}
-
 /// Mean error of a run over the last cycle, by output, with the block at `index` the last.
 std::vector<double> cycle_mean(const League& league, const Member& member, std::size_t index) {
   std::vector<double> mean(league.blocks[index].output_mean.size(), 0);
@@ -60,145 +35,6 @@ std::vector<double> cycle_mean(const League& league, const Member& member, std::
   }
   for (double& value : mean) value /= rows;
   return mean;
-}
-
-double root(double square, double least) {
-  return std::sqrt(std::max(square, least));
-}
-
-/// Mean squared errors of two runs on a block, by output. What is below the noise of the sensors
-/// counts as noise.
-struct Squares {
-  std::vector<double> one, other;
-};
-
-/// `offset`, where there is one, is taken from the other's error.
-Squares squares_of(const BlockScore& one, const BlockScore& other,
-                   const std::vector<double>* offset = nullptr) {
-  Squares squares;
-  for (std::size_t q = 0; q < one.square.size(); ++q) {
-    const double noise = std::max(std::min(one.noise[q], other.noise[q]), 1e-300);
-    double theirs = other.square[q];
-    if (offset) theirs += (*offset)[q] * ((*offset)[q] - 2 * other.mean[q]);
-    squares.one.push_back(std::max(one.square[q], noise));
-    squares.other.push_back(std::max(theirs, noise));
-  }
-  return squares;
-}
-
-/// Scores of one run against another, from -1 to 1: by how much its mean square is below the
-/// other's, over that of both in the last cycle, and the mean over the outputs. A block in which
-/// both err little counts little, and none decides alone.
-class Scores {
- public:
-  /// Takes the next block in.
-  void add(Squares squares) {
-    cycle_.push_back(std::move(squares));
-    if (cycle_.size() > blocks_of_cycle) cycle_.pop_front();
-    const std::size_t outputs = cycle_.back().one.size();
-    double sum = 0;
-    for (std::size_t q = 0; q < outputs; ++q) sum += score(q);
-    values_.push_back(sum / static_cast<double>(outputs));
-  }
-  const std::vector<double>& values() const { return values_; }
-
- private:
-  double score(std::size_t q) const {
-    const double one = cycle_.back().one[q], other = cycle_.back().other[q];
-    if (!std::isfinite(one)) return -largest_score;
-    if (!std::isfinite(other)) return largest_score;
-    double both = 0;
-    for (const Squares& block : cycle_)
-      if (std::isfinite(block.one[q] + block.other[q])) both += block.one[q] + block.other[q];
-    return std::clamp((other - one) / both * static_cast<double>(cycle_.size()), -largest_score,
-                      largest_score);
-  }
-
-  std::deque<Squares> cycle_;
-  std::vector<double> values_;
-};
-
-/// Sums from which the MRSE over some blocks follows.
-struct Sums {
-  std::vector<double> error, y, y_square;
-  double rows = 0;
-
-  void add(const Block& block, const std::vector<double>& square) {
-    error.resize(square.size(), 0);
-    y.resize(square.size(), 0);
-    y_square.resize(square.size(), 0);
-    const auto weight = static_cast<double>(block.rows);
-    for (std::size_t q = 0; q < square.size(); ++q) {
-      error[q] += weight * square[q];
-      y[q] += weight * block.output_mean[q];
-      y_square[q] += weight * block.output_square[q];
-    }
-    rows += weight;
-  }
-  double mrse_percent() const {
-    double sum = 0;
-    for (std::size_t q = 0; q < error.size(); ++q) sum += std::sqrt(error[q] / y_square[q]);
-    return error.empty() ? 0 : 100 * sum / static_cast<double>(error.size());
-  }
-  /// The worst output's.
-  double fit_percent() const {
-    double worst = 0;
-    for (std::size_t q = 0; q < error.size(); ++q)
-      worst = std::max(worst, std::sqrt(error[q] / (y_square[q] - y[q] * y[q] / rows)));
-    return 100 * (1 - worst);
-  }
-};
-
-/// Ranges of the inputs over the cycle that ends with each block; empty of a block that does not
-/// count.
-struct InputRange {
-  std::vector<double> low, high;
-
-  void widen(const std::vector<double>& other_low, const std::vector<double>& other_high) {
-    if (low.empty()) low = other_low, high = other_high;
-    for (std::size_t i = 0; i < low.size(); ++i) {
-      low[i] = std::min(low[i], other_low[i]);
-      high[i] = std::max(high[i], other_high[i]);
-    }
-  }
-  /// Largest distance of an end from the other's, over the range of `all`.
-  double distance(const InputRange& other, const InputRange& all) const {
-    double largest = 0;
-    for (std::size_t i = 0; i < low.size(); ++i)
-      if (const double range = all.high[i] - all.low[i]; range > 0)
-        largest = std::max({largest, std::abs(low[i] - other.low[i]) / range,
-                            std::abs(high[i] - other.high[i]) / range});
-    return largest;
-  }
-};
-
-/// Number of the operating regime of each block that counts, -1 for others: cycles over which the
-/// inputs have about the same ranges are of one regime. A block is of the nearest regime that is
-/// near enough, or begins one.
-std::vector<int> regimes_of(const std::vector<Block>& blocks) {
-  std::vector<InputRange> cycles(blocks.size());
-  InputRange all;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (!counts(blocks[i])) continue;
-    all.widen(blocks[i].input_low, blocks[i].input_high);
-    for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
-      if (counts(blocks[k])) cycles[i].widen(blocks[k].input_low, blocks[k].input_high);
-  }
-  std::vector<const InputRange*> leaders;
-  std::vector<int> regimes;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    regimes.push_back(-1);
-    if (!counts(blocks[i])) continue;
-    double nearest = regime_width;
-    for (std::size_t r = 0; r < leaders.size(); ++r)
-      if (const double distance = cycles[i].distance(*leaders[r], all); distance < nearest)
-        nearest = distance, regimes.back() = static_cast<int>(r);
-    if (regimes.back() < 0) {
-      regimes.back() = static_cast<int>(leaders.size());
-      leaders.push_back(&cycles[i]);
-    }
-  }
-  return regimes;
 }
 
 struct Pair {
@@ -220,10 +56,9 @@ double usual_dependence(const League& league) {
   for (const Member& member : league.challengers) members.push_back(&member);
   if (league.champion) members.push_back(&*league.champion);
   if (members.size() < 2) return 0;
-  std::partial_sort(members.begin(), members.begin() + 2, members.end(),
-                    [](const Member* a, const Member* b) {
-                      return a->scores.size() > b->scores.size();
-                    });
+  std::partial_sort(
+      members.begin(), members.begin() + 2, members.end(),
+      [](const Member* a, const Member* b) { return a->scores.size() > b->scores.size(); });
   Scores scores;
   for (const Block& block : league.blocks) {
     if (!counts(block)) continue;
@@ -319,33 +154,59 @@ std::optional<Reason> inadmissible(const Finding& finding, const EquipmentConfig
   return std::nullopt;
 }
 
-/// A first version has to be good on telemetry of a whole cycle.
+/// A record compared with a rival whose mean squared errors are known, by output; on a block where
+/// they are empty they are not.
+struct AgainstRival {
+  Scores scores;
+  Sums own, rival;
+
+  void add(const Block& block, const BlockScore& score, const std::vector<double>& square) {
+    if (square.empty()) return;
+    BlockScore other = score;
+    other.square = square;
+    scores.add(squares_of(score, other));
+    own.add(block, score.square);
+    rival.add(block, square);
+  }
+};
+
+/// A first version has to be good on telemetry of a whole cycle, and the simulator's own model is
+/// its champion.
 Finding judge_first(const League& league, const Member& member, const EquipmentConfig& limits) {
   Finding finding;
   finding.version = member.version;
-  Sums own, beside_baseline, baseline;
+  Sums own;
+  AgainstRival simulator;
   for (const Block& block : league.blocks) {
     const BlockScore* score = counts(block) ? find(member, block.range.begin) : nullptr;
     if (!score) continue;
     ++finding.blocks;
     own.add(block, score->square);
-    if (block.baseline_square.empty()) continue;
-    baseline.add(block, block.baseline_square);
-    beside_baseline.add(block, score->square);
+    simulator.add(block, *score, block.baseline_square);
   }
   finding.mrse_percent = own.mrse_percent();
   finding.fit_percent = own.fit_percent();
-  finding.baseline_mrse_percent = baseline.mrse_percent();
+  finding.baseline_mrse_percent = simulator.rival.mrse_percent();
   finding.recent_score = finding.log_wealth = -finding.mrse_percent;
+  const ScoreSeries scores = series(simulator.scores.values(), 0);
+  if (scores.scores.size() > 0) {
+    finding.dependence = dependence(scores);
+    finding.log_wealth = log_wealth(scores, finding.dependence, 0);
+    finding.log_threshold = log_threshold(league, member, INT64_MIN, limits);
+    finding.mean_score = scores.scores.mean();
+  }
   finding.obstacle = [&]() -> std::optional<Reason> {
     if (finding.blocks < blocks_of_cycle)
       return because<Code::too_few_blocks>(finding.blocks, std::int64_t{blocks_of_cycle});
     if (auto reason = inadmissible(finding, limits)) return reason;
-    const double error =
-        baseline.rows > 0 ? beside_baseline.mrse_percent() : finding.mrse_percent;
-    const auto rival = baseline.rows > 0 ? finding.baseline_mrse_percent
-                                         : limits.baseline_mrse_percent.value_or(INFINITY);
-    if (!(error < rival)) return because<Code::not_better_than_simulator>(error, rival);
+    const bool is_known = scores.scores.size() > 0;
+    const double error = is_known ? simulator.own.mrse_percent() : finding.mrse_percent;
+    const double rival =
+        is_known ? finding.baseline_mrse_percent : limits.baseline_mrse_percent.value_or(INFINITY);
+    const bool is_better = is_known ? finding.log_wealth > finding.log_threshold &&
+                                          finding.mean_score > margin_of(limits)
+                                    : error < rival;
+    if (!is_better) return because<Code::not_better_than_simulator>(error, rival);
     return std::nullopt;
   }();
   return finding;
@@ -365,8 +226,7 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
                                          const Pair& pair, Finding& finding) {
   const std::int64_t champion = standard.league.champion->version;
   finding.uncovered_share = uncovered_share(standard.league, standard.regimes, member);
-  if (finding.lower_score * (1 - finding.uncovered_share) <
-      largest_score * finding.uncovered_share)
+  if (finding.lower_score * (1 - finding.uncovered_share) < largest_score * finding.uncovered_share)
     return because<Code::not_covered>(champion, 100 * finding.uncovered_share);
   if (worse_in_a_regime(pair, standard.assumed, standard.limits))
     return because<Code::worse_in_regime>(champion);
@@ -434,85 +294,6 @@ Finding judge_against_champion(const Standard& standard, const Member& member) {
   }();
   return finding;
 }
-
-double log_error(const BlockScore& score) {
-  double sum = 0;
-  for (std::size_t q = 0; q < score.square.size(); ++q)
-    sum += std::log(root(score.square[q], std::max(score.noise[q], 1e-300)));
-  return sum / static_cast<double>(score.square.size());
-}
-
-/// Finds growth of the logarithms of a run's errors, each beside those of its phase of the cycle.
-class GrowthDetector {
- public:
-  /// Returns whether a change is found. It measures against the first cycles that it is given.
-  bool add(std::size_t phase, double log_error) {
-    if (!detector_) {
-      reference_.push_back({phase, log_error});
-      if (std::ssize(reference_) == reference_cycles * blocks_of_cycle) begin();
-      return false;
-    }
-    return detector_->add(scaled(phase, log_error));
-  }
-  /// Whether nothing speaks for a change.
-  bool is_calm() const { return !detector_ || detector_->statistic() == 0; }
-
- private:
-  struct Entry {
-    std::size_t phase;
-    double log_error;
-  };
-  void begin() {
-    std::array<double, blocks_of_cycle> counts{};
-    for (const Entry& entry : reference_) {
-      means_[entry.phase] += entry.log_error;
-      ++counts[entry.phase];
-    }
-    for (std::size_t phase = 0; phase < means_.size(); ++phase)
-      if (counts[phase] > 0) means_[phase] /= counts[phase];
-    Vector left(std::ssize(reference_));
-    for (Index i = 0; i < left.size(); ++i) {
-      const Entry& entry = reference_[static_cast<std::size_t>(i)];
-      left(i) = scaled(entry.phase, entry.log_error);
-    }
-    detector_.emplace(left);
-    scale_ = 1 / std::sqrt(dependence({left, 1, 1}));
-  }
-  double scaled(std::size_t phase, double log_error) const {
-    return scale_ * (log_error - means_[phase]);
-  }
-
-  std::vector<Entry> reference_;
-  std::array<double, blocks_of_cycle> means_{};
-  double scale_ = 1;
-  std::optional<identification::ChangeDetector> detector_;
-};
-
-}  // namespace
-
-std::optional<Change> change_of(const League& league) {
-  if (!league.champion) return std::nullopt;
-  std::optional<Change> change;
-  GrowthDetector detector;
-  Time since = INT64_MIN;
-  for (const Block& block : league.blocks) {
-    const BlockScore* score = counts(block) ? find(*league.champion, block.range.begin) : nullptr;
-    if (!score) continue;
-    const double error = log_error(*score);
-    if (!std::isfinite(error)) continue;
-    const Duration length = block.range.end - block.range.begin;
-    const auto phase = static_cast<std::size_t>(block.range.begin / length % blocks_of_cycle);
-    if (detector.add(phase, error)) {
-      change = Change{since, block.range.end};
-      detector = {};
-    } else if (detector.is_calm()) {
-      since = block.range.end;
-    }
-  }
-  return change;
-}
-
-namespace {
 
 /// Records count from the last change on, or from the champion's window.
 Time counted_since(const League& league) {
@@ -583,35 +364,28 @@ std::optional<Reason> failure_of(const League& league, const EquipmentConfig& li
     rows += weight;
   }
   for (double& value : mean) value /= rows;
-  // The rival's mean squared error on a block; empty where it is not known.
-  const auto fails_beside =
+  const auto fails_against =
       [&](const char* name,
           const std::function<std::vector<double>(const Block&)>& square) -> std::optional<Reason> {
-    Scores scores;
-    Sums own, other;
-    for (const auto& [block, score] : record) {
-      BlockScore rival = *score;
-      rival.square = square(*block);
-      if (rival.square.empty()) continue;
-      scores.add(squares_of(rival, *score));
-      own.add(*block, score->square);
-      other.add(*block, rival.square);
-    }
-    const ScoreSeries found = series(scores.values(), 0);
-    if (!(log_wealth(found, dependence(found), 0) > -std::log(error_probability(limits))))
+    AgainstRival compared;
+    for (const auto& [block, score] : record) compared.add(*block, *score, square(*block));
+    ScoreSeries losses = series(compared.scores.values(), 0);
+    losses.scores = -losses.scores;
+    if (!(log_wealth(losses, dependence(losses), 0) > -std::log(error_probability(limits))))
       return std::nullopt;
-    return because<Code::champion_failed>(league.champion->version, own.mrse_percent(),
-                                          std::ssize(scores.values()), name, other.mrse_percent());
+    return because<Code::champion_failed>(league.champion->version, compared.own.mrse_percent(),
+                                          losses.scores.size(), name,
+                                          compared.rival.mrse_percent());
   };
-  if (auto reason = fails_beside("a constant at the mean", [&](const Block& block) {
+  if (auto reason = fails_against("a constant at the mean", [&](const Block& block) {
         std::vector<double> square = block.output_square;
         for (std::size_t q = 0; q < square.size(); ++q)
           square[q] += mean[q] * (mean[q] - 2 * block.output_mean[q]);
         return square;
       }))
     return reason;
-  return fails_beside("the simulator's own model",
-                      [](const Block& block) { return block.baseline_square; });
+  return fails_against("the simulator's own model",
+                       [](const Block& block) { return block.baseline_square; });
 }
 
 }  // namespace reident

@@ -13,17 +13,11 @@
 #include <vector>
 
 #include "service/config/config.hpp"
+#include "service/judgement/scores.hpp"
 #include "service/model/reasons.hpp"
 #include "storage/types/registry_rows.hpp"
 
 namespace reident {
-
-/// A version with its record.
-struct Member {
-  std::int64_t version = 0;
-  storage::TimeRange window;
-  std::vector<storage::BlockScore> scores;  // ascending
-};
 
 /// An equipment's versions and the telemetry of its blocks.
 struct League {
@@ -48,18 +42,18 @@ std::optional<Change> change_of(const League& league);
 /// R5 until one does not hold; figures of those behind it are 0.
 struct Finding {
   std::int64_t version = 0;
-  std::optional<Reason> obstacle;   // absent where all conditions hold
-  std::int64_t blocks = 0;          // compared
-  double dependence = 1;            // identification::dependence
-  double log_wealth = 0;            // of the bet that it is better
-  double log_threshold = 0;         // that it has to reach
-  double mean_score = 0;            // 1: it errs nothing beside the champion; -1: the reverse
-  double lower_score = 0;           // lower end of the confidence sequence
-  double uncovered_share = 0;       // of the champion's blocks, in regimes that it has not met
-  double mean_without_offset = 0;   // without the champion's mean error of each cycle
-  double wealth_without_offset = 0; // log of the wealth, likewise
-  double mrse_percent = 0;          // on the compared blocks
-  double fit_percent = 0;           // the worst output's
+  std::optional<Reason> obstacle;    // absent where all conditions hold
+  std::int64_t blocks = 0;           // compared
+  double dependence = 1;             // identification::dependence
+  double log_wealth = 0;             // of the bet that it is better
+  double log_threshold = 0;          // that it has to reach
+  double mean_score = 0;             // 1: it errs nothing beside the champion; -1: the reverse
+  double lower_score = 0;            // lower end of the confidence sequence
+  double uncovered_share = 0;        // of the champion's blocks, in regimes that it has not met
+  double mean_without_offset = 0;    // without the champion's mean error of each cycle
+  double wealth_without_offset = 0;  // log of the wealth, likewise
+  double mrse_percent = 0;           // on the compared blocks
+  double fit_percent = 0;            // the worst output's
   double champion_mrse_percent = 0;
   double baseline_mrse_percent = 0;  // of the simulator's own model; 0: it sent nothing
   double recent_score = 0;           // over the last two cycles

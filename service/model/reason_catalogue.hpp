@@ -64,13 +64,13 @@ enum class ReasonCode {
   first_version,
   better,
   // It does not: the first condition that its record does not meet.
-  not_better,       // R1
-  within_margin,    // R1
-  not_covered,      // R2
-  worse_in_regime,  // R2
-  bias_unverified,  // R3
-  too_soon,         // R5
-  held,             // R5
+  not_better,          // R1
+  within_margin,       // R1
+  not_covered,         // R2
+  worse_in_regime,     // R2
+  bias_unverified,     // R3
+  too_soon,            // R5
+  held,                // R5
   waits_for_operator,  // R5
   // It leaves the league.
   league_full,
@@ -138,7 +138,7 @@ struct Catalogue {
        "Fit {fit_percent:.2f} % on telemetry that it was not fitted to: an output's error is not "
        "below that of a constant at its mean (0 %)."},
       {not_better_than_simulator, "not_better_than_simulator", none,
-       "MRSE {mrse_percent:.3f} % is not below that of the simulator's own model "
+       "MRSE {mrse_percent:.3f} % is not shown to be below that of the simulator's own model "
        "({baseline_mrse_percent:.3f} %)."},
 
       {challenger, "challenger", O::challenger,
@@ -162,13 +162,15 @@ struct Catalogue {
 
       {not_better, "not_better", none,
        "Not surely better than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
-       "{champion_mrse_percent:.3f} % on {blocks:d} blocks, log of the evidence {log_wealth:.2f} of "
+       "{champion_mrse_percent:.3f} % on {blocks:d} blocks, log of the evidence {log_wealth:.2f} "
+       "of "
        "{log_threshold:.2f}."},
       {within_margin, "within_margin", none,
        "Better than champion {champion:d} by less than the margin of {margin_percent:g} %: MRSE "
        "{mrse_percent:.3f} % and {champion_mrse_percent:.3f} % on {blocks:d} blocks."},
       {not_covered, "not_covered", none,
-       "Champion {champion:d} has served {uncovered_percent:.0f} % of its time in operating regimes "
+       "Champion {champion:d} has served {uncovered_percent:.0f} % of its time in operating "
+       "regimes "
        "that this version has not met."},
       {worse_in_regime, "worse_in_regime", none,
        "Surely worse than champion {champion:d} in an operating regime that this one has served."},

@@ -1,6 +1,7 @@
 #include "service/operations/backfill.hpp"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -52,6 +53,7 @@ std::vector<storage::Time> untried(const storage::Archive& archive,
   return {ends.begin(), ends.end()};
 }
 
+/// Of the equipment of one database, one after the other.
 class Backfill {
  public:
   Backfill(storage::Database& database, const Config& config, WorkerPool& workers,
@@ -64,101 +66,23 @@ class Backfill {
         archive_(database),
         registry_(database) {}
 
-  BackfillProgress run(const BackfillRequest& request) {
-    std::vector<Plan> plans;
-    for (const SpacecraftConfig& spacecraft : config_.spacecraft)
-      for (const EquipmentConfig& equipment : spacecraft.equipment) {
-        if (!request.spacecraft.empty() && spacecraft.name != request.spacecraft) continue;
-        if (!request.equipment.empty() && equipment.name != request.equipment) continue;
-        plans.push_back({&spacecraft.name, &equipment,
-                         untried(archive_, registry_, spacecraft.name, equipment, request.range)});
-        progress_.windows += plans.back().ends.size();
-      }
-    for (const Plan& plan : plans)
-      if (!run(plan)) break;
-    return progress_;
-  }
+  BackfillProgress run(const BackfillRequest& request);
 
  private:
-  /// False when it was stopped.
-  bool run(const Plan& plan) {
-    progress_.equipment = *plan.spacecraft + "/" + plan.equipment->name;
-    LeagueKeeper league(*plan.spacecraft, *plan.equipment);
-    const std::size_t batch = windows_per_task * usable_cores();
-    for (std::size_t begin = 0; begin < plan.ends.size(); begin += batch) {
-      const std::size_t end = std::min(plan.ends.size(), begin + batch);
-      archive_.seal(*plan.spacecraft, plan.ends[end - 1]);
-      std::vector<std::optional<PreparedWindow>> prepared(end - begin);
-      workers_.for_each(
-          (end - begin + windows_per_task - 1) / windows_per_task,
-          [&](std::size_t task) { prepare(plan, begin, task * windows_per_task, prepared); });
-      for (std::size_t i = 0; i < prepared.size(); ++i)
-        if (!record(request_of_window(plan, plan.ends[begin + i]), std::move(*prepared[i]), league))
-          return false;
-    }
-    return true;
-  }
+  // Those that return a bool: false when it was stopped.
+  bool run(const Plan& plan);
+  bool record(const RefreshRequest& request, PreparedWindow&& prepared, LeagueKeeper& league);
+  /// Advances the league to the window's end, and tries the windows behind changes on the way.
+  bool follow(const RefreshRequest& request, LeagueKeeper& league);
+  bool attempt(RefreshRequest request, PreparedWindow&& prepared);
+  std::optional<storage::TimeRange> advance(LeagueKeeper& league, const RefreshRequest& request,
+                                            storage::Time reached);
 
-  RefreshRequest request_of_window(const Plan& plan, storage::Time end) const {
-    return {*plan.spacecraft,
-            *plan.equipment,
-            {end - plan.equipment->window, end},
-            "backfill",
-            config_.digest};
-  }
-
-  identification::ForEach on_all_cores() {
-    return [this](std::size_t count, const std::function<void(std::size_t)>& task) {
-      workers_.for_each(count, task);
-    };
-  }
-
+  RefreshRequest request_of_window(const Plan& plan, storage::Time end) const;
   void prepare(const Plan& plan, std::size_t begin, std::size_t first,
-               std::vector<std::optional<PreparedWindow>>& prepared) {
-    storage::Database database(config_.database, storage::Database::Mode::read_only);
-    const storage::Archive archive(database);
-    WindowCache kept = window_cache_of(*plan.spacecraft, *plan.equipment);
-    for (std::size_t i = first; i < std::min(first + windows_per_task, prepared.size()); ++i)
-      prepared[i] = prepare_window(archive, request_of_window(plan, plan.ends[begin + i]), kept,
-                                   on_all_cores(), [] { return false; });
-  }
-
-  bool record(RefreshRequest request, PreparedWindow&& prepared, LeagueKeeper& league) {
-    advance(league, request);
-    const storage::TimeRange window =
-        behind_champion(registry_, request.spacecraft, request.equipment.name, request.window);
-    if (window.begin > request.window.begin) {  // it was prepared before the champion was known
-      request.window = window;
-      WindowCache kept = window_cache_of(request.spacecraft, request.equipment);
-      prepared = prepare_window(archive_, request, kept, on_all_cores(), [] { return false; });
-    }
-    RefreshResult result = judge(registry_, request, std::move(prepared));
-    result.attempt.time = clock_();
-    if (result.candidate)
-      registry_.record(result.attempt, result.version, *result.decision);
-    else
-      registry_.record(result.attempt);
-    advance(league, request);
-    ++progress_.done;
-    progress_.window_end = request.window.end;
-    return report_(progress_);
-  }
-
-  void advance(LeagueKeeper& league, const RefreshRequest& request) {
-    LeagueWriter writer;
-    writer.scores = [&](const auto& block, const auto& scores) {
-      registry_.record_scores(request.spacecraft, request.equipment.name, block, scores);
-    };
-    writer.decide = [&](const storage::DecisionState& standing, const LeagueDecision& found) {
-      const bool recorded = registry_
-                                .decide_if(standing, request.spacecraft, request.equipment.name,
-                                           found.version.number, found.decision, clock_())
-                                .has_value();
-      if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
-      return recorded;
-    };
-    league.advance(archive_, registry_, request.window.end, writer);
-  }
+               std::vector<std::optional<PreparedWindow>>& prepared);
+  PreparedWindow prepare(const RefreshRequest& request);
+  identification::ForEach on_all_cores();
 
   const Config& config_;
   WorkerPool& workers_;
@@ -166,8 +90,134 @@ class Backfill {
   const std::function<bool(const BackfillProgress&)>& report_;
   storage::Archive archive_;
   storage::Registry registry_;
+  /// Windows behind changes, by their ends, with their begins.
+  std::map<storage::Time, storage::Time> behind_changes_;
   BackfillProgress progress_;
 };
+
+BackfillProgress Backfill::run(const BackfillRequest& request) {
+  std::vector<Plan> plans;
+  for (const SpacecraftConfig& spacecraft : config_.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment) {
+      if (!request.spacecraft.empty() && spacecraft.name != request.spacecraft) continue;
+      if (!request.equipment.empty() && equipment.name != request.equipment) continue;
+      plans.push_back({&spacecraft.name, &equipment,
+                       untried(archive_, registry_, spacecraft.name, equipment, request.range)});
+      progress_.windows += plans.back().ends.size();
+    }
+  for (const Plan& plan : plans)
+    if (!run(plan)) break;
+  return progress_;
+}
+
+bool Backfill::run(const Plan& plan) {
+  progress_.equipment = *plan.spacecraft + "/" + plan.equipment->name;
+  LeagueKeeper league(*plan.spacecraft, *plan.equipment);
+  behind_changes_.clear();
+  const std::size_t batch = windows_per_task * usable_cores();
+  for (std::size_t begin = 0; begin < plan.ends.size(); begin += batch) {
+    const std::size_t end = std::min(plan.ends.size(), begin + batch);
+    archive_.seal(*plan.spacecraft, plan.ends[end - 1]);
+    std::vector<std::optional<PreparedWindow>> prepared(end - begin);
+    workers_.for_each(
+        (end - begin + windows_per_task - 1) / windows_per_task,
+        [&](std::size_t task) { prepare(plan, begin, task * windows_per_task, prepared); });
+    for (std::size_t i = 0; i < prepared.size(); ++i)
+      if (!record(request_of_window(plan, plan.ends[begin + i]), std::move(*prepared[i]), league))
+        return false;
+  }
+  return true;
+}
+
+RefreshRequest Backfill::request_of_window(const Plan& plan, storage::Time end) const {
+  return {*plan.spacecraft,
+          *plan.equipment,
+          {end - plan.equipment->window, end},
+          "backfill",
+          config_.digest};
+}
+
+identification::ForEach Backfill::on_all_cores() {
+  return [this](std::size_t count, const std::function<void(std::size_t)>& task) {
+    workers_.for_each(count, task);
+  };
+}
+
+void Backfill::prepare(const Plan& plan, std::size_t begin, std::size_t first,
+                       std::vector<std::optional<PreparedWindow>>& prepared) {
+  storage::Database database(config_.database, storage::Database::Mode::read_only);
+  const storage::Archive archive(database);
+  WindowCache kept = window_cache_of(*plan.spacecraft, *plan.equipment);
+  for (std::size_t i = first; i < std::min(first + windows_per_task, prepared.size()); ++i)
+    prepared[i] = prepare_window(archive, request_of_window(plan, plan.ends[begin + i]), kept,
+                                 on_all_cores(), [] { return false; });
+}
+
+PreparedWindow Backfill::prepare(const RefreshRequest& request) {
+  WindowCache kept = window_cache_of(request.spacecraft, request.equipment);
+  return prepare_window(archive_, request, kept, on_all_cores(), [] { return false; });
+}
+
+bool Backfill::record(const RefreshRequest& request, PreparedWindow&& prepared,
+                      LeagueKeeper& league) {
+  return follow(request, league) && attempt(request, std::move(prepared)) &&
+         follow(request, league);
+}
+
+bool Backfill::follow(const RefreshRequest& request, LeagueKeeper& league) {
+  const storage::Time reached = request.window.end;
+  for (;;) {
+    const auto first = behind_changes_.begin();
+    const bool is_first = first != behind_changes_.end() && first->first <= reached;
+    if (const auto changed = advance(league, request, is_first ? first->first : reached)) {
+      behind_changes_.emplace(changed->end, changed->begin);
+      continue;
+    }
+    if (!is_first) return true;
+    RefreshRequest behind = request;
+    behind.window = {first->second, first->first};
+    behind.trigger = "drift";
+    behind_changes_.erase(first);
+    ++progress_.windows;
+    if (!attempt(behind, prepare(behind))) return false;
+  }
+}
+
+bool Backfill::attempt(RefreshRequest request, PreparedWindow&& prepared) {
+  const storage::TimeRange window =
+      behind_champion(registry_, request.spacecraft, request.equipment.name, request.window);
+  if (window.begin > request.window.begin) {  // it was prepared before the champion was known
+    request.window = window;
+    prepared = prepare(request);
+  }
+  RefreshResult result = judge(registry_, request, std::move(prepared));
+  result.attempt.time = clock_();
+  if (result.candidate)
+    registry_.record(result.attempt, result.version, *result.decision);
+  else
+    registry_.record(result.attempt);
+  ++progress_.done;
+  progress_.window_end = request.window.end;
+  return report_(progress_);
+}
+
+std::optional<storage::TimeRange> Backfill::advance(LeagueKeeper& league,
+                                                    const RefreshRequest& request,
+                                                    storage::Time reached) {
+  LeagueWriter writer;
+  writer.scores = [&](const auto& block, const auto& scores) {
+    registry_.record_scores(request.spacecraft, request.equipment.name, block, scores);
+  };
+  writer.decide = [&](const storage::DecisionState& standing, const LeagueDecision& found) {
+    const bool recorded = registry_
+                              .decide_if(standing, request.spacecraft, request.equipment.name,
+                                         found.version.number, found.decision, clock_())
+                              .has_value();
+    if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
+    return recorded;
+  };
+  return league.advance(archive_, registry_, reached, writer);
+}
 
 }  // namespace
 

@@ -44,6 +44,14 @@ storage::NewDecision decision_of(DecisionKind kind, const std::vector<Reason>& r
           evidence.dump(-1, ' ', false, ordered_json::error_handler_t::replace)};
 }
 
+storage::TimeRange window_behind(const Change& change, const EquipmentConfig& equipment) {
+  const Duration period = equipment.sample_period;
+  const std::int64_t ticks = std::max(equipment.window / 2 / period, least_window_ticks(equipment));
+  const Time end =
+      std::max(change.found, change.since + std::min(equipment.window, ticks * period));
+  return {std::max(change.since, end - equipment.window), end};
+}
+
 /// The code of the last reason of a decision; empty where it has none.
 std::string last_code(const storage::Decision& decision) {
   const ordered_json evidence = ordered_json::parse(decision.evidence_json, nullptr, false);
@@ -105,9 +113,8 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
       passed_over = made->id;  // the operator knew these versions, and chose another one
     }
   }
-  for (const std::int64_t number : registry.waiting(spacecraft_, equipment_.name,
-                                                    std::string(name(Outcome::challenger)),
-                                                    passed_over))
+  for (const std::int64_t number : registry.waiting(
+           spacecraft_, equipment_.name, std::string(name(Outcome::challenger)), passed_over))
     if (auto member = member_of(number)) league_.challengers.push_back(*std::move(member));
   league_.admitted =
       registry.windows(spacecraft_, equipment_.name, std::string(name(Outcome::challenger)));
@@ -131,7 +138,8 @@ void LeagueKeeper::catch_up(const storage::Archive& archive, Member& member, Tim
   storage::RunState state;
   Time begin;
   if (member.scores.empty()) {
-    begin = -floor_divide(-model.validated_on.begin, length) * length;
+    begin = std::max(-floor_divide(-model.validated_on.begin, length) * length,
+                     league_.blocks.empty() ? INT64_MIN : league_.blocks.front().range.begin);
     // The run begins a block earlier, on telemetry that the version was fitted to.
     state = score_block(model, member.version, samples_of(archive, begin - length), {}).state;
   } else {
@@ -161,7 +169,8 @@ bool LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
 void LeagueKeeper::let_wait(const storage::Registry& registry, const LeagueWriter& writer,
                             const Finding& finding, const Reason& reason, Time now) {
   const auto decisions = registry.decisions(spacecraft_, equipment_.name, finding.version);
-  if (decisions.back().kind == DecisionKind::wait && last_code(decisions.back()) != name(reason.code))
+  if (decisions.back().kind == DecisionKind::wait &&
+      last_code(decisions.back()) != name(reason.code))
     decide(registry, writer, finding, DecisionKind::wait, {reason}, now);
 }
 
@@ -184,7 +193,9 @@ void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
   if (const auto found = successor(findings)) {
     const bool waits = is_waiting(*found);
     if (hold) {
-      if (waits) let_wait(registry, writer, *found, because<ReasonCode::held>(hold->actor, hold->reason), now);
+      if (waits)
+        let_wait(registry, writer, *found, because<ReasonCode::held>(hold->actor, hold->reason),
+                 now);
     } else if (equipment_.approval == ApprovalPolicy::by_hand) {
       if (waits)
         let_wait(registry, writer, *found,
@@ -221,11 +232,10 @@ void LeagueKeeper::look_after_champion(const storage::Registry& registry,
   decide(registry, writer, finding, DecisionKind::withdraw, {*failure}, now);
 }
 
-std::optional<Change> LeagueKeeper::advance(const storage::Archive& archive,
-                                            const storage::Registry& registry, Time reached,
-                                            const LeagueWriter& writer) {
+std::optional<storage::TimeRange> LeagueKeeper::advance(const storage::Archive& archive,
+                                                        const storage::Registry& registry,
+                                                        Time reached, const LeagueWriter& writer) {
   read_members(registry);
-  std::optional<Change> found;
   const Duration length = reader_.length();
   const auto scored = [&](const std::optional<storage::Block>& block, Time end) {
     std::vector<storage::BlockScore> scores;
@@ -234,22 +244,23 @@ std::optional<Change> LeagueKeeper::advance(const storage::Archive& archive,
     if (block || !scores.empty()) writer.scores(block, scores);
   };
   if (!reached_) {  // blocks begin with the first version's record
-    if (league_.challengers.empty()) return found;
+    if (league_.challengers.empty()) return std::nullopt;
     const Time first = models_.at(league_.challengers.front().version).identified_from.begin;
     reached_ = floor_divide(first, length) * length;
   } else {
     scored(std::nullopt, *reached_);
     decide(registry, writer, *reached_);
   }
-  for (; *reached_ + length <= reached; *reached_ += length) {
+  while (*reached_ + length <= reached) {
     const storage::Block block = samples_of(archive, *reached_).block;
     league_.blocks.push_back(block);
-    scored(block, *reached_ + length);
-    if (const auto change = change_of(league_); change && change->found == block.range.end)
-      found = change;
-    decide(registry, writer, block.range.end);
+    *reached_ += length;
+    scored(block, *reached_);
+    const auto change = change_of(league_);
+    decide(registry, writer, *reached_);
+    if (change && change->found == *reached_) return window_behind(*change, equipment_);
   }
-  return found;
+  return std::nullopt;
 }
 
 }  // namespace reident

@@ -40,10 +40,13 @@ class LeagueKeeper {
  public:
   LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipment);
 
-  /// Scores and decides on every block that telemetry until `reached` completes, oldest first.
-  /// Returns a change of the equipment that was found with one of them.
-  std::optional<Change> advance(const storage::Archive& archive, const storage::Registry& registry,
-                                storage::Time reached, const LeagueWriter& writer);
+  /// Scores and decides on every block that telemetry until `reached` completes, oldest first, or
+  /// until a change of the equipment is found: then it returns the window to identify from behind
+  /// it. That begins with the change, and ends where it was found, or later, where half of the
+  /// configured window, or what a window needs at least, lies behind its begin.
+  std::optional<storage::TimeRange> advance(const storage::Archive& archive,
+                                            const storage::Registry& registry,
+                                            storage::Time reached, const LeagueWriter& writer);
 
   /// Forgets what samples in `range` served, since samples were stored there.
   void forget(storage::TimeRange range);
@@ -69,8 +72,8 @@ class LeagueKeeper {
   const std::string spacecraft_;
   const EquipmentConfig& equipment_;
   BlockReader reader_;
-  std::map<storage::Time, BlockSamples> samples_;  // of the newest blocks
-  std::optional<storage::DecisionState> standing_;      // that the members are of
+  std::map<storage::Time, BlockSamples> samples_;   // of the newest blocks
+  std::optional<storage::DecisionState> standing_;  // that the members are of
   League league_;
   std::map<std::int64_t, EquipmentModel> models_;  // of the members
   std::optional<storage::Time> reached_;           // end of the last block

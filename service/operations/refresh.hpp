@@ -31,10 +31,9 @@ struct RefreshResult {
 storage::TimeRange behind_champion(const storage::Registry& registry, const std::string& spacecraft,
                                    const std::string& equipment, storage::TimeRange window);
 
-/// Chooses among the candidate, the champion adapted to the window and a static gain, and decides on
-/// the chosen one. The champion is that of the registry now: whoever records checks that it still
-/// is. Throws
-/// storage::Error but for damaged telemetry, which is an outcome.
+/// Chooses among the candidate, the champion adapted to the window and a static gain, and decides
+/// on the chosen one. The champion is that of the registry now: whoever records checks that it
+/// still is. Throws storage::Error but for damaged telemetry, which is an outcome.
 RefreshResult judge(const storage::Registry& registry, const RefreshRequest& request,
                     PreparedWindow&& prepared);
 

@@ -194,10 +194,9 @@ std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
 
 Candidate static_candidate(const RefreshRequest& request, const PreparedWindow& prepared) {
   const WindowParts& parts = prepared.candidate->parts;
-  return candidate_of(request, prepared.data,
-                      {static_regression(prepared.data.record, parts.fitted()),
-                       "static regression"},
-                      parts);
+  return candidate_of(
+      request, prepared.data,
+      {static_regression(prepared.data.record, parts.fitted()), "static regression"}, parts);
 }
 
 void describe_candidate(PreparedWindow& prepared) {

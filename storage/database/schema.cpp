@@ -351,8 +351,7 @@ std::string append_only_decisions() {
 std::string append_only_scores() {
   const std::string equipment = "spacecraft = NEW.spacecraft AND equipment = NEW.equipment AND ";
   return append_only("block", equipment + "begin_time = NEW.begin_time") +
-         append_only("score",
-                     equipment + "version = NEW.version AND begin_time = NEW.begin_time");
+         append_only("score", equipment + "version = NEW.version AND begin_time = NEW.begin_time");
 }
 
 std::string joined(std::initializer_list<std::string_view> parts) {

@@ -105,7 +105,6 @@ bool misleads(const satcs::Fault& fault, const std::vector<std::string>& paramet
 struct Made {
   const storage::Registry& registry;
   std::vector<Attempted> attempts;
-  std::vector<DriftRequest> drifts;
   /// When, on the spacecraft's clock, simulators got what was approved.
   std::function<storage::Time(const storage::Decision&, const storage::Version&)> published;
   /// When, on the same clock, a version was made.
@@ -113,7 +112,7 @@ struct Made {
 };
 
 Made made_by(const SimulatedService& service) {
-  return {service.registry(), service.attempts(), service.drifts(),
+  return {service.registry(), service.attempts(),
           [](const storage::Decision& decision, const auto&) { return decision.time; },
           [](const storage::Version& version) { return version.created; }};
 }
@@ -126,13 +125,12 @@ storage::Time rests_until(const storage::Decision& decision, const storage::Vers
 
 /// By a service whose clock was not the spacecraft's.
 Made made_elsewhere(const storage::Registry& registry) {
-  Made made{registry, {}, {}, rests_until, [](const storage::Version& version) {
+  Made made{registry, {}, rests_until, [](const storage::Version& version) {
               return version.window.end;
             }};
   for (storage::Attempt& attempt : registry.attempts()) {
     const std::int64_t version = attempt.version.value_or(0);
     const storage::Time time = attempt.window.end;
-    if (attempt.trigger == "drift") made.drifts.push_back({attempt.equipment, time});
     made.attempts.push_back({std::move(attempt.equipment), attempt.window, time,
                              std::move(attempt.trigger), std::move(attempt.outcome),
                              std::move(attempt.reason), version});
@@ -217,10 +215,11 @@ class Judge {
         regret(truth, tenures, versions_of(made, spacecraft_.name, equipment.name)),
         champion_curve(truth, tenures),
         truth.output_extremes({group_.start, group_.start + group_.duration}, orbit_ns() / 10)};
-    for (const Attempted& attempt : made.attempts)
-      if (attempt.equipment == equipment.name) outcome.attempts.push_back(attempt);
-    for (const DriftRequest& drift : made.drifts)
-      if (drift.equipment == equipment.name) outcome.drifts.push_back(drift);
+    for (const Attempted& attempt : made.attempts) {
+      if (attempt.equipment != equipment.name) continue;
+      outcome.attempts.push_back(attempt);
+      if (attempt.trigger == "drift") outcome.drifts.push_back({attempt.equipment, attempt.time});
+    }
     return outcome;
   }
 

@@ -16,10 +16,9 @@ SimulatedService::SimulatedService(const Config& config)
       archive_(database_, {.recent_samples = config.recent_samples}),
       registry_(database_),
       feed_(config, [this] { return now_; }),
-      leagues_(config),
+      leagues_(config, feed_),
       context_{{[this](const LeagueContext::Task& task) { task(registry_, archive_); },
-                [this] { return now_; },
-                [] { return false; }},
+                [this] { return now_; }, [] { return false; }},
                config.digest,
                {},
                &leagues_} {
@@ -50,8 +49,7 @@ void SimulatedService::commit() {
   feed_.stored(batch_, archive_.append(batch_));
   batch_.clear();
   try_due_windows();
-  for (const LeagueWatch::Drift& drift : leagues_.look(archive_, registry_, feed_, context_))
-    drifts_.push_back({drift.equipment->name, now_});
+  leagues_.look(archive_, registry_, context_);
   try_due_windows();
 }
 

@@ -48,7 +48,6 @@ class SimulatedService {
 
   const storage::Registry& registry() const { return registry_; }
   const storage::Archive& archive() const { return archive_; }
-  const std::vector<DriftRequest>& drifts() const { return drifts_; }
   const std::vector<Attempted>& attempts() const { return attempts_; }
 
  private:
@@ -66,7 +65,6 @@ class SimulatedService {
   AttemptContext context_;
   std::vector<storage::TelemetryFrame> batch_;
   storage::Time batch_began_ = 0;
-  std::vector<DriftRequest> drifts_;
   std::vector<Attempted> attempts_;
 };
 

@@ -29,7 +29,8 @@ polyline{stroke-linejoin:round;stroke-linecap:round}
 void draw_legend(Svg& svg, bool has_change) {
   double x = 20;
   for (const auto& [css_class, label] :
-       {std::pair("score", "score of a block: 1, it errs nothing beside the champion; -1, the reverse"),
+       {std::pair("score",
+                  "score of a block: 1, it errs nothing beside the champion; -1, the reverse"),
         std::pair("mean", "mean so far"), std::pair("lower", "sure mean so far"),
         std::pair("change", "change of the equipment")}) {
     const std::string_view kind = css_class;

@@ -77,13 +77,13 @@ std::variant<std::string, Refusal> picture_of(const storage::SampleReader& archi
 std::variant<std::string, Refusal> picture_of_record(const history::HistoryReader& history,
                                                      const StoredVersion& story) {
   const storage::Version& version = story.version;
-  const std::string title =
-      fmt::format("{} version {}", full_name({version.spacecraft, version.equipment}),
-                  version.number);
+  const std::string title = fmt::format(
+      "{} version {}", full_name({version.spacecraft, version.equipment}), version.number);
   const auto record = stored_record(history, story);
   if (!record)
-    return Refusal{title + " has no record beside a champion: it was the first version, was refused "
-                           "at its window, or waits for its first block"};
+    return Refusal{title +
+                   " has no record beside a champion: it was the first version, was refused "
+                   "at its window, or waits for its first block"};
   RecordPictureData data{
       .title = title + fmt::format(" beside version {}", record->league.champion->version),
       .subtitle = version.status,
@@ -130,8 +130,9 @@ std::function<int()> declare(CLI::App& command) {
   add_version_argument(command, arguments->subject);
   command.add_option("-o,--output", arguments->output,
                      "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
-  command.add_flag("--record", arguments->record,
-                   "draw its record beside the champion's instead: scores, mean, sure mean, change");
+  command.add_flag(
+      "--record", arguments->record,
+      "draw its record beside the champion's instead: scores, mean, sure mean, change");
   add_range_options(command, arguments->range, "the window of the version");
   add_access_options(command, arguments->access);
   command.footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");

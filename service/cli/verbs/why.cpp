@@ -6,13 +6,13 @@
 #include <fmt/ranges.h>
 
 #include "service/cli/history_access.hpp"
+#include "service/cli/output/conditions.hpp"
 #include "service/cli/output/model_text.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
-#include "service/judgement/conditions.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
@@ -55,11 +55,15 @@ void window_sentences(const StoredVersion& story, const ordered_json& evidence,
         figure(evidence, "rows_identified"), figure(evidence, "rows_tuned"),
         figure(evidence, "rows_validated")));
   if (const ordered_json* adapted = member(evidence, "adapted"))
-    sentences.push_back(fmt::format(
-        "The model identified anew errs by {} % there, and version {} adapted to the window (A and "
-        "C stay) by {} %: the better one went to the gate, with a confidence for two.",
-        figure(*adapted, "identified_mrse_percent"), figure(*adapted, "version"),
-        figure(*adapted, "mrse_percent")));
+    sentences.push_back(
+        fmt::format("The model identified from the window errs by {} % there, version {} adapted "
+                    "to it (A and C "
+                    "stay) by {} %: the better one is the candidate.",
+                    figure(*adapted, "identified_mrse_percent"), figure(*adapted, "version"),
+                    figure(*adapted, "mrse_percent")));
+  if (member(evidence, "static_mrse_percent"))
+    sentences.push_back(
+        fmt::format("A static gain errs by {} % there.", figure(evidence, "static_mrse_percent")));
   sentences.push_back(fmt::format("It is of order {} ({}); its poles are {}.",
                                   story.model.dynamics.order(), story.model.method,
                                   poles_text(story.model.dynamics)));
@@ -129,8 +133,8 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
   if (const ordered_json* mean = member(evidence, "mean"))
     sentences.push_back(fmt::format("Beside a constant at the mean: {}.", comparison_text(*mean)));
   if (const ordered_json* baseline = member(evidence, "baseline"))
-    sentences.push_back(
-        fmt::format("Beside the simulator's own telemetry: {}.", comparison_text(*baseline)));
+    sentences.push_back(fmt::format("Compared with the simulator's own telemetry: {}.",
+                                    comparison_text(*baseline)));
   if (member(evidence, "baseline_mrse_percent"))
     sentences.push_back(
         fmt::format("The simulator's own model errs by {} %, as the configuration says.",
@@ -140,7 +144,7 @@ void rival_sentences(const ordered_json& evidence, Sentences& sentences) {
   const std::string version = figure(*champion, "version");
   if (const ordered_json* comparison = member(*champion, "comparison"))
     sentences.push_back(
-        fmt::format("Beside champion {}: {}.", version, comparison_text(*comparison)));
+        fmt::format("Compared with champion {}: {}.", version, comparison_text(*comparison)));
   else if (member(*champion, "mrse_percent"))  // of a program before comparisons were kept
     sentences.push_back(fmt::format("Champion {} errs by {} % on the same rows.", version,
                                     figure(*champion, "mrse_percent")));
@@ -248,11 +252,11 @@ int print(const history::HistoryReader& history, const StoredVersion& story, boo
   if (json) {
     ordered_json conditions = ordered_json::array();
     for (const Condition& condition : verdict.conditions)
-      conditions.push_back({{"rule", condition.rule},
-                            {"asked", condition.asked},
-                            {"found", condition.found},
-                            {"holds", condition.holds ? ordered_json(*condition.holds)
-                                                      : ordered_json()}});
+      conditions.push_back(
+          {{"rule", condition.rule},
+           {"asked", condition.asked},
+           {"found", condition.found},
+           {"holds", condition.holds ? ordered_json(*condition.holds) : ordered_json()}});
     const ordered_json object = {{"spacecraft", story.version.spacecraft},
                                  {"equipment", story.version.equipment},
                                  {"version", story.version.number},

@@ -267,21 +267,6 @@ const Mistake values[] = {
      "9: equipment BDR: horizon 5 is too short for orders up to 10; make it at least 11"},
     {"short_horizon_for_three_outputs", with(6, "outputs = [\"a\", \"b\", \"c\"]\nhorizon = 4"),
      "7: equipment BDR: horizon 4 is too short for orders up to 10; make it at least 5"},
-    {"former_fit", minimal + "min_fit = 5",
-     "9: equipment BDR: min_fit is no key any more: remove it"},
-    {"former_disagreement", minimal + "max_disagreement = 5",
-     "9: equipment BDR: max_disagreement is no key any more: remove it"},
-    {"former_confirmation", minimal + "confirmation = \"1h\"",
-     "9: equipment BDR: confirmation is no key any more: remove it"},
-    {"former_unvouched", minimal + "unvouched = \"wait\"",
-     "9: equipment BDR: unvouched is no key any more: use bias, with the same values"},
-    {"no_members", minimal + "members = 0",
-     "9: equipment BDR: members must be a whole number from 1 to 100"},
-    {"unknown_bias", minimal + "bias = \"believe\"", "9: equipment BDR: bias must be"},
-    {"unknown_failure", minimal + "on_failure = \"panic\"",
-     "9: equipment BDR: on_failure must be"},
-    {"unknown_approval", minimal + "approval = \"by hand\"",
-     "9: equipment BDR: approval must be one of \"automatic\", \"by_hand\", not \"by hand\""},
     {"log_level", "[service]\nlog_level = \"loud\"\n" + minimal,
      "2: [service] log_level must be one of \"debug\", \"info\", \"warning\", \"error\""},
     {"durability", "[archive]\ndurability = \"full\"\n" + minimal,
@@ -310,6 +295,23 @@ const Mistake values[] = {
      "2: [dds] partition must not be empty"},
     {"large_domain", "[dds]\ndomain = 231\n" + minimal,
      "2: [dds] domain must be a whole number from 0 to 230, not the number 231"},
+};
+
+const Mistake rule[] = {
+    {"former_fit", minimal + "min_fit = 5",
+     "9: equipment BDR: min_fit is no key any more: remove it"},
+    {"former_disagreement", minimal + "max_disagreement = 5",
+     "9: equipment BDR: max_disagreement is no key any more: remove it"},
+    {"former_confirmation", minimal + "confirmation = \"1h\"",
+     "9: equipment BDR: confirmation is no key any more: remove it"},
+    {"former_unvouched", minimal + "unvouched = \"wait\"",
+     "9: equipment BDR: unvouched is no key any more: use bias, with the same values"},
+    {"no_members", minimal + "members = 0",
+     "9: equipment BDR: members must be a whole number from 1 to 100"},
+    {"unknown_bias", minimal + "bias = \"believe\"", "9: equipment BDR: bias must be"},
+    {"unknown_failure", minimal + "on_failure = \"panic\"", "9: equipment BDR: on_failure must be"},
+    {"unknown_approval", minimal + "approval = \"by hand\"",
+     "9: equipment BDR: approval must be one of \"automatic\", \"by_hand\", not \"by hand\""},
 };
 
 const Mistake syntax[] = {
@@ -361,6 +363,7 @@ const Mistake derived[] = {
 
 INSTANTIATE_TEST_SUITE_P(Structure, ConfigMistakes, ::testing::ValuesIn(structure), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, ConfigMistakes, ::testing::ValuesIn(values), name_of);
+INSTANTIATE_TEST_SUITE_P(Rule, ConfigMistakes, ::testing::ValuesIn(rule), name_of);
 INSTANTIATE_TEST_SUITE_P(Derived, ConfigMistakes, ::testing::ValuesIn(derived), name_of);
 INSTANTIATE_TEST_SUITE_P(Syntax, ConfigMistakes, ::testing::ValuesIn(syntax), name_of);
 

@@ -26,8 +26,7 @@ class WindowAttempt : public DaemonTest {
                               before();
                               task(registry, archive);
                             },
-                            [] { return day; },
-                            [] { return false; }},
+                            [] { return day; }, [] { return false; }},
                            "digest",
                            {},
                            &leagues});
@@ -36,7 +35,8 @@ class WindowAttempt : public DaemonTest {
   const Config all = config();
   const std::string& spacecraft = all.spacecraft[0].name;
   const EquipmentConfig& equipment = all.spacecraft[0].equipment[0];
-  LeagueWatch leagues{all};
+  WindowFeed feed{all, [] { return day; }};
+  LeagueWatch leagues{all, feed};
   storage::Database database = open();
   storage::Archive archive{database};
   storage::Registry registry{database};

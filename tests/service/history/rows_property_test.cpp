@@ -171,10 +171,14 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 RC_GTEST_PROP(HistoryRows, BlocksAndScoresComeBack, ()) {
-  const storage::Block block{{any_time(), any_time()}, *rc::gen::arbitrary<std::int64_t>(),
-                             any_number(),             any_numbers(),
-                             any_numbers(),            any_numbers(),
-                             any_numbers(),            any_numbers()};
+  const storage::Block block{{any_time(), any_time()},
+                             *rc::gen::arbitrary<std::int64_t>(),
+                             any_number(),
+                             any_numbers(),
+                             any_numbers(),
+                             any_numbers(),
+                             any_numbers(),
+                             any_numbers()};
   const auto again = there_and_back<storage::Block>(row_of(block));
   RC_ASSERT(again.range == block.range);
   RC_ASSERT(again.rows == block.rows);

@@ -40,7 +40,8 @@ class Records {
   explicit Records(int blocks) {
     limits_.cycle = cycle;
     for (int i = 0; i < blocks; ++i)
-      league_.blocks.push_back({{i * length, (i + 1) * length}, 100, 1, {10}, {101}, {-1}, {1}, {}});
+      league_.blocks.push_back(
+          {{i * length, (i + 1) * length}, 100, 1, {10}, {101}, {-1}, {1}, {}});
   }
   Records& champion(const Errors& errors, int from = 0) {
     league_.champion = member(1, {from * length - 5 * cycle, from * length}, errors, from);
@@ -73,8 +74,13 @@ class Records {
     Member member{number, window, {}};
     for (std::size_t i = static_cast<std::size_t>(from); i < league_.blocks.size(); ++i) {
       const Error error = errors(static_cast<int>(i));
-      member.scores.push_back({number, league_.blocks[i].range.begin, 100, {error.mean},
-                               {error.square + error.mean * error.mean}, {1e-6}, {}});
+      member.scores.push_back({number,
+                               league_.blocks[i].range.begin,
+                               100,
+                               {error.mean},
+                               {error.square + error.mean * error.mean},
+                               {1e-6},
+                               {}});
     }
     return member;
   }
@@ -162,13 +168,19 @@ TEST(League, VersionThatIsSurelyWorseInARegimeStaysOut) {
       records.league().blocks[static_cast<std::size_t>(i)].input_high = {5};
     }
   records.champion(white(0.04))
-      .challenger([&](int block) { return Error{0, is_unusual(block) ? 0.3 : 0.001}; }, 20);
+      .challenger(
+          [&](int block) {
+            return Error{0, is_unusual(block) ? 0.3 : 0.001};
+          },
+          20);
   EXPECT_EQ(records.obstacle(), Code::worse_in_regime);
 }
 
 TEST(League, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
   Records records(200);
-  records.champion([](int block) { return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01}; })
+  records.champion([](int block) {
+           return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
+         })
       .challenger(varying(0.01), 100)
       .unbound();
   EXPECT_EQ(records.obstacle(), Code::bias_unverified);
@@ -181,7 +193,9 @@ TEST(League, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
 
 TEST(League, VersionThatIsBetterWithoutTheConstantTooIsNoBias) {
   EXPECT_EQ(Records(200)
-                .champion([](int block) { return block < 100 ? Error{0, 0.01} : Error{0.3, 0.1}; })
+                .champion([](int block) {
+                  return block < 100 ? Error{0, 0.01} : Error{0.3, 0.1};
+                })
                 .challenger(varying(0.01), 100)
                 .unbound()
                 .obstacle(),
@@ -219,8 +233,14 @@ TEST(League, NothingIsDecidedOnBlocksOfWhichLittleIsBelieved) {
 TEST(League, RecordsCountFromTheChangeOfTheEquipmentOn) {
   // Of old the champion was better; since block 100 it errs ten times as much.
   Records records(140);
-  records.champion([](int block) { return Error{0, block < 100 ? 0.01 : 0.5}; })
-      .challenger([](int block) { return Error{0, block < 100 ? 0.1 : 0.02}; }, 20);
+  records.champion([](int block) {
+           return Error{0, block < 100 ? 0.01 : 0.5};
+         })
+      .challenger(
+          [](int block) {
+            return Error{0, block < 100 ? 0.1 : 0.02};
+          },
+          20);
   const auto change = change_of(records.league());
   ASSERT_TRUE(change);
   EXPECT_NEAR(static_cast<double>(change->since / length), 100, 2);

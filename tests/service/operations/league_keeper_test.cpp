@@ -34,14 +34,13 @@ class Keeper : public DaemonTest {
   void windows(storage::Time from, storage::Time to) {
     for (storage::Time end = from; end <= to; end += equipment.slide) window(end);
   }
-  std::optional<Change> advance(LeagueKeeper& league, storage::Time reached) {
+  std::optional<storage::TimeRange> advance(LeagueKeeper& league, storage::Time reached) {
     LeagueWriter writer;
     writer.scores = [this](const auto& block, const auto& scores) {
       registry.record_scores("SAT", "PLANT", block, scores);
     };
     writer.decide = [this](const storage::DecisionState& state, const LeagueDecision& found) {
-      return registry
-          .decide_if(state, "SAT", "PLANT", found.version.number, found.decision, day)
+      return registry.decide_if(state, "SAT", "PLANT", found.version.number, found.decision, day)
           .has_value();
     };
     writer.failed = [this](const Reason& reason) { failures.push_back(reason); };
@@ -171,7 +170,6 @@ TEST_F(Keeper, ScoresABlockWithoutTelemetryOrWithDamagedOneAsNothing) {
   EXPECT_EQ(blocks.front().rows, 0) << "a gap";
   EXPECT_GT(blocks.back().rows, 0) << "telemetry is back";
   damage_chunks(2);
-  storage::Database damaged(path(), storage::Database::Mode::read_write);
   restart();
   advance(*keeper, day + 24 * minute);
   blocks = registry.blocks("SAT", "PLANT", day + 21 * minute);
@@ -184,10 +182,9 @@ TEST_F(Keeper, LeavesOutAMemberThatCannotBeDecoded) {
   archive.append(telemetry(day, 1201));
   window(day + 10 * minute);
   WindowCache nothing = window_cache_of("SAT", equipment);
-  const RefreshResult result =
-      refresh(archive, registry,
-              {"SAT", equipment, {day + 5 * minute, day + 15 * minute}, "slide", ""}, nothing, {},
-              [] { return false; });
+  const RefreshResult result = refresh(
+      archive, registry, {"SAT", equipment, {day + 5 * minute, day + 15 * minute}, "slide", ""},
+      nothing, {}, [] { return false; });
   storage::NewAttempt attempt = result.attempt;
   attempt.outcome = "challenger";
   registry.record(attempt, {"{ not a model", "0"}, {DecisionKind::wait, "gate", "enters"});
@@ -226,15 +223,15 @@ TEST_F(Keeper, DecidesNothingOnAnOldState) {
   archive.append(telemetry(day, 601));
   WindowCache nothing = window_cache_of("SAT", equipment);
   const RefreshResult result =
-      refresh(archive, registry, {"SAT", equipment, {day, day + 10 * minute}, "slide", ""},
-              nothing, {}, [] { return false; });
+      refresh(archive, registry, {"SAT", equipment, {day, day + 10 * minute}, "slide", ""}, nothing,
+              {}, [] { return false; });
   registry.record(result.attempt, result.version, *result.decision);
   LeagueWriter writer;
   writer.scores = [this](const auto& block, const auto& scores) {
     registry.record_scores("SAT", "PLANT", block, scores);
   };
   writer.decide = [this](const storage::DecisionState& state, const LeagueDecision& found) {
-    registry.put_on_hold("SAT", "PLANT", {"ana", "between", 1});
+    if (!registry.hold("SAT", "PLANT")) registry.put_on_hold("SAT", "PLANT", {"ana", "between", 1});
     return registry.decide_if(state, "SAT", "PLANT", found.version.number, found.decision, day)
         .has_value();
   };
@@ -246,12 +243,12 @@ TEST_F(Keeper, FindsTheChangeOfThePlant) {
   archive.append(telemetry(day, 1800));
   archive.append(telemetry(day + 30 * minute, 601, 3));
   window(day + 10 * minute);
-  std::optional<Change> change;
+  std::optional<storage::TimeRange> change;
   for (storage::Time at = day + 11 * minute; at <= day + 40 * minute && !change; at += minute)
     change = advance(*keeper, at);
   ASSERT_TRUE(change);
-  EXPECT_GE(change->since, day + 29 * minute);
-  EXPECT_LE(change->found, day + 33 * minute);
+  EXPECT_GE(change->begin, day + 29 * minute);
+  EXPECT_LE(change->end, day + 36 * minute);
 }
 
 TEST_F(Keeper, SaysThatTheChampionFailsAndWithdrawsItWhereConfigured) {

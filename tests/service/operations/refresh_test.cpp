@@ -222,11 +222,11 @@ TEST_F(Refresh, PassesTheVerdictOfTheIdentificationOn) {
   EXPECT_THAT(result.attempt.reason, testing::Not(testing::IsEmpty()));
 }
 
-TEST_F(Refresh, SaysThatAQuietValidationPartDecidesNothing) {
+TEST_F(Refresh, AdmitsNoCandidateThatErrsOnItsValidationPart) {
   auto frames = telemetry(day, 601);
   for (std::size_t k = 420; k < frames.size(); ++k) frames[k].samples[2].value = 7;
   archive.append(frames);
-  EXPECT_EQ(run(day + 10 * minute).attempt.outcome, "not_better_than_mean");
+  EXPECT_EQ(run(day + 10 * minute).attempt.outcome, "error_above_limit");
 }
 
 TEST_F(Refresh, LeavesSamplesOfBadQualityOut) {

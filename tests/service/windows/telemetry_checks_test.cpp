@@ -1,9 +1,8 @@
-// Telemetry of sensors that lie, on its way to a candidate, a version and the monitor.
+// Telemetry with sensor faults, on its way to a candidate and a version.
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "service/judgement/champion_monitor.hpp"
 #include "service/operations/protected_telemetry.hpp"
 #include "service/operations/refresh.hpp"
 #include "service/windows/provenance.hpp"
@@ -105,7 +104,7 @@ TEST_F(FaultySensors, AreNoConcernOfARelationThatNobodyHasDescribed) {
   equipment.relations = {{"third sensor", "y - y3", 0.1}};
   archive.append(frames(day, 1201));
   const RefreshResult result = run(day + 20 * minute, equipment);
-  EXPECT_EQ(result.attempt.outcome, "approved") << result.attempt.reason;
+  EXPECT_EQ(result.attempt.outcome, "challenger") << result.attempt.reason;
   EXPECT_THAT(result.attempt.evidence_json, HasSubstr("telemetry has not described y3"));
 }
 
@@ -142,6 +141,7 @@ TEST_F(FaultySensors, AreKeptWithTheTelemetryOfTheVersion) {
   archive.append(frames(day, 1201));
   const RefreshResult result = run(day + 20 * minute);
   registry.record(result.attempt, result.version, *result.decision);
+  registry.decide("SAT", "PLANT", 1, {storage::DecisionKind::approve, "Ana", ""}, day);
   std::vector<std::uint32_t> parameters;
   for (const storage::ProtectedRange& one : telemetry_of_versions(archive, registry))
     if (one.parameter) parameters.push_back(*one.parameter);

@@ -148,18 +148,35 @@ INSERT INTO decision VALUES
   EXPECT_THAT(rows(path, schema), ElementsAreArray(rows(folder / "new.db", schema)));
 }
 
-// The versions after it differ from it in the qualities that a file may hold.
-TEST(MigrationFrom4, ChangesTheNumberOfTheVersionAlone) {
+// Version 5 differs from 4 in the qualities that a file may hold, and 6 has the records of
+// versions.
+TEST(MigrationFrom4And5, AddsTheRecordsAndChangesNothingElse) {
   const TemporaryFolder folder;
   const auto path = folder / "old.db";
   const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
-  { const Database made(path, Mode::read_write); }
+  {
+    Database made(path, Mode::read_write);
+    Registry registry(made);
+    NewAttempt attempt;
+    attempt.spacecraft = "CB4";
+    attempt.equipment = "BDR";
+    attempt.outcome = "approved";
+    registry.record(attempt, {"{}", "d"}, {DecisionKind::approve, "gate", "good"});
+    attempt.outcome = "on_probation";
+    registry.record(attempt, {"{}", "e"}, {DecisionKind::wait, "gate", "not long enough"});
+  }
   const auto before = rows(path, schema);
-  for (std::int64_t old = 4; old < schema::version; ++old) {
-    rows(path, "PRAGMA user_version = " + std::to_string(old));
-    { const Database migrated(path, Mode::read_write); }
+  for (const std::string old : {"4", "5"}) {
+    rows(path,
+         "DROP TABLE block; DROP TABLE score; DROP VIEW gate_reason; PRAGMA user_version = " + old);
+    Database migrated(path, Mode::read_write);
     EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
     EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre(std::to_string(schema::version)));
+    EXPECT_THAT(rows(path, "SELECT version, status FROM model_version"),
+                ElementsAre("1|approved", "2|waiting"));
+    Registry registry(migrated);
+    registry.record_scores("CB4", "BDR", Block{{0, 60}}, {});
+    EXPECT_EQ(registry.blocks("CB4", "BDR", INT64_MIN).size(), 1);
   }
 }
 

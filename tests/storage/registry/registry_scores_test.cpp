@@ -18,7 +18,8 @@ Block block(Time begin) {
 }
 
 BlockScore score(std::int64_t version, Time begin) {
-  return {version, begin, 7, {0.1, -0.0}, {0.01, inf}, {1e-9, 5e-324}, {{1, 2, 3}, 42, {0.07, 1}, 7}};
+  return {
+      version, begin, 7, {0.1, -0.0}, {0.01, inf}, {1e-9, 5e-324}, {{1, 2, 3}, 42, {0.07, 1}, 7}};
 }
 
 TEST_F(RegistryTest, GivesBlocksAndScoresBackToTheLastBit) {
@@ -68,8 +69,7 @@ TEST_F(RegistryTest, RefusesABlockOrAScoreThatIsThereAndRecordsNothingThen) {
   version(20, DecisionKind::wait);
   registry.record_scores("CB4", "BDR", block(0), {score(1, 0)});
   EXPECT_THROW(registry.record_scores("CB4", "BDR", block(0), {score(2, 0)}), Error);
-  EXPECT_THROW(registry.record_scores("CB4", "BDR", block(10), {score(2, 10), score(1, 0)}),
-               Error);
+  EXPECT_THROW(registry.record_scores("CB4", "BDR", block(10), {score(2, 10), score(1, 0)}), Error);
   EXPECT_THAT(registry.blocks("CB4", "BDR", INT64_MIN), SizeIs(1));
   EXPECT_THAT(registry.scores("CB4", "BDR", 2, INT64_MIN), IsEmpty());
 }

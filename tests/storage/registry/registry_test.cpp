@@ -127,8 +127,8 @@ TEST_F(RegistryTest, ReturnsToTheChampionBeforeWhereTheOneThatRunsIsWithdrawnOnA
   version(10, DecisionKind::approve);
   version(20, DecisionKind::approve);
   const DecisionState state = registry.decision_state("CB4", "BDR");
-  EXPECT_TRUE(registry.decide_if(state, "CB4", "BDR", 2, {DecisionKind::withdraw, "gate", "fails"},
-                                 30));
+  EXPECT_TRUE(
+      registry.decide_if(state, "CB4", "BDR", 2, {DecisionKind::withdraw, "gate", "fails"}, 30));
   EXPECT_EQ(champion_at(std::nullopt), 1);
 }
 

@@ -1,4 +1,4 @@
-#include "service/judgement/conditions.hpp"
+#include "service/cli/output/conditions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,13 +12,17 @@ using Code = ReasonCode;
 
 /// Place of the condition that an obstacle belongs to; that of none behind all.
 std::size_t place_of(std::string_view obstacle) {
-  constexpr std::array places = {
-      std::pair{Code::not_finite, 0},    std::pair{Code::error_above_limit, 0},
-      std::pair{Code::not_better_than_mean, 0}, std::pair{Code::not_better, 1},
-      std::pair{Code::within_margin, 2}, std::pair{Code::not_covered, 3},
-      std::pair{Code::worse_in_regime, 4}, std::pair{Code::bias_unverified, 5},
-      std::pair{Code::too_soon, 6},      std::pair{Code::held, 6},
-      std::pair{Code::waits_for_operator, 6}};
+  constexpr std::array places = {std::pair{Code::not_finite, 0},
+                                 std::pair{Code::error_above_limit, 0},
+                                 std::pair{Code::not_better_than_mean, 0},
+                                 std::pair{Code::not_better, 1},
+                                 std::pair{Code::within_margin, 2},
+                                 std::pair{Code::not_covered, 3},
+                                 std::pair{Code::worse_in_regime, 4},
+                                 std::pair{Code::bias_unverified, 5},
+                                 std::pair{Code::too_soon, 6},
+                                 std::pair{Code::held, 6},
+                                 std::pair{Code::waits_for_operator, 6}};
   const auto* found = std::find_if(places.begin(), places.end(), [obstacle](const auto& place) {
     return name(place.first) == obstacle;
   });
@@ -35,7 +39,8 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        fmt::format("MRSE at most {:g} %, fit above 0 %", limits.max_mrse_percent),
        fmt::format("{:.3g} %, {:.1f} %", finding.mrse_percent, finding.fit_percent),
        {}},
-      {"R1", fmt::format("log of the evidence above {:.2f}", finding.log_threshold),
+      {"R1",
+       fmt::format("log of the evidence above {:.2f}", finding.log_threshold),
        fmt::format("{:.2f} on {} blocks", finding.log_wealth, finding.blocks),
        {}},
       {"R1",
@@ -43,12 +48,14 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
                    (1 - rest * rest) / (1 + rest * rest), limits.margin_percent),
        fmt::format("{:.3f}", finding.mean_score),
        {}},
-      {"R2", "sure gain outweighs regimes that it has not met",
+      {"R2",
+       "sure gain outweighs regimes that it has not met",
        fmt::format("at least {:.3f}; {:.1f} % not met", finding.lower_score,
                    100 * finding.uncovered_share),
        {}},
       {"R2", "surely worse in no regime", "", {}},
-      {"R3", fmt::format("without the champion's offset, above {:.2f} too", finding.log_threshold),
+      {"R3",
+       fmt::format("without the champion's offset, above {:.2f} too", finding.log_threshold),
        limits.bias == BiasPolicy::approve ? "not asked for: bias = \"approve\""
                                           : fmt::format("{:.2f}", finding.wealth_without_offset),
        {}},

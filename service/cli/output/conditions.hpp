@@ -12,9 +12,10 @@
 namespace reident {
 
 struct Condition {
-  std::string_view rule;      // "R1"
-  std::string asked, found;   // as phrases
-  std::optional<bool> holds;  // absent where it was not looked at, since one before it does not hold
+  std::string_view rule;     // "R1"
+  std::string asked, found;  // as phrases
+  std::optional<bool>
+      holds;  // absent where it was not looked at, since one before it does not hold
 };
 
 /// Returns the conditions in the order in which they are looked at. `obstacle` is the code of what

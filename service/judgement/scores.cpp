@@ -1,0 +1,83 @@
+#include "service/judgement/scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace reident {
+
+using storage::Block;
+using storage::BlockScore;
+
+bool counts(const Block& block) {
+  return block.rows > 0 && block.believed >= least_believed;
+}
+
+const BlockScore* find(const Member& member, storage::Time begin) {
+  const auto found =
+      std::lower_bound(member.scores.begin(), member.scores.end(), begin,
+                       [](const BlockScore& score, auto time) { return score.begin < time; });
+  return found != member.scores.end() && found->begin == begin && found->rows > 0 ? &*found
+                                                                                  : nullptr;
+}
+
+Squares squares_of(const BlockScore& one, const BlockScore& other,
+                   const std::vector<double>* offset) {
+  Squares squares;
+  for (std::size_t q = 0; q < one.square.size(); ++q) {
+    const double noise = std::max(std::min(one.noise[q], other.noise[q]), least_square);
+    double theirs = other.square[q];
+    if (offset) theirs += (*offset)[q] * ((*offset)[q] - 2 * other.mean[q]);
+    squares.one.push_back(std::max(one.square[q], noise));
+    squares.other.push_back(std::max(theirs, noise));
+  }
+  return squares;
+}
+
+void Scores::add(Squares squares) {
+  cycle_.push_back(std::move(squares));
+  if (cycle_.size() > blocks_of_cycle) cycle_.pop_front();
+  const std::size_t outputs = cycle_.back().one.size();
+  double sum = 0;
+  for (std::size_t q = 0; q < outputs; ++q) sum += score(q);
+  values_.push_back(sum / static_cast<double>(outputs));
+}
+
+double Scores::score(std::size_t q) const {
+  const double one = cycle_.back().one[q], other = cycle_.back().other[q];
+  if (!std::isfinite(one)) return -largest_score;
+  if (!std::isfinite(other)) return largest_score;
+  double both = 0;
+  for (const Squares& block : cycle_)
+    if (std::isfinite(block.one[q] + block.other[q])) both += block.one[q] + block.other[q];
+  return std::clamp((other - one) / both * static_cast<double>(cycle_.size()), -largest_score,
+                    largest_score);
+}
+
+void Sums::add(const Block& block, const std::vector<double>& square) {
+  error.resize(square.size(), 0);
+  y.resize(square.size(), 0);
+  y_square.resize(square.size(), 0);
+  const auto weight = static_cast<double>(block.rows);
+  for (std::size_t q = 0; q < square.size(); ++q) {
+    error[q] += weight * square[q];
+    y[q] += weight * block.output_mean[q];
+    y_square[q] += weight * block.output_square[q];
+  }
+  rows += weight;
+}
+
+double Sums::mrse_percent() const {
+  double sum = 0;
+  for (std::size_t q = 0; q < error.size(); ++q) sum += std::sqrt(error[q] / y_square[q]);
+  return error.empty() ? 0 : 100 * sum / static_cast<double>(error.size());
+}
+
+double Sums::fit_percent() const {
+  double worst = 0;
+  for (std::size_t q = 0; q < error.size(); ++q)
+    worst = std::max(worst, std::sqrt(error[q] / (y_square[q] - y[q] * y[q] / rows)));
+  return 100 * (1 - worst);
+}
+
+}  // namespace reident

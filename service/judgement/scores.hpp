@@ -1,0 +1,69 @@
+// How one version's record compares with another's: scores of blocks, and errors over several.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "service/windows/block_reader.hpp"
+#include "storage/types/registry_rows.hpp"
+
+namespace reident {
+
+/// A version with its record.
+struct Member {
+  std::int64_t version = 0;
+  storage::TimeRange window;
+  std::vector<storage::BlockScore> scores;  // ascending
+};
+
+/// Bound of a block's score.
+inline constexpr double largest_score = 1;
+/// A block of which less is believed says nothing.
+inline constexpr double least_believed = 0.5;
+/// Of an error where the sensor's noise is not known.
+inline constexpr double least_square = 1e-300;
+
+/// Whether anything is concluded from the block.
+bool counts(const storage::Block& block);
+
+/// The member's score of the block that begins there; null without one, or without rows.
+const storage::BlockScore* find(const Member& member, storage::Time begin);
+
+/// Mean squared errors of two runs on a block, by output. What is below the noise of the sensors
+/// counts as noise.
+struct Squares {
+  std::vector<double> one, other;
+};
+
+/// `offset`, where there is one, is taken from the other's error.
+Squares squares_of(const storage::BlockScore& one, const storage::BlockScore& other,
+                   const std::vector<double>* offset = nullptr);
+
+/// Scores of one run against another, from -1 to 1: by how much its mean square is below the
+/// other's, over that of both in the last cycle, and the mean over the outputs. A block in which
+/// both err little counts little, and none decides alone.
+class Scores {
+ public:
+  /// Takes the next block in.
+  void add(Squares squares);
+  const std::vector<double>& values() const { return values_; }
+
+ private:
+  double score(std::size_t output) const;
+
+  std::deque<Squares> cycle_;
+  std::vector<double> values_;
+};
+
+/// Sums from which a run's errors over some blocks follow.
+struct Sums {
+  std::vector<double> error, y, y_square;
+  double rows = 0;
+
+  void add(const storage::Block& block, const std::vector<double>& square);
+  double mrse_percent() const;
+  /// The worst output's.
+  double fit_percent() const;
+};
+
+}  // namespace reident
