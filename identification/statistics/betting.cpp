@@ -14,6 +14,8 @@ constexpr std::array bets = {1.0, 0.5, 0.25, 0.125, 0.0625};
 constexpr Index least_means = 6;
 /// Dependence is taken for that of one cycle at first, and as measured behind so many cycles.
 constexpr Index cycles_to_measure = 8;
+/// Scores that differ by less, over their bound, are equal but for rounding.
+constexpr double rounding = 1e-9;
 
 double variance(const Vector& values) {
   return (values.array() - values.mean()).square().sum() / double(values.size() - 1);
@@ -35,7 +37,7 @@ double dependence(const ScoreSeries& series) {
   double largest = measured + (1 - measured) * assumed;
   if (n < 2) return largest;
   const double of_one = variance(series.scores);
-  if (!(of_one > 0)) return largest;
+  if (!(of_one > rounding * rounding * series.bound * series.bound)) return largest;
   for (Index length = 2; n / length >= least_means; length *= 2) {
     const Vector together = means(series.scores, length);
     // By a standard deviation more: the ratio of so few means is uncertain.

@@ -30,7 +30,7 @@ struct League {
 
 /// A change of the equipment: the champion's errors have grown for good.
 struct Change {
-  storage::Time since = 0;  // it began behind here
+  storage::Time since = 0;  // begin of the first block that it may lie in
   storage::Time found = 0;  // end of the block with which it was found
 };
 

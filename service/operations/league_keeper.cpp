@@ -45,11 +45,11 @@ storage::NewDecision decision_of(DecisionKind kind, const std::vector<Reason>& r
 }
 
 storage::TimeRange window_behind(const Change& change, const EquipmentConfig& equipment) {
+  const Time begin = change.since + block_length(equipment);  // it may lie within its first block
   const Duration period = equipment.sample_period;
   const std::int64_t ticks = std::max(equipment.window / 2 / period, least_window_ticks(equipment));
-  const Time end =
-      std::max(change.found, change.since + std::min(equipment.window, ticks * period));
-  return {std::max(change.since, end - equipment.window), end};
+  const Time end = std::max(change.found, begin + std::min(equipment.window, ticks * period));
+  return {std::max(begin, end - equipment.window), end};
 }
 
 /// The code of the last reason of a decision; empty where it has none.

@@ -19,9 +19,10 @@ SELDOM = ["10Hz"]
 def measure(programs, folder, scale):
     with running(programs, folder, [EQUIPMENT]) as service:
         service.replay(telemetry(700))
-        newest = service.champions()[EQUIPMENT]
-        if newest < 2:
-            raise SystemExit(f"no second champion\n{service.log.read_text()[-4000:]}")
+        newest = 2
+        if service.champions()[EQUIPMENT] < newest:
+            service.run(programs.reident, "approve", f"{SPACECRAFT}/{EQUIPMENT}", newest,
+                        "--reason", "a pair to swap", "--config", service.folder / "reident.toml")
         process = start(programs, service, scale.flips)
         try:
             size = payload(json.loads(process.stdout.readline()))

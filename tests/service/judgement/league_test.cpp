@@ -98,7 +98,7 @@ TEST(League, FirstVersionIsBetterThanTheMeanAndTheSimulator) {
   Records records(8);
   records.challenger(white(1.1), 0);
   EXPECT_EQ(records.obstacle(), Code::not_better_than_mean);
-  Records beside(8);
+  Records beside(120);
   beside.challenger(white(0.01), 0);
   for (Block& block : beside.league().blocks) block.baseline_square = {0.005};
   EXPECT_EQ(beside.obstacle(), Code::not_better_than_simulator);

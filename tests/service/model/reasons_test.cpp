@@ -48,7 +48,7 @@ const Example of_admissibility[] = {
      "Fit -3.22 % on telemetry that it was not fitted to: an output's error is not below that of a "
      "constant at its mean (0 %)."},
     {because<Code::not_better_than_simulator>(5.0, 4.9),
-     "MRSE 5.000 % is not below that of the simulator's own model (4.900 %)."},
+     "MRSE 5.000 % is not shown to be below that of the simulator's own model (4.900 %)."},
     {because<Code::challenger>(5.0),
      "A challenger with MRSE 5.000 % on its validation part: that and the telemetry after its "
      "window decide."},

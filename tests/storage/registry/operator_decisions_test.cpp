@@ -115,7 +115,7 @@ TEST_F(OperatorDecisions, AVersionThatWaitsIsApprovedWhoeverIsChampionByThen) {
   decide(2, approve, 40);
   decide(3, approve, 50);
   EXPECT_EQ(champion_at(std::nullopt), 3);
-  EXPECT_THAT(parents(), ElementsAre(0, 1, 1)) << "the champion of when it was made";
+  EXPECT_THAT(parents(), ElementsAre(0, 1, 2)) << "the champion that it replaced";
 }
 
 TEST_F(OperatorDecisions, ASummaryIsTheVersionWithoutItsModel) {
