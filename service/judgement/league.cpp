@@ -49,19 +49,18 @@ ScoreSeries series(const std::vector<double>& scores, double assumed) {
           blocks_of_cycle, assumed};
 }
 
-/// Dependence of the scores of the two members with the longest records: what is assumed of
-/// versions whose records are short. 0 where there are no two.
-double usual_dependence(const League& league) {
+/// Dependence of the scores of the two members with the longest records from `since` on: what is
+/// assumed of versions whose records are short. 0 where there are no two.
+double usual_dependence(const League& league, Time since) {
   std::vector<const Member*> members;
   for (const Member& member : league.challengers) members.push_back(&member);
   if (league.champion) members.push_back(&*league.champion);
   if (members.size() < 2) return 0;
-  std::partial_sort(
-      members.begin(), members.begin() + 2, members.end(),
-      [](const Member* a, const Member* b) { return a->scores.size() > b->scores.size(); });
+  std::ranges::partial_sort(members, members.begin() + 2, std::greater<>(),
+                            [](const Member* member) { return member->scores.size(); });
   Scores scores;
   for (const Block& block : league.blocks) {
-    if (!counts(block)) continue;
+    if (!counts(block) || block.range.begin < since) continue;
     const BlockScore* one = find(*members[0], block.range.begin);
     const BlockScore* other = find(*members[1], block.range.begin);
     if (one && other) scores.add(squares_of(*one, *other));
@@ -117,16 +116,17 @@ Pair pair_of(const League& league, const std::vector<int>& regimes, const Member
   return pair;
 }
 
-/// Share of the champion's blocks that are in regimes which the member has not met.
-double uncovered_share(const League& league, const std::vector<int>& regimes,
-                       const Member& member) {
+/// Share of the champion's blocks from `since` on that are in regimes which the member has not met.
+double uncovered_share(const League& league, const std::vector<int>& regimes, const Member& member,
+                       Time since) {
   std::map<int, std::pair<double, bool>> by_regime;  // champion's blocks; met by the member
   double all = 0;
   for (std::size_t i = 0; i < league.blocks.size(); ++i) {
     if (regimes[i] < 0) continue;
     auto& [served, met] = by_regime[regimes[i]];
-    if (find(*league.champion, league.blocks[i].range.begin)) ++served, ++all;
-    met = met || league.blocks[i].range.begin >= member.window.begin;
+    const Time begin = league.blocks[i].range.begin;
+    if (begin >= since && find(*league.champion, begin)) ++served, ++all;
+    met = met || begin >= member.window.begin;
   }
   double uncovered = 0;
   for (const auto& [regime, of] : by_regime)
@@ -225,7 +225,8 @@ struct Standard {
 std::optional<Reason> unproved_somewhere(const Standard& standard, const Member& member,
                                          const Pair& pair, Finding& finding) {
   const std::int64_t champion = standard.league.champion->version;
-  finding.uncovered_share = uncovered_share(standard.league, standard.regimes, member);
+  finding.uncovered_share =
+      uncovered_share(standard.league, standard.regimes, member, standard.since);
   if (finding.lower_score * (1 - finding.uncovered_share) < largest_score * finding.uncovered_share)
     return because<Code::not_covered>(champion, 100 * finding.uncovered_share);
   if (worse_in_a_regime(pair, standard.assumed, standard.limits))
@@ -310,8 +311,9 @@ std::vector<Finding> judge(const League& league, const EquipmentConfig& limits) 
       findings.push_back(judge_first(league, member, limits));
     return findings;
   }
-  const Standard standard{league, limits, counted_since(league), regimes_of(league.blocks),
-                          usual_dependence(league)};
+  const Time since = counted_since(league);
+  const Standard standard{league, limits, since, regimes_of(league.blocks),
+                          usual_dependence(league, since)};
   for (const Member& member : league.challengers)
     findings.push_back(judge_against_champion(standard, member));
   return findings;
@@ -325,16 +327,14 @@ std::optional<Finding> successor(const std::vector<Finding>& findings) {
 }
 
 Finding weakest(const std::vector<Finding>& findings) {
-  return *std::min_element(
-      findings.begin(), findings.end(),
-      [](const Finding& a, const Finding& b) { return a.log_wealth < b.log_wealth; });
+  return *std::ranges::min_element(findings, {}, &Finding::log_wealth);
 }
 
 std::vector<ComparedBlock> compared_blocks(const League& league, const Member& challenger,
                                            const EquipmentConfig& limits) {
   const Time since = counted_since(league);
   const Pair pair = pair_of(league, regimes_of(league.blocks), challenger, since);
-  const double assumed = usual_dependence(league);
+  const double assumed = usual_dependence(league, since);
   const double threshold = log_threshold(league, challenger, since, limits);
   std::vector<ComparedBlock> blocks;
   std::vector<double> scores;

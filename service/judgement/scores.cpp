@@ -14,11 +14,9 @@ bool counts(const Block& block) {
 }
 
 const BlockScore* find(const Member& member, storage::Time begin) {
-  const auto found =
-      std::lower_bound(member.scores.begin(), member.scores.end(), begin,
-                       [](const BlockScore& score, auto time) { return score.begin < time; });
-  return found != member.scores.end() && found->begin == begin && found->rows > 0 ? &*found
-                                                                                  : nullptr;
+  const auto found = std::ranges::lower_bound(member.scores, begin, {}, &BlockScore::begin);
+  const bool is_there = found != member.scores.end() && found->begin == begin && found->rows > 0;
+  return is_there ? &*found : nullptr;
 }
 
 Squares squares_of(const BlockScore& one, const BlockScore& other,
