@@ -16,9 +16,9 @@ class Trust(EndToEnd):
     def test_over_dds_no_simulator_gets_a_worse_model_and_a_change_is_followed(self):
         build = Path(os.environ["REIDENT_BUILD"])
         said = over_dds.score(build, ["--scenario", "0"], self.folder)
-        figures = json.loads(said.splitlines()[-1])["tuned"]
+        figures = json.loads(said.splitlines()[-1])["power"]
         self.assertEqual(figures["scenarios"], 1)
-        self.assertEqual(figures["wrong_approvals"], 0, said)
+        self.assertEqual(figures["wrong"], 0, said)
         self.assertGreaterEqual(figures["versions"], 2, said)
         self.assertEqual((figures["changes"], figures["recovered_fraction"]), (1, 1.0), said)
 

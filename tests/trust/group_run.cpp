@@ -177,7 +177,6 @@ class Judge {
   ScenarioOutcome score(const Scenario& scenario, const Made& made) {
     ScenarioOutcome outcome{scenario.number,
                             group_.seed,
-                            group_.half(),
                             group_.life,
                             scenario.fault,
                             {group_.start, group_.start + group_.duration},

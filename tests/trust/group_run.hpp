@@ -28,7 +28,6 @@ struct EquipmentOutcome {
 struct ScenarioOutcome {
   int number = 0;
   std::uint64_t seed = 0;
-  Half half = Half::tuned;
   std::string life, fault;
   storage::TimeRange extent;  // of the telemetry
   std::vector<EquipmentOutcome> equipment;

@@ -10,12 +10,14 @@
 #include <nlohmann/json.hpp>
 
 #include "service/support/time_text.hpp"
+#include "tests/trust/intervals.hpp"
 #include "tests/trust/picture.hpp"
 
 namespace reident::trust {
 namespace {
 
 constexpr double month_ns = 30.0 * 86'400e9;
+constexpr Duration three_weeks = 21 * 86'400'000'000'000;
 
 double days_after(storage::Time start, storage::Time time) {
   return static_cast<double>(time - start) / 86'400e9;
@@ -48,39 +50,38 @@ Badness badness_of(const ScenarioOutcome& outcome) {
   return worst;
 }
 
-void add_row(std::string& text, const std::string& name, const Outcomes& outcomes, bool details,
+void add_row(std::string& text, const std::string& name, const Outcomes& outcomes,
              Outcomes* all_worst) {
   const Figures figures = figures_of(outcomes);
   text += fmt::format("| {} | {} | {} | {} | {} of {} | {} | {:.2g} |", name, figures.scenarios,
-                      figures.versions, figures.wrong_approvals, figures.recovered, figures.changes,
+                      figures.versions, figures.wrong, figures.recovered, figures.changes,
                       figures.changes > 0 ? fmt::format("{} ({})", figures.recovery_quantile(0.5),
                                                         figures.recovery_quantile(1))
                                           : "",
                       figures.publications_per_month());
-  if (details) {
-    const auto worst = std::max_element(outcomes.begin(), outcomes.end(),
-                                        [](const ScenarioOutcome* a, const ScenarioOutcome* b) {
-                                          return badness_of(*a).value < badness_of(*b).value;
-                                        });
-    const Badness badness = badness_of(**worst);
-    if (badness.value > 0) {
-      const int number = (*worst)->number;
-      text += fmt::format(" [{}]({}): {} |", number, picture_name(number), badness.words);
-      if (all_worst) all_worst->push_back(*worst);
-    } else {
-      text += " |";
-    }
+  const auto worst = std::max_element(outcomes.begin(), outcomes.end(),
+                                      [](const ScenarioOutcome* a, const ScenarioOutcome* b) {
+                                        return badness_of(*a).value < badness_of(*b).value;
+                                      });
+  const Badness badness = badness_of(**worst);
+  if (badness.value > 0) {
+    const int number = (*worst)->number;
+    text += fmt::format(" [{}]({}): {} |", number, picture_name(number), badness.words);
+    if (all_worst) all_worst->push_back(*worst);
+  } else {
+    text += " |";
   }
   text += '\n';
 }
 
 void add_rows(std::string& text, std::string_view by, const std::map<std::string, Outcomes>& rows,
-              bool details, Outcomes* worst) {
+              Outcomes* worst) {
   text += fmt::format(
       "| {} | scenarios | versions judged | wrong approvals | changes recovered | orbits, median "
-      "(worst) | publications a month, nothing changing |{}\n|---|---|---|---|---|---|---|{}\n",
-      by, details ? " worst case |" : "", details ? "---|" : "");
-  for (const auto& [name, outcomes] : rows) add_row(text, name, outcomes, details, worst);
+      "(worst) | publications a month, nothing changing | worst case "
+      "|\n|---|---|---|---|---|---|---|---|\n",
+      by);
+  for (const auto& [name, outcomes] : rows) add_row(text, name, outcomes, worst);
 }
 
 std::map<std::string, Outcomes> by(std::string ScenarioOutcome::*kind, const Outcomes& outcomes) {
@@ -89,21 +90,26 @@ std::map<std::string, Outcomes> by(std::string ScenarioOutcome::*kind, const Out
   return rows;
 }
 
-}  // namespace
-
-Outcomes half_of(const std::vector<ScenarioOutcome>& outcomes, Half half) {
-  Outcomes result;
+std::map<std::string, Outcomes> by_family(const std::vector<ScenarioOutcome>& outcomes) {
+  std::map<std::string, Outcomes> families;
   for (const ScenarioOutcome& outcome : outcomes)
-    if (outcome.half == half) result.push_back(&outcome);
-  return result;
+    families[std::string(name(outcome.family))].push_back(&outcome);
+  return families;
 }
+
+}  // namespace
 
 void Figures::add(const ScenarioOutcome& outcome) {
   ++scenarios;
+  const bool is_bias = std::any_of(outcome.faults.begin(), outcome.faults.end(), [](auto& fault) {
+    return fault.kind == satcs::FaultKind::bias_step ||
+           fault.kind == satcs::FaultKind::drifting_bias;
+  });
   for (const EquipmentOutcome& equipment : outcome.equipment) {
     for (const Publication& publication : equipment.publications) {
       versions += publication.mrse_percent.has_value();
-      wrong_approvals += publication.wrong();
+      wrong += publication.wrong();
+      bias_wrong += publication.wrong() && is_bias;
     }
     if (equipment.regret) regrets.push_back(*equipment.regret);
     for (const ChangeScore& change : equipment.changes) {
@@ -116,6 +122,10 @@ void Figures::add(const ScenarioOutcome& outcome) {
     quiet_months += static_cast<double>(outcome.extent.end - outcome.extent.begin) / month_ns;
     quiet_publications += std::max(0, static_cast<int>(equipment.publications.size()) - 1);
     false_alarms += static_cast<int>(equipment.drifts.size());
+    const storage::Time late = outcome.extent.begin + three_weeks;
+    late_months += std::max(0.0, static_cast<double>(outcome.extent.end - late) / month_ns);
+    for (std::size_t i = 1; i < equipment.publications.size(); ++i)
+      late_publications += equipment.publications[i].time >= late;
   }
 }
 
@@ -140,6 +150,10 @@ double Figures::publications_per_month() const {
   return quiet_months > 0 ? quiet_publications / quiet_months : 0;
 }
 
+double Figures::late_publications_per_month() const {
+  return late_months > 0 ? late_publications / late_months : 0;
+}
+
 double Figures::false_alarms_per_month() const {
   return quiet_months > 0 ? false_alarms / quiet_months : 0;
 }
@@ -157,24 +171,42 @@ Figures figures_of(const Outcomes& outcomes) {
   return figures;
 }
 
-nlohmann::ordered_json to_json(const Figures& figures) {
-  return {{"scenarios", figures.scenarios},
-          {"wrong_approvals", figures.wrong_approvals},
-          {"versions", figures.versions},
-          {"changes", figures.changes},
-          {"recovered_fraction", figures.recovered_fraction()},
-          {"orbits_to_recover_median", figures.recovery_quantile(0.5)},
-          {"regret", figures.regret()},
-          {"regret_p90", figures.regret_quantile(0.9)},
-          {"publications_per_month", figures.publications_per_month()},
-          {"false_alarms_per_month", figures.false_alarms_per_month()}};
+nlohmann::ordered_json to_json(const Outcomes& outcomes, bool intervals) {
+  const Figures figures = figures_of(outcomes);
+  nlohmann::ordered_json json{
+      {"scenarios", figures.scenarios},
+      {"wrong", figures.wrong},
+      {"wrong_upper_percent", 100 * upper_bound(figures.wrong, figures.versions)},
+      {"bias_wrong", figures.bias_wrong},
+      {"versions", figures.versions},
+      {"changes", figures.changes},
+      {"recovered_fraction", figures.recovered_fraction()},
+      {"recovery_median_orbits", figures.recovery_quantile(0.5)},
+      {"regret", figures.regret()},
+      {"regret_p90", figures.regret_quantile(0.9)},
+      {"publications_per_month", figures.publications_per_month()},
+      {"late_publications_per_month", figures.late_publications_per_month()},
+      {"false_alarms_per_month", figures.false_alarms_per_month()}};
+  if (!intervals) return json;
+  const auto bounds = [&](double (Figures::*figure)() const) {
+    const auto [low, high] = interval(outcomes.size(), [&](const std::vector<std::size_t>& places) {
+      Figures drawn;
+      for (const std::size_t place : places) drawn.add(*outcomes[place]);
+      return (drawn.*figure)();
+    });
+    return nlohmann::ordered_json{low, high};
+  };
+  json["intervals"] = {{"regret", bounds(&Figures::regret)},
+                       {"recovered_fraction", bounds(&Figures::recovered_fraction)},
+                       {"publications_per_month", bounds(&Figures::publications_per_month)}};
+  return json;
 }
 
-std::string table(const Outcomes& outcomes, bool details, Outcomes* worst) {
+std::string table(const Outcomes& outcomes, Outcomes* worst) {
   std::string text;
-  add_rows(text, "life", by(&ScenarioOutcome::life, outcomes), details, worst);
+  add_rows(text, "life", by(&ScenarioOutcome::life, outcomes), worst);
   text += '\n';
-  add_rows(text, "fault", by(&ScenarioOutcome::fault, outcomes), details, worst);
+  add_rows(text, "fault", by(&ScenarioOutcome::fault, outcomes), worst);
   return text;
 }
 
@@ -184,25 +216,23 @@ std::string picture_name(int scenario) {
 
 std::string tables(const std::vector<ScenarioOutcome>& outcomes, Outcomes* worst) {
   std::string text;
-  const auto tuned = half_of(outcomes, Half::tuned);
-  const auto held_out = half_of(outcomes, Half::held_out);
-  if (!tuned.empty()) text += "## Tuned seeds\n\n" + table(tuned, true, worst) + '\n';
-  if (!held_out.empty()) text += "## Held-out seeds\n\n" + table(held_out, false) + '\n';
+  for (const auto& [family, of_family] : by_family(outcomes))
+    text += fmt::format("## {}\n\n{}\n", family, table(of_family, worst));
   return text;
 }
 
 nlohmann::ordered_json figures_json(const std::vector<ScenarioOutcome>& outcomes) {
-  const auto figures = [&outcomes](Half half) {
-    const Outcomes of_half = half_of(outcomes, half);
-    nlohmann::ordered_json json = to_json(figures_of(of_half));
-    for (const auto& [life, rows] : by(&ScenarioOutcome::life, of_half))
-      json["lives"][life] = to_json(figures_of(rows));
-    return json;
-  };
-  return {{"tuned", figures(Half::tuned)}, {"held_out", figures(Half::held_out)}};
+  nlohmann::ordered_json figures;
+  for (const auto& [family, of_family] : by_family(outcomes)) {
+    nlohmann::ordered_json json = to_json(of_family, true);
+    for (const auto& [life, rows] : by(&ScenarioOutcome::life, of_family))
+      json["lives"][life] = to_json(rows, false);
+    figures[family] = std::move(json);
+  }
+  return figures;
 }
 
-void write_report(const std::vector<ScenarioOutcome>& outcomes,
+void write_report(const std::vector<ScenarioOutcome>& outcomes, const std::string& more,
                   const std::filesystem::path& folder) {
   const auto write = [&folder](const std::string& name, const std::string& text) {
     std::ofstream file(folder / name);
@@ -211,8 +241,7 @@ void write_report(const std::vector<ScenarioOutcome>& outcomes,
   };
   std::filesystem::create_directories(folder);
   Outcomes worst;
-  write("report.md", "# The trust suite\n\n" + tables(outcomes, &worst) + "```\n" +
-                         figures_json(outcomes).dump() + "\n```\n");
+  write("report.md", "# The trust suite\n\n" + tables(outcomes, &worst) + more);
   for (const ScenarioOutcome* outcome : worst)
     write(picture_name(outcome->number), picture(*outcome));
 }

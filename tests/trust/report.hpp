@@ -13,19 +13,19 @@ namespace reident::trust {
 
 using Outcomes = std::vector<const ScenarioOutcome*>;
 
-/// Those of one half.
-Outcomes half_of(const std::vector<ScenarioOutcome>& outcomes, Half half);
-
 /// The figures that are asked for, over some scenarios.
 struct Figures {
   int scenarios = 0;
   std::vector<double> regrets;  // of each equipment with a champion
   int versions = 0;             // published and judged
-  int wrong_approvals = 0;
-  int changes = 0;  // that mattered
+  int wrong = 0;
+  int bias_wrong = 0;  // in scenarios with a bias
+  int changes = 0;     // that mattered
   int recovered = 0;
   double quiet_months = 0;  // of equipment to which nothing happened
   int quiet_publications = 0;
+  double late_months = 0;  // of these, after the third week
+  int late_publications = 0;
   int false_alarms = 0;  // drift requests there
   std::vector<std::int64_t> orbits_to_recover{};
 
@@ -34,28 +34,31 @@ struct Figures {
   double regret() const;
   double regret_quantile(double share) const;  // 1 where nothing changed
   double publications_per_month() const;       // that replace a version, of one equipment
+  double late_publications_per_month() const;
   double false_alarms_per_month() const;
   std::int64_t recovery_quantile(double share) const;  // orbits; 0 where nothing changed
 };
 
 Figures figures_of(const Outcomes& outcomes);
-nlohmann::ordered_json to_json(const Figures& figures);
 
-/// Rows by life, and rows by fault, in Markdown. With `details`, the worst case of each row is
-/// named and linked to its picture (picture_name), and collected in `worst`.
-std::string table(const Outcomes& outcomes, bool details, Outcomes* worst = nullptr);
+/// The figures, with 95 % intervals by scenario where `intervals`.
+nlohmann::ordered_json to_json(const Outcomes& outcomes, bool intervals);
+
+/// Rows by life, and rows by fault, in Markdown. The worst case of each row is named and linked to
+/// its picture (picture_name), and collected in `worst`.
+std::string table(const Outcomes& outcomes, Outcomes* worst = nullptr);
 
 std::string picture_name(int scenario);
 
-/// Both halves, apart; no scenario of the held-out one is named.
+/// Both families, apart.
 std::string tables(const std::vector<ScenarioOutcome>& outcomes, Outcomes* worst = nullptr);
 
-/// The figures of both halves as one object.
+/// The figures of each family that has outcomes, under its name, and by life under `lives`.
 nlohmann::ordered_json figures_json(const std::vector<ScenarioOutcome>& outcomes);
 
-/// report.md, and next to it the pictures that it links to. Throws std::runtime_error where a file
-/// cannot be written.
-void write_report(const std::vector<ScenarioOutcome>& outcomes,
+/// report.md, which ends with `more`, and next to it the pictures that it links to. Throws
+/// std::runtime_error where a file cannot be written.
+void write_report(const std::vector<ScenarioOutcome>& outcomes, const std::string& more,
                   const std::filesystem::path& folder);
 
 /// What happened in one scenario, for a person.

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # The trust suite: did any simulator get a worse model, and how soon did it get a better one?
 # Builds the release preset first. The last line is one JSON object.
-#   tests/trust/run.sh              a few minutes: two scenarios of every sixth life, of the tuned half
-#   tests/trust/run.sh --all        first the month, then the handful over DDS, then all scenarios,
-#                                   both halves and the platform; two hours on two cores. Writes
-#                                   build/release/trust/report.md with pictures of the worst cases
+#   tests/trust/run.sh              a few minutes: two scenarios of every sixth life
+#   tests/trust/run.sh --all        first the month, then the handful over DDS, then all scenarios
+#                                   of both families, of a fresh draw; three hours on two cores.
+#                                   Writes build/release/trust/report.md with pictures of the worst
+#                                   cases
 #   tests/trust/run.sh --month      a month of the whole subsystem through the real processes: how
 #                                   long it takes, and where processor time goes
 #   tests/trust/run.sh --dds [--scenario N...]
 #                                   scenarios through the real processes: by default a handful, every
-#                                   71st of both halves and of the platform
+#                                   71st of both families
 #   tests/trust/run.sh OPTION...    any options of reident_trust, such as --scenario 2 --plot 2.svg
 #                                   (--help lists them)
 set -euo pipefail

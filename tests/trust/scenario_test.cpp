@@ -24,30 +24,26 @@ TEST(Scenarios, AreManyAndNumberedOnce) {
   EXPECT_EQ(numbers.size(), scenarios);
 }
 
-TEST(Scenarios, HaveEveryLifeAndEveryFaultInBothHalves) {
-  std::map<Half, std::set<satcs::reference::LifeKind>> lives;
-  std::map<Half, std::set<std::string>> faults;
+TEST(Scenarios, HaveEveryLifeAndEveryFault) {
+  std::set<satcs::reference::LifeKind> lives, of_power;
+  std::set<std::string> faults;
   for (const LifeGroup& group : all_groups(suite_config().spacecraft.front())) {
-    for (const auto& event : group.events) lives[group.half()].insert(event.kind);
-    for (const Scenario& scenario : group.scenarios) faults[group.half()].insert(scenario.fault);
+    for (const auto& event : group.events) lives.insert(event.kind);
+    for (const Scenario& scenario : group.scenarios) faults.insert(scenario.fault);
   }
-  std::set<satcs::reference::LifeKind> of_power;
   for (const auto kind : satcs::reference::life_kinds())
     if (happens_to(satcs::Family::power, kind)) of_power.insert(kind);
-  for (const Half half : {Half::tuned, Half::held_out}) {
-    EXPECT_EQ(lives[half], of_power);
-    EXPECT_EQ(faults[half].size(), satcs::fault_kinds + 1);  // and none
-  }
+  EXPECT_EQ(lives, of_power);
+  EXPECT_EQ(faults.size(), satcs::fault_kinds + 1);  // and none
 }
 
-TEST(Scenarios, OfAnotherDrawAreThoseOfTheTunedHalfAtOtherTimes) {
+TEST(Scenarios, OfAnotherDrawAreTheSameAtOtherTimes) {
   const SpacecraftConfig spacecraft = suite_config().spacecraft.front();
   const auto suite = all_groups(spacecraft), drawn = all_groups(spacecraft, 3);
   std::set<std::uint64_t> seeds;
   for (const LifeGroup& group : suite) seeds.insert(group.seed);
-  ASSERT_EQ(2 * drawn.size(), suite.size());
+  ASSERT_EQ(drawn.size(), suite.size());
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    EXPECT_EQ(drawn[i].half(), Half::tuned);
     EXPECT_FALSE(seeds.contains(drawn[i].seed));
     EXPECT_EQ(drawn[i].life, suite[i].life);
     EXPECT_EQ(drawn[i].scenarios.front().number, suite[i].scenarios.front().number);
@@ -62,13 +58,12 @@ std::vector<LifeGroup> platform_groups(std::uint64_t draw = 0) {
   return all_groups(suite_config(platform).spacecraft.front(), draw, platform);
 }
 
-TEST(PlatformScenarios, AreManyAndAllHeldOutInEachDraw) {
+TEST(PlatformScenarios, AreManyAndOthersInEachDraw) {
   std::set<int> numbers;
   std::set<std::uint64_t> seeds;
   std::size_t scenarios = 0;
   for (const std::uint64_t draw : {0U, 4U})
     for (const LifeGroup& group : platform_groups(draw)) {
-      EXPECT_EQ(group.half(), Half::held_out);
       EXPECT_TRUE(seeds.insert(group.seed).second);
       if (draw > 0) continue;
       for (const Scenario& scenario : group.scenarios) {

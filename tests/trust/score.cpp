@@ -190,7 +190,7 @@ std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Ten
     // The first orbit of the change is half of the old spacecraft.
     for (std::int64_t block = champion.block_of(followed.begin) + 1;
          block + smoothing_orbits <= champion.block_of(followed.end); ++block) {
-      if (const auto left = compare(old, best, block, recovery_orbits, resolution))
+      if (const auto left = compare(old, best, block, mattering_orbits, resolution))
         score.mattered = score.mattered || left->bad;
       const auto now = compare(champion, best, block, smoothing_orbits, resolution);
       if (!now) continue;

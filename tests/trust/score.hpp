@@ -3,7 +3,7 @@
 //   wrong approval  over the 30 orbits that follow its publication a version's MRSE on the truth is
 //                   higher than that of what it replaced by more than a tenth and the sensors' own
 //                   resolution
-//   missed change   for more than 15 orbits of honest telemetry without a break the champion's MRSE
+//   missed change   for more than 20 orbits of honest telemetry without a break the champion's MRSE
 //                   on the truth is higher than 1.5 times an oracle's and the sensors' resolution
 //                   above that
 //
@@ -24,7 +24,9 @@ namespace reident::trust {
 inline constexpr std::int64_t judged_orbits = 30;
 inline constexpr std::int64_t least_judged_orbits = 5;  // where a change cuts the 30 short
 inline constexpr double worse_share = 0.10;
-inline constexpr std::int64_t recovery_orbits = 15;
+inline constexpr std::int64_t recovery_orbits = 20;
+/// A change matters where the champion of then is bad over so many orbits.
+inline constexpr std::int64_t mattering_orbits = 15;
 inline constexpr double oracle_factor = 1.5;
 /// Errors are compared over so many orbits: those of single ones differ by what was switched on.
 inline constexpr std::int64_t smoothing_orbits = 5;

@@ -59,7 +59,7 @@ TEST(Trust, ABiasedSensorIsNotFollowed) {
   })) << story(outcome);
   const Figures figures = figures_of({&outcome});
   EXPECT_GE(figures.versions, 1) << story(outcome);
-  EXPECT_EQ(figures.wrong_approvals, 0) << story(outcome);
+  EXPECT_EQ(figures.wrong, 0) << story(outcome);
 }
 
 TEST(Trust, AQuietSpacecraftGetsAModelAndTheSameOneEachTime) {

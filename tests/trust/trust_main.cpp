@@ -7,6 +7,8 @@
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <optional>
+#include <random>
 #include <thread>
 #include <utility>
 
@@ -17,6 +19,7 @@
 #include "service/support/log.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/trust/picture.hpp"
+#include "tests/trust/power.hpp"
 #include "tests/trust/recipe.hpp"
 #include "tests/trust/report.hpp"
 #include "tests/trust/suite_config.hpp"
@@ -27,18 +30,18 @@ using namespace reident;
 using namespace reident::trust;
 
 struct Options {
-  bool list = false, quick = false, handful = false, recipe = false;
+  bool list = false, quick = false, handful = false, recipe = false, power = false;
   std::vector<int> scenarios;
-  std::string half;
+  std::string family = "both";
   std::vector<satcs::Family> families;
   std::string life, fault;
-  std::string plot;       // a file, of one scenario
-  std::string report;     // a folder
-  std::string month;      // a file
-  std::string dds;        // a file
-  std::string databases;  // a folder
-  std::string keep;       // a folder
-  std::uint64_t draw = 0;
+  std::string plot;                   // a file, of one scenario
+  std::string report;                 // a folder
+  std::string month;                  // a file
+  std::string dds;                    // a file
+  std::string databases;              // a folder
+  std::string keep;                   // a folder
+  std::optional<std::uint64_t> draw;  // absent: a fresh one
   unsigned jobs = 2;
 };
 
@@ -48,11 +51,9 @@ bool is_wanted(const LifeGroup& group, int first_number, const Scenario& scenari
     return std::find(options.scenarios.begin(), options.scenarios.end(), scenario.number) !=
            options.scenarios.end();
   if (options.handful && !is_of_the_handful(scenario)) return false;
-  constexpr std::uint64_t quick_step = 12;  // every sixth life: seeds of a half go by two
+  constexpr std::uint64_t quick_step = 12;  // every sixth life: each has two seeds
   if (options.quick && (group.seed % quick_step != 2 || scenario.number > first_number + 1))
     return false;
-  if (options.half == "tuned" && group.half() != Half::tuned) return false;
-  if (options.half == "held-out" && group.half() != Half::held_out) return false;
   if (!options.life.empty() && group.life != options.life) return false;
   return options.fault.empty() || scenario.fault == options.fault;
 }
@@ -62,7 +63,8 @@ using Configs = std::map<satcs::Family, Config>;
 std::vector<LifeGroup> wanted_groups(const Configs& configs, const Options& options) {
   std::vector<LifeGroup> groups;
   for (const satcs::Family family : options.families)
-    for (LifeGroup& group : all_groups(configs.at(family).spacecraft.front(), options.draw, family))
+    for (LifeGroup& group :
+         all_groups(configs.at(family).spacecraft.front(), *options.draw, family))
       groups.push_back(std::move(group));
   const auto& numbers = options.scenarios;
   if (std::find(numbers.begin(), numbers.end(), 0) != numbers.end())
@@ -80,8 +82,7 @@ std::vector<LifeGroup> wanted_groups(const Configs& configs, const Options& opti
 void list(const std::vector<LifeGroup>& groups) {
   for (const LifeGroup& group : groups)
     for (const Scenario& scenario : group.scenarios)
-      fmt::print("{:4} {} {} with {}\n", scenario.number,
-                 group.half() == Half::tuned ? "tuned   " : "held out", group.life, scenario.fault);
+      fmt::print("{:4} {} with {}\n", scenario.number, group.life, scenario.fault);
 }
 
 /// A line of JSON each: what runs the scenario with the real processes.
@@ -116,10 +117,7 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
                                  : run_group(groups[i], config, options.keep, Databases::kept))
                           : score_databases(groups[i], config, options.databases);
         const std::lock_guard lock(mutex);
-        for (const ScenarioOutcome& outcome : outcomes[i]) {
-          if (outcome.half == Half::tuned || !options.scenarios.empty())
-            fmt::print(stderr, "{}", story(outcome));
-        }
+        for (const ScenarioOutcome& outcome : outcomes[i]) fmt::print(stderr, "{}", story(outcome));
       }
     } catch (...) {
       const std::lock_guard lock(mutex);
@@ -139,36 +137,36 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
   return all;
 }
 
-std::pair<std::vector<ScenarioOutcome>, std::vector<ScenarioOutcome>> by_family(
-    const std::vector<ScenarioOutcome>& outcomes) {
-  std::pair<std::vector<ScenarioOutcome>, std::vector<ScenarioOutcome>> split;
-  for (const ScenarioOutcome& outcome : outcomes)
-    (outcome.family == satcs::Family::power ? split.first : split.second).push_back(outcome);
-  return split;
+/// A draw that nobody has seen, unless one is chosen: rules fit those that they were made on.
+std::uint64_t fresh_draw() {
+  return std::random_device()() % 1'000'000 + 1;
 }
 
-}  // namespace
+/// The power curves as part of the last line, with the figure that is asked for.
+void add_power(const std::vector<PowerPoint>& points, nlohmann::ordered_json& figures) {
+  for (const PowerPoint& point : points)
+    if (point.kind == ErrorKind::white && point.ratio == 0.75)
+      figures["power_quarter_orbits"] =
+          point.median() ? nlohmann::ordered_json(*point.median()) : nlohmann::ordered_json();
+}
 
-int main(int argc, char** argv) {
-  CLI::App app("The trust suite: life and faults through the real service", "reident_trust");
-  Options options;
-  std::string families = "both";
-  app.add_option(
-         "--family", families,
-         "run the power subsystem's scenarios, the platform's (from 1001, all held out), or "
-         "both; figures of the platform stand under the key platform")
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--family", options.family,
+                 "run the power subsystem's scenarios, the platform's (from 1001), or both")
       ->check(CLI::IsMember({"power", "platform", "both"}))
       ->capture_default_str();
   app.add_flag("--list", options.list, "list the scenarios that are chosen, and run none");
-  app.add_flag("--quick", options.quick, "run two scenarios of every sixth life of the tuned half");
+  app.add_flag("--quick", options.quick, "run two scenarios of every sixth life");
   app.add_flag("--handful", options.handful, "run every 71st scenario alone");
   app.add_option(
       "--scenario", options.scenarios,
       "run these scenarios alone, by number; 0 is a short one that is no part of the suite");
-  app.add_option("--draw", options.draw,
-                 "run the tuned half's plans with other seeds, dates and times: none of the suite");
-  app.add_option("--half", options.half, "run the tuned or the held-out half alone")
-      ->check(CLI::IsMember({"tuned", "held-out"}));
+  app.add_option(
+      "--draw", options.draw,
+      "seeds, dates and times of the plans; 0 is that of the regression tests; by default "
+      "a draw that nobody has seen, which is printed");
+  app.add_flag("--power", options.power,
+               "run none; print how soon the rule tells a better version, by the ratio of errors");
   app.add_option("--life", options.life, "run the scenarios of this life alone");
   app.add_option("--fault", options.fault, "run the scenarios of this fault alone");
   app.add_option("--plot", options.plot, "write an SVG picture of the one scenario that is run");
@@ -191,11 +189,30 @@ int main(int argc, char** argv) {
                  "leave the database of each scenario in this folder, NUMBER/reident.db, for "
                  "reident history, show and why");
   app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("The trust suite: life and faults through the real service", "reident_trust");
+  Options options;
+  add_options(app, options);
   CLI11_PARSE(app, argc, argv);
   for (const satcs::Family one : {satcs::Family::power, satcs::Family::platform})
-    if (families == "both" || name(one) == families) options.families.push_back(one);
+    if (options.family == "both" || name(one) == options.family) options.families.push_back(one);
+  const bool is_chosen = options.draw.has_value();
+  if (!is_chosen)
+    options.draw = options.databases.empty() && options.scenarios.empty() ? fresh_draw() : 0;
   try {
     log::set_level("error");
+    constexpr int sequences = 200;
+    if (options.power) {
+      nlohmann::ordered_json figures{{"draw", *options.draw}};
+      const auto points = power_curves(*options.draw, sequences);
+      add_power(points, figures);
+      fmt::print("{}{}\n", power_table(points), figures.dump());
+      return 0;
+    }
     Configs configs;
     for (const satcs::Family family : {satcs::Family::power, satcs::Family::platform})
       configs.emplace(family, suite_config(family));
@@ -208,6 +225,9 @@ int main(int argc, char** argv) {
       print_recipes(groups);
       return 0;
     }
+    if (!is_chosen)
+      fmt::print(stderr, "draw {}: --draw {} gives the same scenarios\n", *options.draw,
+                 *options.draw);
     const std::vector<ScenarioOutcome> outcomes = run(groups, configs, options);
     if (!options.plot.empty()) {
       if (outcomes.size() != 1) throw std::runtime_error("--plot needs one --scenario");
@@ -215,10 +235,13 @@ int main(int argc, char** argv) {
       file << picture(outcomes.front());
       if (!file.flush()) throw std::runtime_error(options.plot + ": cannot be written");
     }
-    if (!options.report.empty()) write_report(outcomes, options.report);
-    const auto [power, platform] = by_family(outcomes);
-    auto figures = figures_json(power);
-    if (!platform.empty()) figures["platform"] = figures_json(platform).at("held_out");
+    nlohmann::ordered_json figures{{"draw", *options.draw}};
+    figures.update(figures_json(outcomes));
+    if (!options.report.empty()) {
+      const auto points = power_curves(*options.draw, sequences);
+      add_power(points, figures);
+      write_report(outcomes, "## Power\n\n" + power_table(points), options.report);
+    }
     if (!options.month.empty()) {
       std::ifstream file(options.month);
       figures["month_seconds"] = nlohmann::json::parse(file).at("month_seconds");
@@ -227,8 +250,7 @@ int main(int argc, char** argv) {
       std::ifstream file(options.dds);
       figures["over_dds"] = nlohmann::json::parse(file);
     }
-    if (!power.empty()) fmt::print("{}", tables(power));
-    if (!platform.empty()) fmt::print("The platform:\n\n{}", tables(platform));
+    fmt::print("{}", tables(outcomes));
     fmt::print("{}\n", figures.dump());
     return 0;
   } catch (const std::exception& error) {

@@ -7,6 +7,7 @@
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
+#include "service/judgement/scores.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 
@@ -27,9 +28,23 @@ struct Line {
   std::int64_t champion = 0;  // 0: none
   storage::Time since = 0;
   ordered_json error_percent,
-      simulator_percent;  // on the champion's validation data; null: unknown
+      simulator_percent;  // on the blocks of the champion's record; null: unknown
   std::size_t tried = 0, versions = 0, published = 0;
 };
+
+/// Of the champion and of the simulator's own model, on the blocks of its record.
+void read_errors(const history::HistoryReader& history, Line& line) {
+  const Member champion{line.champion, {}, history.scores(line.equipment, line.champion)};
+  Sums own, simulator;
+  for (const storage::Block& block : history.blocks(line.equipment)) {
+    const storage::BlockScore* score = counts(block) ? find(champion, block.range.begin) : nullptr;
+    if (!score) continue;
+    own.add(block, score->square);
+    if (!block.baseline_square.empty()) simulator.add(block, block.baseline_square);
+  }
+  if (own.rows > 0) line.error_percent = own.mrse_percent();
+  if (simulator.rows > 0) line.simulator_percent = simulator.mrse_percent();
+}
 
 Line line_of(const history::HistoryReader& history, const EquipmentName& equipment) {
   Line line;
@@ -50,11 +65,9 @@ Line line_of(const history::HistoryReader& history, const EquipmentName& equipme
   if (const auto attempt = history.attempt(equipment, made->version)) {
     const ordered_json evidence = evidence_of(*attempt);
     line.error_percent = evidence.value("mrse_percent", ordered_json());
-    if (evidence.contains("baseline"))
-      line.simulator_percent = evidence["baseline"].value("rival_mrse_percent", ordered_json());
-    else
-      line.simulator_percent = evidence.value("baseline_mrse_percent", ordered_json());
+    line.simulator_percent = evidence.value("baseline_mrse_percent", ordered_json());
   }
+  read_errors(history, line);
   return line;
 }
 

@@ -175,7 +175,9 @@ TEST(MigrationFrom4And5, AddsTheRecordsAndChangesNothingElse) {
     EXPECT_THAT(rows(path, "SELECT version, status FROM model_version"),
                 ElementsAre("1|approved", "2|waiting"));
     Registry registry(migrated);
-    registry.record_scores("CB4", "BDR", Block{{0, 60}}, {});
+    Block block;
+    block.range = {0, 60};
+    registry.record_scores("CB4", "BDR", block, {});
     EXPECT_EQ(registry.blocks("CB4", "BDR", INT64_MIN).size(), 1);
   }
 }
