@@ -80,6 +80,16 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
   return record;
 }
 
+std::optional<Reason> failure_now(const history::HistoryReader& history,
+                                  const storage::Attempt& attempt, std::int64_t champion) {
+  const EquipmentName equipment{attempt.spacecraft, attempt.equipment};
+  League league;
+  const EquipmentConfig limits = limits_of(evidence_of(attempt), league.unbound);
+  league.champion = member_of(history, equipment, champion, attempt.window);
+  league.blocks = history.blocks(equipment);
+  return failure_of(league, limits);
+}
+
 std::optional<Finding> finding_now(const StoredRecord& record, const StoredVersion& story) {
   if (story.version.status != "waiting") return std::nullopt;
   for (const Finding& finding : judge(record.league, record.limits))

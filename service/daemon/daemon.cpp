@@ -262,6 +262,7 @@ void Daemon::heartbeat() {
   status.approvals = approvals_;
   status.newest_telemetry = feed_.newest_telemetry();
   status.last_error = stored.last_error.empty() ? stored.last_damage : stored.last_error;
+  status.failing_champions = leagues_.failing();
   publisher_.status(status);
 }
 

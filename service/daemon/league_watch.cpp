@@ -40,9 +40,13 @@ bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive
     if (recorded && context.decided) context.decided(found);
     return recorded;
   };
-  writer.failed = [&](const Reason& reason) {
-    log::error("league", "the champion fails",
-               {{"equipment", spacecraft + "/" + name}, {"reason", sentence(reason)}});
+  writer.failure = [&](const std::optional<Reason>& reason) {
+    watched.is_failing = reason.has_value();
+    if (reason)
+      log::error("league", "the champion fails",
+                 {{"equipment", spacecraft + "/" + name}, {"reason", sentence(*reason)}});
+    else
+      log::info("league", "no champion fails any more", {{"equipment", spacecraft + "/" + name}});
   };
   while (const auto window = watched.keeper.advance(archive, registry, reached, writer)) {
     log::warning("league", "the equipment has changed; it is identified again",
@@ -53,6 +57,14 @@ bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive
     if (window->end < reached) return false;
   }
   return true;
+}
+
+std::string LeagueWatch::failing() const {
+  std::string names;
+  for (const auto& watched : watched_)
+    if (watched->is_failing)
+      names += (names.empty() ? "" : ", ") + *watched->spacecraft + "/" + watched->equipment->name;
+  return names;
 }
 
 void LeagueWatch::forget(std::size_t equipment, storage::TimeRange range) {

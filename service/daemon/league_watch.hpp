@@ -1,6 +1,7 @@
 // The leagues of all configured equipment, for all threads of the service.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -41,6 +42,9 @@ class LeagueWatch {
   void look(const storage::Archive& archive, const storage::Registry& registry,
             const LeagueContext& context);
 
+  /// Names of the equipment whose champions fail, separated by commas. For any thread.
+  std::string failing() const;
+
   /// Forgets what samples in `range` served.
   void forget(std::size_t equipment, storage::TimeRange range);
 
@@ -50,6 +54,7 @@ class LeagueWatch {
     const EquipmentConfig* equipment;
     std::mutex mutex;
     LeagueKeeper keeper;
+    std::atomic<bool> is_failing = false;
   };
   const Duration settle_;
   WindowFeed& feed_;

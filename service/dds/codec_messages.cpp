@@ -140,6 +140,7 @@ const reident_ServiceStatus& Codec<ServiceStatus>::Encoder::operator()(
   wire_.approvals = status.approvals;
   wire_.newest_telemetry_ns = status.newest_telemetry;
   wire_.last_error = borrow(status.last_error);
+  wire_.failing_champions = borrow(status.failing_champions);
   return wire_;
 }
 
@@ -165,6 +166,7 @@ Fault Codec<ServiceStatus>::decode(const reident_ServiceStatus& wire,
   status.approvals = wire.approvals;
   status.newest_telemetry = wire.newest_telemetry_ns;
   status.last_error = texts.text(wire.last_error, "last_error");
+  status.failing_champions = texts.text(wire.failing_champions, "failing_champions");
   return texts.fault();
 }
 

@@ -142,7 +142,8 @@ struct ServiceStatus {
   std::uint64_t attempts = 0;
   std::uint64_t approvals = 0;
   storage::Time newest_telemetry = 0;
-  std::string last_error;  // empty when all is well
+  std::string last_error;         // empty when all is well
+  std::string failing_champions;  // equipment, separated by commas
 };
 
 }  // namespace reident

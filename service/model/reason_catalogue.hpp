@@ -189,8 +189,8 @@ struct Catalogue {
        "The league has {members:d} challengers with more evidence for them."},
 
       {champion_failed, "champion_failed", none,
-       "Champion {champion:d} has MRSE {mrse_percent:.3f} % on {blocks:d} blocks, surely more than "
-       "{rival} ({rival_mrse_percent:.3f} %)."},
+       "Champion {champion:d} has MRSE {mrse_percent:.3f} % on {blocks:d} blocks, where "
+       "{rival} has less: {rival_mrse_percent:.3f} %."},
   };
 };
 

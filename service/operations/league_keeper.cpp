@@ -224,7 +224,7 @@ void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
 void LeagueKeeper::look_after_champion(const storage::Registry& registry,
                                        const LeagueWriter& writer, bool held, Time now) {
   const auto failure = failure_of(league_, equipment_);
-  if (failure && !has_failed_ && writer.failed) writer.failed(*failure);
+  if (failure.has_value() != has_failed_ && writer.failure) writer.failure(failure);
   has_failed_ = failure.has_value();
   if (!failure || held || equipment_.on_failure == FailurePolicy::keep) return;
   Finding finding;

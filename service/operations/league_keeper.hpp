@@ -31,8 +31,9 @@ struct LeagueWriter {
       scores;
   /// Whether it was recorded: not where something was decided since `standing`.
   std::function<bool(const storage::DecisionState&, const LeagueDecision&)> decide;
-  /// Called when the champion begins to fail (failure_of()); may be empty.
-  std::function<void(const Reason&)> failed{};
+  /// Called when the champion begins to fail (failure_of()), and when none fails any more; may be
+  /// empty.
+  std::function<void(const std::optional<Reason>&)> failure{};
 };
 
 /// For one equipment and one thread at a time. The configuration must outlive it.

@@ -130,6 +130,19 @@ constexpr Rule rules[] = {
      "SELECT spacecraft, equipment, NULL, NULL, NULL, 'decision ' || id || ' has evidence that is "
      "no JSON' FROM decision WHERE evidence_json <> '' AND NOT json_valid(evidence_json)",
      as_backup},
+    {"scores",
+     "SELECT spacecraft, equipment, NULL, begin_time, end_time, 'a block is no list of numbers, or "
+     "ends before it begins' FROM block WHERE length(output_mean) % 8 <> 0 "
+     "OR length(output_square) <> length(output_mean) OR length(input_low) % 8 <> 0 "
+     "OR length(input_high) <> length(input_low) OR length(baseline_square) % 8 <> 0 "
+     "OR end_time <= begin_time",
+     as_backup},
+    {"scores",
+     "SELECT spacecraft, equipment, NULL, begin_time, NULL, 'a score of version ' || version || "
+     "' is no list of numbers' FROM score WHERE length(error_mean) % 8 <> 0 "
+     "OR length(error_square) <> length(error_mean) OR length(noise_square) <> length(error_mean) "
+     "OR length(state) % 8 <> 0 OR length(run_square) % 8 <> 0",
+     as_backup},
     {"attempts",
      "SELECT spacecraft, equipment, NULL, window_begin, window_end, 'attempt ' || id || ' has a "
      "window that ends before it begins' FROM attempt WHERE window_end < window_begin",

@@ -1,7 +1,9 @@
 """Telemetry in, an approved model out to a simulator."""
 
 import json
+import random
 import sys
+import time
 import unittest
 from xml.etree import ElementTree
 
@@ -59,6 +61,51 @@ class Loop(EndToEnd):
         ends = [row[4] for row in after]
         self.assertEqual(len(ends), (1900 + 40_000) // 300)
         self.assertEqual(len(ends), len(set(ends)), "each window once")
+
+    def test_killed_between_block_decision_and_publication_it_decides_as_backfill_does(self):
+        self.configure([plant.equipment()])
+        daemon = self.start_daemon()
+        lines = [*plant.rows(9000), *plant.rows(6000, first=9000, gain=1.6)]
+        csv = plant.write(self.folder / "all.csv", lines)
+        self.replay_all(csv)
+        wait_until(lambda: self.stored() == 3 * len(lines), "all telemetry is stored")
+        moments = random.Random(20170717)
+        for crash in range(4):
+            daemon.kill()
+            decided = self.champion()
+            simulator = self.start_simulator(f"late-{crash}")
+            daemon = self.start_daemon()
+            if decided:
+                wait_until(lambda: self.runs(simulator), "a champion is published")
+                self.assertGreaterEqual(self.runs(simulator)[0], decided)
+            scored = self.query("SELECT count(*) FROM score")
+            until = time.monotonic() + moments.uniform(0, 0.5)
+            wait_until(lambda: time.monotonic() > until or
+                       self.query("SELECT count(*) FROM score") != scored, "a block was scored")
+            simulator.terminate()
+        self.wait_idle()
+        simulator = self.start_simulator("after")
+        wait_until(lambda: self.runs(simulator) == [self.champion()], "published is what was decided")
+        daemon.terminate()
+        with_kills = self.records()
+        self.assertGreater(len({row[0] for row in with_kills["decisions"] if row[1] == "approve"}), 1)
+
+        self.database.rename(self.folder / "with-kills.db")
+        status, text = self.reident("import", csv, "--db", self.database, "--spacecraft", "SAT")
+        self.assertEqual(status, 0, text)
+        status, text = self.reident("backfill", "--config", self.folder / "reident.toml")
+        self.assertEqual(status, 0, text)
+        for what, rows in self.records().items():
+            self.assertEqual(rows, with_kills[what], what)
+
+    def records(self):
+        """What versions were scored with, to the last bit, and what was decided."""
+        return {
+            "blocks": self.query("SELECT begin_time, rows, believed, hex(output_square) FROM block "
+                                 "ORDER BY begin_time"),
+            "scores": self.query("SELECT version, begin_time, hex(error_square), hex(state) "
+                                 "FROM score ORDER BY version, begin_time"),
+            "decisions": self.query("SELECT version, kind FROM decision ORDER BY id")}
 
     def test_bad_windows_are_rejected_with_a_reason_and_reach_nobody(self):
         self.configure([plant.equipment()])

@@ -69,8 +69,6 @@ std::optional<double> cycles_until_change(ErrorKind kind, double ratio, std::uin
   EquipmentConfig limits;
   limits.cycle = block_ns * blocks_of_cycle;
   limits.max_mrse_percent = 100;
-  limits.margin_percent = 5;
-  limits.confidence_percent = 95;
   Errors of_champion(kind, 1, 2 * seed), of_version(kind, ratio, 2 * seed + 1);
   League league;
   league.champion = Member{1, {-limits.cycle * 8, 0}, {}};

@@ -6,6 +6,7 @@
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
 #include "service/judgement/scores.hpp"
 #include "service/operations/commands.hpp"
@@ -29,6 +30,7 @@ struct Line {
   storage::Time since = 0;
   ordered_json error_percent,
       simulator_percent;  // on the blocks of the champion's record; null: unknown
+  std::optional<Reason> failure;
   std::size_t tried = 0, versions = 0, published = 0;
 };
 
@@ -68,6 +70,8 @@ Line line_of(const history::HistoryReader& history, const EquipmentName& equipme
     line.simulator_percent = evidence.value("baseline_mrse_percent", ordered_json());
   }
   read_errors(history, line);
+  if (const auto attempt = history.attempt(equipment, made->version))
+    line.failure = failure_now(history, *attempt, made->version);
   return line;
 }
 
@@ -90,6 +94,8 @@ void print_table(const std::vector<Line>& lines) {
                percent_text(line.error_percent), percent_text(line.simulator_percent),
                fmt::format("{}", line.tried), fmt::format("{}", line.published)});
   fmt::print("{}", table.text(0));
+  for (const Line& line : lines)
+    if (line.failure) fmt::print("{}: {}\n", full_name(line.equipment), sentence(*line.failure));
 }
 
 void print_json(const std::vector<Line>& lines) {
@@ -104,7 +110,8 @@ void print_json(const std::vector<Line>& lines) {
          {"simulator_mrse_percent", line.simulator_percent},
          {"windows_tried", line.tried},
          {"versions", line.versions},
-         {"published", line.published}});
+         {"published", line.published},
+         {"failure", line.failure ? to_json({*line.failure}).front() : ordered_json()}});
   const ordered_json object = {{"equipment", array}};
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }

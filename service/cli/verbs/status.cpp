@@ -96,6 +96,7 @@ void print_json(const ServiceStatus& status) {
                                    ? nlohmann::ordered_json()
                                    : nlohmann::ordered_json(time_text(status.newest_telemetry));
   object["last_error"] = status.last_error;
+  object["failing_champions"] = status.failing_champions;
   fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
@@ -107,6 +108,8 @@ void print_text(const ServiceStatus& status) {
   for (const auto& [name, count] : counts(status)) table.add({name, fmt::format("{}", count)});
   fmt::print("{}", table.text(0));
   if (!status.last_error.empty()) fmt::print("last error: {}\n", status.last_error);
+  if (!status.failing_champions.empty())
+    fmt::print("champions that fail: {} (reident overview says why)\n", status.failing_champions);
 }
 
 int report_timeout(const dds::Endpoint& endpoint, const Arguments& arguments,

@@ -234,6 +234,9 @@ Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& s
     verdict.conditions = conditions_of(finding_in(evidence), code, record->limits);
     break;
   }
+  if (story.version.status == "approved")
+    if (const auto failure = failure_now(history, story.attempt, story.version.number))
+      verdict.sentence = sentence(*failure) + " " + verdict.sentence;
   return verdict;
 }
 

@@ -155,6 +155,7 @@ class Status : public test::CliTest {
     status.time = status.started + number * 1'000'000'000LL;
     status.frames_received = 4321;
     status.newest_telemetry = status.started;
+    status.failing_champions = "CBERS-4/MEA";
     return status;
   }
   /// Writes beat(0), beat(1), ... while the program runs.
@@ -179,6 +180,7 @@ TEST_F(Status, IsWhatTheServiceSaidLast) {
   EXPECT_EQ(printed["idle"], true);
   const test::Ran ran = reident(command({"--timeout", "30"}));
   EXPECT_THAT(ran.out, StartsWith("service reident (0.1.0), up since 2023-11-14T22:13:20Z, idle"));
+  EXPECT_THAT(ran.out, HasSubstr("CBERS-4/MEA"));
 }
 
 TEST_F(Status, WaitsUntilTwoBeatsAreIdleAndAlike) {

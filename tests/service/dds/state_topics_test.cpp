@@ -59,6 +59,7 @@ TEST(StateTopics, EveryMessageArrivesAsItWasSent) {
   status.service = "reident";
   status.frames_received = 12345678901234;
   status.last_error = "disk full";
+  status.failing_champions = "CBERS-4/MEA";
   statuses.write(status);
   descriptors.write(descriptor);
 
@@ -83,6 +84,7 @@ TEST(StateTopics, EveryMessageArrivesAsItWasSent) {
   const auto heartbeat = take_all(status_reader, 1).at(0);
   EXPECT_EQ(heartbeat.frames_received, 12345678901234U);
   EXPECT_EQ(heartbeat.last_error, "disk full");
+  EXPECT_EQ(heartbeat.failing_champions, "CBERS-4/MEA");
   EXPECT_EQ(take_all(descriptor_reader, 1).at(0), descriptor);
 }
 

@@ -41,7 +41,7 @@ TEST_P(Candidate, IsAdmissibleOrNot) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Gate, Candidate, testing::ValuesIn(cases),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace reident::test::gate_test

@@ -34,7 +34,7 @@ BlockSamples samples_of(int number, double offset) {
   identification::Record all;
   all.period_s = 1;
   all.u = Matrix(rows, 1);
-  for (Index k = 0; k < rows; ++k) all.u(k, 0) = k / 7 % 2;
+  for (Index k = 0; k < rows; ++k) all.u(k, 0) = k / 7 % 2 == 0 ? 0 : 1;
   all.y = Matrix::Zero(rows, 1);
   all.segments = {{0, rows, 0}};
   all.y = free_run(model().dynamics, all, all.all(), Vector::Zero(1));

@@ -87,8 +87,8 @@ const Example of_a_member[] = {
      "approval."},
     {because<Code::league_full>(12), "The league has 12 challengers with more evidence for them."},
     {because<Code::champion_failed>(3, 25.0, 40, "a constant at the mean", 20.0),
-     "Champion 3 has MRSE 25.000 % on 40 blocks, surely more than a constant at the mean (20.000 "
-     "%)."},
+     "Champion 3 has MRSE 25.000 % on 40 blocks, where a constant at the mean has less: 20.000 "
+     "%."},
 };
 
 TEST(Reasons, EachHasItsSentence) {

@@ -43,7 +43,7 @@ class Keeper : public DaemonTest {
       return registry.decide_if(state, "SAT", "PLANT", found.version.number, found.decision, day)
           .has_value();
     };
-    writer.failed = [this](const Reason& reason) { failures.push_back(reason); };
+    writer.failure = [this](const std::optional<Reason>& reason) { failures.push_back(reason); };
     return league.advance(archive, registry, reached, writer);
   }
   void restart() { keeper.emplace("SAT", equipment); }
@@ -67,7 +67,7 @@ class Keeper : public DaemonTest {
   storage::Archive archive{database};
   storage::Registry registry{database};
   std::optional<LeagueKeeper> keeper{std::in_place, "SAT", equipment};
-  std::vector<Reason> failures;
+  std::vector<std::optional<Reason>> failures;
 };
 
 TEST_F(Keeper, ApprovesTheFirstVersionOnItsValidationPart) {
@@ -259,8 +259,10 @@ TEST_F(Keeper, SaysThatTheChampionFailsAndWithdrawsItWhereConfigured) {
   window(day + 10 * minute);
   for (storage::Time at = day + 11 * minute; at <= day + 45 * minute; at += minute)
     advance(*keeper, at);
-  ASSERT_THAT(failures, testing::Not(IsEmpty()));
-  EXPECT_EQ(failures[0].code, ReasonCode::champion_failed);
+  ASSERT_THAT(failures, SizeIs(2));
+  ASSERT_TRUE(failures[0]);
+  EXPECT_EQ(failures[0]->code, ReasonCode::champion_failed);
+  EXPECT_FALSE(failures[1]) << "without a champion none fails";
   EXPECT_EQ(champion(), 0);
   EXPECT_EQ(registry.version("SAT", "PLANT", 1)->status, "withdrawn");
 }

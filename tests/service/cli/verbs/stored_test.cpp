@@ -216,6 +216,30 @@ TEST_F(Stored, OfManyVersionsARefusalNamesTheLast) {
                        "(rejected), 7 (rejected), 8 (rejected)\n"));
 }
 
+TEST_F(Stored, OverviewAndWhyNameAChampionThatFails) {
+  record_version("BDR", 0, DecisionKind::approve, "challenger");
+  constexpr int length = 15;  // minutes
+  for (int i = 0; i < 60; ++i) {
+    storage::Block block;
+    block.range = {start + i * length * minute, start + (i + 1) * length * minute};
+    block.rows = 900;
+    block.believed = 1;
+    block.output_mean = {10};
+    block.output_square = {101};
+    block.input_low = {0, 0};
+    block.input_high = {1, 1};
+    const double square = i % 3 == 0 ? 4.5 : 3;
+    registry_.record_scores("CBERS-4", "BDR", block,
+                            {{1, block.range.begin, 900, {0}, {square}, {1e-6}, {}}});
+  }
+  const json overview = json::parse(reident(command({"overview", "--json"})).out);
+  EXPECT_EQ(overview["equipment"][0]["failure"]["code"], "champion_failed");
+  EXPECT_NEAR(double(overview["equipment"][0]["mrse_percent"]), 100 * std::sqrt(3.5 / 101), 0.1);
+  const std::string why = json::parse(reident(command({"why", "BDR@1", "--json"})).out)["verdict"];
+  EXPECT_THAT(why, HasSubstr(" 60 blocks"));
+  EXPECT_THAT(reident(command({"overview"})).out, HasSubstr("CBERS-4/BDR: "));
+}
+
 TEST_F(Stored, WhyTellsTheBaselineOfTheConfigurationAndTheChampionOfOlderPrograms) {
   const EquipmentModel model = model_of("BDR");
   const storage::NewVersion version{to_json(model).dump(), model_digest(model)};
