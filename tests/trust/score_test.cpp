@@ -171,9 +171,9 @@ TEST_F(ScoreOfAChange, FindsAChangeThatNobodyNoticed) {
 
 TEST_F(ScoreOfAChange, FindsAChangeThatWasNoticedTooLate) {
   std::vector<Tenure> tenures = good_service();
-  tenures.push_back(tenure(change_orbit + 20, 2, 4));
+  tenures.push_back(tenure(change_orbit + 25, 2, 4));
   EXPECT_TRUE(score(tenures, 4).missed());
-  EXPECT_NEAR(double(score(tenures, 4).orbits), 20, 2);
+  EXPECT_NEAR(double(score(tenures, 4).orbits), 25, 2);
 }
 
 TEST_F(ScoreOfAChange, CountsTheOrbitsUntilAGoodVersion) {
