@@ -39,7 +39,7 @@ std::vector<double> cycle_mean(const League& league, const Member& member, std::
 
 struct Pair {
   std::vector<Time> begins;
-  std::vector<double> scores, without_offset;
+  std::vector<double> scores;
   std::vector<int> regimes;
   Sums member, champion;
 };
@@ -93,27 +93,47 @@ double log_threshold(const League& league, const Member& member, Time since,
                   (is_behind ? share_behind : 1 - share_behind));
 }
 
+/// Calls `use` with each block from `since` on that both have a score of: its place and the scores.
+template <typename Use>
+void for_each_common(const League& league, const Member& member, Time since, const Use& use) {
+  if (member.scores.empty()) return;
+  const Time first = std::max(since, member.scores.front().begin);
+  const auto begin = std::ranges::lower_bound(league.blocks, first, {},
+                                              [](const Block& block) { return block.range.begin; });
+  for (auto block = begin; block != league.blocks.end(); ++block) {
+    if (!counts(*block)) continue;
+    const BlockScore* own = find(member, block->range.begin);
+    const BlockScore* other = find(*league.champion, block->range.begin);
+    if (own && other) use(static_cast<std::size_t>(block - league.blocks.begin()), *own, *other);
+  }
+}
+
 Pair pair_of(const League& league, const std::vector<int>& regimes, const Member& member,
              Time since) {
   Pair pair;
-  Scores scores, without_offset;
-  for (std::size_t i = 0; i < league.blocks.size(); ++i) {
-    const Block& block = league.blocks[i];
-    if (!counts(block) || block.range.begin < since) continue;
-    const BlockScore* own = find(member, block.range.begin);
-    const BlockScore* other = find(*league.champion, block.range.begin);
-    if (!own || !other) continue;
-    const std::vector<double> offset = cycle_mean(league, *league.champion, i);
-    pair.begins.push_back(block.range.begin);
-    scores.add(squares_of(*own, *other));
-    without_offset.add(squares_of(*own, *other, &offset));
-    pair.regimes.push_back(regimes[i]);
-    pair.member.add(block, own->square);
-    pair.champion.add(block, other->square);
-  }
+  Scores scores;
+  for_each_common(league, member, since,
+                  [&](std::size_t i, const BlockScore& own, const BlockScore& other) {
+                    const Block& block = league.blocks[i];
+                    pair.begins.push_back(block.range.begin);
+                    scores.add(squares_of(own, other));
+                    pair.regimes.push_back(regimes[i]);
+                    pair.member.add(block, own.square);
+                    pair.champion.add(block, other.square);
+                  });
   pair.scores = scores.values();
-  pair.without_offset = without_offset.values();
   return pair;
+}
+
+/// Scores with the champion's mean error over each last cycle taken from its error.
+std::vector<double> scores_without_offset(const League& league, const Member& member, Time since) {
+  Scores scores;
+  for_each_common(league, member, since,
+                  [&](std::size_t i, const BlockScore& own, const BlockScore& other) {
+                    const std::vector<double> offset = cycle_mean(league, *league.champion, i);
+                    scores.add(squares_of(own, other, &offset));
+                  });
+  return scores.values();
 }
 
 /// Share of the champion's blocks from `since` on that are in regimes which the member has not met.
@@ -235,10 +255,12 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
 }
 
 /// R3.
-std::optional<Reason> may_be_bias(const Standard& standard, const Pair& pair, Finding& finding) {
+std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
+                                  Finding& finding) {
   const std::vector<std::string>& unbound = standard.league.unbound;
   if (standard.limits.bias == BiasPolicy::approve || unbound.empty()) return std::nullopt;
-  const ScoreSeries without = series(pair.without_offset, standard.assumed);
+  const std::vector<double> scores = scores_without_offset(standard.league, member, standard.since);
+  const ScoreSeries without = series(scores, standard.assumed);
   finding.mean_without_offset = without.scores.mean();
   finding.wealth_without_offset = log_wealth(without, dependence(without), 0);
   if (finding.wealth_without_offset > finding.log_threshold &&
@@ -290,7 +312,7 @@ Finding judge_against_champion(const Standard& standard, const Member& member) {
                                           finding.champion_mrse_percent, finding.blocks);
     finding.lower_score = lower_mean(scores, finding.dependence, finding.log_threshold);
     if (auto reason = unproved_somewhere(standard, member, pair, finding)) return reason;
-    if (auto reason = may_be_bias(standard, pair, finding)) return reason;
+    if (auto reason = may_be_bias(standard, member, finding)) return reason;
     return too_soon(standard, member);
   }();
   return finding;
