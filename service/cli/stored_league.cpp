@@ -76,7 +76,7 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
       record.member(version.number).scores.empty())
     return std::nullopt;
   record.league.blocks = history.blocks(equipment);
-  record.change = change_of(record.league);
+  record.change = Judge(record.limits).change(record.league);
   return record;
 }
 
@@ -87,12 +87,12 @@ std::optional<Reason> failure_now(const history::HistoryReader& history,
   const EquipmentConfig limits = limits_of(evidence_of(attempt), league.unbound);
   league.champion = member_of(history, equipment, champion, attempt.window);
   league.blocks = history.blocks(equipment);
-  return failure_of(league, limits);
+  return Judge(limits).failure(league);
 }
 
 std::optional<Finding> finding_now(const StoredRecord& record, const StoredVersion& story) {
   if (story.version.status != "waiting") return std::nullopt;
-  for (const Finding& finding : judge(record.league, record.limits))
+  for (const Finding& finding : Judge(record.limits).findings(record.league))
     if (finding.version == story.version.number) return finding;
   return std::nullopt;
 }

@@ -26,7 +26,7 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
 /// What the records say of a version that waits. Absent where it does not, or has none.
 std::optional<Finding> finding_now(const StoredRecord& record, const StoredVersion& story);
 
-/// Why the champion, which `attempt` made, fails now (failure_of()). Absent where it does not.
+/// Why the champion, which `attempt` made, fails now (Judge::failure()). Absent where it does not.
 std::optional<Reason> failure_now(const history::HistoryReader& history,
                                   const storage::Attempt& attempt, std::int64_t champion);
 

@@ -3,16 +3,18 @@
 // 19, has the proof).
 //
 // A record is what a version's free run erred on each block of telemetry that nothing of it was
-// fitted to. The functions are pure: equal records give equal findings.
+// fitted to. Equal records give equal findings.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "service/config/config.hpp"
+#include "service/judgement/change.hpp"
 #include "service/judgement/scores.hpp"
 #include "service/model/reasons.hpp"
 #include "storage/types/registry_rows.hpp"
@@ -27,16 +29,6 @@ struct League {
   std::vector<storage::TimeRange> admitted;  // windows of all that ever were challengers
   std::vector<std::string> unbound;          // parameters whose sensors no relation binds
 };
-
-/// A change of the equipment: the champion's errors have grown for good.
-struct Change {
-  storage::Time since = 0;  // begin of the first block that it may lie in
-  storage::Time found = 0;  // end of the block with which it was found
-};
-
-/// The last change in the champion's record; absent where there is none, or too little to compare
-/// with.
-std::optional<Change> change_of(const League& league);
 
 /// What the records say of a challenger. The conditions are looked at in the order R4, R1, R2, R3,
 /// R5 until one does not hold; figures of those behind it are 0.
@@ -59,9 +51,6 @@ struct Finding {
   double recent_score = 0;           // over the last two cycles
 };
 
-/// One finding for each challenger, in their order.
-std::vector<Finding> judge(const League& league, const EquipmentConfig& limits);
-
 /// The challenger that is to become champion; absent where none is.
 std::optional<Finding> successor(const std::vector<Finding>& findings);
 
@@ -77,13 +66,40 @@ struct ComparedBlock {
   double lower = 0;  // lower end of the confidence sequence so far
 };
 
-/// The blocks of which the finding about `challenger`, one of the league's, is made. Requires a
-/// champion.
-std::vector<ComparedBlock> compared_blocks(const League& league, const Member& challenger,
-                                           const EquipmentConfig& limits);
+/// Judges a league. It may be asked again and again as records grow, and looks at what is new
+/// alone; the answers are those of one that is asked once. `limits` must outlive it.
+class Judge {
+ public:
+  explicit Judge(const EquipmentConfig& limits) : limits_(&limits) {}
 
-/// Why the champion fails: it errs surely more than the mean of the outputs, or than the
-/// simulator's own model, since the last change. Absent where it does not.
-std::optional<Reason> failure_of(const League& league, const EquipmentConfig& limits);
+  /// One finding for each challenger, in their order.
+  std::vector<Finding> findings(const League& league);
+  /// The last change in the champion's record; absent where there is none, or too little to compare
+  /// with.
+  std::optional<Change> change(const League& league);
+  /// Why the champion fails: it errs surely more than the mean of the outputs, or than the
+  /// simulator's own model, since the last change. Absent where it does not.
+  std::optional<Reason> failure(const League& league);
+  /// The blocks of which the finding about `challenger`, one of the league's, is made. Requires a
+  /// champion.
+  std::vector<ComparedBlock> compared_blocks(const League& league, const Member& challenger);
+
+ private:
+  /// Of two versions, one against the other.
+  using Pair = std::pair<std::int64_t, std::int64_t>;
+
+  void take_in(const League& league);
+  const Comparison& comparison(const League& league, const Member& one, const Member& other);
+  double usual_dependence(const League& league);
+
+  const EquipmentConfig* limits_;
+  std::optional<std::int64_t> champion_;  // that the rest is about
+  ChangeFinder change_;
+  storage::Time since_ = 0;  // records count from here on
+  std::size_t seen_ = 0;     // blocks that were looked at
+  Sums own_;                 // of the champion's record
+  Comparison with_simulator_;
+  std::map<Pair, Comparison> comparisons_;
+};
 
 }  // namespace reident

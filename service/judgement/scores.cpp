@@ -74,8 +74,26 @@ double Sums::mrse_percent() const {
 double Sums::fit_percent() const {
   double worst = 0;
   for (std::size_t q = 0; q < error.size(); ++q)
-    worst = std::max(worst, std::sqrt(error[q] / (y_square[q] - y[q] * y[q] / rows)));
+    if (const double of_output = std::sqrt(error[q] / (y_square[q] - y[q] * y[q] / rows));
+        !(of_output <= worst))
+      worst = of_output;
   return 100 * (1 - worst);
+}
+
+void Comparison::add(std::size_t place, const Block& block, const BlockScore& of_one,
+                     const BlockScore& of_other) {
+  blocks.push_back(place);
+  scores.add(squares_of(of_one, of_other));
+  one.add(block, of_one.square);
+  other.add(block, of_other.square);
+}
+
+void Comparison::add(std::size_t place, const Block& block, const BlockScore& of_one,
+                     const std::vector<double>& square_of_other) {
+  if (square_of_other.empty()) return;
+  BlockScore rival = of_one;
+  rival.square = square_of_other;
+  add(place, block, of_one, rival);
 }
 
 }  // namespace reident

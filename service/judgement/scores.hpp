@@ -66,4 +66,19 @@ struct Sums {
   double fit_percent() const;
 };
 
+/// What two runs erred on the same blocks.
+struct Comparison {
+  std::vector<std::size_t> blocks;  // their places in the league
+  Scores scores;
+  Sums one, other;
+  std::size_t seen = 0;  // blocks of the league that were looked at
+
+  void add(std::size_t place, const storage::Block& block, const storage::BlockScore& of_one,
+           const storage::BlockScore& of_other);
+  /// With a rival whose mean squared errors are known, by output. Where they are empty they are
+  /// not.
+  void add(std::size_t place, const storage::Block& block, const storage::BlockScore& of_one,
+           const std::vector<double>& square_of_other);
+};
+
 }  // namespace reident

@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "service/judgement/member_run.hpp"
 #include "service/model/model_json.hpp"
 #include "service/model/reasons.hpp"
 #include "service/support/floor_divide.hpp"
+#include "service/windows/member_run.hpp"
 #include "service/windows/provenance.hpp"
 
 namespace reident {
@@ -63,7 +63,10 @@ std::string last_code(const storage::Decision& decision) {
 }  // namespace
 
 LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipment)
-    : spacecraft_(std::move(spacecraft)), equipment_(equipment), reader_(spacecraft_, equipment) {
+    : spacecraft_(std::move(spacecraft)),
+      equipment_(equipment),
+      reader_(spacecraft_, equipment),
+      judge_(equipment) {
   league_.unbound = unbound_parameters(equipment);
 }
 
@@ -185,7 +188,7 @@ Reason LeagueKeeper::why_better(const Finding& finding) const {
 }
 
 void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter& writer, Time now) {
-  const std::vector<Finding> findings = judge(league_, equipment_);
+  const std::vector<Finding> findings = judge_.findings(league_);
   const auto is_waiting = [&](const Finding& finding) {
     return registry.version(spacecraft_, equipment_.name, finding.version)->status == "waiting";
   };
@@ -223,7 +226,7 @@ void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
 
 void LeagueKeeper::look_after_champion(const storage::Registry& registry,
                                        const LeagueWriter& writer, bool held, Time now) {
-  const auto failure = failure_of(league_, equipment_);
+  const auto failure = judge_.failure(league_);
   if (failure.has_value() != has_failed_ && writer.failure) writer.failure(failure);
   has_failed_ = failure.has_value();
   if (!failure || held || equipment_.on_failure == FailurePolicy::keep) return;
@@ -256,7 +259,7 @@ std::optional<storage::TimeRange> LeagueKeeper::advance(const storage::Archive& 
     league_.blocks.push_back(block);
     *reached_ += length;
     scored(block, *reached_);
-    const auto change = change_of(league_);
+    const auto change = judge_.change(league_);
     decide(registry, writer, *reached_);
     if (change && change->found == *reached_) return window_behind(*change, equipment_);
   }

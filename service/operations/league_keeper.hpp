@@ -31,8 +31,8 @@ struct LeagueWriter {
       scores;
   /// Whether it was recorded: not where something was decided since `standing`.
   std::function<bool(const storage::DecisionState&, const LeagueDecision&)> decide;
-  /// Called when the champion begins to fail (failure_of()), and when none fails any more; may be
-  /// empty.
+  /// Called when the champion begins to fail (Judge::failure()), and when none fails any more; may
+  /// be empty.
   std::function<void(const std::optional<Reason>&)> failure{};
 };
 
@@ -76,6 +76,7 @@ class LeagueKeeper {
   std::map<storage::Time, BlockSamples> samples_;   // of the newest blocks
   std::optional<storage::DecisionState> standing_;  // that the members are of
   League league_;
+  Judge judge_;
   std::map<std::int64_t, EquipmentModel> models_;  // of the members
   std::optional<storage::Time> reached_;           // end of the last block
   bool has_failed_ = false;                        // the champion, when it was looked at last

@@ -18,10 +18,6 @@ constexpr int cycles_checked = 4;
 /// With more sensor faults found in a tick, others that are too small to be found spoil the scores.
 constexpr double most_faults = 1.0 / 400;
 
-std::vector<double> list(const identification::Vector& values) {
-  return {values.begin(), values.end()};
-}
-
 /// Mean squared difference of the outputs at the ticks that both have.
 std::vector<double> mean_squared_difference(const Record& one, const Record& other) {
   identification::Vector squares = identification::Vector::Zero(one.y.cols());
@@ -44,6 +40,10 @@ std::vector<double> mean_squared_difference(const Record& one, const Record& oth
 }
 
 }  // namespace
+
+std::vector<double> list(const identification::Vector& values) {
+  return {values.begin(), values.end()};
+}
 
 Duration block_length(const EquipmentConfig& equipment) {
   const Duration ticks = equipment.cycle / blocks_of_cycle / equipment.sample_period;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "service/config/config.hpp"
 #include "service/windows/window_cache.hpp"
@@ -13,6 +14,9 @@
 #include "storage/types/registry_rows.hpp"
 
 namespace reident {
+
+/// The values as a row of the registry has them.
+std::vector<double> list(const identification::Vector& values);
 
 /// Blocks of an operating cycle.
 inline constexpr int blocks_of_cycle = 4;

@@ -71,6 +71,7 @@ std::optional<double> cycles_until_change(ErrorKind kind, double ratio, std::uin
   limits.max_mrse_percent = 100;
   Errors of_champion(kind, 1, 2 * seed), of_version(kind, ratio, 2 * seed + 1);
   League league;
+  Judge judge(limits);
   league.champion = Member{1, {-limits.cycle * 8, 0}, {}};
   const storage::TimeRange window{(before - 8 * blocks_of_cycle) * block_ns, before * block_ns};
   league.challengers = {Member{2, window, {}}};
@@ -81,7 +82,7 @@ std::optional<double> cycles_until_change(ErrorKind kind, double ratio, std::uin
     league.champion->scores.push_back(of_champion.block(1, begin));
     if (i < before) continue;
     league.challengers[0].scores.push_back(of_version.block(2, begin));
-    if (successor(judge(league, limits)))
+    if (successor(judge.findings(league)))
       return static_cast<double>(i + 1 - before) / blocks_of_cycle;
   }
   return std::nullopt;

@@ -87,7 +87,8 @@ std::variant<std::string, Refusal> picture_of_record(const history::HistoryReade
   RecordPictureData data{
       .title = title + fmt::format(" beside version {}", record->league.champion->version),
       .subtitle = version.status,
-      .blocks = compared_blocks(record->league, record->member(version.number), record->limits),
+      .blocks =
+          Judge(record->limits).compared_blocks(record->league, record->member(version.number)),
       .change = record->change};
   if (data.blocks.empty())
     return Refusal{title + " and its champion have no block in common since the last change"};

@@ -61,7 +61,7 @@ class Records {
   }
   League& league() { return league_; }
   EquipmentConfig& limits() { return limits_; }
-  std::vector<Finding> findings() const { return judge(league_, limits_); }
+  std::vector<Finding> findings() const { return Judge(limits_).findings(league_); }
   /// The code of what is against the first challenger; nothing where it may become champion.
   std::optional<Code> obstacle() const {
     const auto found = findings().at(0).obstacle;
@@ -241,7 +241,7 @@ TEST(League, RecordsCountFromTheChangeOfTheEquipmentOn) {
             return Error{0, block < 100 ? 0.1 : 0.02};
           },
           20);
-  const auto change = change_of(records.league());
+  const auto change = Judge(records.limits()).change(records.league());
   ASSERT_TRUE(change);
   EXPECT_NEAR(static_cast<double>(change->since / length), 100, 2);
   EXPECT_LT(change->found, (100 + 2 * blocks_of_cycle) * length);
@@ -252,29 +252,62 @@ TEST(League, RecordsCountFromTheChangeOfTheEquipmentOn) {
 TEST(League, AChampionWhoseErrorsVaryAsEverHasNotChanged) {
   Records records(400);
   records.champion([](int block) { return Error{0, block % 4 == 0 ? 0.3 : 0.01}; });
-  EXPECT_FALSE(change_of(records.league()));
+  EXPECT_FALSE(Judge(records.limits()).change(records.league()));
 }
 
 TEST(League, AChampionFailsThatErrsMoreThanTheMeanOrTheSimulator) {
   Records good(80);
-  EXPECT_FALSE(failure_of(good.champion(varying(0.3)).league(), good.limits()));
+  EXPECT_FALSE(Judge(good.limits()).failure(good.champion(varying(0.3)).league()));
   Records bad(80);
-  const auto failure = failure_of(bad.champion(varying(4)).league(), bad.limits());
+  const auto failure = Judge(bad.limits()).failure(bad.champion(varying(4)).league());
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->code, Code::champion_failed);
   Records beside(80);
   beside.champion(varying(0.3));
   for (Block& block : beside.league().blocks) block.baseline_square = {0.05};
-  EXPECT_TRUE(failure_of(beside.league(), beside.limits()));
+  EXPECT_TRUE(Judge(beside.limits()).failure(beside.league()));
 }
 
-TEST(League, EqualRecordsGiveEqualFindings) {
+TEST(League, AJudgeThatIsAskedAtEachBlockFindsWhatOneFindsThatIsAskedOnce) {
   Records records(160);
-  records.champion(varying(0.04)).challenger(varying(0.01), 40).unbound();
-  const Finding one = records.findings()[0], two = records.findings()[0];
-  EXPECT_EQ(one.log_wealth, two.log_wealth);
-  EXPECT_EQ(one.lower_score, two.lower_score);
-  EXPECT_EQ(one.dependence, two.dependence);
+  records.champion([](int block) {
+           return Error{0.1, block < 90 ? 0.01 : 0.5};
+         })
+      .challenger(varying(0.02), 40)
+      .challenger(varying(0.01), 100)
+      .unbound();
+  const League all = records.league();
+  League grown = all;
+  Judge judge(records.limits());
+  for (std::size_t blocks = 1; blocks <= all.blocks.size(); ++blocks) {
+    grown.blocks.assign(all.blocks.begin(), all.blocks.begin() + std::ptrdiff_t(blocks));
+    const auto until = grown.blocks.back().range.begin;
+    const auto cut = [until](const Member& from, Member& to) {
+      to.scores = from.scores;
+      std::erase_if(to.scores, [until](const auto& score) { return score.begin > until; });
+    };
+    cut(*all.champion, *grown.champion);
+    for (std::size_t i = 0; i < all.challengers.size(); ++i)
+      cut(all.challengers[i], grown.challengers[i]);
+    const auto found = judge.findings(grown), expected = Judge(records.limits()).findings(grown);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].blocks, expected[i].blocks) << blocks;
+      EXPECT_EQ(found[i].log_wealth, expected[i].log_wealth) << blocks;
+      EXPECT_EQ(found[i].lower_score, expected[i].lower_score) << blocks;
+      EXPECT_EQ(found[i].mrse_percent, expected[i].mrse_percent) << blocks;
+    }
+    EXPECT_EQ(judge.failure(grown).has_value(), Judge(records.limits()).failure(grown).has_value());
+  }
+  EXPECT_TRUE(judge.change(grown));
+}
+
+TEST(League, APhaseOfTheCycleThatTheReferenceLacksIsNoChange) {
+  // The last quarter of each cycle begins to count at block 100; errors are above 1.
+  Records records(200);
+  records.champion(varying(400));
+  for (int i = 0; i < 100; ++i)
+    if (i % blocks_of_cycle == 3) records.league().blocks[static_cast<std::size_t>(i)].believed = 0;
+  EXPECT_FALSE(Judge(records.limits()).change(records.league()));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "service/judgement/member_run.hpp"
+#include "service/windows/member_run.hpp"
 
 #include <cmath>
 #include <optional>
@@ -16,10 +16,6 @@ using identification::Index;
 using identification::Matrix;
 using identification::Segment;
 using identification::Vector;
-
-std::vector<double> list(const Vector& values) {
-  return {values.begin(), values.end()};
-}
 
 Vector vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Vector>(values.data(), std::ssize(values));

@@ -1,4 +1,4 @@
-#include "service/judgement/member_run.hpp"
+#include "service/windows/member_run.hpp"
 
 #include <cmath>
 
