@@ -165,9 +165,9 @@ std::vector<Tenure> versions_of(const Made& made, const std::string& spacecraft,
 }
 
 /// Scores the scenarios of a group; what an oracle identified for one serves the others.
-class Judge {
+class Grader {
  public:
-  Judge(const LifeGroup& group, const SpacecraftConfig& spacecraft, const Known& known)
+  Grader(const LifeGroup& group, const SpacecraftConfig& spacecraft, const Known& known)
       : group_(group),
         spacecraft_(spacecraft),
         known_(known),
@@ -256,10 +256,10 @@ std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& con
     }
   });
   std::vector<ScenarioOutcome> outcomes;
-  Judge judge(group, spacecraft, known);
+  Grader grader(group, spacecraft, known);
   for (const auto& telling : tellings) {
     telling->finish();
-    outcomes.push_back(judge.score(telling->scenario(), made_by(telling->service())));
+    outcomes.push_back(grader.score(telling->scenario(), made_by(telling->service())));
   }
   return outcomes;
 }
@@ -270,12 +270,12 @@ std::vector<ScenarioOutcome> score_databases(const LifeGroup& group, const Confi
   const SpacecraftConfig& spacecraft = chosen.spacecraft.front();
   const Known known = fly(group, spacecraft, [](const auto&, const auto&) {});
   std::vector<ScenarioOutcome> outcomes;
-  Judge judge(group, spacecraft, known);
+  Grader grader(group, spacecraft, known);
   for (const Scenario& scenario : group.scenarios) {
     storage::Database database(folder / (std::to_string(scenario.number) + ".db"),
                                storage::Database::Mode::read_only);
     const storage::Registry registry(database);
-    outcomes.push_back(judge.score(scenario, made_elsewhere(registry)));
+    outcomes.push_back(grader.score(scenario, made_elsewhere(registry)));
   }
   return outcomes;
 }
