@@ -45,13 +45,13 @@ class Loop(EndToEnd):
         daemon = self.start_daemon()
         self.replay_rows("first", count=1900)
         self.assertIsNotNone(self.champion())
-        csv = plant.write(self.folder / "second.csv", plant.rows(40_000, first=1900))
+        csv = plant.write(self.folder / "second.csv", plant.rows(16_000, first=1900))
         self.replay_all(csv)
         # What was acknowledged and not committed dies with the service; its source has ended.
-        wait_until(lambda: self.stored() == 3 * (1900 + 40_000), "all telemetry is stored")
+        wait_until(lambda: self.stored() == 3 * (1900 + 16_000), "all telemetry is stored")
         daemon.kill()
         before = self.attempts()
-        self.assertLess(len(before), (1900 + 40_000) // 300, "identification was still at work")
+        self.assertLess(len(before), (1900 + 16_000) // 300, "identification was still at work")
         self.start_daemon()
         simulator = self.start_simulator("after")
         wait_until(lambda: self.runs(simulator), "a champion was published again")
@@ -59,7 +59,7 @@ class Loop(EndToEnd):
         after = self.attempts()
         self.assertTrue(after[:len(before)] == before, "what was decided stays as it was")
         ends = [row[4] for row in after]
-        self.assertEqual(len(ends), (1900 + 40_000) // 300)
+        self.assertEqual(len(ends), (1900 + 16_000) // 300)
         self.assertEqual(len(ends), len(set(ends)), "each window once")
 
     def test_killed_between_block_decision_and_publication_it_decides_as_backfill_does(self):
