@@ -37,10 +37,12 @@ Matrix solve_pivoted_qr(const Matrix& A, const Matrix& B) {
 }
 
 Vector solve_least_norm(const Matrix& A, const Vector& b) {
+  if (A.size() == 0) return Vector::Zero(A.cols());
   return Eigen::CompleteOrthogonalDecomposition<Matrix>(A).solve(b);
 }
 
 Matrix solve_least_norm(const Matrix& A, const Matrix& B) {
+  if (A.size() == 0) return Matrix::Zero(A.cols(), B.cols());
   return Eigen::CompleteOrthogonalDecomposition<Matrix>(A).solve(B);
 }
 
@@ -135,6 +137,7 @@ Eigen::Vector2d least_right_singular(const Eigen::Matrix2d& A) {
 }
 
 ComplexVector eigenvalues(const Matrix& A) {
+  if (A.rows() == 0) return {};
   return A.eigenvalues();
 }
 

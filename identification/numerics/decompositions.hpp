@@ -30,7 +30,7 @@ Vector solve_qr(const Matrix& A, const Vector& b);
 /// determine are 0.
 Vector solve_pivoted_qr(const Matrix& A, const Vector& b);
 Matrix solve_pivoted_qr(const Matrix& A, const Matrix& B);
-/// Least-squares solution of least norm, by the complete orthogonal decomposition.
+/// Least-squares solution of least norm, by the complete orthogonal decomposition; A may be empty.
 Vector solve_least_norm(const Matrix& A, const Vector& b);
 Matrix solve_least_norm(const Matrix& A, const Matrix& B);
 Matrix pseudo_inverse(const Matrix& A);

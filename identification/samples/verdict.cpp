@@ -20,6 +20,8 @@ std::string_view name(VerdictCode code) {
       return "unstable";
     case VerdictCode::no_better_than_mean:
       return "no_better_than_mean";
+    case VerdictCode::closed_loop:
+      return "closed_loop";
     case VerdictCode::no_continuous_time:
       return "no_continuous_time";
     case VerdictCode::no_gain:

@@ -25,6 +25,8 @@ enum class VerdictCode {
   unstable,
   /// The inputs do not explain the outputs (7).
   no_better_than_mean,
+  /// Inputs follow outputs, and the model would be the controller's or unstable (20).
+  closed_loop,
   /// No differential equation has these samples (10).
   no_continuous_time,
   /// Poles cannot be placed as asked for, or no placement lowers the error (12, 14).

@@ -1,7 +1,7 @@
-// Sensors that do not follow the equipment for a while, found from their own samples: stuck values,
-// spikes, bursts of noise (METHOD.md, section 17). What is unusual is measured against the rest of
-// the same rows and of the other channels. A fault that takes most of the rows is their usual state
-// and is not found. Nothing here throws.
+// Sensors that do not follow the equipment for a while, found from their own samples: values that
+// stand for none, stuck values, spikes, bursts of noise (METHOD.md, section 17). What is unusual is
+// measured against the rest of the same rows and of the other channels. A fault other than a fill
+// value that takes most of the rows is their usual state and is not found. Nothing here throws.
 #pragma once
 
 #include <string_view>
@@ -12,8 +12,8 @@
 namespace reident::identification {
 
 /// Rules, each with a condition on the other channels, are in METHOD.md.
-enum class SensorFaultKind { stuck, spike, noise };
-/// Returns "stuck", "spike" or "noise".
+enum class SensorFaultKind { fill, stuck, spike, noise };
+/// Returns "fill", "stuck", "spike" or "noise".
 std::string_view name(SensorFaultKind kind);
 
 /// One fault of one channel.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <tuple>
 
 #include "identification/search/delays.hpp"
 #include "identification/search/finite_check.hpp"
@@ -14,8 +15,8 @@ namespace reident::identification {
 
 std::vector<std::string> mistakes(const IdentifyOptions& options) {
   std::vector<std::string> found;
-  if (options.order && *options.order < 1) found.push_back("the order must be at least 1");
-  if (options.min_order < 1) found.push_back("the smallest order must be at least 1");
+  if (options.order && *options.order < 0) found.push_back("the order must not be negative");
+  if (options.min_order < 0) found.push_back("the smallest order must not be negative");
   if (options.max_order < options.min_order)
     found.push_back("the largest order must not be below the smallest");
   if (options.horizon && *options.horizon < 2) found.push_back("the horizon must be at least 2");
@@ -38,39 +39,72 @@ Index block_rows_needed(const IdentifyOptions& options) {
 
 namespace {
 
-/// Tries each input's delay in turn, the structure being that of the model without any; one is kept
-/// where it lowers the error on rows held out by more than 1 %.
+/// The error on rows held out, and the order, with these delays; infinite where there is no model.
+struct DelayedError {
+  double error = std::numeric_limits<double>::infinity();
+  int order = 0;
+};
+
+DelayedError error_with(const Record& record, RowRange rows, const std::vector<int>& delays,
+                        const IdentifyOptions& options) {
+  const Record shifted = delayed(record, rows, delays, options.max_input_delay);
+  const IdentifyResult result = run_pipeline(shifted, shifted.all(), options, nullptr);
+  const auto* found = std::get_if<Identified>(&result);
+  if (!found || !found->held_out_error) return {};
+  return {*found->held_out_error, found->recipe.order};
+}
+
+/// The delays with which models of one order err least: each input in turn, twice where there are
+/// several. One is kept where it lowers the error by more than 1 %.
+std::vector<int> delays_of_order(const Record& record, RowRange rows, int order,
+                                 const IdentifyOptions& options) {
+  constexpr double worthwhile = 0.99;
+  IdentifyOptions fixed = options;
+  fixed.order = order;
+  fixed.horizon = std::max(6, order + 1);
+  fixed.weighting = Weighting::n4sid;
+  std::vector<int> delays(static_cast<std::size_t>(record.u.cols()), 0);
+  for (int pass = 0; pass < (delays.size() > 1 ? 2 : 1); ++pass)
+    for (int& delay : delays) {
+      delay = 0;
+      const double without = error_with(record, rows, delays, fixed).error;
+      double least = worthwhile * without;
+      int best = 0;
+      for (delay = 1; delay <= options.max_input_delay; ++delay)
+        if (const double error = error_with(record, rows, delays, fixed).error; error < least) {
+          least = error;
+          best = delay;
+        }
+      delay = best;
+    }
+  return delays;
+}
+
+/// A model with too short a delay imitates the rest of it by poles. So delays come from models of
+/// low orders; of those with which the whole search errs least, to 1 %, the lowest order is taken.
 std::vector<int> chosen_delays(const Record& record, RowRange rows,
                                const IdentifyOptions& options) {
-  constexpr double worthwhile = 0.99;
-  const int most = options.max_input_delay;
-  std::vector<int> delays(static_cast<std::size_t>(record.u.cols()), 0);
-  IdentifyOptions fixed = options;
-  const auto error_with = [&](const std::vector<int>& tried) {
-    const Record shifted = delayed(record, rows, tried, most);
-    const IdentifyResult result = run_pipeline(shifted, shifted.all(), fixed, nullptr);
-    const auto* found = std::get_if<Identified>(&result);
-    if (found && !fixed.weighting) {
-      fixed.order = found->recipe.order;
-      fixed.horizon = found->recipe.horizon;
-      fixed.weighting = found->recipe.weighting;
-    }
-    return found && found->held_out_error ? *found->held_out_error
-                                          : std::numeric_limits<double>::infinity();
-  };
-  double least = error_with(delays);
-  for (int& delay : delays) {
-    int best = 0;
-    double best_error = least;
-    for (delay = 1; delay <= most; ++delay)
-      if (const double error = error_with(delays); error < best_error) {
-        best_error = error;
-        best = delay;
-      }
-    delay = best_error < worthwhile * least ? best : 0;
-    if (delay > 0) least = best_error;
+  constexpr double equal_errors = 1.01;
+  std::vector<std::vector<int>> tried{std::vector<int>(static_cast<std::size_t>(record.u.cols()))};
+  for (const int order : options.order ? std::vector{*options.order} : std::vector{1, 2, 4}) {
+    if (!options.order && order > options.max_order) continue;
+    auto delays = delays_of_order(record, rows, order, options);
+    if (std::find(tried.begin(), tried.end(), delays) == tried.end())
+      tried.push_back(std::move(delays));
   }
-  return delays;
+  std::vector<DelayedError> errors;
+  for (const std::vector<int>& delays : tried)
+    errors.push_back(error_with(record, rows, delays, options));
+  const auto less = [](const DelayedError& a, const DelayedError& b) { return a.error < b.error; };
+  const double least = std::min_element(errors.begin(), errors.end(), less)->error;
+  std::size_t best = 0;
+  const auto key = [&](std::size_t i) {
+    const bool equal = errors[i].error <= equal_errors * least;
+    return std::tuple(!equal, equal ? errors[i].order : 0, errors[i].error);
+  };
+  for (std::size_t i = 1; i < tried.size(); ++i)
+    if (key(i) < key(best)) best = i;
+  return tried[best];
 }
 
 IdentifyResult identify_delayed(const Record& record, RowRange rows,

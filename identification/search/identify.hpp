@@ -24,9 +24,10 @@ namespace reident::identification {
 struct IdentifyOptions {
   /// What verdicts and warnings call the channels; empty: "input 1" and so on.
   std::vector<std::string> input_names, output_names;
-  /// Absent: chosen in [min_order, max_order].
+  /// Absent: chosen in [min_order, max_order]. A model of order 0 has no dynamics: y follows u in
+  /// the same row.
   std::optional<int> order;
-  int min_order = 1;
+  int min_order = 0;
   int max_order = 10;
   /// Block rows s, the way of B and D, and whether D may differ from zero. Absent: chosen.
   std::optional<int> horizon;

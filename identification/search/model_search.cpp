@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "identification/fit/output_error_fit.hpp"
+#include "identification/search/parsimony.hpp"
 #include "identification/simulation/initial_state.hpp"
 #include "identification/subspace/hankel.hpp"
 #include "identification/subspace/input_response.hpp"
@@ -34,7 +35,8 @@ double work_of_run(Index n, Index m, Index p) {
 struct Candidate {
   std::size_t place = 0;  // of its A and C among those of the first stage
   Recipe recipe;
-  double error = 0;
+  double error = 0;                 // mean over the folds
+  std::vector<double> fold_errors;  // with the operating point that was taken
 };
 
 /// Takes the operating point that the folds speak for. False where a fold had no stable model.
@@ -48,7 +50,19 @@ bool take_errors(Candidate& candidate, const std::vector<HeldOutErrors>& errors)
   const bool recent = mean.recent < worthwhile_recency * mean.whole;
   candidate.recipe.operating_point = recent ? OperatingPoint::recent : OperatingPoint::whole;
   candidate.error = recent ? mean.recent : mean.whole;
+  candidate.fold_errors.clear();
+  for (const HeldOutErrors& of_fold : errors)
+    candidate.fold_errors.push_back(recent ? of_fold.recent : of_fold.whole);
   return true;
+}
+
+/// The error of a candidate over that of another, median over the folds.
+double median_ratio(const Candidate& candidate, const Candidate& other) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < candidate.fold_errors.size(); ++i)
+    ratios.push_back((candidate.fold_errors[i] + no_error) / (other.fold_errors[i] + no_error));
+  std::sort(ratios.begin(), ratios.end());
+  return (ratios[(ratios.size() - 1) / 2] + ratios[ratios.size() / 2]) / 2;
 }
 
 /// Best first by the rule of the header.
@@ -86,6 +100,14 @@ class Search {
 
   std::vector<Candidate> simulated_stage(std::vector<Candidate> compressed);
   std::vector<Candidate> refined_stage(const std::vector<Candidate>& simulated);
+  /// The candidate of the lowest order that nothing speaks against beside the winner.
+  std::optional<Candidate> simplest(const Candidate& winner,
+                                    const std::vector<Candidate>& compressed);
+  Response fit_of(const Candidate& candidate, std::size_t fold, RowRange rows) const;
+  bool has_order_zero() const {
+    return space_.min_order == 0 && m_ > 0 && space_.direct.front() &&
+           space_.fits.front() == ResponseFit::simulation;
+  }
   /// Fits and scores the candidates on the folds with no more than so many fitted rows.
   std::vector<Candidate> scored(std::vector<Candidate> candidates, Index rows_of_fold);
   HeldOutErrors errors_on(const Candidate& candidate, std::size_t fold, Index rows_of_fold) const;
@@ -96,8 +118,10 @@ class Search {
   Index affordable_rows_of_fold(const Recipe& recipe, double recipes) const;
 
   std::size_t folds() const { return data_.folds.size(); }
+  /// Of the first stage, which has no order 0.
+  int least_order() const { return std::max(1, space_.min_order); }
   std::size_t orders() const {
-    return static_cast<std::size_t>(space_.max_order - space_.min_order + 1);
+    return static_cast<std::size_t>(space_.max_order - least_order() + 1);
   }
   std::size_t places_of_horizon() const { return space_.weightings.size() * orders(); }
 
@@ -114,7 +138,7 @@ Recipe Search::recipe_at(std::size_t place) const {
   Recipe recipe;
   recipe.horizon = space_.horizons[place / places_of_horizon()];
   recipe.weighting = space_.weightings[in_horizon / orders()];
-  recipe.order = space_.min_order + static_cast<int>(in_horizon % orders());
+  recipe.order = least_order() + static_cast<int>(in_horizon % orders());
   recipe.stability = space_.stability;
   recipe.direct = space_.direct.front();
   return recipe;
@@ -122,7 +146,7 @@ Recipe Search::recipe_at(std::size_t place) const {
 
 Index Search::rows_scored_quickly() const {
   double one_row = 0;
-  for (int n = space_.min_order; n <= space_.max_order; ++n) one_row += work_of_run(n, m_, p_);
+  for (int n = least_order(); n <= space_.max_order; ++n) one_row += work_of_run(n, m_, p_);
   one_row *= double(folds() * space_.horizons.size() * space_.weightings.size());
   return std::clamp(static_cast<Index>(effort_.budget / 3 / one_row), least_scored, most_scored);
 }
@@ -153,6 +177,7 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
 }
 
 std::vector<Candidate> Search::compressed_stage() {
+  if (orders() == 0) return {};
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::size_t places = space_.horizons.size() * places_of_horizon();
   std::vector<std::vector<HeldOutErrors>> errors(
@@ -166,7 +191,7 @@ std::vector<Candidate> Search::compressed_stage() {
   for (std::size_t place = 0; place < places; ++place) {
     std::vector<HeldOutErrors> own;
     for (const std::vector<HeldOutErrors>& of_fold : errors) own.push_back(of_fold[place]);
-    Candidate candidate{place, recipe_at(place), 0};
+    Candidate candidate{place, recipe_at(place), 0, {}};
     if (!take_errors(candidate, own)) continue;
     for (const Fold& fold : data_.folds)
       effort_.spent += work_of_run(candidate.recipe.order, m_, p_) *
@@ -179,22 +204,27 @@ std::vector<Candidate> Search::compressed_stage() {
 
 HeldOutErrors Search::errors_on(const Candidate& candidate, std::size_t fold_index,
                                 Index rows_of_fold) const {
-  const Recipe& recipe = candidate.recipe;
   const Record& record = data_.normalised;
   const Fold fold = data_.folds[fold_index].with_fit_of(rows_of_fold);
+  if (candidate.recipe.fit == ResponseFit::simulation)
+    return held_out_errors(fit_of(candidate, fold_index, fold.fit), record, fold);
   const StateSpaceModel& model = models_[fold_index][candidate.place];
-  if (recipe.fit == ResponseFit::subspace) {
-    const std::vector<Segment> segments = segments_within(record, fold.fit);
-    return held_out_errors(
-        {model, estimate_initial_state(model, record, segments, initial_rows(model)), 0}, record,
-        fold);
-  }
+  const std::vector<Segment> segments = segments_within(record, fold.fit);
   return held_out_errors(
-      recipe.refinement_steps > 0
-          ? refine_response(model.A, model.C, recipe.direct, record, fold.fit,
-                            recipe.refinement_steps)
-          : fit_response(model.A, model.C, recipe.direct, record, fold.fit, Accuracy::fast),
-      record, fold);
+      {model, estimate_initial_state(model, record, segments, initial_rows(model)), 0}, record,
+      fold);
+}
+
+Response Search::fit_of(const Candidate& candidate, std::size_t fold, RowRange rows) const {
+  const Recipe& recipe = candidate.recipe;
+  const Record& record = data_.normalised;
+  if (recipe.order == 0)
+    return fit_response(Matrix(0, 0), Matrix(p_, 0), true, record, rows, Accuracy::fast);
+  const StateSpaceModel& model = models_[fold][candidate.place];
+  return recipe.refinement_steps > 0
+             ? refine_response(model.A, model.C, recipe.direct, record, rows,
+                               recipe.refinement_steps)
+             : fit_response(model.A, model.C, recipe.direct, record, rows, Accuracy::fast);
 }
 
 std::vector<Candidate> Search::scored(std::vector<Candidate> candidates, Index rows_of_fold) {
@@ -273,11 +303,65 @@ std::vector<Candidate> Search::refined_stage(const std::vector<Candidate>& simul
   return refined.empty() ? refined : scored(affordable(refined, rows), rows);
 }
 
+std::optional<Candidate> Search::simplest(const Candidate& winner,
+                                          const std::vector<Candidate>& compressed) {
+  if (space_.fits.front() != ResponseFit::simulation) return std::nullopt;
+  Candidate rich = winner;
+  rich.recipe.fit = ResponseFit::simulation;
+  rich.recipe.refinement_steps = refinement_steps;
+  const Index rows = affordable_rows_of_fold(rich.recipe, 2);
+  // The rows that the folds fit together.
+  RowRange fitted = data_.folds.front().fit;
+  for (const Fold& fold : data_.folds)
+    fitted = {std::min(fitted.begin, fold.fit.begin), std::max(fitted.end, fold.fit.end)};
+  fitted.begin = std::max(fitted.begin, fitted.end - rows);
+  const auto segments = static_cast<Index>(segments_within(data_.normalised, fitted).size());
+  const auto parameters = [&](const Recipe& recipe) {
+    return parameters_of(recipe.order, m_, p_, recipe.direct, segments);
+  };
+  const Fold& largest = data_.folds.front();
+  const auto fit = [&](const Candidate& candidate) {
+    effort_.spent += work_of_regression(candidate.recipe, m_, p_) * double(fitted.size());
+    return fit_of(candidate, 0, fitted);
+  };
+  std::optional<Response> rich_fit;
+  for (int order = has_order_zero() ? 0 : least_order(); order < winner.recipe.order; ++order) {
+    const auto found = std::find_if(compressed.begin(), compressed.end(), [&](const Candidate& c) {
+      return order == 0 || c.recipe.order == order;
+    });
+    if (found == compressed.end()) continue;
+    Candidate simple = *found;
+    simple.recipe.order = order;
+    simple.recipe.fit = ResponseFit::simulation;
+    simple.recipe.direct = order == 0 || winner.recipe.direct;
+    simple.recipe.refinement_steps = order == 0 ? 0 : refinement_steps;
+    simple.recipe.refined_rows = order == 0 ? 0 : rows * static_cast<Index>(folds());
+    if (!rich_fit) rich_fit = fit(rich);
+    const Index extra = std::max<Index>(1, parameters(winner.recipe) - parameters(simple.recipe));
+    if (is_refuted(fit(simple), *rich_fit, extra, data_.normalised, fitted)) continue;
+    const std::vector<Candidate> scored_simple = scored({simple}, rows);
+    if (scored_simple.empty()) continue;
+    const double allowed =
+        1 + loss_by_chance(extra, largest.with_fit_of(rows).fit.size(), largest.tune.size());
+    if (median_ratio(scored_simple.front(), winner) <= allowed) return scored_simple.front();
+  }
+  return std::nullopt;
+}
+
 std::vector<ScoredRecipe> Search::run() {
-  std::vector<Candidate> found = simulated_stage(compressed_stage());
+  const std::vector<Candidate> compressed = compressed_stage();
+  std::vector<Candidate> found = simulated_stage(compressed);
   const std::vector<Candidate> refined = refined_stage(found);
   if (!refined.empty() && refined.front().error < worthwhile_refinement * found.front().error)
     found.insert(found.begin(), refined.front());
+  if (orders() == 0 && has_order_zero()) {
+    Candidate only;
+    only.recipe.horizon = space_.horizons.front();
+    only.recipe.fit = ResponseFit::simulation;
+    found = scored({only}, affordable_rows_of_fold(only.recipe, 1));
+  }
+  if (!found.empty())
+    if (auto simple = simplest(found.front(), compressed)) found.insert(found.begin(), *simple);
   std::vector<ScoredRecipe> result;
   for (const Candidate& candidate : found) result.push_back({candidate.recipe, candidate.error});
   return result;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "identification/search/closed_loop.hpp"
 #include "identification/search/prepared_rows.hpp"
 #include "identification/search/realisation.hpp"
 #include "identification/search/recipe_choice.hpp"
@@ -52,7 +53,12 @@ IdentifyResult run(PreparedRows rows) {
   if (options.on_phase) options.on_phase("choose");
   const auto choice = choose_recipes(rows, warnings);
   if (const auto* verdict = std::get_if<Verdict>(&choice)) return *verdict;
-  return best_model(rows, std::get<RecipeChoice>(choice), warnings);
+  IdentifyResult result = best_model(rows, std::get<RecipeChoice>(choice), warnings);
+  auto* found = std::get_if<Identified>(&result);
+  if (found && found->held_out_error)
+    if (auto verdict = closed_loop_verdict(rows, *found, found->warnings))
+      return *std::move(verdict);
+  return result;
 }
 
 }  // namespace

@@ -58,7 +58,9 @@ std::optional<Identified> realise(PreparedRows& rows, const Recipe& recipe,
   if (recipe.stability == Stability::enforced)
     result.warnings.push_back(
         "every model asked for was unstable; A was taken so that it is stable, at some bias");
-  if (const auto K = kalman_gain(model.A, model.C, noise_covariance(projection, model)))
+  if (recipe.order == 0)
+    model.K = Matrix(0, rows.outputs());
+  else if (const auto K = kalman_gain(model.A, model.C, noise_covariance(projection, model)))
     model.K = *K;
   else
     result.warnings.push_back(

@@ -15,6 +15,7 @@ Matrix extended_observability(const Matrix& A, const Matrix& C, Index rows) {
 
 Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order, Stability stability) {
   const Index rows = gamma.rows() - outputs;
+  if (order == 0) return {Matrix(0, 0), Matrix(outputs, 0)};
   const Matrix C = gamma.topLeftCorner(outputs, order);
   if (stability == Stability::as_found)
     return {solve_pivoted_qr(gamma.topLeftCorner(rows, order),

@@ -19,7 +19,8 @@ enum class Stability {
 };
 
 /// Returns the A that shifts the first `order` columns of `gamma` up by one block row of `outputs`
-/// rows, by least squares, and the C above. Requires order <= gamma.rows() - outputs.
+/// rows, by least squares, and the C above; both empty for the order 0. Requires order <=
+/// gamma.rows() - outputs.
 Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order,
                          Stability stability = Stability::as_found);
 

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "identification/samples/grid.hpp"
+#include "identification/screening/sample_hold.hpp"
+#include "service/cli/identify_screening.hpp"
 #include "service/support/csv.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
@@ -304,6 +306,15 @@ void derive_inputs(InputExpressions& expressions, IdentifyData& data) {
                     lost, before));
 }
 
+void warn_of_held_rows(IdentifyData& data) {
+  const Index rows = rows_per_sample(data.record);
+  if (rows > 1)
+    data.warnings.push_back(fmt::format(
+        "each value stands for {0} rows in every column: --period {1:g} takes every {0}th row, "
+        "which is all that the file holds",
+        rows, static_cast<double>(rows) * data.record.period_s));
+}
+
 /// Without a time column ticks are rows of the file.
 void warn_of_late_start(IdentifyData& data, Index asked) {
   const auto parts = segments_within(data.record, data.identify);
@@ -355,10 +366,15 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   } else {
     data.record = record_of_rows(table, inputs, request.period_s.value_or(1));
   }
-  derive_inputs(expressions, data);
-  const auto record_row = [&](Index row) {
-    return first_row_at(data.record, request.time ? tick_of_row(table, row, period_ns) : row);
+  const auto tick_of = [&](Index row) {
+    return request.time ? tick_of_row(table, row, period_ns) : std::int64_t{row};
   };
+  for (Index row = 0; row < static_cast<Index>(table.rows); ++row)
+    data.file_ticks.push_back(tick_of(row));
+  if (request.screening) data.left_out = leave_out_faults(data.record, columns);
+  warn_of_held_rows(data);
+  derive_inputs(expressions, data);
+  const auto record_row = [&](Index row) { return first_row_at(data.record, tick_of(row)); };
   data.identify = {record_row(identify.begin), record_row(identify.end)};
   data.validate = {record_row(validate.begin), record_row(validate.end)};
   if (data.validate.size() == 0)

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "identification/samples/record.hpp"
+#include "identification/samples/tick_ranges.hpp"
+#include "identification/screening/sensor_screening.hpp"
 #include "service/cli/command.hpp"
 #include "service/model/derived_inputs.hpp"
 
@@ -22,6 +24,14 @@ struct DataRequest {
   std::optional<double> period_s;       // default: 1, or the median step of the time column
   std::optional<std::string> identify;  // "A:B", rows of the file
   std::optional<std::string> validate;
+  bool screening = true;  // leave out rows at which a column shows a fault
+};
+
+/// Rows that are not in the record because a column shows a fault there.
+struct LeftOut {
+  std::string column;
+  identification::SensorFaultKind kind;
+  identification::TickSet ticks;
 };
 
 struct IdentifyData {
@@ -30,6 +40,8 @@ struct IdentifyData {
   identification::RowRange validate;         // at least one row
   std::vector<std::string> inputs, outputs;  // columns of u and y
   std::vector<DerivedInput> derived;         // of the inputs; units are not known
+  std::vector<std::int64_t> file_ticks;      // of the rows of the file
+  std::vector<LeftOut> left_out;
   std::vector<std::string> warnings;
 };
 

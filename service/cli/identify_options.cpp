@@ -77,7 +77,7 @@ std::optional<Refusal> parse_model_request(const ModelRequest& request,
                                            const std::vector<std::string>& inputs,
                                            const std::vector<std::string>& outputs,
                                            IdentifyOptions& options) {
-  if (auto refusal = parse_choice("--order", request.order, 1, max_order, options.order))
+  if (auto refusal = parse_choice("--order", request.order, 0, max_order, options.order))
     return refusal;
   if (auto refusal = parse_choice("--horizon", request.horizon, 2, max_horizon, options.horizon))
     return refusal;

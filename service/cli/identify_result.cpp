@@ -1,5 +1,7 @@
 #include "service/cli/identify_result.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "service/cli/output/diagnostics_text.hpp"
@@ -23,6 +25,13 @@ bool all_finite(const Score& score) {
   return score.mrse_percent.allFinite() && score.fit_percent.allFinite();
 }
 
+/// Rows that do not move have no fit.
+std::string fit_text(const Score& score, Eigen::Index output) {
+  const bool constant =
+      std::isinf(score.fit_percent(output)) && std::isfinite(score.mrse_percent(output));
+  return constant ? "constant" : fmt::format("{:.4g}", score.fit_percent(output));
+}
+
 Table error_table(const IdentifyOutcome& outcome) {
   Table table({{"output"},
                {"MRSE identify %", Table::Align::right},
@@ -33,8 +42,7 @@ Table error_table(const IdentifyOutcome& outcome) {
     const auto at = static_cast<Eigen::Index>(q);
     table.add({outcome.outputs[q], fmt::format("{:.4g}", outcome.identify.mrse_percent(at)),
                fmt::format("{:.4g}", outcome.diagnostics.free_run.mrse_percent(at)),
-               fmt::format("{:.4g}", outcome.identify.fit_percent(at)),
-               fmt::format("{:.4g}", outcome.diagnostics.free_run.fit_percent(at))});
+               fit_text(outcome.identify, at), fit_text(outcome.diagnostics.free_run, at)});
   }
   return table;
 }
@@ -104,6 +112,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"diagnostics", to_json(outcome.diagnostics, outcome.inputs, outcome.outputs)},
       {"continuous", to_json(outcome.continuous)},
       {"search_work", outcome.identified.search_work},
+      {"left_out", outcome.left_out},
       {"timing_ms", timing},
       {"warnings", warnings}};
   std::string text;

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "identification/search/identify.hpp"
 #include "identification/simulation/continuous.hpp"
 #include "identification/statistics/diagnostics.hpp"
@@ -20,6 +22,7 @@ struct IdentifyOutcome {
   std::variant<identification::ContinuousModel, identification::Verdict> continuous;
   std::vector<std::string> inputs, outputs;  // column names, or those of derived inputs
   std::vector<DerivedInput> derived;
+  nlohmann::ordered_json left_out;  // left_out_json()
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::string> warnings;
 };

@@ -27,7 +27,7 @@ std::string sorted_poles_text(const identification::Matrix& A, Slowness slowness
             [slowness](const auto& a, const auto& b) { return slowness(a) > slowness(b); });
   std::string text;
   for (const auto& pole : poles) text += (text.empty() ? "" : ", ") + pole_text(pole);
-  return text;
+  return text.empty() ? "none" : text;
 }
 
 }  // namespace
@@ -41,6 +41,7 @@ std::string continuous_text(
   if (const auto* verdict = std::get_if<identification::Verdict>(&continuous))
     return fmt::format("continuous time: none; {}\n", verdict->reason);
   const auto& model = std::get<identification::ContinuousModel>(continuous);
+  if (model.A.rows() == 0) return "continuous time: a gain alone, without poles\n";
   return fmt::format("continuous time: poles {} 1/s\n",
                      sorted_poles_text(model.A, [](const auto& pole) { return pole.real(); }));
 }

@@ -1,8 +1,10 @@
 #include "identification/search/identify.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "service/cli/identify_data.hpp"
 #include "service/cli/identify_options.hpp"
 #include "service/cli/identify_result.hpp"
+#include "service/cli/identify_screening.hpp"
 #include "service/cli/verb.hpp"
 #include "service/support/parallel.hpp"
 #include "service/support/phase_timer.hpp"
@@ -24,6 +27,7 @@ using identification::Identified;
 using identification::IdentifyOptions;
 using identification::Index;
 using identification::RowRange;
+using identification::Vector;
 using identification::Verdict;
 
 constexpr std::size_t max_threads = 256;
@@ -58,13 +62,37 @@ std::optional<Refusal> refuse_arguments(const Arguments& arguments) {
   return std::nullopt;
 }
 
-/// A model may explain the rows that it was chosen on and not the ones behind them.
-void warn_of_useless_outputs(IdentifyOutcome& outcome) {
-  for (std::size_t q = 0; q < outcome.outputs.size(); ++q)
-    if (outcome.diagnostics.free_run.fit_percent(static_cast<Index>(q)) < 0)
+/// The least change from one value of an output to another: what its digits resolve.
+double resolution_of(Vector values) {
+  std::sort(values.begin(), values.end());
+  double least = std::numeric_limits<double>::infinity();
+  for (Index row = 1; row < values.size(); ++row)
+    if (const double change = values(row) - values(row - 1); change > 0)
+      least = std::min(least, change);
+  return std::isfinite(least) ? least : 0;
+}
+
+/// A model may explain the rows that it was chosen on and not the ones behind them. Rows in which
+/// an output does not move by more than a digit say nothing of that.
+void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome) {
+  for (Index q = 0; q < data.record.y.cols(); ++q) {
+    const std::string& output = outcome.outputs[static_cast<std::size_t>(q)];
+    const auto rows = data.record.y.col(q).segment(data.validate.begin, data.validate.size());
+    const double resolution = resolution_of(data.record.y.col(q));
+    const double rounding = 1e-9 * std::abs(rows(0));
+    if (rows.maxCoeff() - rows.minCoeff() <= resolution + rounding)
+      outcome.warnings.push_back(fmt::format(
+          "the validation rows of {} are constant: they say nothing about the fit. The error there "
+          "is {:.3g}, and {} is resolved to {:.3g}; choose rows in which it moves with --validate",
+          output,
+          outcome.diagnostics.free_run.mrse_percent(q) / 100 *
+              std::sqrt(rows.squaredNorm() / static_cast<double>(rows.size())),
+          output, resolution));
+    else if (outcome.diagnostics.free_run.fit_percent(q) < 0)
       outcome.warnings.push_back(fmt::format(
           "on the validation rows the model is worse than the mean of {}: do not use it as it is",
-          outcome.outputs[q]));
+          output));
+  }
 }
 
 /// What happens to the state in a simulation of `rows`.
@@ -100,10 +128,10 @@ void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
              : diagnose(identified.model, data.record, run, data.validate, identified.x0);
 }
 
-int print_rejection(const Verdict& verdict, bool json) {
+int print_rejection(const Verdict& verdict, const nlohmann::ordered_json& left_out, bool json) {
   if (json) {
-    const nlohmann::ordered_json object = {{"rejected", name(verdict.code)},
-                                           {"reason", verdict.reason}};
+    const nlohmann::ordered_json object = {
+        {"rejected", name(verdict.code)}, {"reason", verdict.reason}, {"left_out", left_out}};
     fmt::print("{}\n", object.dump());
   } else {
     fmt::print(stderr, "reident: no model ({}): {}\n", name(verdict.code), verdict.reason);
@@ -131,8 +159,12 @@ int run(const Arguments& arguments) {
   options.input_names = data.inputs;
   options.output_names = data.outputs;
   auto result = identification::identify(data.record, data.identify, options);
-  if (const auto* verdict = std::get_if<Verdict>(&result))
-    return print_rejection(*verdict, arguments.json);
+  if (const auto* verdict = std::get_if<Verdict>(&result)) {
+    if (!arguments.json)
+      for (const std::string& sentence : left_out_sentences(data))
+        fmt::print(stderr, "reident: {}\n", sentence);
+    return print_rejection(*verdict, left_out_json(data), arguments.json);
+  }
 
   timer.begin("score");
   IdentifyOutcome outcome;
@@ -140,11 +172,13 @@ int run(const Arguments& arguments) {
   outcome.inputs = data.inputs;
   outcome.outputs = data.outputs;
   outcome.derived = data.derived;
-  outcome.warnings = data.warnings;
+  outcome.left_out = left_out_json(data);
+  outcome.warnings = left_out_sentences(data);
+  outcome.warnings.insert(outcome.warnings.end(), data.warnings.begin(), data.warnings.end());
   const auto& own = outcome.identified.warnings;
   outcome.warnings.insert(outcome.warnings.end(), own.begin(), own.end());
   score_outcome(data, outcome);
-  warn_of_useless_outputs(outcome);
+  warn_of_useless_outputs(data, outcome);
   outcome.continuous = to_continuous(outcome.identified.model);
   timer.end();
   outcome.timing_ms = timer.phases();
@@ -171,6 +205,9 @@ std::function<int()> declare(CLI::App& command) {
                      "rows A:B of the file, 0-based and half-open (the first two thirds)");
   command.add_option("--validate", arguments->data.validate,
                      "rows C:D to score on (those after the identification rows)");
+  command.add_flag("!--no-screening", arguments->data.screening,
+                   "keep rows at which a column shows a fault: a fill value, a stuck sensor, a "
+                   "spike, a burst of noise");
   add_model_options(command, arguments->model);
   command.add_option("--threads", arguments->threads,
                      "threads of the search, which finds the same with any number of them (one "

@@ -2,8 +2,11 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "identification/samples/tick_ranges.hpp"
 
 namespace reident::identification::sensor_screening_test {
 namespace {
@@ -121,6 +124,95 @@ TEST(Screening, DoesNotCallACommonDisturbanceNoise) {
     telemetry.channel(Telemetry::load)(t) -= ripple;
   }
   for (const SensorFault& fault : telemetry.faults()) EXPECT_NE(fault.kind, SensorFaultKind::noise);
+}
+
+/// Ticks of the faults of one channel and kind.
+TickSet ticks_of(const std::vector<SensorFault>& faults, SensorFaultKind kind, Index channel) {
+  std::vector<TickRange> ticks;
+  for (const SensorFault& fault : faults)
+    if (fault.kind == kind && fault.channel == channel) ticks.push_back(fault.ticks);
+  return united(std::move(ticks));
+}
+
+TEST(Screening, FindsAFillValueAtAnyShare) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform;
+  for (const double fill : {-999.0, 9999.0, -32768.0, 65535.0, -99.99, 1e30})
+    for (const double share : {0.002, 0.04, 0.3, 0.7}) {
+      Telemetry telemetry;
+      std::vector<TickRange> filled;
+      for (Index t = 0; t < 30'000; ++t)
+        if (uniform(random) < share) {
+          telemetry.channel(Telemetry::battery)(t) = fill;
+          filled.push_back({t, t + 1});
+        }
+      const auto faults = telemetry.faults();
+      EXPECT_EQ(ticks_of(faults, SensorFaultKind::fill, Telemetry::battery),
+                united(std::move(filled)))
+          << fill << " in " << share;
+    }
+}
+
+TEST(Screening, AnEquipmentThatIsSwitchedOnIsNoFillValue) {
+  Telemetry telemetry;
+  std::mt19937 random(6);
+  std::normal_distribution<double> noise;
+  for (Index t = 0; t < 30'000; ++t)
+    telemetry.channel(Telemetry::load)(t) = t / 900 % 3 == 0 ? 2.5 : 0.01 * noise(random);
+  EXPECT_TRUE(telemetry.faults().empty());
+}
+
+TEST(Screening, FindsAnImpossibleValueBesideALoadStep) {
+  for (const Index row : {431 * 3 - 1, 431 * 7, 431 * 7 + 1, 1'700}) {
+    Telemetry telemetry;
+    telemetry.channel(Telemetry::battery)(row) = 0;
+    EXPECT_EQ(ticks_of(telemetry.faults(), SensorFaultKind::spike, Telemetry::battery),
+              (TickSet{{row, row + 1}}))
+        << row;
+  }
+}
+
+TEST(Screening, LeavesPulsesThatAnotherSensorAnswers) {
+  for (const double answer : {0.15, 0.4, 2.0}) {
+    Telemetry telemetry;
+    for (Index t = 200; t < 30'000; t += 700) {
+      telemetry.channel(Telemetry::load)(t) += 9;
+      telemetry.channel(Telemetry::battery)(t) -= answer;
+    }
+    for (const SensorFault& fault : telemetry.faults())
+      ADD_FAILURE() << answer << ": " << name(fault.kind) << " of " << fault.channel << " at "
+                    << fault.ticks.begin;
+  }
+  Telemetry unanswered;
+  for (Index t = 200; t < 30'000; t += 700) unanswered.channel(Telemetry::load)(t) += 9;
+  EXPECT_EQ(ticks_of(unanswered.faults(), SensorFaultKind::spike, Telemetry::load).size(), 43U);
+}
+
+TEST(Screening, FindsSeveralFrozenStretchesOfANoisySensor) {
+  for (const Index rows : {25, 40, 300}) {
+    Telemetry telemetry;
+    std::vector<TickRange> frozen;
+    for (const Index begin : {1'200, 8'000, 13'000, 20'000}) {
+      auto values = telemetry.channel(Telemetry::battery);
+      values.segment(begin, rows).setConstant(values(begin));
+      frozen.push_back({begin, begin + rows});
+    }
+    const TickSet found = ticks_of(telemetry.faults(), SensorFaultKind::stuck, Telemetry::battery);
+    ASSERT_EQ(found.size(), 4U) << rows;
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(double(found[i].begin), double(frozen[i].begin), 3);
+      EXPECT_NEAR(double(found[i].end), double(frozen[i].end), 3);
+    }
+  }
+}
+
+TEST(Screening, LeavesAPanelThatHasNothingToShowInEclipse) {
+  Telemetry telemetry;
+  // The least value differs by a digit from eclipse to eclipse.
+  for (Index t = 0; t < 30'000; ++t)
+    if (double(t % 6'000) / 6'000 > 0.65)
+      telemetry.channel(Telemetry::array)(t) = 0.02 * double(t / 6'000 % 3);
+  EXPECT_TRUE(telemetry.faults().empty());
 }
 
 TEST(Screening, LooksAtAnalogChannelsAlone) {

@@ -1,0 +1,96 @@
+#include "identification/screening/stuck.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace reident::identification {
+namespace {
+
+constexpr Index least_stuck_rows = 20;
+constexpr double longer = 2;            // than the longest of the others
+constexpr double by_chance = 1e-6;      // expected number of repetitions so long
+constexpr std::size_t most_stuck = 20;  // plateaus of one channel
+constexpr double repeated_share = 1.0 / 3;
+/// At the end of its range a sensor has nothing to show: its cause is absent.
+constexpr double end_share = 0.02;
+/// What another channel moves meanwhile, as a share of its range; or as usual over as many rows.
+constexpr double moving_share = 0.1;
+constexpr Index windows = 50;
+
+/// What the channel moves over so many rows, in the quieter quarter of the record.
+double quiet_movement(const Channel& channel, Index rows) {
+  const Index total = channel.values.size();
+  std::vector<double> movements;
+  for (Index i = 0; i < windows; ++i) {
+    const Index begin = (total - rows) * i / (windows - 1);
+    movements.push_back(movement(channel.values, begin, begin + rows));
+  }
+  return quantile(std::move(movements), 0.25);
+}
+
+bool another_moves(const std::vector<Channel>& channels, std::size_t self, const Plateau& plateau) {
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (c == self || !channels[c].is_analog) continue;
+    // Its middle: where it began and ended, the channel stood still for other reasons.
+    const Index begin = plateau.begin + plateau.size() / 4, rows = plateau.size() / 2;
+    const double moved = movement(channels[c].values, begin, begin + rows);
+    if (moved > moving_share * channels[c].range()) return true;
+    if (moved > 0 && moved >= quiet_movement(channels[c], rows)) return true;
+  }
+  return false;
+}
+
+bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& plateau) {
+  const double least = repeated_share * double(plateau.size());
+  return std::any_of(plateaus.begin(), plateaus.end(), [&](const Plateau& other) {
+    return other.begin != plateau.begin && other.value == plateau.value &&
+           double(other.size()) >= least;
+  });
+}
+
+bool is_at_end_of_range(const Channel& channel, const Plateau& plateau) {
+  const double near = end_share * channel.range();
+  return plateau.value <= channel.low + near || plateau.value >= channel.high - near;
+}
+
+/// The longest plateaus, as many as chance does not explain: each sample of the rest of the channel
+/// repeats the one before with some probability, and none of the rest is half as long.
+std::vector<Plateau> unusually_long(std::vector<Plateau> plateaus) {
+  const std::size_t looked_at = std::min(plateaus.size(), most_stuck + 1);
+  if (looked_at < 4) return {};  // hardly any samples to compare with
+  std::partial_sort(plateaus.begin(), plateaus.begin() + static_cast<std::ptrdiff_t>(looked_at),
+                    plateaus.end(), [](const Plateau& a, const Plateau& b) {
+                      return a.size() != b.size() ? a.size() > b.size() : a.begin < b.begin;
+                    });
+  Index rest = 0;  // rows of the plateaus behind the longest ones
+  for (std::size_t i = looked_at - 1; i < plateaus.size(); ++i) rest += plateaus[i].size();
+  std::size_t count = looked_at - 1;
+  for (; count > 0; --count) {
+    const auto others = double(plateaus.size() - count);
+    const double log_repeats = std::log1p(-others / double(rest));
+    const auto least = double(plateaus[count - 1].size());
+    if (plateaus[count - 1].size() >= least_stuck_rows &&
+        least >= longer * double(plateaus[count].size()) &&
+        std::log(others) + (least - 1) * log_repeats < std::log(by_chance))
+      break;
+    rest += plateaus[count - 1].size();
+  }
+  plateaus.resize(count);
+  return plateaus;
+}
+
+}  // namespace
+
+std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::size_t self) {
+  const Channel& channel = channels[self];
+  std::vector<Plateau> stuck;
+  for (const Plateau& plateau : unusually_long(channel.plateaus))
+    if (!is_at_end_of_range(channel, plateau) &&
+        !is_repeated_elsewhere(channel.plateaus, plateau) && another_moves(channels, self, plateau))
+      stuck.push_back(plateau);
+  std::sort(stuck.begin(), stuck.end(),
+            [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });
+  return stuck;
+}
+
+}  // namespace reident::identification

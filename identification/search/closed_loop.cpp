@@ -1,0 +1,126 @@
+#include "identification/search/closed_loop.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <functional>
+
+#include "identification/numerics/decompositions.hpp"
+#include "identification/statistics/feedback.hpp"
+#include "identification/subspace/ssarx.hpp"
+
+namespace reident::identification {
+namespace {
+
+constexpr Index past = 12;
+constexpr Index most_rows = 4096;  // looked at, the last ones
+constexpr Index max_order = 6;
+/// A figure is certainly above zero where it is so by more than twice its spread over all rows and
+/// the halves.
+constexpr double certain_spreads = 2;
+/// Where the output explains more than this of an input, the sign of its gain needs a proof, and
+/// where it explains all, there is none.
+constexpr double dominant_share = 0.5, whole_share = 0.98;
+constexpr double least_growth = 10;  // logarithm, over the rows: an integrator drifts by less
+
+/// The gain at rest (p x m).
+Matrix gain_of(const StateSpaceModel& model) {
+  const Index n = model.order();
+  if (n == 0) return model.D;
+  return model.C * solve_full_lu(Matrix::Identity(n, n) - model.A, model.B) + model.D;
+}
+
+std::string poles_of(const StateSpaceModel& model) {
+  const ComplexVector poles = eigenvalues(model.A);
+  std::vector<std::complex<double>> sorted(poles.begin(), poles.end());
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
+  });
+  std::string text;
+  for (const std::complex<double>& pole : sorted) {
+    if (pole.imag() < 0) continue;
+    text += (text.empty() ? "" : ", ") + four_digits(pole.real());
+    if (pole.imag() > 0) text += " +- " + four_digits(pole.imag()) + "i";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified& identified,
+                                           std::vector<std::string>& warnings) {
+  const Normalisation& channels = rows.normalisation();
+  const Index fitted = rows.fitted().size();
+  const RowRange looked_at{std::max<Index>(0, fitted - most_rows), fitted};
+  const Record& record = rows.normalised();
+  const std::vector<Feedback> feedback = feedback_of(record, looked_at, past);
+  if (feedback.empty()) return std::nullopt;
+  std::string who;
+  for (const Feedback& one : feedback)
+    who += (who.empty() ? "" : ", ") +
+           rows.input_name(channels.inputs[static_cast<std::size_t>(one.input)]) + " follows " +
+           channel_name("output", channels.outputs[static_cast<std::size_t>(one.output)],
+                        rows.options().output_names);
+
+  if (std::any_of(feedback.begin(), feedback.end(),
+                  [](const Feedback& one) { return one.share > whole_share; }))
+    return Verdict{VerdictCode::closed_loop,
+                   "closed loop: " + who +
+                       " and does nothing else: the rows show the controller and not the "
+                       "equipment; choose a window in which something else drives the loop, such "
+                       "as its reference, and take that as the input"};
+  const Index middle = (looked_at.begin + looked_at.end) / 2;
+  std::vector<LoopModel> loops;
+  for (const RowRange part :
+       {looked_at, RowRange{looked_at.begin, middle}, RowRange{middle, looked_at.end}})
+    if (auto loop = loop_model(record, part, past, max_order)) loops.push_back(std::move(*loop));
+  if (loops.size() < 3) {
+    warnings.push_back("closed loop: " + who +
+                       "; the rows are too few to say what the inputs do by themselves");
+    return std::nullopt;
+  }
+  const auto certain = [&loops](const std::function<double(const StateSpaceModel&)>& above_zero) {
+    std::vector<double> values;
+    for (const LoopModel& loop : loops) values.push_back(above_zero(loop.model));
+    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    return *least > certain_spreads * (*greatest - *least);
+  };
+  const bool runs_away =
+      double(looked_at.size()) * std::log(spectral_radius(loops.front().model)) > least_growth;
+  if (runs_away && certain([](const StateSpaceModel& loop) { return spectral_radius(loop) - 1; }))
+    return Verdict{VerdictCode::closed_loop,
+                   "closed loop: " + who + "; without that the equipment is unstable (poles " +
+                       poles_of(loops.front().model) +
+                       "), so that a simulation on its inputs alone runs away; take what drives "
+                       "the loop, such as its reference, as the input"};
+  const Matrix gain = gain_of(identified.model);
+  for (const Feedback& one : feedback) {
+    const Index input = channels.inputs[static_cast<std::size_t>(one.input)];
+    const Index output = channels.outputs[static_cast<std::size_t>(one.output)];
+    const double found = gain(output, input);
+    const auto has_sign = [&](double sign) {
+      return certain([&](const StateSpaceModel& loop) {
+        return sign * gain_of(loop)(one.output, one.input) * found;
+      });
+    };
+    const std::string would_be = "the gain from " + rows.input_name(input) + " to " +
+                                 channel_name("output", output, rows.options().output_names) +
+                                 " would be " + four_digits(found);
+    if (has_sign(-1))
+      return Verdict{VerdictCode::closed_loop,
+                     "closed loop: " + who + "; " + would_be +
+                         ", which is the controller's: by a method for closed loops it has the "
+                         "other sign; take what drives the loop as the input"};
+    if (one.share > dominant_share && !has_sign(1))
+      return Verdict{VerdictCode::closed_loop,
+                     "closed loop: " + who + " and hardly moves otherwise; " + would_be +
+                         ", and nothing shows that this is not the controller's; choose a window "
+                         "in which something else drives the loop, and take that as the input"};
+  }
+  warnings.push_back("closed loop: " + who +
+                     "; a method for closed loops does not contradict this model");
+  return std::nullopt;
+}
+
+}  // namespace reident::identification

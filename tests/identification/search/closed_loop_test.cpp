@@ -1,0 +1,110 @@
+// Records of closed loops: what the inputs do by themselves is found, and no model is given that
+// is the controller's.
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include <gmock/gmock.h>
+
+#include "identification/numerics/decompositions.hpp"
+#include "identification/search/identify.hpp"
+#include "identification/statistics/feedback.hpp"
+#include "identification/subspace/ssarx.hpp"
+#include "tests/support/systems.hpp"
+
+namespace reident::identification::closed_loop_test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+/// x[t+1] = a x[t] + b u[t] + w[t], y = x + v, u[t] = gain (r[t] - y[t-1]) with a reference r that
+/// steps now and then.
+struct Loop {
+  double a, b, gain;
+  double reference_size = 1, disturbance = 0.05, sensor_noise = 0.01;
+};
+
+Record recorded(const Loop& loop, test::Noise& noise, Index rows, double input_noise = 0) {
+  Matrix u(rows, 1), y(rows, 1);
+  double x = 0, r = 0;
+  for (Index t = 0; t < rows; ++t) {
+    if (t % 40 == 0) r = loop.reference_size * noise.normal();
+    y(t) = x + loop.sensor_noise * noise.normal();
+    u(t) = loop.gain * (r - (t > 0 ? y(t - 1) : 0)) + input_noise * noise.normal();
+    x = loop.a * x + loop.b * u(t) + loop.disturbance * noise.normal();
+  }
+  return contiguous_record(1, u, y);
+}
+
+TEST(ClosedLoop, AnUnstablePlantThatAControllerHoldsGivesNoModel) {
+  int given = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    test::Noise noise(seed);
+    const Record record = recorded({1.08, 0.5, 0.6}, noise, 800);
+    const IdentifyResult result = identify(record, record.all(), {});
+    const auto* verdict = std::get_if<Verdict>(&result);
+    given += !verdict;
+    if (verdict && verdict->code == VerdictCode::closed_loop) {
+      EXPECT_THAT(verdict->reason, HasSubstr("input 1 follows output 1"));
+    }
+  }
+  EXPECT_EQ(given, 0);
+}
+
+TEST(ClosedLoop, ARegulatorThatOnlyFightsDisturbancesGivesNoModelOfItsOwnGain) {
+  // A shunt regulator: hardly any reference, so that inputs and outputs show its gain.
+  int of_the_controller = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    test::Noise noise(seed);
+    const Record record = recorded({0.9, -0.3, -1.5, 0.02, 0.3}, noise, 1500);
+    const IdentifyResult result = identify(record, record.all(), {});
+    if (const auto* found = std::get_if<Identified>(&result)) {
+      const StateSpaceModel& model = found->model;
+      const Index n = model.order();
+      const double gain =
+          n == 0 ? model.D(0, 0)
+                 : (model.C * solve_full_lu(Matrix(Matrix::Identity(n, n) - model.A), model.B) +
+                    model.D)(0, 0);
+      of_the_controller += gain > 0;
+    }
+  }
+  EXPECT_EQ(of_the_controller, 0);
+}
+
+TEST(ClosedLoop, PolesOfThePlantAreFoundWhereItIsUnstable) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    test::Noise noise(seed);
+    const Record record = recorded({1.08, 0.5, 0.6}, noise, 3000);
+    const auto loop = loop_model(record, record.all(), 12, 6);
+    ASSERT_TRUE(loop.has_value());
+    EXPECT_EQ(loop->model.order(), 1);
+    EXPECT_NEAR(spectral_radius(loop->model.A), 1.08, 0.02);
+  }
+}
+
+TEST(ClosedLoop, FeedbackIsFoundAndAnOpenLoopHasNone) {
+  int found = 0, invented = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    test::Noise noise(seed);
+    const Record closed = recorded({0.9, 0.3, 0.5}, noise, 800);
+    found += !feedback_of(closed, closed.all(), 12).empty();
+    const Record open = test::excited(test::random_system(noise, 2, 2, 1), noise, 800, 0.05);
+    invented += !feedback_of(open, open.all(), 12).empty();
+  }
+  EXPECT_GE(found, 48);
+  EXPECT_LE(invented, 1);
+}
+
+TEST(ClosedLoop, AStablePlantWithTheRightGainKeepsItsModelWithAWarning) {
+  test::Noise noise(1);
+  const Record record = recorded({0.8, 0.4, 0.3}, noise, 3000, 0.03);
+  const IdentifyResult result = identify(record, record.all(), {});
+  const auto* found = std::get_if<Identified>(&result);
+  ASSERT_NE(found, nullptr) << std::get<Verdict>(result).reason;
+  EXPECT_THAT(found->warnings, Contains(HasSubstr("closed loop: input 1 follows output 1")));
+  EXPECT_NEAR(found->spectral_radius, 0.8, 0.03);
+}
+
+}  // namespace
+}  // namespace reident::identification::closed_loop_test

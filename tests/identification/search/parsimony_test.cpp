@@ -1,0 +1,113 @@
+// The order that is there, on simulated records: no mode is invented, and none that shows is lost.
+#include "identification/search/parsimony.hpp"
+
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "identification/numerics/decompositions.hpp"
+#include "identification/search/identify.hpp"
+#include "tests/support/systems.hpp"
+
+namespace reident::identification::parsimony_test {
+namespace {
+
+Identified identified(const Record& record, const IdentifyOptions& options = {}) {
+  return std::get<Identified>(identify(record, record.all(), options));
+}
+
+StateSpaceModel static_gain(test::Noise& noise, Index m, Index p) {
+  return {Matrix(0, 0), Matrix(0, m),    Matrix(p, 0),    noise.normal(p, m),
+          {},           Vector::Zero(m), Vector::Zero(p), 1};
+}
+
+/// Whether the model has a mode that lasts longer than 20 rows where the system has none near it.
+bool has_invented_mode(const StateSpaceModel& model, const StateSpaceModel& system) {
+  const ComplexVector there = eigenvalues(system.A);
+  for (const auto& pole : eigenvalues(model.A))
+    if (std::abs(pole) > 0.95 && !((there.array() - pole).abs() < 0.05).any()) return true;
+  return false;
+}
+
+struct Kind {
+  std::string name;
+  Index order, inputs, outputs, rows;
+  double noise_share;
+};
+
+void PrintTo(const Kind& kind, std::ostream* out) {
+  *out << kind.name;
+}
+
+class Parsimony : public testing::TestWithParam<Kind> {};
+
+TEST_P(Parsimony, TheOrderThatIsThereIsChosenInNineOfTenRecords) {
+  constexpr int records = 20;
+  const Kind& kind = GetParam();
+  int right = 0, invented = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    const StateSpaceModel system =
+        kind.order == 0 ? static_gain(noise, kind.inputs, kind.outputs)
+                        : test::random_system(noise, kind.order, kind.inputs, kind.outputs);
+    const Record record = test::excited(system, noise, kind.rows, kind.noise_share);
+    const Identified found = identified(record);
+    right += found.recipe.order == static_cast<int>(kind.order);
+    invented += has_invented_mode(found.model, system);
+  }
+  EXPECT_GE(right, records * 9 / 10);
+  EXPECT_EQ(invented, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Simulated, Parsimony,
+                         testing::Values(Kind{"OneStateLongRecord", 1, 1, 1, 1500, 0.003},
+                                         Kind{"OneStateShortRecord", 1, 2, 1, 300, 0.02},
+                                         Kind{"StaticGain", 0, 2, 1, 500, 0.05},
+                                         Kind{"StaticGainWithoutNoise", 0, 1, 2, 120, 0},
+                                         Kind{"ThreeStates", 3, 2, 2, 1500, 0.005}),
+                         [](const auto& kind) { return kind.param.name; });
+
+TEST(Parsimony, AnOrderThatIsAskedForIsKept) {
+  test::Noise noise(1);
+  const Record record = test::excited(static_gain(noise, 1, 1), noise, 500, 0.05);
+  for (const int order : {0, 1, 3}) {
+    IdentifyOptions options;
+    options.order = order;
+    EXPECT_EQ(identified(record, options).recipe.order, order);
+  }
+}
+
+TEST(Parsimony, AModelWithoutStatesIsTheStaticGain) {
+  test::Noise noise(2);
+  const StateSpaceModel system = static_gain(noise, 2, 2);
+  IdentifyOptions options;
+  options.order = 0;
+  const Identified found = identified(test::excited(system, noise, 400, 0), options);
+  EXPECT_EQ(found.model.order(), 0);
+  EXPECT_EQ(found.x0.size(), 0);
+  EXPECT_LT((found.model.D - system.D).norm(), 1e-9);
+  EXPECT_EQ(found.spectral_radius, 0);
+}
+
+TEST(Parsimony, AFitOfTheTrueOrderIsRefutedAsOftenAsChanceSays) {
+  constexpr int records = 400;
+  int refuted = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    const Record record = test::excited(static_gain(noise, 1, 1), noise, 300, 0.1);
+    const auto static_fit =
+        fit_response(Matrix(0, 0), Matrix(1, 0), true, record, record.all(), Accuracy::fast);
+    const auto one_state = refine_response(Matrix::Constant(1, 1, 0.5), Matrix::Ones(1, 1), true,
+                                           record, record.all(), 25);
+    refuted += is_refuted(static_fit, one_state, 3, record, record.all());
+  }
+  // At 99.99 %; the pole of a mode that is not there fits what it likes, which takes more.
+  EXPECT_LE(refuted, records / 100);
+}
+
+}  // namespace
+}  // namespace reident::identification::parsimony_test
