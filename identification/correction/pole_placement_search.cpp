@@ -15,7 +15,6 @@ namespace reident::identification {
 namespace {
 
 constexpr double gone_at_once = 1e-8;
-constexpr double well_conditioned = 1e-10;
 constexpr Index most_rows = 20000;  // of either part
 constexpr int scales_per_decade = 20;
 constexpr int coarse_step = 4;  // of scales
@@ -168,14 +167,6 @@ Poles scaled_poles(const Poles& poles, double scale) {
   Poles scaled;
   for (const auto& pole : poles) scaled.push_back(scaled_pole(pole, scale));
   return scaled;
-}
-
-std::optional<Matrix> static_gain(const StateSpaceModel& model) {
-  const Index n = model.order();
-  if (n == 0) return model.D;
-  const auto states = solve_full_lu(Matrix::Identity(n, n) - model.A, model.B, well_conditioned);
-  if (!states) return std::nullopt;
-  return model.C * *states + model.D;
 }
 
 CorrectionSearch search_correction(const StateSpaceModel& model, const Record& record,

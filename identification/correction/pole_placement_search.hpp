@@ -29,9 +29,6 @@ inline constexpr double worthwhile = 0.99;
 std::complex<double> scaled_pole(std::complex<double> pole, double scale);
 Poles scaled_poles(const Poles& poles, double scale);
 
-/// Returns C (I - A)^-1 B + D (p x m). Absent where a pole is so near to 1 that it has no meaning.
-std::optional<Matrix> static_gain(const StateSpaceModel& model);
-
 /// A corrected model, how it was made and how well it runs.
 struct Correction {
   StateSpaceModel model;  // without K: that of the plain model belongs to its A and C

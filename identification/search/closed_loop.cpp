@@ -24,11 +24,10 @@ constexpr double certain_spreads = 2;
 constexpr double dominant_share = 0.5, whole_share = 0.98;
 constexpr double least_growth = 10;  // logarithm, over the rows: an integrator drifts by less
 
-/// The gain at rest (p x m).
-Matrix gain_of(const StateSpaceModel& model) {
-  const Index n = model.order();
-  if (n == 0) return model.D;
-  return model.C * solve_full_lu(Matrix::Identity(n, n) - model.A, model.B) + model.D;
+/// The gain from an input to an output at rest; 0 where it has no meaning.
+double gain_of(const StateSpaceModel& model, Index output, Index input) {
+  const auto gain = static_gain(model);
+  return gain ? (*gain)(output, input) : 0;
 }
 
 std::string poles_of(const StateSpaceModel& model) {
@@ -94,14 +93,13 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
                        poles_of(loops.front().model) +
                        "), so that a simulation on its inputs alone runs away; take what drives "
                        "the loop, such as its reference, as the input"};
-  const Matrix gain = gain_of(identified.model);
   for (const Feedback& one : feedback) {
     const Index input = channels.inputs[static_cast<std::size_t>(one.input)];
     const Index output = channels.outputs[static_cast<std::size_t>(one.output)];
-    const double found = gain(output, input);
+    const double found = gain_of(identified.model, output, input);
     const auto has_sign = [&](double sign) {
       return certain([&](const StateSpaceModel& loop) {
-        return sign * gain_of(loop)(one.output, one.input) * found;
+        return sign * gain_of(loop, one.output, one.input) * found;
       });
     };
     const std::string would_be = "the gain from " + rows.input_name(input) + " to " +

@@ -60,4 +60,22 @@ StateSpaceModel with_delay_states(const StateSpaceModel& model, const std::vecto
   return result;
 }
 
+StateSpaceModel without_delay_states(const StateSpaceModel& model, const std::vector<int>& delays) {
+  const Index n = model.order() - std::accumulate(delays.begin(), delays.end(), 0);
+  StateSpaceModel result = model;
+  result.A = model.A.topLeftCorner(n, n);
+  result.B = model.B.topRows(n);
+  result.C = model.C.leftCols(n);
+  if (model.K.size() != 0) result.K = model.K.topRows(n);
+  Index oldest = n - 1;
+  for (std::size_t i = 0; i < delays.size(); ++i) {
+    if (delays[i] == 0) continue;
+    oldest += delays[i];
+    const auto input = static_cast<Index>(i);
+    result.B.col(input) = model.A.col(oldest).head(n);
+    result.D.col(input) = model.C.col(oldest);
+  }
+  return result;
+}
+
 }  // namespace reident::identification

@@ -17,4 +17,7 @@ Record delayed(const Record& record, RowRange rows, const std::vector<int>& dela
 /// Returns the model of the inputs as they are. Delays' states come last; K does not correct them.
 StateSpaceModel with_delay_states(const StateSpaceModel& model, const std::vector<int>& delays);
 
+/// Returns the model that with_delay_states() was given.
+StateSpaceModel without_delay_states(const StateSpaceModel& model, const std::vector<int>& delays);
+
 }  // namespace reident::identification

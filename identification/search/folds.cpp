@@ -14,10 +14,20 @@ double rms(const Matrix& errors) {
   return errors.colwise().norm().mean() / std::sqrt(double(errors.rows()));
 }
 
+HeldOutError error_of(const Matrix& errors) {
+  HeldOutError result{rms(errors), {}};
+  if (!std::isfinite(result.rms)) return {std::numeric_limits<double>::infinity(), {}};
+  for (std::size_t i = 0; i < error_blocks; ++i) {
+    const auto row = [&](std::size_t k) {
+      return static_cast<Index>(k) * errors.rows() / static_cast<Index>(error_blocks);
+    };
+    result.squares[i] = errors.middleRows(row(i), row(i + 1) - row(i)).squaredNorm();
+  }
+  return result;
+}
+
 HeldOutErrors errors_with(const Matrix& errors, const Vector& shift) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const HeldOutErrors result{rms(errors), rms(errors.rowwise() - shift.transpose())};
-  return std::isfinite(result.whole) ? result : HeldOutErrors{infinity, infinity};
+  return {error_of(errors), error_of(errors.rowwise() - shift.transpose())};
 }
 
 }  // namespace
@@ -45,7 +55,8 @@ std::vector<Fold> folds_of(Index rows, double tune_share) {
 }
 
 HeldOutErrors held_out_errors(const Response& response, const Record& record, const Fold& fold) {
-  // Forwards the state is carried on; backwards the run starts again from its first outputs.
+  // Forwards the state is carried on; backwards the run starts again from its
+  // first outputs.
   const bool forwards = fold.is_forwards();
   const RowRange run{fold.fit.begin, forwards ? fold.tune.end : fold.fit.end};
   const Matrix y_hat = free_run(response.model, record, run, response.x0);

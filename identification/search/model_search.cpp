@@ -18,11 +18,13 @@ namespace reident::identification {
 namespace {
 
 constexpr double equal_errors = 1.002;
-constexpr double no_error = 1e-6;  // of an output's deviation
+constexpr double no_error = 1e-6;   // of an output's deviation
+constexpr double certain_loss = 2;  // standard errors
 constexpr double worthwhile_recency = 0.95;
 constexpr double worthwhile_refinement = 0.99;
 constexpr int refinement_steps = 25;
-constexpr Index least_scored = 1000, most_scored = 2000;  // rows of a fold in the first stage
+constexpr Index least_scored = 1000,
+                most_scored = 2000;  // rows of a fold in the first stage
 constexpr Index least_fitted = 2000;
 constexpr double intended_recipes = 8;  // of the second stage, where rows are many
 
@@ -35,24 +37,25 @@ double work_of_run(Index n, Index m, Index p) {
 struct Candidate {
   std::size_t place = 0;  // of its A and C among those of the first stage
   Recipe recipe;
-  double error = 0;                 // mean over the folds
-  std::vector<double> fold_errors;  // with the operating point that was taken
+  double error = 0;                         // mean over the folds
+  std::vector<HeldOutError> fold_errors{};  // with the operating point that was taken
 };
 
-/// Takes the operating point that the folds speak for. False where a fold had no stable model.
+/// Takes the operating point that the folds speak for. False where a fold had
+/// no stable model.
 bool take_errors(Candidate& candidate, const std::vector<HeldOutErrors>& errors) {
-  HeldOutErrors mean;
+  double whole = 0, recent = 0;
   for (const HeldOutErrors& of_fold : errors) {
-    mean.whole += of_fold.whole / double(errors.size());
-    mean.recent += of_fold.recent / double(errors.size());
+    whole += of_fold.whole.rms / double(errors.size());
+    recent += of_fold.recent.rms / double(errors.size());
   }
-  if (!std::isfinite(mean.whole)) return false;
-  const bool recent = mean.recent < worthwhile_recency * mean.whole;
-  candidate.recipe.operating_point = recent ? OperatingPoint::recent : OperatingPoint::whole;
-  candidate.error = recent ? mean.recent : mean.whole;
+  if (!std::isfinite(whole)) return false;
+  const bool is_recent = recent < worthwhile_recency * whole;
+  candidate.recipe.operating_point = is_recent ? OperatingPoint::recent : OperatingPoint::whole;
+  candidate.error = is_recent ? recent : whole;
   candidate.fold_errors.clear();
   for (const HeldOutErrors& of_fold : errors)
-    candidate.fold_errors.push_back(recent ? of_fold.recent : of_fold.whole);
+    candidate.fold_errors.push_back(is_recent ? of_fold.recent : of_fold.whole);
   return true;
 }
 
@@ -60,9 +63,25 @@ bool take_errors(Candidate& candidate, const std::vector<HeldOutErrors>& errors)
 double median_ratio(const Candidate& candidate, const Candidate& other) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < candidate.fold_errors.size(); ++i)
-    ratios.push_back((candidate.fold_errors[i] + no_error) / (other.fold_errors[i] + no_error));
+    ratios.push_back((candidate.fold_errors[i].rms + no_error) /
+                     (other.fold_errors[i].rms + no_error));
   std::sort(ratios.begin(), ratios.end());
   return (ratios[(ratios.size() - 1) / 2] + ratios[ratios.size() / 2]) / 2;
+}
+
+/// By how many standard errors a candidate errs more than another, over the
+/// parts of all folds.
+double loss_in_deviations(const Candidate& candidate, const Candidate& other) {
+  double sum = 0, squares = 0, count = 0;
+  for (std::size_t i = 0; i < candidate.fold_errors.size(); ++i)
+    for (std::size_t k = 0; k < error_blocks; ++k) {
+      const double more = candidate.fold_errors[i].squares[k] - other.fold_errors[i].squares[k];
+      sum += more;
+      squares += more * more;
+      ++count;
+    }
+  const double mean = sum / count, variance = squares / count - mean * mean;
+  return mean > 0 ? mean / std::sqrt(variance / (count - 1)) : 0;
 }
 
 /// Best first by the rule of the header.
@@ -91,7 +110,8 @@ class Search {
   std::vector<ScoredRecipe> run();
 
  private:
-  /// Scores every order, horizon and weighting with B and D from the compression.
+  /// Scores every order, horizon and weighting with B and D from the
+  /// compression.
   std::vector<Candidate> compressed_stage();
   void score_compressed(std::size_t fold, std::size_t horizon, std::vector<HeldOutErrors>& errors);
   /// Order, horizon and weighting of a place in the table of the first stage.
@@ -100,7 +120,8 @@ class Search {
 
   std::vector<Candidate> simulated_stage(std::vector<Candidate> compressed);
   std::vector<Candidate> refined_stage(const std::vector<Candidate>& simulated);
-  /// The candidate of the lowest order that nothing speaks against beside the winner.
+  /// The candidate of the lowest order that nothing speaks against beside the
+  /// winner.
   std::optional<Candidate> simplest(const Candidate& winner,
                                     const std::vector<Candidate>& compressed);
   Response fit_of(const Candidate& candidate, std::size_t fold, RowRange rows) const;
@@ -108,7 +129,8 @@ class Search {
     return space_.min_order == 0 && m_ > 0 && space_.direct.front() &&
            space_.fits.front() == ResponseFit::simulation;
   }
-  /// Fits and scores the candidates on the folds with no more than so many fitted rows.
+  /// Fits and scores the candidates on the folds with no more than so many
+  /// fitted rows.
   std::vector<Candidate> scored(std::vector<Candidate> candidates, Index rows_of_fold);
   HeldOutErrors errors_on(const Candidate& candidate, std::size_t fold, Index rows_of_fold) const;
   /// The first candidates for which a third of the budget lasts, at least one.
@@ -181,7 +203,7 @@ std::vector<Candidate> Search::compressed_stage() {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::size_t places = space_.horizons.size() * places_of_horizon();
   std::vector<std::vector<HeldOutErrors>> errors(
-      folds(), std::vector<HeldOutErrors>(places, {infinity, infinity}));
+      folds(), std::vector<HeldOutErrors>(places, {{infinity, {}}, {infinity, {}}}));
   models_.assign(folds(), std::vector<StateSpaceModel>(places));
   for_each_(folds() * space_.horizons.size(), [&](std::size_t task) {
     const std::size_t fold = task % folds();
@@ -191,7 +213,7 @@ std::vector<Candidate> Search::compressed_stage() {
   for (std::size_t place = 0; place < places; ++place) {
     std::vector<HeldOutErrors> own;
     for (const std::vector<HeldOutErrors>& of_fold : errors) own.push_back(of_fold[place]);
-    Candidate candidate{place, recipe_at(place), 0, {}};
+    Candidate candidate{place, recipe_at(place), 0};
     if (!take_errors(candidate, own)) continue;
     for (const Fold& fold : data_.folds)
       effort_.spent += work_of_run(candidate.recipe.order, m_, p_) *
@@ -319,17 +341,18 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
   const auto parameters = [&](const Recipe& recipe) {
     return parameters_of(recipe.order, m_, p_, recipe.direct, segments);
   };
-  const Fold& largest = data_.folds.front();
   const auto fit = [&](const Candidate& candidate) {
     effort_.spent += work_of_regression(candidate.recipe, m_, p_) * double(fitted.size());
     return fit_of(candidate, 0, fitted);
   };
+  const Fold& largest = data_.folds.front();
   std::optional<Response> rich_fit;
-  for (int order = has_order_zero() ? 0 : least_order(); order < winner.recipe.order; ++order) {
+  // Absent where something speaks against the order.
+  const auto accepted = [&](int order) -> std::optional<Candidate> {
     const auto found = std::find_if(compressed.begin(), compressed.end(), [&](const Candidate& c) {
       return order == 0 || c.recipe.order == order;
     });
-    if (found == compressed.end()) continue;
+    if (found == compressed.end()) return std::nullopt;
     Candidate simple = *found;
     simple.recipe.order = order;
     simple.recipe.fit = ResponseFit::simulation;
@@ -338,14 +361,29 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
     simple.recipe.refined_rows = order == 0 ? 0 : rows * static_cast<Index>(folds());
     if (!rich_fit) rich_fit = fit(rich);
     const Index extra = std::max<Index>(1, parameters(winner.recipe) - parameters(simple.recipe));
-    if (is_refuted(fit(simple), *rich_fit, extra, data_.normalised, fitted)) continue;
-    const std::vector<Candidate> scored_simple = scored({simple}, rows);
-    if (scored_simple.empty()) continue;
-    const double allowed =
-        1 + loss_by_chance(extra, largest.with_fit_of(rows).fit.size(), largest.tune.size());
-    if (median_ratio(scored_simple.front(), winner) <= allowed) return scored_simple.front();
+    if (is_refuted(fit(simple), *rich_fit, extra, data_.normalised, fitted)) return std::nullopt;
+    std::vector<Candidate> result = scored({simple}, rows);
+    if (result.empty()) return std::nullopt;
+    const double by_chance =
+        loss_by_chance(extra, largest.with_fit_of(rows).fit.size(), largest.tune.size());
+    if (median_ratio(result.front(), winner) > 1 + by_chance &&
+        loss_in_deviations(result.front(), winner) > certain_loss)
+      return std::nullopt;
+    return std::move(result.front());
+  };
+  // What one order lacks, every lower one lacks.
+  std::optional<Candidate> best;
+  int refused = (has_order_zero() ? 0 : least_order()) - 1, taken = winner.recipe.order;
+  while (taken - refused > 1) {
+    const int order = (refused + taken) / 2;
+    if (auto simple = accepted(order)) {
+      best = std::move(simple);
+      taken = order;
+    } else {
+      refused = order;
+    }
   }
-  return std::nullopt;
+  return best;
 }
 
 std::vector<ScoredRecipe> Search::run() {

@@ -1,5 +1,6 @@
 #include "identification/search/parsimony.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -11,6 +12,44 @@ namespace reident::identification {
 namespace {
 
 constexpr double least_deviation = 1e-6;  // of an output's: below it errors are rounding
+
+/// Coefficients of the autoregression that makes a series white, by Levinson's
+/// recursion, with the number of them that has the least BIC.
+Vector whitening(Series& series) {
+  const Index rows = series.rows();
+  const Index most = std::min<Index>({20, rows / 20, series.longest_segment() - 1});
+  Vector a(0), best(0);
+  double variance = 1, least = 0;
+  for (Index n = 1; n <= most; ++n) {
+    double left = series.autocorrelation(n);
+    for (Index i = 0; i < n - 1; ++i) left -= a(i) * series.autocorrelation(n - 1 - i);
+    const double k = left / variance;
+    Vector next(n);
+    for (Index i = 0; i < n - 1; ++i) next(i) = a(i) - k * a(n - 2 - i);
+    next(n - 1) = k;
+    a = std::move(next);
+    variance *= 1 - k * k;
+    if (!(variance > 0)) break;
+    const double criterion = double(rows) * std::log(variance) + double(n) * std::log(double(rows));
+    if (criterion < least) {
+      least = criterion;
+      best = a;
+    }
+  }
+  return best;
+}
+
+double whitened_squares(const Vector& errors, const Vector& a,
+                        const std::vector<RowRange>& ranges) {
+  double sum = 0;
+  for (const RowRange& range : ranges)
+    for (Index t = range.begin + a.size(); t < range.end; ++t) {
+      double w = errors(t);
+      for (Index i = 0; i < a.size(); ++i) w -= a(i) * errors(t - 1 - i);
+      sum += w * w;
+    }
+  return sum;
+}
 
 Matrix errors_of(const Response& fit, const Record& record, RowRange rows) {
   return record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
@@ -35,9 +74,9 @@ bool is_refuted(const Response& simple, const Response& rich, Index extra, const
   double ratio = 0;
   for (Index q = 0; q < record.y.cols(); ++q) {
     Series errors(left_by_rich.col(q), ranges);
-    ratio += count / correlated_rows(errors) *
-             std::log((left_by_simple.col(q).squaredNorm() + floor) /
-                      (left_by_rich.col(q).squaredNorm() + floor));
+    const Vector a = whitening(errors);
+    ratio += count * std::log((whitened_squares(left_by_simple.col(q), a, ranges) + floor) /
+                              (whitened_squares(left_by_rich.col(q), a, ranges) + floor));
   }
   return !(ratio <= chi_squared_quantile(0.9999, double(extra)));
 }

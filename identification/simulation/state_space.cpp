@@ -21,6 +21,15 @@ double slowest_time_constant_s(const Matrix& A, double period_s) {
   return radius < 1 ? -period_s / std::log(radius) : std::numeric_limits<double>::infinity();
 }
 
+std::optional<Matrix> static_gain(const StateSpaceModel& model) {
+  constexpr double well_conditioned = 1e-10;
+  const Index n = model.order();
+  if (n == 0) return model.D;
+  const auto states = solve_full_lu(Matrix::Identity(n, n) - model.A, model.B, well_conditioned);
+  if (!states) return std::nullopt;
+  return model.C * *states + model.D;
+}
+
 bool is_stable(const Matrix& A) {
   return A.allFinite() && spectral_radius(A) < 1;
 }

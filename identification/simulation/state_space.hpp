@@ -7,6 +7,8 @@
 // Nothing here throws.
 #pragma once
 
+#include <optional>
+
 #include "identification/numerics/matrix.hpp"
 
 namespace reident::identification {
@@ -34,6 +36,9 @@ double spectral_radius(const StateSpaceModel& model);
 /// radius of 0, infinite where the model is not stable. Requires a square, finite A.
 double slowest_time_constant_s(const StateSpaceModel& model);
 double slowest_time_constant_s(const Matrix& A, double period_s);
+
+/// Returns C (I - A)^-1 B + D (p x m). Absent where a pole is so near to 1 that it has no meaning.
+std::optional<Matrix> static_gain(const StateSpaceModel& model);
 
 /// Whether every eigenvalue of the square matrix A, which may be non-finite, is inside the unit
 /// circle.

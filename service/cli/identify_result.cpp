@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "identification/search/delays.hpp"
 #include "service/cli/output/diagnostics_text.hpp"
 #include "service/cli/output/model_text.hpp"
 #include "service/cli/output/table.hpp"
@@ -66,6 +67,36 @@ ordered_json recipe_json(const identification::Identified& identified) {
   return json;
 }
 
+/// ", fuel delayed by 25 samples", or "".
+std::string delays_text(const IdentifyOutcome& outcome) {
+  std::string text;
+  const std::vector<int>& delays = outcome.identified.input_delays;
+  for (std::size_t i = 0; i < delays.size(); ++i)
+    if (delays[i] > 0)
+      text += fmt::format(", {} delayed by {} samples", outcome.inputs[i], delays[i]);
+  return text;
+}
+
+/// A line for each output.
+std::string gains_text(const IdentifyOutcome& outcome) {
+  const auto gain = static_gain(outcome.identified.model);
+  if (!gain || outcome.inputs.empty()) return "";
+  std::string text;
+  for (std::size_t q = 0; q < outcome.outputs.size(); ++q) {
+    text += fmt::format("gains at rest to {}:", outcome.outputs[q]);
+    for (std::size_t i = 0; i < outcome.inputs.size(); ++i)
+      text += fmt::format("{} {} {:.4g}", i == 0 ? "" : ",", outcome.inputs[i],
+                          (*gain)(static_cast<Eigen::Index>(q), static_cast<Eigen::Index>(i)));
+    text += "\n";
+  }
+  return text;
+}
+
+ordered_json gains_json(const StateSpaceModel& model) {
+  const auto gain = static_gain(model);
+  return gain ? to_json(*gain) : ordered_json();
+}
+
 ordered_json derived_json(const std::vector<DerivedInput>& derived) {
   ordered_json list = ordered_json::array();
   for (const DerivedInput& input : derived)
@@ -101,6 +132,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"x0", to_json(outcome.identified.x0)},
       {"input_offset", to_json(model.u0)},
       {"output_offset", to_json(model.y0)},
+      {"static_gain", gains_json(model)},
       {"stable", outcome.identified.spectral_radius < 1},
       {"spectral_radius", outcome.identified.spectral_radius},
       {"mrse_percent",
@@ -123,16 +155,18 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
 
 std::string to_report(const IdentifyOutcome& outcome) {
   const identification::Identified& identified = outcome.identified;
+  const StateSpaceModel model = without_delay_states(identified.model, identified.input_delays);
   double total = 0;
   for (const auto& [phase, milliseconds] : outcome.timing_ms) total += milliseconds;
   std::string text = fmt::format(
-      "order {}, horizon {}, weighting {}, sample period {:g} s\n"
+      "order {}{}, horizon {}, weighting {}, sample period {:g} s\n"
       "poles {} (spectral radius {:.6g}, {})\n"
-      "free run over {} identification and {} validation rows:\n{}",
-      identified.model.order(), identified.recipe.horizon, name(identified.recipe.weighting),
-      identified.model.period_s, poles_text(identified.model), identified.spectral_radius,
-      identified.spectral_radius < 1 ? "stable" : "unstable", outcome.identify.rows,
-      outcome.diagnostics.free_run.rows, error_table(outcome).text(0));
+      "{}free run over {} identification and {} validation rows:\n{}",
+      model.order(), delays_text(outcome), identified.recipe.horizon,
+      name(identified.recipe.weighting), model.period_s, poles_text(model),
+      identified.spectral_radius, identified.spectral_radius < 1 ? "stable" : "unstable",
+      gains_text(outcome), outcome.identify.rows, outcome.diagnostics.free_run.rows,
+      error_table(outcome).text(0));
   text += diagnostics_text(outcome.diagnostics, outcome.inputs, outcome.outputs);
   text += continuous_text(outcome.continuous);
   for (const std::string& warning : outcome.warnings) text += fmt::format("warning: {}\n", warning);

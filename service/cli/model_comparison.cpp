@@ -98,6 +98,7 @@ std::vector<Pole> poles_of(const StateSpaceModel& model) {
 }
 
 Matrix static_gain(const StateSpaceModel& model) {
+  if (model.order() == 0) return model.D;
   const Matrix I = Matrix::Identity(model.order(), model.order());
   return model.C * identification::solve_lu(I - model.A, model.B) + model.D;
 }

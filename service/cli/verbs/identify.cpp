@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "identification/search/delays.hpp"
 #include "identification/simulation/initial_state.hpp"
 #include "identification/simulation/scores.hpp"
 #include "service/cli/identify_data.hpp"
@@ -179,7 +180,9 @@ int run(const Arguments& arguments) {
   outcome.warnings.insert(outcome.warnings.end(), own.begin(), own.end());
   score_outcome(data, outcome);
   warn_of_useless_outputs(data, outcome);
-  outcome.continuous = to_continuous(outcome.identified.model);
+  // Delays are no part of it: they would be poles at 0, which no differential equation has.
+  outcome.continuous = to_continuous(
+      without_delay_states(outcome.identified.model, outcome.identified.input_delays));
   timer.end();
   outcome.timing_ms = timer.phases();
   fmt::print("{}", arguments.json ? to_json_text(outcome) : to_report(outcome));

@@ -33,6 +33,44 @@ TEST(Delays, TheModelOfTheInputsAsTheyAreGivesTheSameOutputs) {
   EXPECT_LT((test::simulated(with_states, u, Vector::Zero(8)) - expected).norm(), 1e-12);
 }
 
+TEST(Delays, TheModelWithoutThemIsGivenBack) {
+  test::Noise noise(4);
+  const std::vector<int> delays{0, 4, 1};
+  for (const Index order : {0, 1, 3}) {
+    const StateSpaceModel model =
+        order == 0
+            ? StateSpaceModel{Matrix(0, 0), Matrix(0, 3),    Matrix(2, 0),    noise.normal(2, 3),
+                              {},           Vector::Zero(3), Vector::Zero(2), 1}
+            : test::random_system(noise, order, 3, 2);
+    const StateSpaceModel back = without_delay_states(with_delay_states(model, delays), delays);
+    EXPECT_EQ(back.A, model.A);
+    EXPECT_EQ(back.B, model.B);
+    EXPECT_EQ(back.C, model.C);
+    EXPECT_EQ(back.D, model.D);
+  }
+}
+
+TEST(Delays, ADelayIsNotTakenForPoles) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    test::Noise noise(seed);
+    StateSpaceModel plant = test::random_system(noise, 1, 1, 1);
+    plant.A(0, 0) = 0.98;
+    Matrix u(900, 1);
+    for (Index row = 0; row < 900; ++row) u(row) = row % 60 == 0 ? noise.normal() : u(row - 1);
+    const StateSpaceModel delayed_plant = with_delay_states(plant, {25});
+    const Matrix clean = test::simulated(delayed_plant, u, Vector::Zero(26));
+    const double deviation = std::sqrt((clean.array() - clean.mean()).square().mean());
+    const Record record = contiguous_record(1, u, clean + 0.05 * deviation * noise.normal(900, 1));
+    IdentifyOptions options;
+    options.max_input_delay = 40;
+    const IdentifyResult result = identify(record, record.all(), options);
+    const auto* found = std::get_if<Identified>(&result);
+    ASSERT_NE(found, nullptr);
+    EXPECT_THAT(found->input_delays, ElementsAre(25)) << seed;
+    EXPECT_EQ(found->recipe.order, 1) << seed;
+  }
+}
+
 TEST(Delays, RowsBeforeTheLongestDelayAreLeftOutOfEachSegment) {
   test::Noise noise(2);
   const Record record =

@@ -38,8 +38,8 @@ TEST(HeldOut, TheErrorOfTheTruthIsTheNoise) {
   record.y += 0.1 * noise.normal(6000, 1);
   for (const Fold& fold : folds_of(6000, 0.4)) {
     const HeldOutErrors errors = held_out_errors({truth, Vector::Zero(2), 0}, record, fold);
-    EXPECT_NEAR(errors.whole, 0.1, 0.01);
-    EXPECT_NEAR(quick_held_out_errors(truth, record, fold).whole, 0.1, 0.01);
+    EXPECT_NEAR(errors.whole.rms, 0.1, 0.01);
+    EXPECT_NEAR(quick_held_out_errors(truth, record, fold).whole.rms, 0.1, 0.01);
   }
 }
 
@@ -50,8 +50,8 @@ TEST(HeldOut, TheRecentOperatingPointFollowsAZeroThatMoved) {
   record.y.bottomRows(700).array() += 2;
   const Fold fold{{0, 800}, {800, 1000}};
   const HeldOutErrors errors = held_out_errors({truth, Vector::Zero(2), 0}, record, fold);
-  EXPECT_NEAR(errors.whole, 2, 0.05);
-  EXPECT_LT(errors.recent, 0.05);
+  EXPECT_NEAR(errors.whole.rms, 2, 0.05);
+  EXPECT_LT(errors.recent.rms, 0.05);
 }
 
 TEST(HeldOut, AModelThatLeavesTheNumbersHasAnInfiniteError) {
@@ -59,7 +59,8 @@ TEST(HeldOut, AModelThatLeavesTheNumbersHasAnInfiniteError) {
   StateSpaceModel model = test::random_system(noise, 1, 1, 1);
   const Record record = test::excited(model, noise, 2000, 0);
   model.A(0, 0) = 4;
-  EXPECT_TRUE(std::isinf(quick_held_out_errors(model, record, {{0, 1000}, {1000, 2000}}).whole));
+  EXPECT_TRUE(
+      std::isinf(quick_held_out_errors(model, record, {{0, 1000}, {1000, 2000}}).whole.rms));
 }
 
 }  // namespace
