@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
+#include "identification/fit/output_error_fit.hpp"
 #include "identification/search/delays.hpp"
 #include "identification/search/finite_check.hpp"
 #include "identification/search/horizons.hpp"
@@ -54,24 +56,47 @@ DelayedError error_with(const Record& record, RowRange rows, const std::vector<i
   return {*found->held_out_error, found->recipe.order};
 }
 
-/// The delays with which models of one order err least: each input in turn, twice where there are
-/// several. One is kept where it lowers the error by more than 1 %.
-std::vector<int> delays_of_order(const Record& record, RowRange rows, int order,
+/// The channels, each less its mean and over its deviation.
+Record standardised(Record record) {
+  for (Matrix* channels : {&record.u, &record.y}) {
+    channels->rowwise() -= Eigen::RowVectorXd(channels->colwise().mean());
+    for (Index c = 0; c < channels->cols(); ++c)
+      if (const double norm = channels->col(c).norm(); norm > 0)
+        channels->col(c) *= std::sqrt(double(record.rows())) / norm;
+  }
+  return record;
+}
+
+/// The delays with which models of one order err least on the rows that they are fitted to, since a
+/// delay takes no parameter: each input in turn, twice where there are several. One is kept where
+/// it lowers the error by more than 1 %.
+std::vector<int> delays_of_order(const Record& record, RowRange rows, int order, bool direct,
                                  const IdentifyOptions& options) {
   constexpr double worthwhile = 0.99;
-  IdentifyOptions fixed = options;
-  fixed.order = order;
-  fixed.horizon = std::max(6, order + 1);
-  fixed.weighting = Weighting::n4sid;
+  constexpr int steps = 10;
+  const int most = options.max_input_delay;
+  const Matrix start = Vector::LinSpaced(order, 0.95, order == 1 ? 0.95 : 0.3).asDiagonal();
+  StateSpaceModel last;
+  const auto error_with = [&](const std::vector<int>& tried) {
+    const Record shifted = standardised(delayed(record, rows, tried, most));
+    Response best = refine_response(start, Matrix::Ones(record.y.cols(), order), direct, shifted,
+                                    shifted.all(), steps);
+    if (last.order() == order)
+      if (Response from_last =
+              refine_response(last.A, last.C, direct, shifted, shifted.all(), steps);
+          from_last.error < best.error)
+        best = std::move(from_last);
+    last = best.model;
+    return best.error;
+  };
   std::vector<int> delays(static_cast<std::size_t>(record.u.cols()), 0);
   for (int pass = 0; pass < (delays.size() > 1 ? 2 : 1); ++pass)
     for (int& delay : delays) {
       delay = 0;
-      const double without = error_with(record, rows, delays, fixed).error;
-      double least = worthwhile * without;
+      double least = worthwhile * error_with(delays);
       int best = 0;
-      for (delay = 1; delay <= options.max_input_delay; ++delay)
-        if (const double error = error_with(record, rows, delays, fixed).error; error < least) {
+      for (delay = 1; delay <= most; ++delay)
+        if (const double error = error_with(delays); error < least) {
           least = error;
           best = delay;
         }
@@ -82,15 +107,19 @@ std::vector<int> delays_of_order(const Record& record, RowRange rows, int order,
 
 /// A model with too short a delay imitates the rest of it by poles. So delays come from models of
 /// low orders; of those with which the whole search errs least, to 1 %, the lowest order is taken.
+/// Delays with D = 0 come first: with D, one that is longer by a row gives the same outputs.
 std::vector<int> chosen_delays(const Record& record, RowRange rows,
                                const IdentifyOptions& options) {
   constexpr double equal_errors = 1.01;
   std::vector<std::vector<int>> tried{std::vector<int>(static_cast<std::size_t>(record.u.cols()))};
   for (const int order : options.order ? std::vector{*options.order} : std::vector{1, 2, 4}) {
     if (!options.order && order > options.max_order) continue;
-    auto delays = delays_of_order(record, rows, order, options);
-    if (std::find(tried.begin(), tried.end(), delays) == tried.end())
-      tried.push_back(std::move(delays));
+    for (const bool direct : {false, true}) {
+      if (direct != options.direct_feedthrough.value_or(direct)) continue;
+      auto delays = delays_of_order(record, rows, order, direct, options);
+      if (std::find(tried.begin(), tried.end(), delays) == tried.end())
+        tried.push_back(std::move(delays));
+    }
   }
   std::vector<DelayedError> errors;
   for (const std::vector<int>& delays : tried)
@@ -100,7 +129,7 @@ std::vector<int> chosen_delays(const Record& record, RowRange rows,
   std::size_t best = 0;
   const auto key = [&](std::size_t i) {
     const bool equal = errors[i].error <= equal_errors * least;
-    return std::tuple(!equal, equal ? errors[i].order : 0, errors[i].error);
+    return std::tuple(!equal, equal ? errors[i].order : 0, equal ? 0.0 : errors[i].error);
   };
   for (std::size_t i = 1; i < tried.size(); ++i)
     if (key(i) < key(best)) best = i;

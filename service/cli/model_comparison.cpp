@@ -60,7 +60,9 @@ std::vector<std::string> input_differences(const EquipmentModel& a, std::int64_t
 void add_channels(const EquipmentModel& model, const std::vector<double>& times_s,
                   std::optional<double> Channel::*gain, std::vector<double> Channel::*steps,
                   std::vector<Channel>& channels) {
-  const Matrix gains = static_gain(model.dynamics);
+  const Matrix gains =
+      static_gain(model.dynamics)
+          .value_or(Matrix::Constant(model.dynamics.outputs(), model.dynamics.inputs(), NAN));
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     const auto column = static_cast<Index>(i);
     const Matrix response = step_response(model.dynamics, column, times_s);
@@ -95,12 +97,6 @@ std::vector<Pole> poles_of(const StateSpaceModel& model) {
   std::sort(poles.begin(), poles.end(),
             [](const Pole& a, const Pole& b) { return std::abs(a.value) > std::abs(b.value); });
   return poles;
-}
-
-Matrix static_gain(const StateSpaceModel& model) {
-  if (model.order() == 0) return model.D;
-  const Matrix I = Matrix::Identity(model.order(), model.order());
-  return model.C * identification::solve_lu(I - model.A, model.B) + model.D;
 }
 
 Matrix step_response(const StateSpaceModel& model, Index input,

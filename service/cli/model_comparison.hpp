@@ -19,9 +19,6 @@ struct Pole {
 /// The slowest first; a complex pair once, with the positive imaginary part.
 std::vector<Pole> poles_of(const identification::StateSpaceModel& model);
 
-/// C (I - A)^-1 B + D, p x m, in output units per input unit; not finite where a pole is at 1.
-identification::Matrix static_gain(const identification::StateSpaceModel& model);
-
 /// Outputs (rows) after a unit step of input `input`, less those before it, at each of the times
 /// [s]: the values of the sample at or before it.
 identification::Matrix step_response(const identification::StateSpaceModel& model,

@@ -64,5 +64,27 @@ TEST(Verdict, CodesHaveTheirPublishedNames) {
   EXPECT_EQ(name(VerdictCode::no_better_than_mean), "no_better_than_mean");
 }
 
+TEST(StaticGain, IsWhereAStepResponseEnds) {
+  test::Noise noise(1);
+  for (const Index order : {1, 4}) {
+    const StateSpaceModel model = test::random_system(noise, order, 2, 2, 0.9);
+    const auto gain = static_gain(model);
+    ASSERT_TRUE(gain.has_value());
+    for (Index input = 0; input < 2; ++input) {
+      Matrix u = Matrix::Zero(400, 2);
+      u.col(input).setOnes();
+      const Matrix y = test::simulated(model, u, Vector::Zero(order));
+      EXPECT_LT((gain->col(input) - y.bottomRows(1).transpose()).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(StaticGain, IsAbsentOfAnIntegrator) {
+  test::Noise noise(1);
+  StateSpaceModel model = test::random_system(noise, 1, 1, 1);
+  model.A(0, 0) = 1;
+  EXPECT_FALSE(static_gain(model).has_value());
+}
+
 }  // namespace
 }  // namespace reident::identification::state_space_test

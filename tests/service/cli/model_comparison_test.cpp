@@ -80,15 +80,6 @@ TEST(StepResponse, IsWhatTheMatricesGiveWhenTheyAreSimulated) {
   }
 }
 
-TEST(StaticGain, IsWhereTheStepResponseEnds) {
-  const StateSpaceModel dynamics = model().dynamics;
-  const Matrix gain = static_gain(dynamics);
-  for (Index input = 0; input < 2; ++input)
-    EXPECT_LT(
-        (gain.col(input) - simulated_step(dynamics, input, 500).bottomRows(1).transpose()).norm(),
-        1e-9);
-}
-
 TEST(StepTimes, ReachUntilTheSlowerModelHasSettled) {
   StateSpaceModel slow = model().dynamics, fast = slow;
   fast.A *= 0.1;
