@@ -5,6 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "identification/samples/grid.hpp"
 #include "identification/screening/sample_hold.hpp"
@@ -379,8 +380,9 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   data.validate = {record_row(validate.begin), record_row(validate.end)};
   if (data.validate.size() == 0)
     return Refusal{
-        "the validation rows hold none with every column valid; choose others with "
-        "--validate A:B"};
+        fmt::format("the validation rows hold none with every column valid; choose others with "
+                    "--validate A:B{}{}",
+                    data.left_out.empty() ? "" : "; ", fmt::join(left_out_sentences(data), "; "))};
   if (!request.time) warn_of_late_start(data, identify.begin);
   return data;
 }

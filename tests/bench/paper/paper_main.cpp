@@ -171,6 +171,7 @@ ordered_json line(const DataRequest& request, const std::string& baseline_file,
 int main(int argc, char** argv) {
   CLI::App app("One line of the paper's table", "reident_paper_bench");
   DataRequest request;
+  request.screening = false;  // rows of two files stand beside each other
   std::string baseline_file, picture_file, unit;
   app.add_option("file", request.file, "CSV file of telemetry")->required();
   app.add_option("--input", request.inputs)->required();

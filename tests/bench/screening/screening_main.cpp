@@ -82,6 +82,7 @@ int run(const reident::cli::DataRequest& request, int window_rows) {
 int main(int argc, char** argv) {
   CLI::App app("What the screens for sensor faults leave out of a file's telemetry");
   reident::cli::DataRequest request;
+  request.screening = false;  // that is what is measured
   int window_rows = 30'000;
   app.add_option("FILE", request.file, "CSV file")->required();
   app.add_option("--input", request.inputs, "Columns of one equipment")->required();

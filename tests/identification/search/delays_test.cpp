@@ -68,7 +68,7 @@ TEST(Delays, ADelayIsNotTakenForPoles) {
     const IdentifyResult result = identify(record, record.all(), options);
     const auto* found = std::get_if<Identified>(&result);
     ASSERT_NE(found, nullptr);
-    right += found->input_delays == std::vector<int>{25} && found->recipe.order == 1;
+    right += std::abs(found->input_delays.at(0) - 25) <= 1 && found->recipe.order == 1;
   }
   EXPECT_GE(right, 9);
 }

@@ -256,9 +256,41 @@ TEST_F(Identify, PrintsNullForAFitThatIsNotFinite) {
   Plant data = plant(600);
   data.y.bottomRows(200).col(1).setConstant(28);
   write("plant.csv", csv_of(data));
-  const json printed = json_of(command());
+  const json printed = json_of(command({"--no-screening"}));
   EXPECT_TRUE(printed["fit_percent"]["validate"][1].is_null());
   EXPECT_THAT(printed["warnings"], Contains(HasSubstr("it is null")));
+}
+
+TEST_F(Identify, NamesTheSensorThatStandsStillInAllValidationRows) {
+  Plant data = plant(600);
+  data.y.bottomRows(200).col(1).setConstant(28);
+  write("plant.csv", csv_of(data));
+  const test::Ran ran = reident(command());
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, HasSubstr("y2 stands still in 200 rows (400 to 599)"));
+  EXPECT_THAT(ran.err, HasSubstr("--no-screening"));
+}
+
+TEST_F(Identify, LeavesOutFaultsAndSaysWhichRows) {
+  Plant data = plant(600);
+  for (const int row : {20, 21, 200, 450}) data.y(row, 0) = -999;
+  write("plant.csv", csv_of(data));
+  const json printed = json_of(command());
+  EXPECT_EQ(
+      printed["left_out"],
+      json::parse(R"([{"column":"y1","fault":"fill","rows":[[20,22],[200,201],[450,451]]}])"));
+  const test::Ran kept = reident(command({"--no-screening", "--json"}));
+  EXPECT_EQ(json::parse(kept.out).value("left_out", json()), json::array());
+}
+
+TEST_F(Identify, SaysThatConstantValidationRowsSayNothing) {
+  Plant data = plant(600);
+  data.u.bottomRows(200).setConstant(1);
+  data.y.bottomRows(200).setConstant(2);
+  write("plant.csv", csv_of(data));
+  const test::Ran ran = reident(command({"--order", "2"}));
+  EXPECT_THAT(ran.out, HasSubstr("the validation rows of y1 are constant"));
+  EXPECT_THAT(ran.out, Not(HasSubstr("do not use it")));
 }
 
 TEST_F(Identify, ReportsInWordsWithoutJson) {
@@ -378,7 +410,7 @@ const Impossible requests[] = {
      "give --validate"},
     {"nothing_left_to_identify", "plant.csv --input u1 --output y1 --validate 0:100",
      "give --identify"},
-    {"order_zero", "plant.csv --input u1 --output y1 --order 0", "--order 0"},
+    {"order_below_zero", "plant.csv --input u1 --output y1 --order -1", "--order -1"},
     {"order_of_words", "plant.csv --input u1 --output y1 --order many",
      "neither auto nor a whole number"},
     {"short_horizon", "plant.csv --input u1 --output y1 --order 5 --horizon 3",
