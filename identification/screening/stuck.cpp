@@ -7,7 +7,7 @@ namespace reident::identification {
 namespace {
 
 constexpr Index least_stuck_rows = 20;
-constexpr double longer = 2;            // than the longest of the others
+constexpr double longer = 2.5;          // than the longest of the others
 constexpr double by_chance = 1e-6;      // expected number of repetitions so long
 constexpr std::size_t most_stuck = 20;  // plateaus of one channel
 constexpr double repeated_share = 1.0 / 3;
@@ -54,7 +54,7 @@ bool is_at_end_of_range(const Channel& channel, const Plateau& plateau) {
 }
 
 /// The longest plateaus, as many as chance does not explain: each sample of the rest of the channel
-/// repeats the one before with some probability, and none of the rest is half as long.
+/// repeats the one before with some probability, and none of the rest is nearly as long.
 std::vector<Plateau> unusually_long(std::vector<Plateau> plateaus) {
   const std::size_t looked_at = std::min(plateaus.size(), most_stuck + 1);
   if (looked_at < 4) return {};  // hardly any samples to compare with
