@@ -5,11 +5,23 @@
 
 #include <fmt/format.h>
 
+#include "service/support/terminal.hpp"
+
 namespace reident::cli {
 
 int refuse(const Refusal& refusal) {
-  fmt::print(stderr, "reident: {}\n", refusal.message);
+  print_error("reident: {}", refusal.message);
   return exit_impossible;
+}
+
+CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        const auto number = whole_number(text);
+        return number && *number > 0 ? std::string()
+                                     : fmt::format("{} is no whole number above 0", text);
+      },
+      "", "above_zero");
 }
 
 std::optional<std::int64_t> whole_number(std::string_view text) {

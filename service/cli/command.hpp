@@ -28,6 +28,9 @@ struct Refusal {
 /// Prints "reident: <message>" on standard error. Returns exit_impossible.
 int refuse(const Refusal& refusal);
 
+/// Checks that an option's value is a whole number above 0.
+CLI::Validator above_zero();
+
 /// The digits of a whole number, 0 or more, with nothing around them.
 std::optional<std::int64_t> whole_number(std::string_view text);
 

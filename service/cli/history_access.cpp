@@ -8,6 +8,7 @@
 #include "service/cli/config_options.hpp"
 #include "service/history/remote_readers.hpp"
 #include "service/history/stored_readers.hpp"
+#include "service/support/terminal.hpp"
 
 namespace reident::cli {
 namespace {
@@ -50,10 +51,10 @@ int with_service(const Service& service, const HistoryAccessOptions& options,
     return work({history::RemoteHistoryReader(rows), history::RemoteTelemetryReader(rows)});
   } catch (const history::Error& error) {
     if (error.kind() == history::Error::Kind::refused) return refuse({error.what()});
-    fmt::print(stderr,
-               "reident: {} on domain {}, partition {}; check that reidentd runs and the domain "
-               "and partition are its own\n",
-               error.what(), service.endpoint.domain, service.endpoint.partition);
+    print_error(
+        "reident: {} on domain {}, partition {}; check that reidentd runs and the domain "
+        "and partition are its own",
+        error.what(), service.endpoint.domain, service.endpoint.partition);
     return exit_timed_out;
   }
 }

@@ -1,24 +1,70 @@
 // reident: the command line.
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "service/cli/config_options.hpp"
 #include "service/cli/verb.hpp"
+#include "service/support/terminal.hpp"
+#include "service/support/text.hpp"
+#include "service/support/version.hpp"
 
 namespace reident::cli {
 namespace {
 
+constexpr std::string_view default_verb = "overview";  // in a folder with a configuration
+
+/// What is printed is read by a program: its lines are left as they are.
+bool is_for_programs(const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    return word == "--json" || word == "--csv" || word == "export" || word == "--markdown" ||
+           word == "--man" || word == "--completion";
+  });
+}
+
+/// Why the first word that is no option names no verb; absent where it does, or there is none.
+std::optional<Refusal> unknown_verb(const std::vector<std::string>& words) {
+  const auto word = std::find_if(words.begin(), words.end(),
+                                 [](const std::string& one) { return !one.starts_with('-'); });
+  if (word == words.end()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs()) names.emplace_back(verb.name);
+  if (std::find(names.begin(), names.end(), *word) != names.end()) return std::nullopt;
+  return Refusal{fmt::format("there is no command {}{}; reident help lists them", *word,
+                             did_you_mean(*word, names))};
+}
+
+/// The words behind "reident", with what they stand for: `help VERB` is `VERB --help`.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  std::error_code error;
+  if (words.empty() && std::filesystem::exists(default_config_file, error))
+    words.emplace_back(default_verb);
+  if (words.size() == 2 && words[0] == "help" && !words[1].starts_with('-'))
+    words = {words[1], "--help"};
+  return words;
+}
+
 int run(int argc, char** argv) {
+  std::vector<std::string> words = words_of(argc, argv);
+  std::optional<FoldedOutput> folded;
+  if (!is_for_programs(words)) folded.emplace();
   CLI::App app("Keeps the equipment models of satellite simulators true to the satellite",
                "reident");
   app.require_subcommand(1);
   app.fallthrough();  // --remote may stand behind a command that cannot have it: the refusal says
                       // why
+  app.add_flag_callback(
+      "--version", [] { throw CLI::CallForVersion(std::string(program_version()), exit_done); },
+      "print the version of the program");
   const CLI::Option* remote =
       app.add_flag("--remote")
           ->description(
@@ -33,25 +79,32 @@ int run(int argc, char** argv) {
   app.parse_complete_callback([&remote_in_vain] {
     if (const auto why = remote_in_vain()) throw CLI::ValidationError(*why);
   });
-  app.footer("reident COMMAND --help shows the options of a command and an example.");
+  app.footer(
+      "reident COMMAND --help shows the options of a command and an example.\nIn a folder "
+      "with a reident.toml, reident alone is reident overview.");
   int exit_code = exit_done;
   for (const Verb& verb : verbs()) {
     CLI::App* command = app.add_subcommand(std::string(verb.name), std::string(verb.purpose));
     command->group(std::string(group_title(verb.works_on)));
     command->callback([work = verb.declare(*command), &exit_code] { exit_code = work(); });
   }
+  if (const auto refusal = unknown_verb(words)) return refuse(*refusal);
   try {
-    app.parse(argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app.parse(words);
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app.help());
+  } catch (const CLI::CallForVersion& version) {
+    fmt::print("{}\n", version.what());
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help
     if (const auto why = remote_in_vain()) return refuse({*why});
     std::string command = "reident";
     for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
     return refuse({fmt::format("{}; see {} --help", error.what(), command)});
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    fmt::print(stderr, "reident: the output cannot be written: {}\n",
-               std::generic_category().message(errno));
+    print_error("reident: the output cannot be written: {}",
+                std::generic_category().message(errno));
     return exit_failed;
   }
   return exit_code;
@@ -64,7 +117,7 @@ int main(int argc, char** argv) {
   try {
     return reident::cli::run(argc, argv);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "reident: {}\n", error.what());
+    reident::print_error("reident: {}", error.what());
     return reident::cli::exit_failed;
   }
 }

@@ -15,6 +15,7 @@
 #include "service/cli/config_options.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/program_identity.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
 
 namespace reident::cli {
@@ -125,11 +126,11 @@ std::optional<Asked> ask(const Target& target, const OperatorOptions& options,
 }
 
 int report_timeout(const Target& target, const OperatorOptions& options, const std::string& why) {
-  fmt::print(stderr,
-             "reident: no service answered on domain {}, partition {} within {:g} s, and {}; check "
-             "that the domain and the partition are the service's, and with 'reident history' that "
-             "nothing was done\n",
-             target.endpoint.domain, target.endpoint.partition, options.timeout_s, why);
+  print_error(
+      "reident: no service answered on domain {}, partition {} within {:g} s, and {}; check "
+      "that the domain and the partition are the service's, and with 'reident history' that "
+      "nothing was done",
+      target.endpoint.domain, target.endpoint.partition, options.timeout_s, why);
   return exit_timed_out;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "service/support/size_text.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident {
@@ -100,20 +101,6 @@ void leave_out_mistake(const toml::parse_error& error, Lines& lines, ConfigDocum
   document.mistakes.push_back({static_cast<std::uint32_t>(begin + 1), std::move(message)});
   // The line on which an unfinished value is noticed belongs to the next statement.
   lines.leave_out(begin, begin == index || unfinished ? index + 1 : index);
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t change = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 std::string described(const toml::node& node) {
@@ -296,8 +283,7 @@ std::vector<const toml::table*> TableReader::sections(std::string_view key) {
 }
 
 void TableReader::refuse_unknown_keys(std::initializer_list<FormerKey> former) {
-  std::string all;
-  for (const std::string& key : known_) all += (all.empty() ? "" : ", ") + key;
+  const std::vector<std::string> known(known_.begin(), known_.end());
   for (const auto& [key, node] : table_) {
     if (known_.contains(key.str())) continue;
     const auto* of_before = std::find_if(
@@ -306,16 +292,11 @@ void TableReader::refuse_unknown_keys(std::initializer_list<FormerKey> former) {
       mistake(key.str(), fmt::format("{} is no key any more: {}", key.str(), of_before->remedy));
       continue;
     }
-    const std::string* nearest = nullptr;
-    std::size_t least = std::max<std::size_t>(1, key.str().size() / 3) + 1;
-    for (const std::string& candidate : known_)
-      if (const std::size_t distance = edit_distance(key.str(), candidate); distance < least) {
-        least = distance;
-        nearest = &candidate;
-      }
-    mistake(key.str(), nearest != nullptr
-                           ? fmt::format("{} is not known; did you mean {}?", key.str(), *nearest)
-                           : fmt::format("{} is not known; known here: {}", key.str(), all));
+    const std::string_view meant = nearest(key.str(), known);
+    mistake(key.str(),
+            !meant.empty()
+                ? fmt::format("{} is not known; did you mean {}?", key.str(), meant)
+                : fmt::format("{} is not known; known here: {}", key.str(), joined(known)));
   }
 }
 

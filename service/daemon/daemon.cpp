@@ -6,10 +6,14 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "service/operations/commands.hpp"
 #include "service/support/log.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/version.hpp"
+#include "storage/archive/holdings.hpp"
 
 namespace reident {
 namespace {
@@ -28,6 +32,27 @@ storage::Database open_for_writing(const Config& config) {
     }
     std::this_thread::sleep_for(20ms);
   }
+}
+
+std::vector<storage::SimulatorState> known_simulators(const Config& config) {
+  storage::Database database(config.database, storage::Database::Mode::read_only);
+  return storage::Registry(database).simulators();
+}
+
+/// What is damaged in the file already; empty: nothing.
+std::string damage_of(const storage::Database& database) {
+  const std::size_t count = storage::damaged_chunks(database);
+  if (count == 0) return {};
+  return fmt::format(
+      "{} chunks of samples cannot be decoded and were set aside. 'reident verify' "
+      "lists them; archive their telemetry again.",
+      count);
+}
+
+std::string equipment_text(const Config& config) {
+  std::vector<std::string> names;
+  for (const storage::EquipmentName& name : equipment_of(config)) names.push_back(full_name(name));
+  return joined(names);
 }
 
 IdentificationReport report_of(const RefreshResult& result) {
@@ -70,21 +95,26 @@ Daemon::Daemon(const Config& config, Clock clock)
       queue_({config.queue_frames, config.queue_mib << 20}),
       search_(usable_cores()),
       feed_(config, clock_),
+      telemetry_(config, clock_, feed_),
       leagues_(config, feed_),
       writer_(open_for_writing(config), {.recent_samples = config.recent_samples}, queue_,
-              config.batch_frames, config.batch_delay, feed_),
+              config.batch_frames, config.batch_delay, telemetry_),
       keeper_(config, writer_, clock_),
       participant_(dds::Endpoint{config.domain, config.partition}),
       publisher_(participant_),
       desk_(participant_, config.service_name),
       history_desk_(participant_, config.service_name),
-      ingest_(std::in_place, participant_, config, queue_) {
+      simulators_(known_simulators(config), started_),
+      ingest_(std::in_place, participant_, config, queue_, simulators_, clock_) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       kept_.push_back(window_cache_of(spacecraft.name, equipment));
   storage::Database database(config.database, storage::Database::Mode::read_only);
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
+  telemetry_.recover(storage::Archive(database));
+  watch_.emplace(ServiceWatch::Parts{config, clock_, started_, participant_, writer_, telemetry_,
+                                     simulators_, publisher_, damage_of(database)});
   const std::size_t published = publisher_.publish_champions(registry);
   log::info("service", "started",
             {{"version", program_version()},
@@ -241,6 +271,7 @@ void Daemon::watch_champions() {
 
 void Daemon::heartbeat() {
   keeper_.look();
+  watch_->look();
   const ArchiveWriter::Counts stored = writer_.counts();
   ServiceStatus status;
   status.service = config_.service_name;
@@ -263,6 +294,8 @@ void Daemon::heartbeat() {
   status.newest_telemetry = feed_.newest_telemetry();
   status.last_error = stored.last_error.empty() ? stored.last_damage : stored.last_error;
   status.failing_champions = leagues_.failing();
+  status.alarms = watch_->text();
+  status.equipment = equipment_text(config_);
   publisher_.status(status);
 }
 
@@ -281,6 +314,7 @@ bool Daemon::stop() {
   for (std::thread& thread : identification_threads_) thread.join();
   const std::uint64_t frames = ingest_->frames_received();
   ingest_.reset();
+  watch_.reset();
   participant_.hear_again();  // for the acknowledgments that the publisher's writers wait for
   const ArchiveWriter::Counts stored = writer_.counts();
   if (stored.lost > 0)

@@ -27,6 +27,9 @@
 #include "service/daemon/ingest.hpp"
 #include "service/daemon/league_watch.hpp"
 #include "service/daemon/publisher.hpp"
+#include "service/daemon/service_watch.hpp"
+#include "service/daemon/simulator_book.hpp"
+#include "service/daemon/telemetry_watch.hpp"
 #include "service/daemon/window_attempt.hpp"
 #include "service/daemon/window_feed.hpp"
 #include "service/dds/dds.hpp"
@@ -74,6 +77,7 @@ class Daemon {
   BoundedQueue<TelemetryEvent> queue_;
   WorkerPool search_;  // shared by the identification threads
   WindowFeed feed_;
+  TelemetryWatch telemetry_;
   LeagueWatch leagues_;
   ArchiveWriter writer_;
   ArchiveKeeper keeper_;
@@ -81,6 +85,8 @@ class Daemon {
   Publisher publisher_;
   CommandDesk desk_;
   HistoryDesk history_desk_;
+  SimulatorBook simulators_;
+  std::optional<ServiceWatch> watch_;
   std::optional<Ingest> ingest_;  // ends before the middleware hears again
   /// By equipment, which has one job at a time: the job's thread owns its entry.
   std::vector<WindowCache> kept_;

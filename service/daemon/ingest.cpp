@@ -8,9 +8,6 @@
 namespace reident {
 namespace {
 
-// More than that at work are logged more than once.
-constexpr std::size_t simulators_remembered = 4096;
-
 using namespace std::chrono_literals;
 
 constexpr std::size_t messages_at_most = 256;  // messages of one topic in a turn
@@ -40,13 +37,15 @@ void log_acknowledgement(const ModelAcknowledgement& acknowledgement) {
 }  // namespace
 
 Ingest::Ingest(dds::Participant& participant, const Config& config,
-               BoundedQueue<TelemetryEvent>& queue)
+               BoundedQueue<TelemetryEvent>& queue, SimulatorBook& simulators, Clock clock)
     : participant_(participant),
       queue_(queue),
       descriptors_(participant),
       frames_(participant, options_of(config)),
       acknowledgements_(participant),
-      ready_(participant) {
+      ready_(participant),
+      simulators_(simulators),
+      clock_(std::move(clock)) {
   ready_.attach(descriptors_);
   ready_.attach(frames_);
   ready_.attach(acknowledgements_);
@@ -78,13 +77,7 @@ void Ingest::count_rejected() {
 }
 
 void Ingest::hear(const ModelAcknowledgement& acknowledgement) {
-  const std::pair news{acknowledgement.running.version,
-                       acknowledgement.accepted ? 0 : acknowledgement.version};
-  if (heard_.size() >= simulators_remembered) heard_.clear();
-  const auto [place, is_new] = heard_.try_emplace(
-      {acknowledgement.simulator, acknowledgement.spacecraft, acknowledgement.equipment}, news);
-  if (!is_new && std::exchange(place->second, news) == news) return;
-  log_acknowledgement(acknowledgement);
+  if (simulators_.hear(acknowledgement, clock_())) log_acknowledgement(acknowledgement);
 }
 
 std::size_t Ingest::take() {
@@ -92,8 +85,9 @@ std::size_t Ingest::take() {
       messages_at_most, [this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });
   taken += frames_.take(messages_at_most,
                         [this](storage::TelemetryFrame&& one) { queue(std::move(one)); });
-  taken += acknowledgements_.take(messages_at_most,
-                                  [this](ModelAcknowledgement&& message) { hear(message); });
+  taken += acknowledgements_.take(
+      messages_at_most, [this](ModelAcknowledgement&& message) { hear(message); }, {},
+      [this](ModelAcknowledgement&& key) { simulators_.leave(key, clock_()); });
   push_taken();
   count_rejected();
   return taken;
@@ -104,10 +98,9 @@ void Ingest::watch_simulators() {
   if (now < next_look_) return;
   next_look_ = now + std::chrono::seconds(1);
   const std::uint32_t simulators = acknowledgements_.matched_writers();
-  if (simulators == 0) heard_.clear();
-  if (simulators >= simulators_ && std::exchange(are_leaving_, false)) return_freed_memory();
-  if (simulators < simulators_) are_leaving_ = true;
-  simulators_ = simulators;
+  if (simulators >= listeners_ && std::exchange(are_leaving_, false)) return_freed_memory();
+  if (simulators < listeners_) are_leaving_ = true;
+  listeners_ = simulators;
 }
 
 void Ingest::run() {

@@ -2,25 +2,25 @@
 // waits for the disk, only for room in the queue.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <map>
-#include <string>
-#include <utility>
+#include <vector>
 
 #include "service/config/config.hpp"
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/bounded_queue.hpp"
+#include "service/daemon/simulator_book.hpp"
+#include "service/daemon/window_feed.hpp"
 #include "service/dds/dds.hpp"
 
 namespace reident {
 
 class Ingest {
  public:
-  /// The participant and the queue must outlive it. Throws dds::Error.
-  Ingest(dds::Participant& participant, const Config& config, BoundedQueue<TelemetryEvent>& queue);
+  /// What it is given must outlive it. Throws dds::Error.
+  Ingest(dds::Participant& participant, const Config& config, BoundedQueue<TelemetryEvent>& queue,
+         SimulatorBook& simulators, Clock clock);
 
   /// The thread's body: until stop(). What was acknowledged to the writers by then, so that they
   /// need not keep it, is still queued before it returns.
@@ -51,9 +51,9 @@ class Ingest {
   dds::Reader<storage::TelemetryFrame> frames_;
   dds::Reader<ModelAcknowledgement> acknowledgements_;
   dds::WaitSet ready_;
-  /// By simulator, spacecraft and equipment: the versions that run and that were refused.
-  std::map<std::array<std::string, 3>, std::pair<std::int64_t, std::int64_t>> heard_;
-  std::uint32_t simulators_ = 0;  // at the last look
+  SimulatorBook& simulators_;
+  const Clock clock_;
+  std::uint32_t listeners_ = 0;  // simulators at the last look
   bool are_leaving_ = false;
   std::chrono::steady_clock::time_point next_look_;
   std::vector<TelemetryEvent> taken_;  // and not pushed yet

@@ -41,12 +41,20 @@ bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive
     return recorded;
   };
   writer.failure = [&](const std::optional<Reason>& reason) {
-    watched.is_failing = reason.has_value();
     if (reason)
       log::error("league", "the champion fails",
                  {{"equipment", spacecraft + "/" + name}, {"reason", sentence(*reason)}});
-    else
+    else if (watched.is_failing)
       log::info("league", "no champion fails any more", {{"equipment", spacecraft + "/" + name}});
+    watched.is_failing = reason.has_value();
+    context.write([&](storage::Registry& stored, auto&) {
+      note_failure(stored, {spacecraft, name}, reason, context.clock());
+    });
+  };
+  writer.change = [&](const storage::FoundChange& change) {
+    context.write([&](storage::Registry& stored, auto&) {
+      stored.record_change({spacecraft, name}, change, context.clock());
+    });
   };
   while (const auto window = watched.keeper.advance(archive, registry, reached, writer)) {
     log::warning("league", "the equipment has changed; it is identified again",

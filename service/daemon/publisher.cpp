@@ -55,7 +55,7 @@ bool Publisher::publish_champion(const storage::Registry& registry,
     published_.erase(published);
     return true;
   }
-  if (published != published_.end() && published->second == made->id) return true;
+  if (published != published_.end() && published->second.decision == made->id) return true;
   const auto decisions = registry.decisions(spacecraft, name);
   const bool follows_a_newer_one =
       std::any_of(decisions.begin(), decisions.end(), [&](const storage::Decision& earlier) {
@@ -64,8 +64,15 @@ bool Publisher::publish_champion(const storage::Registry& registry,
       });
   const auto version = registry.version(spacecraft, name, made->version);
   if (!write(*version, *made, follows_a_newer_one)) return false;
-  published_[equipment] = made->id;
+  published_[equipment] = {made->id, made->version};
   return true;
+}
+
+std::map<storage::EquipmentName, std::int64_t> Publisher::published() const {
+  const MutexLock lock(versions_mutex_);
+  std::map<storage::EquipmentName, std::int64_t> versions;
+  for (const auto& [equipment, published] : published_) versions[equipment] = published.version;
+  return versions;
 }
 
 std::size_t Publisher::publish_champions(const storage::Registry& registry) {

@@ -24,6 +24,9 @@ class Publisher {
   /// Publishes every champion, for simulators that start after the service. Returns how many.
   std::size_t publish_champions(const storage::Registry& registry);
 
+  /// The versions that are published.
+  std::map<storage::EquipmentName, std::int64_t> published() const;
+
   void report(const IdentificationReport& report) {
     const MutexLock lock(reports_mutex_);
     reports_.write(report);
@@ -35,10 +38,13 @@ class Publisher {
   bool write(const storage::Version& version, const storage::Decision& decision,
              bool follows_a_newer_one) REIDENT_REQUIRES(versions_mutex_);
 
-  Mutex versions_mutex_;
+  struct Published {
+    std::int64_t decision = 0;  // id of the one that made it champion
+    std::int64_t version = 0;
+  };
+  mutable Mutex versions_mutex_;
   dds::Writer<ModelVersion> versions_ REIDENT_GUARDED_BY(versions_mutex_);
-  /// Id of the decision that made the published champion; absent where none is published.
-  std::map<storage::EquipmentName, std::int64_t> published_ REIDENT_GUARDED_BY(versions_mutex_);
+  std::map<storage::EquipmentName, Published> published_ REIDENT_GUARDED_BY(versions_mutex_);
   Mutex reports_mutex_;
   dds::Writer<IdentificationReport> reports_ REIDENT_GUARDED_BY(reports_mutex_);
   dds::Writer<ServiceStatus> status_;

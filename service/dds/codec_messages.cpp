@@ -141,6 +141,8 @@ const reident_ServiceStatus& Codec<ServiceStatus>::Encoder::operator()(
   wire_.newest_telemetry_ns = status.newest_telemetry;
   wire_.last_error = borrow(status.last_error);
   wire_.failing_champions = borrow(status.failing_champions);
+  wire_.alarms = borrow(status.alarms);
+  wire_.equipment = borrow(status.equipment);
   return wire_;
 }
 
@@ -167,6 +169,8 @@ Fault Codec<ServiceStatus>::decode(const reident_ServiceStatus& wire,
   status.newest_telemetry = wire.newest_telemetry_ns;
   status.last_error = texts.text(wire.last_error, "last_error");
   status.failing_champions = texts.text(wire.failing_champions, "failing_champions");
+  status.alarms = texts.text(wire.alarms, "alarms");
+  status.equipment = texts.text(wire.equipment, "equipment");
   return texts.fault();
 }
 

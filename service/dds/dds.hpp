@@ -127,6 +127,9 @@ class Reader {
   /// take() returns; neither may throw. Does not wait: 0 where there is nothing.
   std::size_t take(std::size_t max, const Sink& sink, const Refused& refused = {});
   std::size_t take(std::size_t max, const DatedSink& sink, const Refused& refused = {});
+  /// Also calls `ended` where nobody writes a key any more: its writer disposed of it or is gone.
+  /// Of that message the key alone is filled in.
+  std::size_t take(std::size_t max, const Sink& sink, const Refused& refused, const Sink& ended);
   /// For a clean stop, after Participant::stop_hearing(): hands out every message that was
   /// acknowledged to its writer, those included that the middleware has not handed on yet. Takes
   /// until nothing came for 150 ms, a second at most. Returns how many were taken.

@@ -43,6 +43,20 @@ std::size_t Reader<M>::take(std::size_t max, const DatedSink& sink, const Refuse
 }
 
 template <class M>
+std::size_t Reader<M>::take(std::size_t max, const Sink& sink, const Refused& refused,
+                            const Sink& ended) {
+  const DatedSink dated = [&sink](M&& message, storage::Time) { sink(std::move(message)); };
+  return impl_->core->take(
+      max, [&](const void* wire, storage::Time sent) { impl_->decode(wire, sent, dated, refused); },
+      [&](const void* wire) {
+        M key;  // the rest is missing, which is no fault here
+        static_cast<void>(Codec<M>::decode(*static_cast<const typename Codec<M>::Wire*>(wire),
+                                           impl_->options, key));
+        ended(std::move(key));
+      });
+}
+
+template <class M>
 std::size_t Reader<M>::drain(const Sink& sink, const Refused& refused) {
   const DatedSink dated = [&sink](M&& message, storage::Time) { sink(std::move(message)); };
   return impl_->core->drain(

@@ -91,24 +91,25 @@ bool ReaderCore::is_heard_by_first(dds_instance_handle_t writer) {
   return keeps_history_[writer] = durability != DDS_DURABILITY_VOLATILE;
 }
 
-std::size_t ReaderCore::take_some(const Endpoint& ear, std::size_t max, const Visit& visit) {
+std::size_t ReaderCore::take_some(const Endpoint& ear, std::size_t max, const Visit& visit,
+                                  const Ended& ended) {
   const Loan loan(ear.reader.get(), max, profile_.topic);
   const bool is_second = &ear == &second_;
   for (std::size_t i = 0; i < loan.count; ++i) {
     const dds_sample_info_t& info = loan.infos[i];
-    if (!info.valid_data) continue;
-    if (is_second && is_heard_by_first(info.publication_handle)) continue;
-    visit(loan.samples[i], std::max<storage::Time>(info.source_timestamp, 0));
+    if (info.valid_data && !(is_second && is_heard_by_first(info.publication_handle)))
+      visit(loan.samples[i], std::max<storage::Time>(info.source_timestamp, 0));
+    if (ended && info.instance_state != DDS_IST_ALIVE) ended(loan.samples[i]);
   }
   return loan.count;
 }
 
-std::size_t ReaderCore::take(std::size_t max, const Visit& visit) {
+std::size_t ReaderCore::take(std::size_t max, const Visit& visit, const Ended& ended) {
   meet_writers();
   std::size_t taken = 0;
   for (const Endpoint* ear : {&first_, &second_}) {
     while (ear->reader && taken < max) {
-      const std::size_t count = take_some(*ear, max - taken, visit);
+      const std::size_t count = take_some(*ear, max - taken, visit, ended);
       taken += count;
       if (count == 0) break;
     }

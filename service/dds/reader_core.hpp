@@ -20,6 +20,8 @@ class ReaderCore {
   /// `wire` is the topic's C type, lent until the visit returns. `sent`: by the writer's clock; 0
   /// where it did not say. A visit must not throw.
   using Visit = std::function<void(const void* wire, storage::Time sent)>;
+  /// Of `wire` the key alone is there.
+  using Ended = std::function<void(const void* wire)>;
 
   ReaderCore(Participant& participant, const Profile& profile,
              const dds_topic_descriptor_t& descriptor, const ReaderOptions& options);
@@ -29,8 +31,9 @@ class ReaderCore {
   ReaderCore(const ReaderCore&) = delete;
   ReaderCore& operator=(const ReaderCore&) = delete;
 
-  /// Visits at most `max` samples and removes them; returns how many were removed.
-  std::size_t take(std::size_t max, const Visit& visit);
+  /// Visits at most `max` samples and removes them; returns how many were removed. Calls `ended`
+  /// where nobody writes a key any more.
+  std::size_t take(std::size_t max, const Visit& visit, const Ended& ended = {});
   /// Takes until nothing more comes, for a second at most.
   std::size_t drain(const Visit& visit);
   /// Writers that one of the two readers hears now.
@@ -51,7 +54,8 @@ class ReaderCore {
   Endpoint make_endpoint(bool transient_local) const;
   void attach(dds_entity_t wait_set, const Endpoint& ear) const;
   /// One loan's worth; returns how many were removed, those that are skipped included.
-  std::size_t take_some(const Endpoint& ear, std::size_t max, const Visit& visit);
+  std::size_t take_some(const Endpoint& ear, std::size_t max, const Visit& visit,
+                        const Ended& ended);
   /// Whether the writer keeps history, so that the first reader hears it too. False for one that is
   /// gone: a sample twice is better than none.
   bool is_heard_by_first(dds_instance_handle_t writer);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "service/history/overview_rows.hpp"
 #include "storage/types/registry_rows.hpp"
 #include "storage/types/sample_columns.hpp"
 #include "storage/types/sample_reader.hpp"
@@ -61,6 +62,12 @@ class HistoryReader {
   virtual std::optional<storage::Decision> champion_decision(
       const storage::EquipmentName& equipment,
       std::optional<storage::Time> time = std::nullopt) const = 0;
+  /// How things are now: equipment by name, versions that wait for an operator, alarms that are
+  /// raised, simulators that are there.
+  virtual std::vector<OverviewRow> overview() const = 0;
+  virtual std::vector<WaitingRow> waiting() const = 0;
+  virtual std::vector<storage::Alarm> alarms() const = 0;
+  virtual std::vector<storage::SimulatorState> simulators() const = 0;
   /// The blocks of an equipment that versions were scored on, ascending.
   virtual std::vector<storage::Block> blocks(const storage::EquipmentName& equipment) const = 0;
   /// The scores of a version, ascending; without the states of its run.

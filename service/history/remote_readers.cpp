@@ -128,6 +128,22 @@ std::optional<storage::Decision> RemoteHistoryReader::champion_decision(
   return row ? std::move(row->decision) : std::nullopt;
 }
 
+std::vector<OverviewRow> RemoteHistoryReader::overview() const {
+  return rows_.all<OverviewRow>(about("overview"));
+}
+
+std::vector<WaitingRow> RemoteHistoryReader::waiting() const {
+  return rows_.all<WaitingRow>(about("waiting"));
+}
+
+std::vector<storage::Alarm> RemoteHistoryReader::alarms() const {
+  return rows_.all<storage::Alarm>(about("alarms"));
+}
+
+std::vector<storage::SimulatorState> RemoteHistoryReader::simulators() const {
+  return rows_.all<storage::SimulatorState>(about("simulators"));
+}
+
 std::vector<storage::Block> RemoteHistoryReader::blocks(const EquipmentName& equipment) const {
   return rows_.all<storage::Block>(about("blocks", equipment));
 }

@@ -95,6 +95,10 @@ class RemoteHistoryReader final : public HistoryReader {
                                            std::optional<std::int64_t> version) const override;
   std::optional<storage::Decision> champion_decision(
       const storage::EquipmentName& equipment, std::optional<storage::Time> time) const override;
+  std::vector<OverviewRow> overview() const override;
+  std::vector<WaitingRow> waiting() const override;
+  std::vector<storage::Alarm> alarms() const override;
+  std::vector<storage::SimulatorState> simulators() const override;
   std::vector<storage::Block> blocks(const storage::EquipmentName& equipment) const override;
   std::vector<storage::BlockScore> scores(const storage::EquipmentName& equipment,
                                           std::int64_t version) const override;

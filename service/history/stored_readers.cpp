@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "service/history/overview.hpp"
 #include "storage/care/completeness.hpp"
 
 namespace reident::history {
@@ -52,6 +53,22 @@ std::vector<storage::Decision> StoredHistory::decisions(const EquipmentName& equ
 std::optional<storage::Decision> StoredHistory::champion_decision(
     const EquipmentName& equipment, std::optional<storage::Time> time) const {
   return registry_.champion_decision(equipment.spacecraft, equipment.equipment, time);
+}
+
+std::vector<OverviewRow> StoredHistory::overview() const {
+  return history::overview(database_);
+}
+
+std::vector<WaitingRow> StoredHistory::waiting() const {
+  return history::waiting(registry_);
+}
+
+std::vector<storage::Alarm> StoredHistory::alarms() const {
+  return registry_.alarms();
+}
+
+std::vector<storage::SimulatorState> StoredHistory::simulators() const {
+  return registry_.simulators();
 }
 
 std::vector<storage::Block> StoredHistory::blocks(const EquipmentName& equipment) const {

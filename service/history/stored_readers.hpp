@@ -12,7 +12,7 @@ namespace reident::history {
 /// The registry of a database, which must outlive it. Throws storage::Error.
 class StoredHistory final : public HistoryReader {
  public:
-  explicit StoredHistory(storage::Database& database) : registry_(database) {}
+  explicit StoredHistory(storage::Database& database) : database_(database), registry_(database) {}
 
   std::vector<storage::EquipmentName> equipment() const override;
   std::optional<storage::Hold> hold(const storage::EquipmentName& equipment) const override;
@@ -27,11 +27,16 @@ class StoredHistory final : public HistoryReader {
                                            std::optional<std::int64_t> version) const override;
   std::optional<storage::Decision> champion_decision(
       const storage::EquipmentName& equipment, std::optional<storage::Time> time) const override;
+  std::vector<OverviewRow> overview() const override;
+  std::vector<WaitingRow> waiting() const override;
+  std::vector<storage::Alarm> alarms() const override;
+  std::vector<storage::SimulatorState> simulators() const override;
   std::vector<storage::Block> blocks(const storage::EquipmentName& equipment) const override;
   std::vector<storage::BlockScore> scores(const storage::EquipmentName& equipment,
                                           std::int64_t version) const override;
 
  private:
+  storage::Database& database_;
   storage::Registry registry_;
 };
 

@@ -21,6 +21,11 @@ HistoryPage versions_page(storage::Database& database, const HistoryQuery& query
 HistoryPage models_page(storage::Database& database, const HistoryQuery& query);
 HistoryPage decisions_page(storage::Database& database, const HistoryQuery& query);
 HistoryPage champions_page(storage::Database& database, const HistoryQuery& query);
+// How things are now, of the equipment that is selected.
+HistoryPage overview_page(storage::Database& database, const HistoryQuery& query);
+HistoryPage waiting_page(storage::Database& database, const HistoryQuery& query);
+HistoryPage alarms_page(storage::Database& database, const HistoryQuery& query);
+HistoryPage simulators_page(storage::Database& database, const HistoryQuery& query);
 // Of one equipment, and of one of its versions.
 HistoryPage blocks_page(storage::Database& database, const HistoryQuery& query);
 HistoryPage scores_page(storage::Database& database, const HistoryQuery& query);

@@ -144,6 +144,8 @@ struct ServiceStatus {
   storage::Time newest_telemetry = 0;
   std::string last_error;         // empty when all is well
   std::string failing_champions;  // equipment, separated by commas
+  std::string alarms;             // one a line: "code SPACECRAFT/EQUIPMENT: text"
+  std::string equipment;          // that it keeps true, separated by commas
 };
 
 }  // namespace reident

@@ -216,6 +216,13 @@ std::optional<storage::TimeRange> Backfill::advance(LeagueKeeper& league,
     if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
     return recorded;
   };
+  const storage::EquipmentName equipment{request.spacecraft, request.equipment.name};
+  writer.failure = [&](const std::optional<Reason>& failure) {
+    note_failure(registry_, equipment, failure, clock_());
+  };
+  writer.change = [&](const storage::FoundChange& change) {
+    registry_.record_change(equipment, change, clock_());
+  };
   return league.advance(archive_, registry_, reached, writer);
 }
 

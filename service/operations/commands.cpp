@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "service/dds/wire.hpp"
+#include "service/model/reasons.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
@@ -112,6 +113,24 @@ std::optional<CommandOutcome> refuse_what_does_not_wait(const Order& order,
                              order.full_name(), fate(order, version)));
 }
 
+/// Rejects the versions that the approval of this one answers. Returns their numbers.
+std::vector<std::string> answer_superseded(const Order& order, std::int64_t approved) {
+  Decision of_approved;
+  of_approved.spacecraft = order.spacecraft();
+  of_approved.equipment = order.name();
+  of_approved.version = approved;
+  std::vector<std::string> answered;
+  for (const Decision& other : waiting_for_operator(order.registry)) {
+    if (!supersedes(of_approved, other)) continue;
+    order.registry.decide(order.spacecraft(), order.name(), other.version,
+                          {DecisionKind::reject, order.command.actor,
+                           fmt::format("superseded: version {} was approved", approved)},
+                          order.now);
+    answered.push_back(fmt::format("version {}", other.version));
+  }
+  return answered;
+}
+
 CommandOutcome approve(const Order& order) {
   const auto named = named_version(order);
   if (const auto* refusal = std::get_if<CommandOutcome>(&named)) return *refusal;
@@ -120,11 +139,16 @@ CommandOutcome approve(const Order& order) {
   if (const auto hold = order.registry.hold(order.spacecraft(), order.name()))
     return refused(hold_text(order.equipment, *hold) + ": release it first");
   const auto champion = order.registry.champion(order.spacecraft(), order.name());
+  const std::vector<std::string> answered = answer_superseded(order, version.number);
   order.decide(version.number, DecisionKind::approve);
-  return done(fmt::format("version {} of {} is approved and champion now, {}", version.number,
-                          order.full_name(),
-                          champion ? fmt::format("after version {}", champion->number)
-                                   : "the first since there was none"));
+  std::string what = fmt::format("version {} of {} is approved and champion now, {}",
+                                 version.number, order.full_name(),
+                                 champion ? fmt::format("after version {}", champion->number)
+                                          : "the first since there was none");
+  if (!answered.empty())
+    what += fmt::format("; {} that waited before it {} rejected", joined(answered),
+                        answered.size() > 1 ? "are" : "is");
+  return done(std::move(what));
 }
 
 CommandOutcome reject(const Order& order) {
@@ -299,6 +323,17 @@ CommandOutcome carry_out(const Command& command, Registry& registry, const Comma
 CommandOutcome execute(const Command& command, Registry& registry, const CommandContext& context,
                        storage::Time now) {
   return registry.execute(command, now, [&] { return carry_out(command, registry, context, now); });
+}
+
+std::vector<Decision> waiting_for_operator(const Registry& registry) {
+  std::vector<Decision> waits = registry.waits();
+  std::erase_if(waits, [](const Decision& last) { return !waits_for_operator(last); });
+  return waits;
+}
+
+bool supersedes(const Decision& approved, const Decision& other) {
+  return approved.spacecraft == other.spacecraft && approved.equipment == other.equipment &&
+         other.version < approved.version;
 }
 
 std::vector<EquipmentName> equipment_of(const Config& config) {

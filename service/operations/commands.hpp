@@ -32,6 +32,14 @@ struct CommandContext {
 storage::CommandOutcome execute(const storage::Command& command, storage::Registry& registry,
                                 const CommandContext& context, storage::Time now);
 
+/// The last decisions about the versions that wait for an operator rather than for telemetry, by
+/// equipment and version. Throws storage::Error.
+std::vector<storage::Decision> waiting_for_operator(const storage::Registry& registry);
+
+/// Whether the approval of one such version answers the other: that is an earlier one of the same
+/// equipment.
+bool supersedes(const storage::Decision& approved, const storage::Decision& other);
+
 /// Returns the equipment of a configuration, in its order.
 std::vector<storage::EquipmentName> equipment_of(const Config& config);
 

@@ -62,6 +62,15 @@ std::string last_code(const storage::Decision& decision) {
 
 }  // namespace
 
+void note_failure(storage::Registry& registry, const storage::EquipmentName& equipment,
+                  const std::optional<Reason>& failure, Time now) {
+  const std::string code(name(ReasonCode::champion_failed));
+  if (failure)
+    registry.raise({code, equipment, sentence(*failure), now});
+  else
+    registry.clear(code, equipment, now);
+}
+
 LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipment)
     : spacecraft_(std::move(spacecraft)),
       equipment_(equipment),
@@ -227,8 +236,8 @@ void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
 void LeagueKeeper::look_after_champion(const storage::Registry& registry,
                                        const LeagueWriter& writer, bool held, Time now) {
   const auto failure = judge_.failure(league_);
-  if (failure.has_value() != has_failed_ && writer.failure) writer.failure(failure);
-  has_failed_ = failure.has_value();
+  const std::int64_t failed = failure ? league_.champion->version : 0;
+  if (std::exchange(failed_, failed) != failed && writer.failure) writer.failure(failure);
   if (!failure || held || equipment_.on_failure == FailurePolicy::keep) return;
   Finding finding;
   finding.version = league_.champion->version;
@@ -260,8 +269,11 @@ std::optional<storage::TimeRange> LeagueKeeper::advance(const storage::Archive& 
     *reached_ += length;
     scored(block, *reached_);
     const auto change = judge_.change(league_);
+    const bool is_new = change && change->found == *reached_;
+    if (is_new && writer.change)
+      writer.change({league_.champion->version, change->since, change->found});
     decide(registry, writer, *reached_);
-    if (change && change->found == *reached_) return window_behind(*change, equipment_);
+    if (is_new) return window_behind(*change, equipment_);
   }
   return std::nullopt;
 }

@@ -31,10 +31,16 @@ struct LeagueWriter {
       scores;
   /// Whether it was recorded: not where something was decided since `standing`.
   std::function<bool(const storage::DecisionState&, const LeagueDecision&)> decide;
-  /// Called when the champion begins to fail (Judge::failure()), and when none fails any more; may
-  /// be empty.
+  /// Called at the first look, when the champion begins to fail (Judge::failure()) and when none
+  /// fails any more; may be empty.
   std::function<void(const std::optional<Reason>&)> failure{};
+  /// Called with each change of the equipment that is found; may be empty.
+  std::function<void(const storage::FoundChange&)> change{};
 };
+
+/// Raises the alarm of a champion that fails for this reason, or clears it.
+void note_failure(storage::Registry& registry, const storage::EquipmentName& equipment,
+                  const std::optional<Reason>& failure, storage::Time now);
 
 /// For one equipment and one thread at a time. The configuration must outlive it.
 class LeagueKeeper {
@@ -79,7 +85,7 @@ class LeagueKeeper {
   Judge judge_;
   std::map<std::int64_t, EquipmentModel> models_;  // of the members
   std::optional<storage::Time> reached_;           // end of the last block
-  bool has_failed_ = false;                        // the champion, when it was looked at last
+  std::optional<std::int64_t> failed_;             // champion that failed at the last look; 0: none
 };
 
 }  // namespace reident

@@ -9,6 +9,7 @@
 #include "service/support/csv.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/version.hpp"
 
@@ -78,7 +79,7 @@ int exit_code(Outcome outcome, int signal) {
 }
 
 int complain(const CLI::App& app, std::string_view message, int code) {
-  fmt::print(stderr, "{}: {}\n", app.get_name(), message);
+  print_error("{}: {}", app.get_name(), message);
   return code;
 }
 

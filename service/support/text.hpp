@@ -25,4 +25,15 @@ inline std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
+/// The names of "a, b, c".
+std::vector<std::string> split_names(std::string_view text);
+
+/// Returns the candidate that is least different from `name`, as one who misspelt it wrote it:
+/// letters changed, left out, added or swapped, the case of letters aside; empty where none is
+/// near.
+std::string_view nearest(std::string_view name, const std::vector<std::string>& candidates);
+
+/// " (did you mean X?)", or nothing where no candidate is near.
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
+
 }  // namespace reident

@@ -1,10 +1,12 @@
 #include "service/support/time_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
 #include <limits>
 #include <system_error>
+#include <utility>
 
 #include "service/support/floor_divide.hpp"
 #include "service/support/text.hpp"
@@ -247,6 +249,16 @@ std::string time_text(std::int64_t time_ns) {
     text.erase(text.find_last_not_of('0') + 1);
   }
   return text += 'Z';
+}
+
+std::string rough_duration_text(std::int64_t duration_ns) {
+  constexpr std::int64_t year_ns = 365 * day_ns;
+  if (duration_ns < 0)
+    return "-" + rough_duration_text(duration_ns == INT64_MIN ? INT64_MAX : -duration_ns);
+  for (const auto& [ns, name] :
+       {std::pair{2 * year_ns, "y"}, {day_ns, "d"}, {hour_ns, "h"}, {minute_ns, "min"}})
+    if (duration_ns >= ns) return std::to_string(duration_ns / std::min(ns, year_ns)) + name;
+  return std::to_string(duration_ns / second_ns) + "s";
 }
 
 std::string duration_text(std::int64_t duration_ns) {

@@ -27,4 +27,7 @@ std::string time_text(std::int64_t time_ns);
 /// The largest unit that divides it: "90min", "1500ms", "0s". parse_duration gives it back.
 std::string duration_text(std::int64_t duration_ns);
 
+/// For people: the largest unit alone, as in "12s", "5min", "3h", "4d", "2y".
+std::string rough_duration_text(std::int64_t duration_ns);
+
 }  // namespace reident

@@ -54,6 +54,12 @@ void each_sequence_gap(const Database& database, const std::optional<GapKey>& be
   }
 }
 
+std::size_t damaged_chunks(const Database& database) {
+  sqlite::Query row = database.impl().connection->query("SELECT count(*) FROM damaged_chunk");
+  row.step();
+  return row.integer<std::size_t>(0);
+}
+
 std::map<std::int64_t, std::string> source_names(const Database& database) {
   std::map<std::int64_t, std::string> names;
   sqlite::Query row = database.impl().connection->query("SELECT id, name FROM source");

@@ -28,6 +28,9 @@ std::optional<std::int64_t> series_id(const Database& database, const std::strin
 void each_sequence_gap(const Database& database, const std::optional<GapKey>& beyond,
                        const std::function<bool(const GapKey&, SequenceGap&&)>& visit);
 
+/// Chunks of samples that could not be decoded and were set aside.
+std::size_t damaged_chunks(const Database& database);
+
 /// Names of all sources by the ids that samples have (SampleColumns::source).
 std::map<std::int64_t, std::string> source_names(const Database& database);
 

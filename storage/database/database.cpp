@@ -182,6 +182,10 @@ Database::~Database() = default;
 Database::Database(Database&&) noexcept = default;
 Database& Database::operator=(Database&&) noexcept = default;
 
+bool Database::has_writer(const std::filesystem::path& path) {
+  return WriterLock::is_held(resolved(path));
+}
+
 const std::filesystem::path& Database::path() const {
   return impl_->path;
 }

@@ -38,6 +38,10 @@ class Database {
   Database(Database&&) noexcept;
   Database& operator=(Database&&) noexcept;
 
+  /// Whether a process has the database at `path` open for writing now. False where that cannot be
+  /// known, as where no database was ever there.
+  static bool has_writer(const std::filesystem::path& path);
+
   /// The file's own path, links resolved.
   const std::filesystem::path& path() const;
 

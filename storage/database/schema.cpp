@@ -178,6 +178,71 @@ CREATE TABLE command (
   UNIQUE (requester, request));
 )sql";
 
+// What the service noticed. A row is a change of what it says, so that the last row of a key is how
+// things are.
+constexpr std::string_view notice_tables = R"sql(
+CREATE TABLE alarm (
+  id INTEGER PRIMARY KEY,
+  code TEXT NOT NULL, spacecraft TEXT NOT NULL, equipment TEXT NOT NULL,
+  kind TEXT NOT NULL CHECK (kind IN ('raise', 'clear', 'acknowledge')),
+  actor TEXT NOT NULL, text TEXT NOT NULL, time INTEGER NOT NULL);
+CREATE INDEX alarm_by_code ON alarm (code, spacecraft, equipment);
+
+CREATE TABLE change (
+  id INTEGER PRIMARY KEY,
+  spacecraft TEXT NOT NULL, equipment TEXT NOT NULL, champion INTEGER NOT NULL,
+  since INTEGER NOT NULL, found INTEGER NOT NULL, time INTEGER NOT NULL,
+  FOREIGN KEY (spacecraft, equipment, champion) REFERENCES version (spacecraft, equipment, number));
+CREATE INDEX change_by_equipment ON change (spacecraft, equipment);
+
+CREATE TABLE simulator (
+  id INTEGER PRIMARY KEY,
+  name TEXT NOT NULL, spacecraft TEXT NOT NULL, equipment TEXT NOT NULL,
+  is_there INTEGER NOT NULL CHECK (is_there IN (0, 1)),
+  version INTEGER NOT NULL, offered INTEGER NOT NULL,
+  refused INTEGER NOT NULL, reason TEXT NOT NULL,
+  mode TEXT NOT NULL, from_cache INTEGER NOT NULL CHECK (from_cache IN (0, 1)),
+  since INTEGER NOT NULL, error_before, host TEXT NOT NULL, process INTEGER NOT NULL,
+  program_version TEXT NOT NULL, time INTEGER NOT NULL);
+CREATE INDEX simulator_by_name ON simulator (name, spacecraft, equipment);
+
+-- Few of the many waits are for an operator; the outcomes are those of programs before version 0.2.
+CREATE INDEX decision_with_why ON decision (spacecraft, equipment, version)
+  WHERE kind = 'wait' AND evidence_json <> '';
+CREATE INDEX attempt_left_waiting ON attempt (id) WHERE outcome IN ('waiting', 'unvouched', 'held');
+)sql";
+
+constexpr std::string_view notice_views = R"sql(
+CREATE VIEW alarm_now AS
+  SELECT code, spacecraft, equipment, text,
+         (SELECT min(time) FROM alarm AS own
+          WHERE own.code = last.code AND own.spacecraft = last.spacecraft
+            AND own.equipment = last.equipment AND own.kind = 'raise'
+            AND own.id > coalesce((SELECT max(id) FROM alarm AS cleared
+                                   WHERE cleared.code = last.code
+                                     AND cleared.spacecraft = last.spacecraft
+                                     AND cleared.equipment = last.equipment
+                                     AND cleared.kind = 'clear'), 0)) AS since,
+         coalesce((SELECT actor FROM alarm AS seen
+                   WHERE seen.code = last.code AND seen.spacecraft = last.spacecraft
+                     AND seen.equipment = last.equipment AND seen.kind = 'acknowledge'
+                     AND seen.id > last.id ORDER BY id DESC LIMIT 1), '') AS acknowledged_by
+  FROM alarm AS last
+  WHERE kind = 'raise'
+    AND id = (SELECT max(id) FROM alarm AS other
+              WHERE other.code = last.code AND other.spacecraft = last.spacecraft
+                AND other.equipment = last.equipment AND other.kind <> 'acknowledge');
+
+CREATE VIEW simulator_now AS
+  SELECT name AS simulator, spacecraft, equipment, version, offered, refused, reason, mode,
+         from_cache, since, host, process, program_version, time
+  FROM simulator AS last
+  WHERE is_there
+    AND id = (SELECT max(id) FROM simulator AS other
+              WHERE other.name = last.name AND other.spacecraft = last.spacecraft
+                AND other.equipment = last.equipment);
+)sql";
+
 constexpr std::string_view telemetry_views = R"sql(
 CREATE VIEW telemetry_series AS
   SELECT series.spacecraft,
@@ -354,6 +419,11 @@ std::string append_only_scores() {
          append_only("score", equipment + "version = NEW.version AND begin_time = NEW.begin_time");
 }
 
+std::string append_only_notices() {
+  return append_only("alarm", "id = NEW.id") + append_only("change", "id = NEW.id") +
+         append_only("simulator", "id = NEW.id");
+}
+
 std::string joined(std::initializer_list<std::string_view> parts) {
   std::string sql;
   for (const std::string_view part : parts) sql += part;
@@ -364,13 +434,14 @@ std::string joined(std::initializer_list<std::string_view> parts) {
 
 std::string creation() {
   return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
-                 decision_table, decision_of_4, score_tables, operator_tables, telemetry_views,
-                 hole_view, removal_view, lineage_view, registry_views, reason_view}) +
+                 decision_table, decision_of_4, score_tables, operator_tables, notice_tables,
+                 telemetry_views, hole_view, removal_view, lineage_view, registry_views,
+                 reason_view, notice_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
                      "equipment = NEW.equipment AND number = NEW.number)") +
-         append_only_decisions() + append_only_scores() +
+         append_only_decisions() + append_only_scores() + append_only_notices() +
          "PRAGMA application_id = " + std::to_string(application_id) + ";" + user_version();
 }
 
@@ -415,6 +486,10 @@ std::string from_3_to_4() {
 
 std::string from_5_to_6() {
   return joined({score_tables, reason_view}) + append_only_scores();
+}
+
+std::string from_6_to_7() {
+  return joined({notice_tables, notice_views}) + append_only_notices();
 }
 
 std::string user_version() {

@@ -78,6 +78,16 @@ WriterLock::WriterLock(const std::filesystem::path& database) {
   if (::pwrite(descriptor_, (pid + "\n").data(), pid_line, 0) < 0) return;
 }
 
+// The shared lock is held for an instant: a writer that begins then tries again.
+bool WriterLock::is_held(const std::filesystem::path& database) {
+  const int descriptor = ::open((database.string() + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool is_free = ::flock(descriptor, LOCK_SH | LOCK_NB) == 0;
+  const int system_error = errno;
+  ::close(descriptor);
+  return !is_free && system_error == EWOULDBLOCK;
+}
+
 void WriterLock::note_tables() {
   if (had_tables_) return;
   had_tables_ = ::pwrite(descriptor_, tables_line.data(), tables_line.size(), pid_line) ==

@@ -15,6 +15,9 @@ class WriterLock {
   WriterLock(const WriterLock&) = delete;
   WriterLock& operator=(const WriterLock&) = delete;
 
+  /// Whether somebody holds the lock of this database now; false where that cannot be known.
+  static bool is_held(const std::filesystem::path& database);
+
   /// Whether a writer before this one had tables in the file.
   bool had_tables() const { return had_tables_; }
   /// To be called when the file has its tables.

@@ -221,6 +221,24 @@ std::vector<std::int64_t> Registry::waiting(const std::string& spacecraft,
   return numbers;
 }
 
+std::vector<Decision> Registry::waits() const {
+  constexpr std::string_view is_last =
+      "NOT EXISTS (SELECT 1 FROM decision AS later WHERE later.spacecraft = own.spacecraft "
+      "AND later.equipment = own.equipment AND later.version = own.version AND later.id > own.id)";
+  std::vector<Decision> decisions;
+  sqlite::Query row = connection(database_).query(
+      decision_sql("WHERE id IN (SELECT own.id FROM decision AS own WHERE kind = 'wait' AND "
+                   "evidence_json <> '' AND " +
+                   std::string(is_last) +
+                   " UNION SELECT own.id FROM attempt JOIN version ON version.attempt = attempt.id "
+                   "JOIN decision AS own ON own.spacecraft = attempt.spacecraft "
+                   " AND own.equipment = attempt.equipment AND own.version = version.number "
+                   "WHERE outcome IN ('waiting', 'unvouched', 'held') AND kind = 'wait' AND " +
+                   std::string(is_last) + ") ORDER BY spacecraft, equipment, version"));
+  while (row.step()) decisions.push_back(read_decision(row));
+  return decisions;
+}
+
 std::vector<TimeRange> Registry::windows(const std::string& spacecraft,
                                          const std::string& equipment,
                                          const std::string& outcome) const {
@@ -251,6 +269,17 @@ std::vector<EquipmentName> Registry::equipment() const {
       "SELECT DISTINCT spacecraft, equipment FROM attempt ORDER BY spacecraft, equipment");
   while (row.step()) names.push_back({row.text(0), row.text(1)});
   return names;
+}
+
+Registry::Counts Registry::counts(const EquipmentName& equipment) const {
+  sqlite::Query row = connection(database_).query(
+      "SELECT (SELECT count(*) FROM attempt WHERE spacecraft = ?1 AND equipment = ?2), "
+      "(SELECT count(*) FROM version WHERE spacecraft = ?1 AND equipment = ?2), "
+      "(SELECT count(*) FROM decision WHERE spacecraft = ?1 AND equipment = ?2 "
+      " AND kind IN ('approve', 'roll_back') AND kind = 'approve')",
+      equipment.spacecraft, equipment.equipment);
+  row.step();
+  return {row.integer(0), row.integer(1), row.integer(2)};
 }
 
 std::int64_t Registry::last_decision() const {

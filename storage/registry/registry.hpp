@@ -71,12 +71,35 @@ class Registry {
   /// Blocks that begin at or behind `since`, ascending.
   std::vector<Block> blocks(const std::string& spacecraft, const std::string& equipment,
                             Time since) const;
+  /// The newest so many blocks, ascending.
+  std::vector<Block> newest_blocks(const EquipmentName& equipment, std::size_t count) const;
   /// End of the newest block; absent before the first.
   std::optional<Time> last_block_end(const std::string& spacecraft,
                                      const std::string& equipment) const;
   /// Scores of a version on blocks that begin at or behind `since`, ascending.
   std::vector<BlockScore> scores(const std::string& spacecraft, const std::string& equipment,
                                  std::int64_t version, Time since) const;
+
+  /// Raises an alarm; one that is raised with the same text stays as it is, with another text it
+  /// gets that one.
+  void raise(const Alarm& alarm);
+  /// Clears an alarm, if it is raised.
+  void clear(const std::string& code, const EquipmentName& about, Time time);
+  /// Notes who has seen an alarm. False where it is not raised.
+  bool acknowledge(const std::string& code, const EquipmentName& about, const std::string& actor,
+                   const std::string& reason, Time time);
+  /// Alarms that are raised, by code, spacecraft and equipment.
+  std::vector<Alarm> alarms() const;
+
+  /// Adds a change, unless it is there.
+  void record_change(const EquipmentName& equipment, const FoundChange& change, Time time);
+  /// The change that was found last; absent where none was.
+  std::optional<FoundChange> last_change(const EquipmentName& equipment) const;
+
+  /// Adds what a simulator does now.
+  void record_simulator(const SimulatorState& state);
+  /// The simulators that are there, by name and equipment.
+  std::vector<SimulatorState> simulators() const;
 
   /// A version with its model; absent where there is none of that number.
   std::optional<Version> version(const std::string& spacecraft, const std::string& equipment,
@@ -101,12 +124,22 @@ class Registry {
   /// wait after the decision with the id `after`.
   std::vector<std::int64_t> waiting(const std::string& spacecraft, const std::string& equipment,
                                     const std::string& outcome, std::int64_t after = 0) const;
+  /// The last decisions about waiting versions that say why these wait, by equipment and version.
+  /// A decision of a program before version 0.2 has no evidence: it waits for an operator.
+  std::vector<Decision> waits() const;
   /// Windows of all attempts with this outcome that gave a version, in the order of recording.
   std::vector<TimeRange> windows(const std::string& spacecraft, const std::string& equipment,
                                  const std::string& outcome) const;
   /// Decisions about an equipment, or one version of it, ascending by id.
   std::vector<Decision> decisions(const std::string& spacecraft, const std::string& equipment,
                                   std::optional<std::int64_t> version = std::nullopt) const;
+  /// How much there is of an equipment.
+  struct Counts {
+    std::int64_t attempts = 0;
+    std::int64_t versions = 0;
+    std::int64_t approvals = 0;
+  };
+  Counts counts(const EquipmentName& equipment) const;
   /// Every equipment with attempts, in alphabetical order.
   std::vector<EquipmentName> equipment() const;
   /// The hold in force; absent where the champion is not held.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -26,6 +27,23 @@ std::vector<double> numbers(const sqlite::Query& row, int column) {
   return values;
 }
 
+std::string block_sql(const std::string& rest) {
+  return "SELECT begin_time, end_time, rows, believed, output_mean, output_square, input_low, "
+         "input_high, baseline_square FROM block WHERE spacecraft = ? AND equipment = ? AND " +
+         rest;
+}
+
+Block read_block(const sqlite::Query& row) {
+  return {{row.integer(0), row.integer(1)},
+          row.integer(2),
+          row.real(3),
+          numbers(row, 4),
+          numbers(row, 5),
+          numbers(row, 6),
+          numbers(row, 7),
+          numbers(row, 8)};
+}
+
 }  // namespace
 
 void Registry::record_scores(const std::string& spacecraft, const std::string& equipment,
@@ -49,20 +67,20 @@ void Registry::record_scores(const std::string& spacecraft, const std::string& e
 std::vector<Block> Registry::blocks(const std::string& spacecraft, const std::string& equipment,
                                     Time since) const {
   std::vector<Block> blocks;
+  sqlite::Query row = connection(database_).query(block_sql("begin_time >= ? ORDER BY begin_time"),
+                                                  spacecraft, equipment, since);
+  while (row.step()) blocks.push_back(read_block(row));
+  return blocks;
+}
+
+std::vector<Block> Registry::newest_blocks(const EquipmentName& equipment,
+                                           std::size_t count) const {
+  std::vector<Block> blocks;
   sqlite::Query row = connection(database_).query(
-      "SELECT begin_time, end_time, rows, believed, output_mean, output_square, "
-      "input_low, input_high, baseline_square FROM block "
-      "WHERE spacecraft = ? AND equipment = ? AND begin_time >= ? ORDER BY begin_time",
-      spacecraft, equipment, since);
-  while (row.step())
-    blocks.push_back({{row.integer(0), row.integer(1)},
-                      row.integer(2),
-                      row.real(3),
-                      numbers(row, 4),
-                      numbers(row, 5),
-                      numbers(row, 6),
-                      numbers(row, 7),
-                      numbers(row, 8)});
+      block_sql("TRUE ORDER BY begin_time DESC LIMIT ?"), equipment.spacecraft, equipment.equipment,
+      static_cast<std::int64_t>(count));
+  while (row.step()) blocks.push_back(read_block(row));
+  std::reverse(blocks.begin(), blocks.end());
   return blocks;
 }
 

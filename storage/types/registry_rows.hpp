@@ -6,6 +6,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -200,6 +201,53 @@ struct EquipmentName {
   std::string spacecraft;
   std::string equipment;
   auto operator<=>(const EquipmentName&) const = default;
+};
+
+/// Something that somebody has to see to. Code, spacecraft and equipment identify it; either name
+/// is empty where it is of neither.
+struct Alarm {
+  std::string code;
+  EquipmentName about;
+  /// One sentence: what is wrong, and what would mend it.
+  std::string text;
+  /// When it was raised.
+  Time since = 0;
+  /// Who has seen it since; empty: nobody.
+  std::string acknowledged_by{};
+};
+
+/// A change of the equipment, found in the record of its champion.
+struct FoundChange {
+  std::int64_t champion = 0;
+  /// Begin of the first block that it may lie in, and end of the block with which it was found.
+  Time since = 0;
+  Time found = 0;
+};
+
+/// What a simulator does with the models of one equipment, from `time` on.
+struct SimulatorState {
+  std::string simulator;
+  EquipmentName equipment;
+  /// Left: nothing below holds any more.
+  bool is_there = true;
+  /// The version that runs, one that waits to be taken, and the newest that it refused; 0: none.
+  std::int64_t version = 0;
+  std::int64_t offered = 0;
+  std::int64_t refused = 0;
+  /// Why it refused that one.
+  std::string reason;
+  /// "free", "following"; empty: nothing runs.
+  std::string mode;
+  /// No service has confirmed the version in this run of the simulator.
+  bool from_cache = false;
+  /// First step on the version, by the simulator's clock.
+  Time since = 0;
+  /// MRSE that the state before this one had come to; not a number where there was none.
+  double error_before_percent = std::numeric_limits<double>::quiet_NaN();
+  std::string host;
+  std::uint64_t process = 0;
+  std::string program_version;
+  Time time = 0;
 };
 
 /// Which attempts Registry::attempts() returns at once. Empty fields select everything. RowFilter

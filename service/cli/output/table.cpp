@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <unistd.h>
-
-#include <sys/ioctl.h>
+#include <string_view>
 
 namespace reident::cli {
 namespace {
@@ -21,43 +19,14 @@ std::string padded(const std::string& text, std::size_t width, Table::Align alig
 
 }  // namespace
 
-std::size_t terminal_width() {
-  winsize size{};
-  const bool known = isatty(STDOUT_FILENO) == 1 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
-  return known ? size.ws_col : 0;
-}
-
-std::size_t display_width(std::string_view text) {
-  const auto begins_code_point = [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  };
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_code_point));
-}
-
-std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
-  std::vector<std::string> lines(1);
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    std::string& line = lines.back();
-    if (line.empty()) {
-      line = word;
-    } else if (width == 0 || display_width(line) + 1 + display_width(word) <= width) {
-      line.append(" ").append(word);
-    } else {
-      lines.emplace_back(word);
-    }
-  }
-  return lines;
-}
-
 Table::Table(std::vector<Column> columns) : columns_(std::move(columns)) {
   assert(!columns_.empty());
 }
 
-void Table::add(std::vector<std::string> cells) {
+void Table::add(std::vector<std::string> cells, Look look) {
   assert(cells.size() == columns_.size());
   rows_.push_back(std::move(cells));
+  looks_.push_back(look);
 }
 
 std::string Table::text(std::size_t width) const {
@@ -80,23 +49,24 @@ std::string Table::text(std::size_t width) const {
       bounded ? std::max(width, indent + least_wrapped) - indent : widths.back();
 
   std::string text;
-  const auto append = [&](const std::vector<std::string>& row) {
+  const auto append = [&](const std::vector<std::string>& row, Look look) {
     std::string line;
     const auto end_line = [&] {
       line.erase(line.find_last_not_of(' ') + 1);
-      text.append(line).append("\n");
+      text.append(look == Look::urgent ? "\033[31m" + line + "\033[0m" : line).append("\n");
       line.assign(indent, ' ');
     };
     for (std::size_t c = 0; c + 1 < row.size(); ++c)
       line.append(padded(row[c], widths[c], columns_[c].align)).append(separator);
     if (below) end_line();
+    if (below && (row.back().empty() || &row == &titles)) return;
     for (const std::string& part : wrapped(row.back(), room)) {
       line += columns_.back().align == Align::left ? part : padded(part, room, Align::right);
       end_line();
     }
   };
-  append(titles);
-  for (const auto& row : rows_) append(row);
+  append(titles, Look::plain);
+  for (std::size_t r = 0; r < rows_.size(); ++r) append(rows_[r], looks_[r]);
   return text;
 }
 

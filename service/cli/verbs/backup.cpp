@@ -9,6 +9,7 @@
 #include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::backup_verb {
@@ -50,7 +51,7 @@ int run(const Arguments& arguments) {
         });
     bar.clear();
     if (!report) {
-      fmt::print(stderr, "reident: stopped; nothing of the copy was kept\n");
+      print_error("reident: stopped; nothing of the copy was kept");
       return exit_failed;
     }
     print(*report, arguments.json);

@@ -31,9 +31,9 @@ int print_mistakes(const Arguments& arguments, const std::vector<ConfigMistake>&
     print_json({{"valid", false}, {"mistakes", list}});
   } else {
     for (const ConfigMistake& mistake : mistakes)
-      fmt::print(stderr, "{}\n", mistake_text(arguments.file, mistake));
-    fmt::print(stderr, "reident: {} has {} mistake{}\n", arguments.file, mistakes.size(),
-               mistakes.size() == 1 ? "" : "s");
+      print_error("{}", mistake_text(arguments.file, mistake));
+    print_error("reident: {} has {} mistake{}", arguments.file, mistakes.size(),
+                mistakes.size() == 1 ? "" : "s");
   }
   return exit_impossible;
 }

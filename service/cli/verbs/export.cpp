@@ -13,6 +13,7 @@
 #include "service/support/output_file.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/transfer/telemetry_csv.hpp"
 
 namespace reident::cli::export_verb {
@@ -47,8 +48,8 @@ int write(const history::TelemetryReader& telemetry, const std::vector<storage::
       });
   bar.clear();
   if (!report.complete) {
-    fmt::print(stderr, "reident: stopped; {}\n",
-               to_file ? "no file was written" : "the output ends in the middle");
+    print_error("reident: stopped; {}",
+                to_file ? "no file was written" : "the output ends in the middle");
     return exit_failed;
   }
   file.finish();

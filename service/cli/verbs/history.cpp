@@ -202,7 +202,7 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--spacecraft", arguments->spacecraft, "of this spacecraft alone");
   command.add_option("--equipment", arguments->equipment,
                      "of this EQUIPMENT or SPACECRAFT/EQUIPMENT alone");
-  command.add_option("--last", arguments->last, "the newest so many")->check(CLI::PositiveNumber);
+  command.add_option("--last", arguments->last, "the newest so many")->check(above_zero());
   command.add_flag("--versions-only", arguments->versions_only,
                    "leave out windows that gave no model");
   command.add_flag("--json", arguments->json, "one JSON object with all evidence");

@@ -20,6 +20,7 @@
 #include "service/cli/verb.hpp"
 #include "service/support/parallel.hpp"
 #include "service/support/phase_timer.hpp"
+#include "service/support/terminal.hpp"
 
 namespace reident::cli::identify_verb {
 namespace {
@@ -135,7 +136,7 @@ int print_rejection(const Verdict& verdict, const nlohmann::ordered_json& left_o
         {"rejected", name(verdict.code)}, {"reason", verdict.reason}, {"left_out", left_out}};
     fmt::print("{}\n", object.dump());
   } else {
-    fmt::print(stderr, "reident: no model ({}): {}\n", name(verdict.code), verdict.reason);
+    print_error("reident: no model ({}): {}", name(verdict.code), verdict.reason);
   }
   return exit_no_model;
 }

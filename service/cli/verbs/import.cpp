@@ -10,6 +10,7 @@
 #include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
 
 namespace reident::cli::import_verb {
@@ -94,7 +95,7 @@ int run(Arguments& arguments) {
     if (const auto* error = std::get_if<csv::Error>(&imported)) return refuse({error->message});
     const auto& report = std::get<ImportReport>(imported);
     for (const std::string& message : report.first_bad_lines)
-      fmt::print(stderr, "reident: left out: {}\n", message);
+      print_error("reident: left out: {}", message);
     if (arguments.json)
       print_json(report, pace.seconds());
     else

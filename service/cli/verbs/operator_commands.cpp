@@ -62,7 +62,7 @@ Verb decision(std::string_view name, std::string_view purpose, std::string examp
             auto work = declare_common(command, arguments, std::string(name));
             command.add_option("version", arguments->version, "number of the version")
                 ->required()
-                ->check(CLI::PositiveNumber);
+                ->check(above_zero());
             command
                 .add_option("--reason", arguments->options.reason, "why, kept with the decision")
                 ->required();
@@ -87,7 +87,7 @@ std::function<int()> declare_rollback(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   auto work = declare_common(command, arguments, "roll_back");
   command.add_option("--to", arguments->version, "to this version (the previous champion)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command.add_option("--reason", arguments->options.reason, "why, kept with the decision");
   footer(command, "CBERS-4/BDR --to 5 --reason \"odd in eclipse\"");
   return work;

@@ -1,150 +1,261 @@
-#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "service/cli/config_options.hpp"
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
-#include "service/cli/stored.hpp"
-#include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
-#include "service/judgement/scores.hpp"
 #include "service/operations/commands.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident::cli::overview_verb {
 namespace {
 
+using history::OverviewRow;
 using nlohmann::ordered_json;
-using storage::DecisionKind;
+using storage::Alarm;
 using storage::EquipmentName;
+using storage::Time;
+
+constexpr std::size_t width_without_terminal = 80;
+constexpr double default_interval_s = 2;
+constexpr double max_interval_s = 86'400;
 
 struct Arguments {
   HistoryAccessOptions access;
+  bool watch = false;
+  double interval_s = default_interval_s;
   bool json = false;
 };
 
-struct Line {
-  EquipmentName equipment;
-  std::int64_t champion = 0;  // 0: none
-  storage::Time since = 0;
-  ordered_json error_percent,
-      simulator_percent;  // on the blocks of the champion's record; null: unknown
-  std::optional<Reason> failure;
-  std::size_t tried = 0, versions = 0, published = 0;
+/// All that is shown.
+struct Overview {
+  std::vector<OverviewRow> rows;
+  std::vector<Alarm> alarms;
+  Time now = 0;
 };
 
-/// Of the champion and of the simulator's own model, on the blocks of its record.
-void read_errors(const history::HistoryReader& history, Line& line) {
-  const Member champion{line.champion, {}, history.scores(line.equipment, line.champion)};
-  Sums own, simulator;
-  for (const storage::Block& block : history.blocks(line.equipment)) {
-    const storage::BlockScore* score = counts(block) ? find(champion, block.range.begin) : nullptr;
-    if (!score) continue;
-    own.add(block, score->square);
-    if (!block.baseline_square.empty()) simulator.add(block, block.baseline_square);
+/// The equipment of the configuration that no window was tried of are rows too.
+void add_untried(const Config& config, std::vector<OverviewRow>& rows) {
+  for (const EquipmentName& name : equipment_of(config))
+    if (std::none_of(rows.begin(), rows.end(),
+                     [&](const OverviewRow& row) { return row.name == name; }))
+      rows.emplace_back().name = name;
+}
+
+Overview read(const Readers& readers, const std::optional<Config>& config) {
+  Overview overview{readers.history.overview(), readers.history.alarms(), utc_now()};
+  if (config) {
+    add_untried(*config, overview.rows);
+    if (!storage::Database::has_writer(config->database))
+      overview.alarms.insert(overview.alarms.begin(),
+                             {"no_service",
+                              {},
+                              "No service runs on " + config->database.string() +
+                                  ": what is below is as the last one left it. Start reidentd.",
+                              overview.now});
   }
-  if (own.rows > 0) line.error_percent = own.mrse_percent();
-  if (simulator.rows > 0) line.simulator_percent = simulator.mrse_percent();
+  history::put_worst_first(overview.rows, overview.alarms);
+  return overview;
 }
 
-Line line_of(const history::HistoryReader& history, const EquipmentName& equipment) {
-  Line line;
-  line.equipment = equipment;
-  storage::HistoryFilter filter;
-  filter.spacecraft = equipment.spacecraft;
-  filter.equipment = equipment.equipment;
-  line.tried = history.attempts(filter).size();
-  line.versions = history.summaries(equipment).size();
-  const auto decisions = history.decisions(equipment);
-  line.published = static_cast<std::size_t>(std::count_if(
-      decisions.begin(), decisions.end(),
-      [](const storage::Decision& decision) { return decision.kind == DecisionKind::approve; }));
-  const auto made = history.champion_decision(equipment);
-  if (!made) return line;
-  line.champion = made->version;
-  line.since = made->time;
-  if (const auto attempt = history.attempt(equipment, made->version)) {
-    const ordered_json evidence = evidence_of(*attempt);
-    line.error_percent = evidence.value("mrse_percent", ordered_json());
-    line.simulator_percent = evidence.value("baseline_mrse_percent", ordered_json());
+bool is_seen_to(const Alarm& alarm) {
+  return !alarm.acknowledged_by.empty();
+}
+
+bool needs_action(const Overview& overview) {
+  return !std::all_of(overview.alarms.begin(), overview.alarms.end(), is_seen_to) ||
+         std::any_of(overview.rows.begin(), overview.rows.end(),
+                     [](const OverviewRow& row) { return !row.waiting.empty(); });
+}
+
+std::string percent_text(const std::optional<double>& percent) {
+  return percent ? fmt::format("{:.3g}", *percent) : "-";
+}
+
+/// What is to be known of an equipment in addition to its figures.
+std::string notes_of(const OverviewRow& row, const Overview& overview) {
+  std::vector<std::string> notes;
+  for (const Alarm& alarm : overview.alarms)
+    if (alarm.about == row.name) notes.push_back(alarm.code);
+  if (!row.waiting.empty()) {
+    std::vector<std::string> versions;
+    for (const std::int64_t version : row.waiting) versions.push_back(std::to_string(version));
+    notes.push_back(fmt::format("{} {}", joined(versions), versions.size() > 1 ? "wait" : "waits"));
   }
-  read_errors(history, line);
-  if (const auto attempt = history.attempt(equipment, made->version))
-    line.failure = failure_now(history, *attempt, made->version);
-  return line;
+  if (row.change)
+    notes.push_back("changed " + time_text(row.change->since).substr(0, sizeof "2017-07-01" - 1));
+  if (row.hold) notes.push_back("held by " + row.hold->actor);
+  std::string text;
+  for (const std::string& note : notes) text += (text.empty() ? "" : "; ") + note;
+  return text;
 }
 
-std::string percent_text(const ordered_json& percent) {
-  return percent.is_number() ? fmt::format("{:.3g}", percent.get<double>()) : "-";
-}
-
-void print_table(const std::vector<Line>& lines) {
+std::string table_text(const Overview& overview, std::size_t width) {
+  constexpr auto right = Table::Align::right;
   Table table({{"equipment"},
-               {"champion", Table::Align::right},
-               {"since (UTC)"},
-               {"error %", Table::Align::right},
-               {"simulator %", Table::Align::right},
-               {"tried", Table::Align::right},
-               {"published", Table::Align::right}});
-  for (const Line& line : lines)
-    table.add({full_name(line.equipment),
-               line.champion > 0 ? fmt::format("{}", line.champion) : "none",
-               line.champion > 0 ? time_text(line.since).substr(0, 16) : "-",
-               percent_text(line.error_percent), percent_text(line.simulator_percent),
-               fmt::format("{}", line.tried), fmt::format("{}", line.published)});
-  fmt::print("{}", table.text(0));
-  for (const Line& line : lines)
-    if (line.failure) fmt::print("{}: {}\n", full_name(line.equipment), sentence(*line.failure));
+               {"version", right},
+               {"since", right},
+               {"error %", right},
+               {"then %", right},
+               {"own %", right},
+               {"telemetry", right},
+               {"sims", right},
+               {"to know"}});
+  const bool colours = shows_colours();
+  for (const OverviewRow& row : overview.rows) {
+    const auto ago = [&](Time time) { return rough_duration_text(overview.now - time); };
+    const bool has_champion = row.champion > 0;
+    table.add({full_name(row.name), has_champion ? std::to_string(row.champion) : "none",
+               has_champion ? ago(row.since) : "-", percent_text(row.error_percent),
+               percent_text(row.approved_error_percent), percent_text(row.simulator_percent),
+               row.telemetry ? ago(*row.telemetry) : "-",
+               row.simulators > 0 ? fmt::format("{}/{}", row.current, row.simulators) : "-",
+               notes_of(row, overview)},
+              colours && history::needs_action(row, overview.alarms) ? Table::Look::urgent
+                                                                     : Table::Look::plain);
+  }
+  return table.text(width);
 }
 
-void print_json(const std::vector<Line>& lines) {
-  ordered_json array = ordered_json::array();
-  for (const Line& line : lines)
-    array.push_back(
-        {{"spacecraft", line.equipment.spacecraft},
-         {"equipment", line.equipment.equipment},
-         {"champion", line.champion > 0 ? ordered_json(line.champion) : ordered_json()},
-         {"since", line.champion > 0 ? ordered_json(time_text(line.since)) : ordered_json()},
-         {"mrse_percent", line.error_percent},
-         {"simulator_mrse_percent", line.simulator_percent},
-         {"windows_tried", line.tried},
-         {"versions", line.versions},
-         {"published", line.published},
-         {"failure", line.failure ? to_json({*line.failure}).front() : ordered_json()}});
-  const ordered_json object = {{"equipment", array}};
+std::string name_of(const EquipmentName& about) {
+  if (about.spacecraft.empty()) return "-";
+  return about.equipment.empty() ? about.spacecraft : full_name(about);
+}
+
+std::string alarms_text(const Overview& overview, std::size_t width) {
+  if (overview.alarms.empty()) return {};
+  Table table({{"alarm"}, {"about"}, {"since", Table::Align::right}, {"seen by"}, {"what"}});
+  const bool colours = shows_colours();
+  for (const Alarm& alarm : overview.alarms) {
+    table.add({alarm.code, name_of(alarm.about), rough_duration_text(overview.now - alarm.since),
+               is_seen_to(alarm) ? alarm.acknowledged_by : "-", alarm.text},
+              colours && !is_seen_to(alarm) ? Table::Look::urgent : Table::Look::plain);
+  }
+  return "\n" + table.text(width);
+}
+
+void print_text(const Overview& overview) {
+  const std::size_t width = terminal_width() > 0 ? terminal_width() : width_without_terminal;
+  if (overview.rows.empty())
+    fmt::print("no window was tried yet\n");
+  else
+    fmt::print("{}", table_text(overview, width));
+  fmt::print("{}", alarms_text(overview, width));
+}
+
+ordered_json optional_json(const std::optional<double>& number) {
+  return number ? ordered_json(*number) : ordered_json();
+}
+
+ordered_json row_json(const OverviewRow& row, const Overview& overview) {
+  const bool has_champion = row.champion > 0;
+  const auto time_json = [](bool is_there, Time time) {
+    return is_there ? ordered_json(time_text(time)) : ordered_json();
+  };
+  ordered_json failure, change, hold;
+  for (const Alarm& alarm : overview.alarms)
+    if (alarm.about == row.name && alarm.code == "champion_failed")
+      failure = {{"code", alarm.code}, {"text", alarm.text}};
+  if (row.change)
+    change = {{"champion", row.change->champion},
+              {"since", time_text(row.change->since)},
+              {"found", time_text(row.change->found)}};
+  if (row.hold) hold = hold_json(*row.hold);
+  return {{"spacecraft", row.name.spacecraft},
+          {"equipment", row.name.equipment},
+          {"act", history::needs_action(row, overview.alarms)},
+          {"champion", has_champion ? ordered_json(row.champion) : ordered_json()},
+          {"since", time_json(has_champion, row.since)},
+          {"mrse_percent", optional_json(row.error_percent)},
+          {"approved_mrse_percent", optional_json(row.approved_error_percent)},
+          {"simulator_mrse_percent", optional_json(row.simulator_percent)},
+          {"change", std::move(change)},
+          {"waiting", row.waiting},
+          {"hold", std::move(hold)},
+          {"telemetry", time_json(row.telemetry.has_value(), row.telemetry.value_or(0))},
+          {"simulators", row.simulators},
+          {"simulators_current", row.current},
+          {"windows_tried", row.attempts},
+          {"versions", row.versions},
+          {"published", row.approvals},
+          {"failure", std::move(failure)}};
+}
+
+void print_json(const Overview& overview) {
+  ordered_json rows = ordered_json::array(), alarms = ordered_json::array();
+  for (const OverviewRow& row : overview.rows) rows.push_back(row_json(row, overview));
+  for (const Alarm& alarm : overview.alarms)
+    alarms.push_back({{"code", alarm.code},
+                      {"spacecraft", alarm.about.spacecraft},
+                      {"equipment", alarm.about.equipment},
+                      {"since", time_text(alarm.since)},
+                      {"seen_by", alarm.acknowledged_by},
+                      {"text", alarm.text}});
+  const ordered_json object = {{"time", time_text(overview.now)},
+                               {"act", needs_action(overview)},
+                               {"equipment", std::move(rows)},
+                               {"alarms", std::move(alarms)}};
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
+/// The configuration of the service that is asked, where it is on this machine.
+std::optional<Config> local_config(const Arguments& arguments) {
+  if (arguments.access.is_remote() || arguments.access.database.database) return std::nullopt;
+  auto chosen = chosen_config(arguments.access.database.config);
+  auto* config = std::get_if<std::optional<Config>>(&chosen);
+  return config ? std::move(*config) : std::nullopt;
+}
+
 int run(const Arguments& arguments) {
+  const std::optional<Config> config = local_config(arguments);
   return with_readers(arguments.access, [&](const Readers& readers) {
-    std::vector<Line> lines;
-    for (const EquipmentName& equipment : readers.history.equipment())
-      lines.push_back(line_of(readers.history, equipment));
-    if (arguments.json)
-      print_json(lines);
-    else if (lines.empty())
-      fmt::print("no window was tried yet\n");
-    else
-      print_table(lines);
-    return static_cast<int>(exit_done);
+    const auto interval = std::chrono::duration<double>(arguments.interval_s);
+    for (;;) {
+      const Overview overview = read(readers, config);
+      if (arguments.watch && terminal_width() > 0) fmt::print("\033[H\033[2J");
+      if (arguments.json)
+        print_json(overview);
+      else
+        print_text(overview);
+      if (!arguments.watch)
+        return static_cast<int>(needs_action(overview) ? exit_failed : exit_done);
+      fmt::print("{}\n", time_text(overview.now / 1'000'000'000 * 1'000'000'000));
+      if (std::fflush(stdout) != 0) return static_cast<int>(exit_failed);
+      std::this_thread::sleep_for(interval);
+    }
   });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   add_access_options(command, arguments->access);
+  CLI::Option* watch = command.add_flag("--watch", arguments->watch, "again and again, until ^C");
+  command.add_option("--every", arguments->interval_s, "seconds between two looks, with --watch")
+      ->needs(watch)
+      ->check(CLI::Range(0.1, max_interval_s))
+      ->capture_default_str();
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
-      "A line for each equipment: the champion and its error on data that it was not fitted to,\n"
-      "the error of the simulator's own model there, windows tried and versions published.\n"
-      "Example:\n  reident overview --config reident.toml");
+      "A line for each equipment, the worst first: its champion; the champion's error over the\n"
+      "last two cycles, and then, when it was approved; the simulator's own model's; the age of\n"
+      "its telemetry; simulators that run the champion, of all. Below are the alarms.\n"
+      "Example:\n  reident overview --config reident.toml --watch\n"
+      "Exit status: 0 when all is well; 1 when somebody has to act: an alarm that nobody has\n"
+      "seen, or a version that waits.");
   return [arguments] { return run(*arguments); };
 }
 
-const VerbRegistration registered({"overview",
-                                   "Show for each equipment its champion, errors and counts",
-                                   WorksOn::history, declare});
+const VerbRegistration registered(
+    {"overview", "Show how the models of all equipment are now, the worst first, and the alarms",
+     WorksOn::history, declare});
 
 }  // namespace
 }  // namespace reident::cli::overview_verb

@@ -15,6 +15,7 @@
 #include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::plot_verb {
@@ -105,8 +106,7 @@ int write_picture(const std::string& picture, const std::string& path) {
   file << picture;
   file.close();
   if (!file) {
-    fmt::print(stderr, "reident: {} cannot be written: {}\n", path,
-               std::generic_category().message(errno));
+    print_error("reident: {} cannot be written: {}", path, std::generic_category().message(errno));
     return exit_failed;
   }
   fmt::print("{}\n", path);

@@ -11,6 +11,7 @@
 #include "service/support/progress.hpp"
 #include "service/support/size_text.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
 #include "storage/care/retention.hpp"
@@ -134,7 +135,7 @@ int remove(const Arguments& arguments, const Request& request) {
   }
   bar.clear();
   print(arguments, retention.report());
-  if (more) fmt::print(stderr, "reident: stopped; the same command goes on where it ended\n");
+  if (more) print_error("reident: stopped; the same command goes on where it ended");
   return more ? exit_failed : exit_done;
 }
 

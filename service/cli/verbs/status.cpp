@@ -1,5 +1,7 @@
 #include <chrono>
 #include <cstdio>
+#include <map>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,6 +10,7 @@
 #include "service/cli/output/table.hpp"
 #include "service/cli/verb.hpp"
 #include "service/dds/dds.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::status_verb {
@@ -17,6 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double default_timeout_s = 10;
 constexpr double max_timeout_s = 1e6;
+constexpr auto time_of_others = std::chrono::milliseconds(300);  // for a last heartbeat to come
 
 struct Arguments {
   std::optional<std::string> config;
@@ -39,10 +43,13 @@ bool stayed_idle(const ServiceStatus& before, const ServiceStatus& now) {
          before.samples_stored == now.samples_stored && before.attempts == now.attempts;
 }
 
-/// Listens until the wish is met. Empty when the time ran out; `heard` is then the last heartbeat,
-/// if there was one.
+/// The last heartbeats of services, by name and start.
+using Heard = std::map<std::pair<std::string, storage::Time>, ServiceStatus>;
+
+/// Listens until the wish is met, and a moment more for others. Empty when the time ran out;
+/// `heard` is then the last heartbeat, if there was one. `all` gets those of every service.
 std::optional<ServiceStatus> listen(const dds::Endpoint& endpoint, const Arguments& arguments,
-                                    std::optional<ServiceStatus>& heard) {
+                                    std::optional<ServiceStatus>& heard, Heard& all) {
   dds::Participant participant(endpoint);
   dds::Reader<ServiceStatus> reader(participant);
   dds::WaitSet waits(participant);
@@ -52,6 +59,7 @@ std::optional<ServiceStatus> listen(const dds::Endpoint& endpoint, const Argumen
   std::optional<ServiceStatus> met;
   const auto look = [&](ServiceStatus&& status) {
     if (!arguments.service.empty() && status.service != arguments.service) return;
+    all[{status.service, status.started}] = status;
     // The first of several services is followed.
     if (heard && heard->service != status.service) return;
     if (!met && (arguments.wait.empty() || (heard && stayed_idle(*heard, status)))) met = status;
@@ -62,6 +70,9 @@ std::optional<ServiceStatus> listen(const dds::Endpoint& endpoint, const Argumen
     if (left <= Clock::duration::zero()) break;
     if (waits.wait(left)) reader.take(64, look);
   }
+  const auto others_until = Clock::now() + time_of_others;
+  while (met && Clock::now() < others_until)
+    if (waits.wait(others_until - Clock::now())) reader.take(64, look);
   return met;
 }
 
@@ -85,7 +96,14 @@ std::string newest_text(const ServiceStatus& status) {
   return status.newest_telemetry == 0 ? "none" : time_text(status.newest_telemetry);
 }
 
-void print_json(const ServiceStatus& status) {
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+nlohmann::ordered_json json_of(const ServiceStatus& status) {
   nlohmann::ordered_json object = {{"service", status.service},
                                    {"program_version", status.program_version},
                                    {"started", time_text(status.started)},
@@ -97,6 +115,15 @@ void print_json(const ServiceStatus& status) {
                                    : nlohmann::ordered_json(time_text(status.newest_telemetry));
   object["last_error"] = status.last_error;
   object["failing_champions"] = status.failing_champions;
+  object["alarms"] = lines_of(status.alarms);
+  object["equipment"] = split_names(status.equipment);
+  return object;
+}
+
+void print_json(const ServiceStatus& status, const Heard& others) {
+  nlohmann::ordered_json object = json_of(status);
+  object["others"] = nlohmann::ordered_json::array();
+  for (const auto& [key, other] : others) object["others"].push_back(json_of(other));
   fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
@@ -110,22 +137,23 @@ void print_text(const ServiceStatus& status) {
   if (!status.last_error.empty()) fmt::print("last error: {}\n", status.last_error);
   if (!status.failing_champions.empty())
     fmt::print("champions that fail: {} (reident overview says why)\n", status.failing_champions);
+  for (const std::string& alarm : lines_of(status.alarms)) fmt::print("alarm: {}\n", alarm);
 }
 
 int report_timeout(const dds::Endpoint& endpoint, const Arguments& arguments,
                    const std::optional<ServiceStatus>& heard) {
   if (heard)
-    fmt::print(stderr,
-               "reident: {} was not idle within {:g} s: {} frames queued, {} windows pending, {} "
-               "attempts; give it more --timeout\n",
-               heard->service, arguments.timeout_s, heard->queue_length, heard->windows_pending,
-               heard->attempts);
+    print_error(
+        "reident: {} was not idle within {:g} s: {} frames queued, {} windows pending, {} "
+        "attempts; give it more --timeout",
+        heard->service, arguments.timeout_s, heard->queue_length, heard->windows_pending,
+        heard->attempts);
   else
-    fmt::print(stderr,
-               "reident: no {} was heard on domain {}, partition {} within {:g} s; check that "
-               "reidentd runs and the domain and partition are its own\n",
-               arguments.service.empty() ? "service" : "service " + arguments.service,
-               endpoint.domain, endpoint.partition, arguments.timeout_s);
+    print_error(
+        "reident: no {} was heard on domain {}, partition {} within {:g} s; check that "
+        "reidentd runs and the domain and partition are its own",
+        arguments.service.empty() ? "service" : "service " + arguments.service, endpoint.domain,
+        endpoint.partition, arguments.timeout_s);
   return exit_timed_out;
 }
 
@@ -133,12 +161,19 @@ int run(const Arguments& arguments) {
   const auto endpoint = chosen_endpoint(arguments.config, arguments.domain, arguments.partition);
   if (const auto* refusal = std::get_if<Refusal>(&endpoint)) return refuse(*refusal);
   std::optional<ServiceStatus> heard;
-  const auto status = listen(std::get<dds::Endpoint>(endpoint), arguments, heard);
+  Heard others;
+  const auto status = listen(std::get<dds::Endpoint>(endpoint), arguments, heard, others);
   if (!status) return report_timeout(std::get<dds::Endpoint>(endpoint), arguments, heard);
-  if (arguments.json)
-    print_json(*status);
-  else
-    print_text(*status);
+  others.erase({status->service, status->started});
+  if (arguments.json) {
+    print_json(*status, others);
+    return exit_done;
+  }
+  print_text(*status);
+  for (const auto& [key, other] : others) {
+    fmt::print("\nanother service of the partition:\n");
+    print_text(other);
+  }
   return exit_done;
 }
 

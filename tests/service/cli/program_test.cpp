@@ -67,7 +67,41 @@ TEST_F(Program, VersionIsPrinted) {
 
 TEST_F(Program, WithoutACommandAndWithAnUnknownOneItIsRefused) {
   EXPECT_THAT(refusal_of({}), HasSubstr("see reident --help"));
-  EXPECT_THAT(refusal_of({"indentify"}), HasSubstr("see reident --help"));
+  EXPECT_THAT(refusal_of({"indentify"}), HasSubstr("indentify (did you mean identify?)"));
+  EXPECT_THAT(refusal_of({"--remote", "histroy"}), HasSubstr("(did you mean history?)"));
+  EXPECT_THAT(refusal_of({"help", "histroy"}), HasSubstr("(did you mean history?)"));
+}
+
+TEST_F(Program, VersionAndHelpAreAskedForInEveryUsualWay) {
+  EXPECT_EQ("reident " + reident({"--version"}).out, reident({"version"}).out);
+  EXPECT_EQ(reident({"help", "plot"}).out, reident({"plot", "--help"}).out);
+  EXPECT_THAT(reident({"-h"}).out, HasSubstr("Usage: reident "));
+}
+
+TEST_F(Program, ARefusedNumberIsNamedInALineThatPeopleRead) {
+  EXPECT_THAT(refusal_of({"history", "--last", "0", "--db", "x"}),
+              AllOf(HasSubstr("--last: 0 is no whole number above 0"),
+                    ::testing::SizeIs(::testing::Le(100U))));
+  EXPECT_THAT(refusal_of({"approve", "A/B", "1e3", "--reason", "x"}),
+              HasSubstr("1e3 is no whole number above 0"));
+}
+
+TEST_F(Program, AStandardErrorThatCannotBeWrittenIsNoReasonToAbort) {
+  for (const char* command : {" histroy", " history --db none.db", " check-config none.toml"})
+    EXPECT_EQ(system(("cd " + folder().string() + " && " REIDENT_PROGRAM + command +
+                      " > /dev/full 2> /dev/full")
+                         .c_str()),
+              2 << 8)
+        << command;
+}
+
+TEST_F(Program, APipeThatNobodyReadsIsNoReasonToAbort) {
+  const std::string ignored = "trap '' PIPE; " REIDENT_PROGRAM " help 2> err; echo $? > status";
+  EXPECT_EQ(system(("cd " + folder().string() + " && (" + ignored + ") | true").c_str()), 0);
+  std::ifstream status(folder() / "status");
+  int code = -1;
+  status >> code;
+  EXPECT_THAT(code, ::testing::AnyOf(0, 1));
 }
 
 TEST_F(Program, AFullDiskIsAnError) {

@@ -155,6 +155,30 @@ TEST_F(Commands, a_waiting_version_is_approved_whatever_the_champion_was_when_it
   expect_done(order("approve", 1), "approved and champion now, after version 2");
 }
 
+TEST_F(Commands, an_approval_answers_the_versions_that_waited_for_an_operator_before_it) {
+  const auto ask_operator = [&](std::int64_t number) {
+    registry_.decide("SAT", "PLANT", number,
+                     {wait, "gate", "ask", R"({"reasons":[{"code":"bias_unverified"}]})"},
+                     now_ += second);
+  };
+  for (int i = 0; i < 5; ++i) version(wait);
+  for (const std::int64_t number : {1, 3, 4, 5}) ask_operator(number);
+  version(wait, 0, "SAT", "PUMP");
+  const CommandOutcome outcome = execute(command("approve", 4));
+  EXPECT_TRUE(outcome.ok);
+  EXPECT_THAT(outcome.reply,
+              HasSubstr("; version 1, version 3 that waited before it are rejected"));
+  const auto status = [&](std::int64_t number) {
+    return registry_.version("SAT", "PLANT", number)->status;
+  };
+  EXPECT_EQ(status(1), "rejected");
+  EXPECT_EQ(status(2), "waiting") << "it waits for telemetry";
+  EXPECT_EQ(status(3), "rejected");
+  EXPECT_EQ(status(4), "approved");
+  EXPECT_EQ(status(5), "waiting") << "it came later";
+  EXPECT_EQ(registry_.decisions("SAT", "PLANT", 3).back().actor, "Ana");
+}
+
 TEST_F(Commands, while_held_nothing_is_approved) {
   version(wait);
   order("hold");

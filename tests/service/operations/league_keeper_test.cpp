@@ -44,6 +44,7 @@ class Keeper : public DaemonTest {
           .has_value();
     };
     writer.failure = [this](const std::optional<Reason>& reason) { failures.push_back(reason); };
+    writer.change = [this](const storage::FoundChange& found) { changes.push_back(found); };
     return league.advance(archive, registry, reached, writer);
   }
   void restart() { keeper.emplace("SAT", equipment); }
@@ -68,6 +69,7 @@ class Keeper : public DaemonTest {
   storage::Registry registry{database};
   std::optional<LeagueKeeper> keeper{std::in_place, "SAT", equipment};
   std::vector<std::optional<Reason>> failures;
+  std::vector<storage::FoundChange> changes;
 };
 
 TEST_F(Keeper, ApprovesTheFirstVersionOnItsValidationPart) {
@@ -249,6 +251,10 @@ TEST_F(Keeper, FindsTheChangeOfThePlant) {
   ASSERT_TRUE(change);
   EXPECT_GE(change->begin, day + 29 * minute);
   EXPECT_LE(change->end, day + 36 * minute);
+  ASSERT_THAT(changes, SizeIs(1));
+  EXPECT_EQ(changes[0].champion, champion());
+  EXPECT_GE(changes[0].since, day + 29 * minute);
+  EXPECT_GT(changes[0].found, changes[0].since);
 }
 
 TEST_F(Keeper, SaysThatTheChampionFailsAndWithdrawsItWhereConfigured) {
@@ -259,10 +265,11 @@ TEST_F(Keeper, SaysThatTheChampionFailsAndWithdrawsItWhereConfigured) {
   window(day + 10 * minute);
   for (storage::Time at = day + 11 * minute; at <= day + 45 * minute; at += minute)
     advance(*keeper, at);
-  ASSERT_THAT(failures, SizeIs(2));
-  ASSERT_TRUE(failures[0]);
-  EXPECT_EQ(failures[0]->code, ReasonCode::champion_failed);
-  EXPECT_FALSE(failures[1]) << "without a champion none fails";
+  ASSERT_THAT(failures, SizeIs(3));
+  EXPECT_FALSE(failures[0]) << "at the first look none does";
+  ASSERT_TRUE(failures[1]);
+  EXPECT_EQ(failures[1]->code, ReasonCode::champion_failed);
+  EXPECT_FALSE(failures[2]) << "without a champion none fails";
   EXPECT_EQ(champion(), 0);
   EXPECT_EQ(registry.version("SAT", "PLANT", 1)->status, "withdrawn");
 }

@@ -146,5 +146,17 @@ TEST(TimeText, GivesTheExtremesBack) {
   }
 }
 
+TEST(RoughDurationText, IsTheLargestUnit) {
+  constexpr std::int64_t s = 1'000'000'000;
+  EXPECT_EQ(rough_duration_text(0), "0s");
+  EXPECT_EQ(rough_duration_text(59 * s), "59s");
+  EXPECT_EQ(rough_duration_text(125 * s), "2min");
+  EXPECT_EQ(rough_duration_text(7199 * s), "1h");
+  EXPECT_EQ(rough_duration_text(500 * 86'400 * s), "500d");
+  EXPECT_EQ(rough_duration_text(9 * 365 * 86'400 * s), "9y");
+  EXPECT_EQ(rough_duration_text(-30 * s), "-30s");
+  EXPECT_EQ(rough_duration_text(INT64_MIN), "-292y");
+}
+
 }  // namespace
 }  // namespace reident::time_text_test

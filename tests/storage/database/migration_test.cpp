@@ -148,9 +148,9 @@ INSERT INTO decision VALUES
   EXPECT_THAT(rows(path, schema), ElementsAreArray(rows(folder / "new.db", schema)));
 }
 
-// Version 5 differs from 4 in the qualities that a file may hold, and 6 has the records of
-// versions.
-TEST(MigrationFrom4And5, AddsTheRecordsAndChangesNothingElse) {
+// Version 5 differs from 4 in the qualities that a file may hold, 6 has the records of versions,
+// and 7 what the service noticed.
+TEST(MigrationFrom4To6, AddsTheRecordsAndChangesNothingElse) {
   const TemporaryFolder folder;
   const auto path = folder / "old.db";
   const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
@@ -166,9 +166,13 @@ TEST(MigrationFrom4And5, AddsTheRecordsAndChangesNothingElse) {
     registry.record(attempt, {"{}", "e"}, {DecisionKind::wait, "gate", "not long enough"});
   }
   const auto before = rows(path, schema);
-  for (const std::string old : {"4", "5"}) {
-    rows(path,
-         "DROP TABLE block; DROP TABLE score; DROP VIEW gate_reason; PRAGMA user_version = " + old);
+  const std::string without_records = "DROP TABLE block; DROP TABLE score; DROP VIEW gate_reason; ";
+  const std::string without_notices =
+      "DROP VIEW alarm_now; DROP VIEW simulator_now; DROP TABLE alarm; DROP TABLE change; "
+      "DROP TABLE simulator; DROP INDEX decision_with_why; DROP INDEX attempt_left_waiting; "
+      "PRAGMA user_version = ";
+  for (const std::string old : {"4", "5", "6"}) {
+    rows(path, (old == "6" ? "" : without_records) + without_notices + old);
     Database migrated(path, Mode::read_write);
     EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
     EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre(std::to_string(schema::version)));
@@ -177,8 +181,9 @@ TEST(MigrationFrom4And5, AddsTheRecordsAndChangesNothingElse) {
     Registry registry(migrated);
     Block block;
     block.range = {0, 60};
-    registry.record_scores("CB4", "BDR", block, {});
+    if (old != "6") registry.record_scores("CB4", "BDR", block, {});
     EXPECT_EQ(registry.blocks("CB4", "BDR", INT64_MIN).size(), 1);
+    EXPECT_TRUE(registry.alarms().empty());
   }
 }
 

@@ -34,7 +34,6 @@ TEST(Table, PutsTheLastColumnBelowWhereThereIsHardlyRoomForIt) {
   table.add({"BDR", "the error is above the limit"});
   EXPECT_EQ(table.text(30),
             "equipment\n"
-            "    reason\n"
             "BDR\n"
             "    the error is above the\n"
             "    limit\n");

@@ -1,0 +1,108 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/history_access.hpp"
+#include "service/cli/output/stored_version.hpp"
+#include "service/cli/output/table.hpp"
+#include "service/cli/verb.hpp"
+#include "service/operations/commands.hpp"
+#include "service/support/text.hpp"
+#include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
+
+namespace reident::cli::waiting_verb {
+namespace {
+
+using history::WaitingRow;
+using nlohmann::ordered_json;
+
+struct Arguments {
+  HistoryAccessOptions access;
+  std::string subject;
+  bool json = false;
+};
+
+storage::EquipmentName name_of(const WaitingRow& row) {
+  return {row.decision.spacecraft, row.decision.equipment};
+}
+
+std::string numbers_text(const std::vector<std::int64_t>& numbers) {
+  std::vector<std::string> texts;
+  for (const std::int64_t number : numbers) texts.push_back(std::to_string(number));
+  return texts.empty() ? "-" : joined(texts);
+}
+
+void print_table(const std::vector<WaitingRow>& rows) {
+  Table table({{"version"}, {"since", Table::Align::right}, {"supersedes"}, {"why it waits"}});
+  const storage::Time now = utc_now();
+  for (const WaitingRow& row : rows)
+    table.add({fmt::format("{}@{}", full_name(name_of(row)), row.decision.version),
+               rough_duration_text(now - row.decision.time), numbers_text(row.supersedes),
+               row.decision.reason});
+  fmt::print("{}", table.text(terminal_width()));
+  fmt::print("'reident why VERSION' shows its record, 'reident approve' and 'reject' answer it.\n");
+}
+
+void print_json(const std::vector<WaitingRow>& rows) {
+  ordered_json list = ordered_json::array();
+  for (const WaitingRow& row : rows)
+    list.push_back(
+        {{"spacecraft", row.decision.spacecraft},
+         {"equipment", row.decision.equipment},
+         {"version", row.decision.version},
+         {"since", time_text(row.decision.time)},
+         {"window", {{"begin", time_text(row.window.begin)}, {"end", time_text(row.window.end)}}},
+         {"supersedes", row.supersedes},
+         {"reason", row.decision.reason},
+         {"evidence", ordered_json::parse(row.decision.evidence_json, nullptr, false)}});
+  for (ordered_json& row : list)
+    if (row["evidence"].is_discarded()) row["evidence"] = nullptr;
+  fmt::print("{}\n", ordered_json{{"waiting", std::move(list)}}.dump(
+                         2, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+int run(const Arguments& arguments) {
+  Subject wanted;
+  if (!arguments.subject.empty()) {
+    const auto parsed = parse_subject(arguments.subject);
+    if (const auto* refusal = std::get_if<Refusal>(&parsed)) return refuse(*refusal);
+    wanted = std::get<Subject>(parsed);
+  }
+  return with_readers(arguments.access, [&](const Readers& readers) {
+    std::vector<WaitingRow> rows = readers.history.waiting();
+    std::erase_if(rows, [&](const WaitingRow& row) {
+      return (!wanted.equipment.empty() && row.decision.equipment != wanted.equipment) ||
+             (!wanted.spacecraft.empty() && row.decision.spacecraft != wanted.spacecraft);
+    });
+    if (arguments.json)
+      print_json(rows);
+    else if (rows.empty())
+      fmt::print("no version waits for an operator\n");
+    else
+      print_table(rows);
+    return static_cast<int>(rows.empty() ? exit_done : exit_failed);
+  });
+}
+
+std::function<int()> declare(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.add_option("equipment", arguments->subject,
+                     "EQUIPMENT or SPACECRAFT/EQUIPMENT (every one)");
+  add_access_options(command, arguments->access);
+  command.add_flag("--json", arguments->json, "one JSON object");
+  command.footer(
+      "Versions that wait for telemetry are not listed: 'reident history' has them. To approve a\n"
+      "version rejects those that it supersedes: earlier ones of its equipment that wait too.\n"
+      "Example:\n  reident waiting --config reident.toml\n"
+      "Exit status: 0 when none waits, 1 when one does.");
+  return [arguments] { return run(*arguments); };
+}
+
+const VerbRegistration registered({"waiting",
+                                   "List the versions that wait for an operator, and why",
+                                   WorksOn::history, declare});
+
+}  // namespace
+}  // namespace reident::cli::waiting_verb

@@ -1,0 +1,68 @@
+// What the service notices about itself and around it, kept in the registry: alarms, and what
+// simulators run.
+#pragma once
+
+#include <future>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "service/config/config.hpp"
+#include "service/daemon/archive_writer.hpp"
+#include "service/daemon/publisher.hpp"
+#include "service/daemon/simulator_book.hpp"
+#include "service/daemon/telemetry_watch.hpp"
+#include "service/dds/dds.hpp"
+
+namespace reident {
+
+/// One thread, which looks once a second. What it is made of must outlive it.
+class ServiceWatch {
+ public:
+  struct Parts {
+    const Config& config;
+    Clock clock;
+    storage::Time started;
+    dds::Participant& participant;
+    ArchiveWriter& writer;
+    TelemetryWatch& telemetry;
+    SimulatorBook& simulators;
+    const Publisher& publisher;
+    std::string damage;  // what is damaged in the file already; empty: nothing
+  };
+  /// Throws dds::Error.
+  explicit ServiceWatch(Parts parts);
+
+  /// Finds what is wrong and has the registry keep what is news. An alarm that cannot be kept, as
+  /// on a full disk, is tried again at the next look.
+  void look();
+
+  /// What look() found, one alarm a line: "code SPACECRAFT/EQUIPMENT: text".
+  std::string text() const;
+
+ private:
+  void hear_services();
+  std::vector<storage::Alarm> services() const;
+  std::vector<storage::Alarm> disk_and_damage() const;
+  std::vector<storage::Alarm> old_simulators();
+  void keep(std::vector<storage::SimulatorState> changes);
+
+  Parts parts_;
+  dds::Reader<ServiceStatus> statuses_;
+  struct Other {
+    ServiceStatus status;
+    storage::Time heard = 0;
+  };
+  std::map<std::pair<std::string, storage::Time>, Other> others_;  // by name and start
+  /// Since when a simulator runs another version than the champion.
+  std::map<std::pair<std::string, storage::EquipmentName>, storage::Time> old_since_;
+  std::vector<storage::Alarm> alarms_;
+  std::optional<std::vector<storage::Alarm>> kept_;  // those that the registry has, once known
+  /// What the registry's thread was given and may not have written yet.
+  std::future<void> posted_;
+  std::vector<storage::Alarm> posted_alarms_;
+  std::vector<storage::SimulatorState> posted_changes_;
+};
+
+}  // namespace reident
