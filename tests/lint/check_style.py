@@ -42,6 +42,7 @@ FORBIDDEN_INCLUDES = [  # folder, pattern of what it must not include, why
     ("service/(config|windows|judgement|operations)/", r"service/daemon/",
      "no decision depends on threads and queues"),
     ("service/(config|windows|judgement)/", r"service/dds/", "no decision depends on the middleware"),
+    ("service/review/", r"service/(operations|daemon|dds|cli)/", "it reads and decides nothing"),
     ("service/cli/", r"service/daemon/", "the command line works without the daemon"),
     ("service/(client|dds|model)/", r"storage/(?!types/)", "simulators hold no database"),
 ]

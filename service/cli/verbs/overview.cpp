@@ -6,10 +6,10 @@
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
-#include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
 #include "service/judgement/scores.hpp"
 #include "service/operations/commands.hpp"
+#include "service/review/stored_league.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::overview_verb {
