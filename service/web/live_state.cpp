@@ -111,16 +111,26 @@ bool LiveState::take_statuses() {
 bool LiveState::look_into_registry() {
   std::string error;
   std::vector<std::pair<std::string, Json>> found;
+  DecisionCounts made;
   try {
     storage::Database database(database_, storage::Database::Mode::read_only);
     const storage::Registry registry(database);
     for (const storage::EquipmentName& name : registry.equipment())
       found.emplace_back("registry/" + name.spacecraft + "/" + name.equipment,
                          registry_value(registry, name));
+    if (registry.last_decision() < counted_) counted_ = 0;  // an older file was put in its place
+    storage::RowFilter uncounted;
+    if (counted_ > 0) uncounted.beyond = counted_;
+    registry.each_decision(uncounted, [&](storage::Decision&& decision) {
+      ++made[{std::string(storage::name(decision.kind)), decision.actor == "gate"}];
+      counted_ = decision.id;
+      return true;
+    });
   } catch (const storage::Error& failure) {
     error = failure.what();
   }
   const MutexLock lock(mutex_);
+  for (const auto& [key, count] : made) decisions_[key] += count;
   bool is_new = error != database_error_;
   database_error_ = error;
   is_new = put("database", "database", {{"error", error}}) || is_new;
@@ -136,6 +146,11 @@ std::map<std::string, HeardStatus> LiveState::services() const {
 std::string LiveState::database_error() const {
   const MutexLock lock(mutex_);
   return database_error_;
+}
+
+DecisionCounts LiveState::decisions() const {
+  const MutexLock lock(mutex_);
+  return decisions_;
 }
 
 EventSource::Events LiveState::since(std::uint64_t revision) {

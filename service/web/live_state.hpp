@@ -24,6 +24,9 @@ struct HeardStatus {
   std::chrono::steady_clock::time_point heard;
 };
 
+/// Decisions so far, by kind and whether the gate made them.
+using DecisionCounts = std::map<std::pair<std::string, bool>, std::uint64_t>;
+
 /// The state of a service as JSON, with the seconds since its last heartbeat.
 Json status_value(const HeardStatus& heard);
 
@@ -41,6 +44,7 @@ class LiveState final : public EventSource {
   std::map<std::string, HeardStatus> services() const;
   /// Why the registry could not be read when it was looked into last; empty where it could.
   std::string database_error() const;
+  DecisionCounts decisions() const;
 
   Events since(std::uint64_t revision) override;
   /// As since(), as JSON for those who poll.
@@ -71,6 +75,8 @@ class LiveState final : public EventSource {
   std::map<std::string, Entry> entries_ REIDENT_GUARDED_BY(mutex_);
   std::map<std::string, HeardStatus> services_ REIDENT_GUARDED_BY(mutex_);
   std::string database_error_ REIDENT_GUARDED_BY(mutex_);
+  DecisionCounts decisions_ REIDENT_GUARDED_BY(mutex_);
+  std::int64_t counted_ = 0;  // id of the last decision among them
 };
 
 }  // namespace reident::web

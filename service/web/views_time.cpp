@@ -10,6 +10,7 @@
 #include "service/review/stored_version.hpp"
 #include "service/web/questions.hpp"
 #include "service/web/views.hpp"
+#include "service/windows/block_reader.hpp"
 
 namespace reident::web {
 namespace {
@@ -161,7 +162,8 @@ Json excluded_in(const std::vector<storage::Attempt>& attempts, TimeRange range)
   return list;
 }
 
-/// The errors of one champion's record, as many neighbouring blocks together as there are bins.
+/// The errors of one champion's record: of a cycle at least, so that a block in which the outputs
+/// hardly move does not look like a failure, and of as many blocks as lie in a bin.
 Json record_in(const Stored& stored, const EquipmentName& name, const Reign& reign,
                const std::vector<storage::Block>& blocks, const storage::TimeBins& bins) {
   const Time begin = bins.range().begin;
@@ -169,34 +171,36 @@ Json record_in(const Stored& stored, const EquipmentName& name, const Reign& rei
                       {},
                       stored.registry.scores(name.spacecraft, name.equipment, reign.version,
                                              std::max(reign.range.begin, begin))};
+  using Scored = std::pair<const storage::Block*, const storage::BlockScore*>;
+  std::vector<Scored> scored;
+  const Time end = std::min(reign.range.end, bins.range().end);
+  for (const storage::Block& block : blocks) {
+    if (!counts(block) || block.range.begin < reign.range.begin || block.range.begin >= end)
+      continue;
+    if (const auto* score = find(member, block.range.begin)) scored.emplace_back(&block, score);
+  }
   Json from = Json::array(), to = Json::array(), error = Json::array(), simulator = Json::array();
-  Sums own, rival;
-  std::optional<TimeRange> open;
-  const auto finish = [&] {
-    if (!open) return;
-    from.push_back(seconds(open->begin, begin));
-    to.push_back(seconds(open->end, begin));
+  const auto bin_of = [&](std::size_t i) {
+    return bins.of(std::max(scored[i].first->range.begin, begin));
+  };
+  for (std::size_t i = 0; i < scored.size();) {
+    std::size_t next = i + 1;
+    while (next < scored.size() && bin_of(next) == bin_of(i) &&
+           scored[next].first->range.begin == scored[next - 1].first->range.end)
+      ++next;
+    constexpr std::size_t cycle = blocks_of_cycle;
+    Sums own, rival;
+    for (std::size_t k = std::min(i, next < cycle ? 0 : next - cycle); k < next; ++k) {
+      own.add(*scored[k].first, scored[k].second->square);
+      if (!scored[k].first->baseline_square.empty())
+        rival.add(*scored[k].first, scored[k].first->baseline_square);
+    }
+    from.push_back(seconds(scored[i].first->range.begin, begin));
+    to.push_back(seconds(scored[next - 1].first->range.end, begin));
     error.push_back(number_value(own.mrse_percent()));
     simulator.push_back(rival.rows > 0 ? number_value(rival.mrse_percent()) : Json());
-    own = rival = {};
-    open.reset();
-  };
-  std::size_t bin = 0;
-  for (const storage::Block& block : blocks) {
-    const storage::BlockScore* score =
-        counts(block) && block.range.begin >= reign.range.begin &&
-                block.range.begin < std::min(reign.range.end, bins.range().end)
-            ? find(member, block.range.begin)
-            : nullptr;
-    if (!score) continue;
-    const std::size_t of = bins.of(std::max(block.range.begin, begin));
-    if (open && (of != bin || open->end != block.range.begin)) finish();
-    bin = of;
-    open = {open ? open->begin : block.range.begin, block.range.end};
-    own.add(block, score->square);
-    if (!block.baseline_square.empty()) rival.add(block, block.baseline_square);
+    i = next;
   }
-  finish();
   return {{"version", id_value(reign.version)},
           {"from_s", std::move(from)},
           {"to_s", std::move(to)},

@@ -6,14 +6,17 @@ import json
 import os
 import pwd
 import re
+import secrets
 import signal
 import socket
 import sqlite3
+import subprocess
 import sys
+import threading
 import unittest
 
 import plant
-from harness import DEADLINE_S, EndToEnd, wait_until
+from harness import BIN, DEADLINE_S, EndToEnd, wait_until
 
 
 class Web(EndToEnd):
@@ -284,6 +287,164 @@ class Web(EndToEnd):
             web = self.start("reident-web", "--config", config, "--port", 0, *options)
             self.assertEqual(web.wait(), 2)
             self.assertIn(named, web.text())
+
+    # -- who may what
+
+    def with_accounts(self):
+        """A service with versions that wait, and Ana (approver), Olaf (operator) and Vic (viewer)."""
+        self.flown(approval="by_hand")
+        lines = []
+        for name, role in (("Ana", "approver"), ("Bo", "approver"), ("Olaf", "operator"),
+                           ("Vic", "viewer")):
+            hashed = subprocess.run([str(BIN / "reident-web"), "--hash-password"], text=True,
+                                    input=f"{name}'s secret\n", capture_output=True, check=True)
+            lines += ["[[account]]", f'name = "{name}"', f'role = "{role}"',
+                      f'password = "{hashed.stdout.strip()}"']
+        accounts = self.folder / "accounts.toml"
+        accounts.write_text("\n".join(lines))
+        self.options = ["--accounts", accounts, "--audit", self.folder / "audit.jsonl"]
+        return self.start_web(*self.options)
+
+    def post(self, path, body, cookie="", token="", origin=None):
+        status, headers, answer = self.request(
+            f"/api/v1/{path}", "POST", body=json.dumps(body), headers={
+                "Content-Type": "application/json", "Cookie": cookie, "X-Reident-Token": token,
+                "Origin": origin or f"http://127.0.0.1:{self.port}"})
+        return status, headers, json.loads(answer)
+
+    def log_in(self, name):
+        status, headers, answer = self.post("login", {"name": name, "password": f"{name}'s secret"})
+        self.assertEqual(status, 200, answer)
+        cookie = headers["Set-Cookie"].split(";")[0]
+        self.assertIn("HttpOnly", headers["Set-Cookie"])
+        _, _, body = self.request("/api/v1/session", headers={"Cookie": cookie})
+        session = json.loads(body)
+        self.assertEqual(session["user"], name)
+        return {"cookie": cookie, "token": session["token"]}
+
+    def waiting(self):
+        return [str(version) for version, in self.query(
+            "SELECT version FROM model_version WHERE status = 'waiting' ORDER BY version")]
+
+    def order(self, version, action="approve", champion=None, requester=None):
+        return {"requester": requester or secrets.token_hex(16), "action": action,
+                "spacecraft": "SAT", "equipment": "PLANT", "version": version,
+                "champion": champion, "reason": "seen on two passes"}
+
+    def test_who_may_not_orders_nothing_and_each_refusal_is_kept(self):
+        self.with_accounts()
+        version = self.waiting()[0]
+        ana, vic, olaf = self.log_in("Ana"), self.log_in("Vic"), self.log_in("Olaf")
+        for status, code, arguments in (
+                (401, "nobody", {}),
+                (403, "token", {**ana, "token": ""}),
+                (403, "token", {**ana, "token": vic["token"]}),
+                (403, "origin", {**ana, "origin": "http://evil.example"}),
+                (403, "role", vic), (403, "role", olaf)):
+            got, _, answer = self.post("orders", self.order(version), **arguments)
+            self.assertEqual((got, answer["error"]["code"]), (status, code), answer)
+        got, _, answer = self.post("orders", self.order(version, champion="77"), **ana)
+        self.assertEqual((got, answer["error"]["code"]), (409, "stale"), answer)
+        self.assertEqual(self.post("login", {"name": "Ana", "password": "guess"})[0], 403)
+        self.assertEqual(self.query("SELECT count(*) FROM command"), [(0,)])
+        kept = [json.loads(line)["code"] for line in
+                (self.folder / "audit.jsonl").read_text().splitlines()]
+        self.assertEqual(kept, ["nobody", "token", "token", "origin", "role", "role", "stale",
+                                "login"])
+        shown = [one["code"] for one in self.api("refusals")["refusals"]]
+        self.assertEqual(shown, kept[::-1])
+        got, _, answer = self.post("orders", self.order(None, "hold"), **olaf)
+        self.assertEqual((got, answer["ok"]), (200, True), answer)
+
+    def test_double_clicks_and_lost_replies_decide_once(self):
+        web = self.with_accounts()
+        version = self.waiting()[0]
+        ana = self.log_in("Ana")
+        order = self.order(version)
+        answers = []
+        threads = [threading.Thread(target=lambda: answers.append(self.post("orders", order, **ana)))
+                   for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        done = [answer for status, _, answer in answers if status == 200]
+        self.assertTrue(done)
+        self.assertEqual({(one["ok"], one["reply"]) for one in done},
+                         {(True, done[0]["reply"])}, answers)
+        other = self.waiting()[0]
+        order = self.order(other, "reject", champion=version)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=DEADLINE_S)
+        connection.request("POST", "/api/v1/orders", json.dumps(order), {
+            "Content-Type": "application/json", "Cookie": ana["cookie"],
+            "X-Reident-Token": ana["token"], "Origin": f"http://127.0.0.1:{self.port}"})
+        wait_until(lambda: len(self.query("SELECT 1 FROM command")) == 2, "it is carried out")
+        web.kill()
+        connection.close()
+        self.start_web(*self.options, name="again")
+        ana = self.log_in("Ana")
+        status, _, answer = self.post("orders", order, **ana)
+        self.assertEqual((status, answer["ok"]), (200, True), answer)
+        self.assertEqual(self.query("SELECT version, kind, actor FROM decision WHERE actor != 'gate' "
+                                    "ORDER BY id"),
+                         [(int(version), "approve", "Ana"), (int(other), "reject", "Ana")])
+
+    def test_of_two_operators_one_decides_and_the_other_is_told_who_and_when(self):
+        self.with_accounts()
+        version = self.waiting()[0]
+        sessions = {name: self.log_in(name) for name in ("Ana", "Bo")}
+        answers = {}
+
+        def decide(name, action):
+            answers[name] = self.post("orders", self.order(version, action), **sessions[name])
+
+        threads = [threading.Thread(target=decide, args=pair)
+                   for pair in (("Ana", "approve"), ("Bo", "reject"))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        ((winner, _),) = self.query("SELECT actor, kind FROM decision WHERE actor != 'gate'")
+        loser = "Bo" if winner == "Ana" else "Ana"
+        status, _, answer = answers[loser]
+        text = answer["reply"] if status == 200 else answer["error"]["message"]
+        self.assertRegex(text, rf"(by {winner} at|by {winner};)", answers)
+
+    def test_metrics_follow_the_registry_and_are_bounded(self):
+        self.flown()
+        self.start_web()
+
+        def metrics():
+            status, headers, body = self.request("/metrics")
+            self.assertEqual(status, 200)
+            self.assertTrue(headers["Content-Type"].startswith("text/plain; version=0.0.4"))
+            return body.decode()
+
+        wait_until(lambda: "reident_service_up 1\n" in metrics(), "the service is heard")
+        text = metrics()
+        values, typed = {}, set()
+        for line in text.splitlines():
+            if line.startswith("#"):
+                _, word, name, *_ = line.split(" ", 3)
+                if word == "TYPE":
+                    self.assertNotIn(name, typed, "once")
+                    typed.add(name)
+                continue
+            name, value = line.rsplit(" ", 1)
+            self.assertNotIn(name, values, "each series once")
+            values[name] = float(value)
+            base = re.sub(r"(_bucket|_sum|_count)?(\{.*)?$", "", name)
+            self.assertIn(base, typed, line)
+        plant_labels = '{spacecraft="SAT",equipment="PLANT"}'
+        self.assertEqual(values["reident_champion_version" + plant_labels], self.champion())
+        for kind, gate, count in self.query(
+                "SELECT kind, actor = 'gate', count(*) FROM decision GROUP BY 1, 2"):
+            by = "gate" if gate else "operator"
+            self.assertEqual(values[f'reident_decisions_total{{kind="{kind}",by="{by}"}}'], count)
+        self.assertEqual(len([one for one in values if 'equipment="PLANT"' in one]),
+                         len({one.split("{")[0] for one in values if 'equipment="PLANT"' in one}))
+        self.request("/nothing-that-exists")
+        self.assertNotIn("nothing-that-exists", metrics())
 
     def test_another_user_with_read_rights_alone_sees_all_also_of_a_service_that_stopped(self):
         if os.getuid() != 0:

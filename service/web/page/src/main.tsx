@@ -4,23 +4,26 @@ import "./page.css";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Service } from "./api";
 import { durationText, timeText, toggleZone } from "./format";
+import { Who } from "./decide";
 import { begin, useChanges } from "./live";
 import { useZone } from "./parts";
+import { learn } from "./session";
 import { go, link, usePlace, type Place } from "./url";
 import { CompletenessView } from "./views/completeness";
 import { EquipmentView } from "./views/equipment";
 import { EventsView } from "./views/events";
+import { HandoverView } from "./views/handover";
 import { Overview } from "./views/overview";
 import { ServiceView } from "./views/service";
 import { VersionView } from "./views/version";
 import { WaitingView } from "./views/waiting";
 
 const views: [string, string][] = [
-  ["overview", "Overview"], ["waiting", "Waiting"], ["events", "Events"], ["telemetry", "Telemetry"], ["service", "Service"],
+  ["overview", "Overview"], ["waiting", "Waiting"], ["events", "Events"], ["telemetry", "Telemetry"], ["handover", "Handover"], ["service", "Service"],
 ];
 
 const keys: [string, string][] = [
-  ["j, k", "next, previous row"], ["Enter", "open the row"], ["g then o, w, e, t, s", "overview, waiting, events, telemetry, service"],
+  ["j, k", "next, previous row"], ["Enter", "open the row"], ["g then o, w, e, t, h, s", "overview, waiting, events, telemetry, handover, service"],
   ["+, −", "closer, farther in time"], ["←, →", "earlier, later"], ["[, ]", "previous, next decision"], ["0", "the usual range"],
   ["t", "plot or table"], ["u", "UTC or the zone of this computer"], ["d", "light, dark, high contrast"], ["?", "these keys"], ["Esc", "close"],
 ];
@@ -43,6 +46,7 @@ function View({ view, parameters }: Place) {
     case "version": return <VersionView key={JSON.stringify([parameters.spacecraft, parameters.equipment, parameters.version])} parameters={parameters} />;
     case "events": return <EventsView parameters={parameters} />;
     case "telemetry": return <CompletenessView parameters={parameters} />;
+    case "handover": return <HandoverView parameters={parameters} />;
     case "service": return <ServiceView />;
     default: return <p class="error" role="alert">There is no view {view}. <a href="#/overview">Overview</a></p>;
   }
@@ -135,6 +139,7 @@ function Page() {
         </nav>
         <Pulse />
         <span class="tools">
+          <Who />
           <button type="button" class="quiet" onClick={() => { toggleZone(); dispatchEvent(new Event("themechange")); }} title="UTC or the zone of this computer (u)">{zone}</button>
           <button type="button" class="quiet" onClick={nextTheme} title="light, dark, high contrast (d)" aria-label="light, dark or high contrast">◐</button>
           <button type="button" class="quiet" onClick={() => setHelp(true)} aria-label="keys">?</button>
@@ -148,4 +153,5 @@ function Page() {
 
 document.documentElement.dataset.theme = localStorage.getItem("theme") ?? "";
 begin();
+learn();
 render(<Page />, document.getElementById("page")!);

@@ -197,7 +197,7 @@ function options(panel: Panel, place: { isFirst: boolean; isLast: boolean; width
   const scale = robustScale(panel.lines.map((line) => line.points), (panel.levels ?? []).map((level) => level.value));
   return {
     width: place.width,
-    height: (panel.height ?? 150) + (place.isLast ? 46 : 0),
+    height: (panel.height ?? 150) + (place.isLast ? 56 : 0),
     padding: [place.isFirst ? 18 : 6, 8, place.isLast ? 0 : 4, 0],
     legend: { show: false },
     cursor: { sync: { key: "reident", scales: ["x", null] }, drag: { x: true, y: false, setScale: false }, points: { size: 5 } },
@@ -207,8 +207,8 @@ function options(panel: Panel, place: { isFirst: boolean; isLast: boolean; width
       y: { range: () => scale },
     },
     axes: [
-      axis(place.isLast ? `time (${zoneLabel()})` : "", 2, place.isLast ? { size: 34, values: (_, splits, __, ___, step) => timeLabels(splits, step) } : { size: 0, label: undefined, values: (_, splits) => splits.map(() => "") }),
-      axis(panel.unit, 3, { size: leftAxis - 16, values: (_, splits) => splits.map((value) => figure(value, 5)) }),
+      axis(place.isLast ? `time (${zoneLabel()})` : "", 2, place.isLast ? { size: 40, values: (_, splits, __, ___, step) => timeLabels(splits, step) } : { size: 0, label: undefined, values: (_, splits) => splits.map(() => "") }),
+      axis(panel.unit, 3, { space: 24, size: leftAxis - 16, values: (_, splits) => splits.map((value) => figure(value, 5)) }),
     ],
     series: [
       {},

@@ -1,6 +1,7 @@
 // One equipment: what was measured, what the champion makes of it, and what was decided, on one axis.
 import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
 import { ask, isAbout, useAnswer, type Equipment, type Run, type Telemetry, type Timeline, type VersionLine } from "../api";
+import { Decide } from "../decide";
 import { figure, isoOf, secondsOf, timeText } from "../format";
 import { decisionColumns, Figure, kindText, Loaded, Status, useZone } from "../parts";
 import { Plot, type Level, type Mark, type Panel, type Stretch } from "../plot";
@@ -79,7 +80,7 @@ function panelsOf(equipment: Equipment, drawn: Drawn): Panel[] {
     const last = timeline.champions[timeline.champions.length - 1];
     if (last?.approved_error_percent) levels.push({ value: last.approved_error_percent, label: `version ${last.version} when approved`, colour: "--good" });
     panels.push({
-      title: "error of the champion on what it was not fitted to", unit: "MRSE %", height: 130, levels,
+      title: "error of the champion over its last cycle, on what it was not fitted to", unit: "MRSE %", height: 130, levels,
       lines: timeline.records.filter((record) => record.from_s.length > 0).flatMap((record, index) => [
         { label: index === 0 ? "champion" : `version ${record.version}`, points: levelsOf(record.from_s, record.to_s, record.error_percent, begin), colour: "--run", width: 2 },
         ...(record.simulator_percent.some((value) => value !== null)
@@ -90,6 +91,9 @@ function panelsOf(equipment: Equipment, drawn: Drawn): Panel[] {
   for (const parameter of equipment.parameters) add(parameter, false, 100);
   return panels;
 }
+
+/** What the gate refused or left waiting changes nothing in orbit: the tables below have it. */
+const changesWhatRuns = (kind: string) => kind === "approve" || kind === "roll_back" || kind === "withdraw";
 
 function keyed(event: KeyboardEvent): boolean {
   const target = event.target as HTMLElement;
@@ -109,7 +113,7 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
   const panels = useMemo(() => panelsOf(equipment, drawn), [equipment, drawn]);
   const timeline = drawn.timeline;
   const origin = timeline ? secondsOf(timeline.range.begin) : 0;
-  const marks = useMemo<Mark[]>(() => (timeline?.events ?? []).map((event) => ({ at: origin + event.at_s, label: `${kindText(event.kind)} ${event.version}`, kind: event.kind })), [timeline]);
+  const marks = useMemo<Mark[]>(() => (timeline?.events ?? []).filter((event) => changesWhatRuns(event.kind) || event.actor !== "gate").map((event) => ({ at: origin + event.at_s, label: `${kindText(event.kind)} ${event.version}`, kind: event.kind })), [timeline]);
   const stretches = useMemo<Stretch[]>(() => (timeline?.champions ?? []).map((champion, index) => ({
     begin: origin + champion.begin_s, end: origin + champion.end_s, label: champion.version, colour: index % 2 ? "--strip-b" : "--strip-a",
   })), [timeline]);
@@ -127,7 +131,7 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
     const pressed = (event: KeyboardEvent) => {
       if (!keyed(event)) return;
       const width = end - begin, middle = (begin + end) / 2;
-      const places = equipment.decisions.filter((one) => one.kind !== "wait" && one.telemetry).map((one) => secondsOf(one.telemetry!)).sort((a, b) => a - b);
+      const places = equipment.decisions.filter((one) => (changesWhatRuns(one.kind) || one.actor !== "gate") && one.telemetry).map((one) => secondsOf(one.telemetry!)).sort((a, b) => a - b);
       const beside = (at: number | undefined) => at !== undefined && move(at - width / 2, at + width / 2);
       if (event.key === "+" || event.key === "=") move(middle - width / 4, middle + width / 4);
       else if (event.key === "-") move(middle - width, middle + width);
@@ -181,7 +185,7 @@ function VersionErrors({ versions }: { versions: VersionLine[] }) {
   const shown = versions.filter((one) => one.error_percent !== null).slice(-60);
   if (shown.length < 2) return null;
   const greatest = Math.max(...shown.map((one) => Math.min(one.interval_percent?.[1] ?? one.error_percent!, 3 * one.error_percent!)));
-  const width = 900, height = 150, step = width / shown.length;
+  const width = 900, height = 110, step = width / shown.length;
   const y = (value: number) => height - 14 - (Math.min(value, greatest) / greatest) * (height - 24);
   return (
     <section>
@@ -207,6 +211,7 @@ export function EquipmentView({ parameters }: { parameters: Record<string, strin
   const zone = useZone();
   const { spacecraft, equipment: name } = parameters;
   const answer = useAnswer<Equipment>("equipment", { spacecraft, equipment: name }, isAbout(spacecraft, name));
+  const turn = answer.data?.decisions.length ?? 0;  // a decision draws again what is shown
   return (
     <Loaded answer={answer}>
       {(equipment) => {
@@ -219,7 +224,11 @@ export function EquipmentView({ parameters }: { parameters: Record<string, strin
               {line.hold && <span class="act">held by {line.hold.actor} since {timeText(line.hold.since)} {zone}{line.hold.reason && `: ${line.hold.reason}`}</span>}
             </div>
             {line.failure && <p class="error" role="alert">{line.failure}</p>}
-            {equipment.telemetry ? <TimeAxis equipment={equipment} parameters={parameters} turn={0} /> : <p class="empty">No telemetry of {spacecraft} is archived.</p>}
+            {equipment.telemetry ? <TimeAxis equipment={equipment} parameters={parameters} turn={turn} /> : <p class="empty">No telemetry of {spacecraft} is archived.</p>}
+            <Decide spacecraft={spacecraft!} equipment={name!} champion={line.champion} actions={[
+              line.hold ? { action: "release", label: "Release", role: "operator", needsReason: false } : { action: "hold", label: "Hold the champion", role: "operator", needsReason: true },
+              { action: "identify_now", label: "Identify now", role: "operator", needsReason: false },
+            ]} />
             <VersionErrors versions={equipment.versions} />
             <Table name={`versions-${name}`} caption="Versions" rows={[...equipment.versions].reverse()}
               href={(row) => link("version", { spacecraft, equipment: name, version: row.version })}

@@ -1,5 +1,6 @@
 // Who decided what, when and why.
 import { isDecision, useAnswer, type Decision } from "../api";
+import { timeText } from "../format";
 import { decisionColumns, kindText, Loaded, useZone } from "../parts";
 import { Table } from "../table";
 import { change, link } from "../url";
@@ -14,6 +15,33 @@ function Choice({ name, label, options, value }: { name: string; label: string; 
       </select>
     </label>
   );
+}
+
+interface Refusal {
+  time: string;
+  code: string;
+  user: string;
+  peer: string;
+  action: string;
+  spacecraft: string;
+  equipment: string;
+  version: string;
+}
+
+/** Orders that this page's server refused; those that the service refused have its reply. */
+function Refusals() {
+  const zone = useZone();
+  const answer = useAnswer<{ refusals: Refusal[] }>("refusals", {});
+  if (!answer.data || answer.data.refusals.length === 0) return null;
+  return <Table name="refusals" caption="Refused by this page, since its server began" rows={answer.data.refusals} columns={[
+    { title: `time (${zone})`, text: (row) => timeText(row.time) },
+    { title: "why", text: (row) => row.code },
+    { title: "user", text: (row) => row.user || "nobody" },
+    { title: "from", text: (row) => row.peer },
+    { title: "action", text: (row) => row.action },
+    { title: "equipment", text: (row) => [row.spacecraft, row.equipment].filter(Boolean).join("/") },
+    { title: "version", text: (row) => (row.version === "0" ? "" : row.version), isNumber: true },
+  ]} />;
 }
 
 export function EventsView({ parameters }: { parameters: Record<string, string> }) {
@@ -39,6 +67,7 @@ export function EventsView({ parameters }: { parameters: Record<string, string> 
           </>
         )}
       </Loaded>
+      <Refusals />
     </>
   );
 }

@@ -1,6 +1,7 @@
 // One version: the verdict first, then what it rests on.
 import { useMemo } from "preact/hooks";
 import { isAbout, useAnswer, type Version } from "../api";
+import { Decide, type Action } from "../decide";
 import { durationText, figure, secondsOf, timeText } from "../format";
 import { decisionColumns, Facts, Loaded, Status, useZone } from "../parts";
 import { Plot, type Panel } from "../plot";
@@ -66,6 +67,17 @@ function numberIn(evidence: Record<string, unknown>, path: string): number | nul
   return typeof value === "number" ? value : null;
 }
 
+/** What can be decided about a version of this status. */
+function actionsFor({ status, version }: Version): Action[] {
+  const of = (action: string, label: string, needsReason: boolean): Action => ({ action, label, role: "approver", needsReason, version });
+  switch (status) {
+    case "waiting": return [of("approve", "Approve", true), of("reject", "Reject", true)];
+    case "superseded": return [of("roll_back", "Roll back to it", false), of("withdraw", "Withdraw for ever", true)];
+    case "approved": return [of("withdraw", "Withdraw for ever", true)];
+    default: return [];
+  }
+}
+
 export function VersionView({ parameters }: { parameters: Record<string, string> }) {
   const zone = useZone();
   const { spacecraft, equipment, version: number } = parameters;
@@ -84,6 +96,7 @@ export function VersionView({ parameters }: { parameters: Record<string, string>
               <Status status={version.status} />
             </div>
             <p class="verdict">{version.verdict}</p>
+            <Decide spacecraft={spacecraft!} equipment={equipment!} champion={version.champion} actions={actionsFor(version)} />
             <div class="columns">
               <Table name={`conditions-${equipment}-${number}`} caption="Conditions" rows={version.conditions}
                 empty="It was not compared with a champion."
