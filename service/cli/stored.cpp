@@ -4,6 +4,7 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/operations/commands.hpp"
+#include "service/review/evidence.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
@@ -85,15 +86,10 @@ ordered_json decisions_json(const std::vector<storage::Decision>& decisions) {
                     {"time", time_text(decision.time)},
                     {"actor", decision.actor},
                     {"reason", decision.reason}});
-    ordered_json evidence = ordered_json::parse(decision.evidence_json, nullptr, false);
-    if (evidence.is_object()) list.back()["evidence"] = std::move(evidence);
+    if (ordered_json evidence = evidence_of(decision); !evidence.empty())
+      list.back()["evidence"] = std::move(evidence);
   }
   return list;
-}
-
-ordered_json evidence_of(const storage::Attempt& attempt) {
-  ordered_json evidence = ordered_json::parse(attempt.evidence_json, nullptr, false);
-  return evidence.is_object() ? evidence : ordered_json::object();
 }
 
 std::string evidence_number(const ordered_json& evidence, const char* key) {

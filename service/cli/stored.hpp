@@ -37,9 +37,6 @@ std::string equipment_in(const history::HistoryReader& history);
 nlohmann::ordered_json hold_json(const storage::Hold& hold);
 nlohmann::ordered_json decisions_json(const std::vector<storage::Decision>& decisions);
 
-/// The evidence of an attempt as a JSON object, empty where it holds none.
-nlohmann::ordered_json evidence_of(const storage::Attempt& attempt);
-
 /// A number of the evidence for a table, "-" where it is absent.
 std::string evidence_number(const nlohmann::ordered_json& evidence, const char* key);
 

@@ -42,7 +42,10 @@ FORBIDDEN_INCLUDES = [  # folder, pattern of what it must not include, why
     ("service/(config|windows|judgement|operations)/", r"service/daemon/",
      "no decision depends on threads and queues"),
     ("service/(config|windows|judgement)/", r"service/dds/", "no decision depends on the middleware"),
+    ("service/review/", r"service/(operations|daemon|dds|cli)/", "it reads and decides nothing"),
     ("service/cli/", r"service/daemon/", "the command line works without the daemon"),
+    ("service/web/", r"service/(daemon|operations|cli)/", "the page writes nothing"),
+    ("service/(?!web/)", r"service/web/|boost/(asio|beast)/", "HTTP appears under service/web alone"),
     ("service/(client|dds|model)/", r"storage/(?!types/)", "simulators hold no database"),
 ]
 ALLOWED = re.compile(r"service/dds/dds\.hpp$")

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "service/cli/model_run.hpp"
 #include "service/model/model_version.hpp"
+#include "service/review/model_run.hpp"
 
 namespace reident::cli {
 

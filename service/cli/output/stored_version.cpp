@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "service/cli/stored.hpp"
-#include "service/model/model_json.hpp"
 #include "service/operations/commands.hpp"
 
 namespace reident::cli {
@@ -83,20 +82,12 @@ std::variant<StoredVersion, Refusal> find_stored_version(const HistoryReader& hi
   std::optional<std::int64_t> number = subject.version;
   if (!number)
     if (const auto made = history.champion_decision(equipment)) number = made->version;
-  auto version = number ? history.version(equipment, *number) : std::nullopt;
-  if (!version)
-    return Refusal{fmt::format(
-        "{} has no {}; versions: {}", full_name(equipment),
-        subject.version ? fmt::format("version {}", *subject.version) : "approved version",
-        versions_text(history, equipment))};
-  StoredVersion story;
-  story.attempt = history.attempt(equipment, version->number).value();
-  story.decisions = history.decisions(equipment, version->number);
-  story.hold = history.hold(equipment);
-  story.model = equipment_model_from_json(version->model_json);
-  story.digest_matches = model_digest(story.model) == version->digest;
-  story.version = *std::move(version);
-  return story;
+  auto story = number ? stored_version(history, equipment, *number) : std::nullopt;
+  if (story) return *std::move(story);
+  return Refusal{fmt::format(
+      "{} has no {}; versions: {}", full_name(equipment),
+      subject.version ? fmt::format("version {}", *subject.version) : "approved version",
+      versions_text(history, equipment))};
 }
 
 int with_version(const HistoryAccessOptions& options, const std::string& subject,
@@ -108,19 +99,6 @@ int with_version(const HistoryAccessOptions& options, const std::string& subject
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
     return work(readers, std::get<StoredVersion>(std::move(found)));
   });
-}
-
-std::optional<storage::TimeRange> tuned_on(const storage::Version& version) {
-  const nlohmann::ordered_json provenance =
-      nlohmann::ordered_json::parse(version.provenance_json, nullptr, false);
-  const nlohmann::ordered_json::json_pointer tune("/parts/tune");
-  if (!provenance.is_object() || !provenance.contains(tune)) return std::nullopt;
-  const nlohmann::ordered_json& part = provenance[tune];
-  const auto begin = part.find("begin_ns"), end = part.find("end_ns");
-  if (begin == part.end() || end == part.end() || !begin->is_number_integer() ||
-      !end->is_number_integer())
-    return std::nullopt;
-  return storage::TimeRange{begin->get<storage::Time>(), end->get<storage::Time>()};
 }
 
 }  // namespace reident::cli

@@ -1,17 +1,15 @@
-// One version of a model as an operator names it, and all that is stored about it.
+// One version of a model as an operator names it.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "service/cli/command.hpp"
 #include "service/cli/history_access.hpp"
 #include "service/history/readers.hpp"
-#include "service/model/model_version.hpp"
-#include "storage/registry/registry.hpp"
+#include "service/review/stored_version.hpp"
 
 namespace reident::cli {
 
@@ -26,20 +24,6 @@ std::variant<Subject, Refusal> parse_subject(const std::string& text);
 
 /// The required first argument of a verb that is about one version.
 void add_version_argument(CLI::App& command, std::string& subject);
-
-/// All that is stored about one version.
-struct StoredVersion {
-  storage::Version version;
-  storage::Attempt attempt;
-  std::vector<storage::Decision> decisions;
-  std::optional<storage::Hold> hold;  // of its equipment, now
-  EquipmentModel model;
-  bool digest_matches = false;
-};
-
-/// The range whose samples chose, as the version's provenance says it; absent in versions from
-/// before schema 2.
-std::optional<storage::TimeRange> tuned_on(const storage::Version& version);
 
 /// The version that the subject names, or the champion of its equipment. A spacecraft that is left
 /// out is found by the equipment's name.

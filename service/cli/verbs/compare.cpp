@@ -6,13 +6,14 @@
 
 #include "service/cli/history_access.hpp"
 #include "service/cli/model_comparison.hpp"
-#include "service/cli/model_run.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/range_options.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/model/model_json.hpp"
 #include "service/operations/commands.hpp"
+#include "service/review/model_run.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::compare_verb {

@@ -9,6 +9,7 @@
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
+#include "service/review/evidence.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::history_verb {

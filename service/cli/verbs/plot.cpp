@@ -11,10 +11,12 @@
 #include "service/cli/output/model_picture.hpp"
 #include "service/cli/output/record_picture.hpp"
 #include "service/cli/output/stored_version.hpp"
+#include "service/cli/range_options.hpp"
 #include "service/cli/stored.hpp"
-#include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
+#include "service/review/evidence.hpp"
+#include "service/review/stored_league.hpp"
 #include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
 

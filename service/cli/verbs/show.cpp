@@ -12,6 +12,7 @@
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
 #include "service/operations/commands.hpp"
+#include "service/review/evidence.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::show_verb {

@@ -6,14 +6,14 @@
 #include <fmt/ranges.h>
 
 #include "service/cli/history_access.hpp"
-#include "service/cli/output/conditions.hpp"
 #include "service/cli/output/model_text.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
-#include "service/cli/stored_league.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
+#include "service/review/evidence.hpp"
+#include "service/review/verdict.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::why_verb {
@@ -189,55 +189,6 @@ Sentences sentences_of(const StoredVersion& story) {
     sentences.push_back(fmt::format("{} {} by {}: {}", time_text(decision.time),
                                     name(decision.kind), decision.actor, decision.reason));
   return sentences;
-}
-
-/// The figures of a decision of the league.
-Finding finding_in(const ordered_json& evidence) {
-  Finding finding;
-  const auto read = [&evidence](const char* key, auto& value) {
-    if (const auto found = evidence.find(key); found != evidence.end() && found->is_number())
-      value = found->get<std::remove_reference_t<decltype(value)>>();
-  };
-  read("blocks", finding.blocks);
-  read("log_wealth", finding.log_wealth);
-  read("log_threshold", finding.log_threshold);
-  read("mean_score", finding.mean_score);
-  read("lower_score", finding.lower_score);
-  read("uncovered_share", finding.uncovered_share);
-  read("log_wealth_without_offset", finding.wealth_without_offset);
-  read("mrse_percent", finding.mrse_percent);
-  read("fit_percent", finding.fit_percent);
-  return finding;
-}
-
-struct Verdict {
-  std::string sentence;
-  std::vector<Condition> conditions;  // empty where it was never compared with a champion
-};
-
-Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& story) {
-  const auto record = stored_record(history, story);
-  if (record)
-    if (const auto finding = finding_now(*record, story)) {
-      const std::string_view code = finding->obstacle ? name(finding->obstacle->code) : "";
-      return {finding->obstacle ? "Waits. " + sentence(*finding->obstacle)
-                                : "Waits, and all conditions on its record hold.",
-              conditions_of(*finding, code, record->limits)};
-    }
-  const storage::Decision& last = story.decisions.back();
-  Verdict verdict{fmt::format("{} by {}: {}", name(last.kind), last.actor, last.reason), {}};
-  for (auto one = story.decisions.rbegin(); record && one != story.decisions.rend(); ++one) {
-    const ordered_json evidence = ordered_json::parse(one->evidence_json, nullptr, false);
-    if (!evidence.is_object() || !evidence.contains("log_threshold")) continue;
-    const auto reasons = evidence.value("reasons", ordered_json::array());
-    const std::string code = reasons.empty() ? "" : reasons.back().value("code", "");
-    verdict.conditions = conditions_of(finding_in(evidence), code, record->limits);
-    break;
-  }
-  if (story.version.status == "approved")
-    if (const auto failure = failure_now(history, story.attempt, story.version.number))
-      verdict.sentence = sentence(*failure) + " " + verdict.sentence;
-  return verdict;
 }
 
 std::string table_of(const std::vector<Condition>& conditions) {

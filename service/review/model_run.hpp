@@ -5,23 +5,11 @@
 #include <string>
 #include <variant>
 
-#include "service/cli/command.hpp"
 #include "service/model/model_version.hpp"
 #include "service/windows/window_data.hpp"
 #include "storage/types/sample_reader.hpp"
 
-namespace reident::cli {
-
-/// --begin and --end of a range of telemetry.
-struct RangeOptions {
-  std::optional<std::string> begin, end;
-};
-
-void add_range_options(CLI::App& command, RangeOptions& options, const std::string& otherwise);
-
-/// The range that was asked for; a bound that is left out is that of `otherwise`.
-std::variant<storage::TimeRange, Refusal> range_of(const RangeOptions& options,
-                                                   storage::TimeRange otherwise);
+namespace reident {
 
 struct ModelRun {
   WindowData data;               // at least one row
@@ -42,4 +30,4 @@ std::variant<ModelRun, std::string> run_model(const storage::SampleReader& archi
                                               const EquipmentModel& model, storage::TimeRange range,
                                               storage::Time scored_from);
 
-}  // namespace reident::cli
+}  // namespace reident

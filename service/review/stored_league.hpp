@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "service/cli/output/stored_version.hpp"
 #include "service/judgement/league.hpp"
+#include "service/review/stored_version.hpp"
 
-namespace reident::cli {
+namespace reident {
 
 /// A version's record and what it is judged by.
 struct StoredRecord {
@@ -30,4 +30,4 @@ std::optional<Finding> finding_now(const StoredRecord& record, const StoredVersi
 std::optional<Reason> failure_now(const history::HistoryReader& history,
                                   const storage::Attempt& attempt, std::int64_t champion);
 
-}  // namespace reident::cli
+}  // namespace reident

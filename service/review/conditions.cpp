@@ -1,4 +1,4 @@
-#include "service/cli/output/conditions.hpp"
+#include "service/review/conditions.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
-#include "service/cli/stored_league.hpp"
+#include "service/review/stored_league.hpp"
 
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
-#include "service/cli/stored.hpp"
+#include "service/review/evidence.hpp"
 
-namespace reident::cli {
+namespace reident {
 namespace {
 
 using nlohmann::ordered_json;
@@ -97,4 +97,4 @@ std::optional<Finding> finding_now(const StoredRecord& record, const StoredVersi
   return std::nullopt;
 }
 
-}  // namespace reident::cli
+}  // namespace reident

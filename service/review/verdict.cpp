@@ -1,0 +1,59 @@
+#include "service/review/verdict.hpp"
+
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "service/review/evidence.hpp"
+#include "service/review/stored_league.hpp"
+
+namespace reident {
+namespace {
+
+/// The figures of a decision of the league.
+Finding finding_in(const nlohmann::ordered_json& evidence) {
+  Finding finding;
+  const auto read = [&evidence](const char* key, auto& value) {
+    if (const auto found = evidence.find(key); found != evidence.end() && found->is_number())
+      value = found->get<std::remove_reference_t<decltype(value)>>();
+  };
+  read("blocks", finding.blocks);
+  read("log_wealth", finding.log_wealth);
+  read("log_threshold", finding.log_threshold);
+  read("mean_score", finding.mean_score);
+  read("lower_score", finding.lower_score);
+  read("uncovered_share", finding.uncovered_share);
+  read("log_wealth_without_offset", finding.wealth_without_offset);
+  read("mrse_percent", finding.mrse_percent);
+  read("fit_percent", finding.fit_percent);
+  return finding;
+}
+
+}  // namespace
+
+Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& story) {
+  const auto record = stored_record(history, story);
+  if (record)
+    if (const auto finding = finding_now(*record, story)) {
+      const std::string_view code = finding->obstacle ? name(finding->obstacle->code) : "";
+      return {finding->obstacle ? "Waits. " + sentence(*finding->obstacle)
+                                : "Waits, and all conditions on its record hold.",
+              conditions_of(*finding, code, record->limits)};
+    }
+  const storage::Decision& last = story.decisions.back();
+  Verdict verdict{fmt::format("{} by {}: {}", name(last.kind), last.actor, last.reason), {}};
+  for (auto one = story.decisions.rbegin(); record && one != story.decisions.rend(); ++one) {
+    const nlohmann::ordered_json evidence = evidence_of(*one);
+    if (!evidence.contains("log_threshold")) continue;
+    const auto reasons = evidence.value("reasons", nlohmann::ordered_json::array());
+    const std::string code = reasons.empty() ? "" : reasons.back().value("code", "");
+    verdict.conditions = conditions_of(finding_in(evidence), code, record->limits);
+    break;
+  }
+  if (story.version.status == "approved")
+    if (const auto failure = failure_now(history, story.attempt, story.version.number))
+      verdict.sentence = sentence(*failure) + " " + verdict.sentence;
+  return verdict;
+}
+
+}  // namespace reident

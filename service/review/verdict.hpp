@@ -1,0 +1,21 @@
+// What speaks for a version and against it, in one sentence and by condition.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/review/conditions.hpp"
+#include "service/review/stored_version.hpp"
+
+namespace reident {
+
+struct Verdict {
+  std::string sentence;
+  std::vector<Condition> conditions;  // empty where it was never compared with a champion
+};
+
+/// Of a version that waits, what its record says now; else its last decision, with the conditions
+/// as they were found then.
+Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& story);
+
+}  // namespace reident

@@ -1,0 +1,63 @@
+// What several views show.
+import type { ComponentChildren } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import type { Answer, Decision } from "./api";
+import { figure, onZoneChange, timeText, unknown, zoneLabel } from "./format";
+import type { Column } from "./table";
+import { link } from "./url";
+
+/** Draws again when the viewer changes the zone. */
+export function useZone(): string {
+  const [label, set] = useState(zoneLabel);
+  useEffect(() => onZoneChange(() => set(zoneLabel())), []);
+  return label;
+}
+
+export function Loaded<T>({ answer, children }: { answer: Answer<T>; children: (data: T) => ComponentChildren }) {
+  if (answer.error && !answer.data) return <p class="error" role="alert">{answer.error}</p>;
+  if (!answer.data) return <p class="empty" aria-busy="true">Asking …</p>;
+  return (
+    <>
+      {answer.error && <p class="error" role="alert">Not current: {answer.error}</p>}
+      {children(answer.data)}
+    </>
+  );
+}
+
+/** A figure in one of three states: fresh, old, or not known. */
+export function Figure({ value, digits = 3, unit = "", old = false }: { value: number | null | undefined; digits?: number; unit?: string; old?: boolean }) {
+  const text = figure(value, digits);
+  if (text === unknown) return <span class="unknown" title="not known">{unknown}</span>;
+  return <span class={old ? "old" : ""} title={old ? "old: the service is silent" : undefined}>{text}{unit && ` ${unit}`}</span>;
+}
+
+const words: Record<string, string> = {
+  approve: "approved", reject: "rejected", wait: "waits", roll_back: "rolled back to", withdraw: "withdrawn",
+};
+
+export function kindText(kind: string): string {
+  return words[kind] ?? kind;
+}
+
+export function Status({ status }: { status: string }) {
+  const shown = status === "approved" ? "champion" : status;
+  return <span class={`status ${status}`}>{shown}</span>;
+}
+
+export function decisionColumns(zone: string, named: boolean): Column<Decision>[] {
+  return [
+    { title: `time (${zone})`, text: (row) => timeText(row.time) },
+    ...(named ? [{
+      title: "equipment", text: (row: Decision) => `${row.spacecraft}/${row.equipment}`,
+      cell: (row: Decision) => <a href={link("equipment", { spacecraft: row.spacecraft, equipment: row.equipment })}>{row.spacecraft}/{row.equipment}</a>,
+    }] : []),
+    { title: "decision", text: (row) => kindText(row.kind), cell: (row) => <span class={`event ${row.kind}`}>{kindText(row.kind)}</span> },
+    { title: "version", text: (row) => row.version, isNumber: true },
+    { title: "by", text: (row) => row.actor },
+    { title: "reason", text: (row) => row.reason },
+  ];
+}
+
+export function Facts({ facts }: { facts: [string, ComponentChildren][] }) {
+  return <dl class="facts">{facts.map(([name, value]) => <div><dt>{name}</dt><dd>{value}</dd></div>)}</dl>;
+}

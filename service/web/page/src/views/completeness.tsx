@@ -1,0 +1,110 @@
+// What came and what is missing: a calendar for each parameter, one after the other.
+import { useEffect, useState } from "preact/hooks";
+import { ask, useAnswer } from "../api";
+import { count, durationText, secondsOf, timeText } from "../format";
+import { Loaded, useZone } from "../parts";
+import { Table } from "../table";
+import { change } from "../url";
+
+interface Series {
+  spacecraft: string;
+  parameter: string;
+  origin: string;
+  samples: number;
+  first: string;
+  last: string;
+}
+
+interface Days {
+  begin: string[];
+  came: number[];
+  missing: number[];
+  gaps: number[];
+  longest_gap_s: number[];
+}
+
+const cell = 12;
+
+function level(came: number, missing: number): string {
+  if (came + missing === 0) return "none";
+  const share = came / (came + missing);
+  return share >= 0.999 ? "full" : share >= 0.95 ? "most" : share >= 0.5 ? "half" : "little";
+}
+
+/** Columns are weeks, rows days of the week, Monday first, in UTC. */
+function Calendar({ name, days }: { name: string; days: Days }) {
+  const numbers = days.begin.map((iso) => Math.floor(secondsOf(iso) / 86400));
+  const monday = numbers[0]! - ((numbers[0]! + 3) % 7);
+  const weeks = Math.floor((numbers[numbers.length - 1]! - monday) / 7) + 1;
+  return (
+    <svg class="calendar" width={weeks * cell} height={7 * cell} role="img" aria-label={`${name}: completeness day by day; the table has the figures`}>
+      {numbers.map((day, index) => (
+        <rect class={level(days.came[index]!, days.missing[index]!)} x={Math.floor((day - monday) / 7) * cell} y={((day - monday) % 7) * cell} width={cell - 2} height={cell - 2}>
+          <title>{days.begin[index]!.slice(0, 10)}: {count(days.came[index])} came, {count(days.missing[index])} missing</title>
+        </rect>
+      ))}
+    </svg>
+  );
+}
+
+const keyOf = (one: Series) => `${one.spacecraft}/${one.parameter}/${one.origin}`;
+const sum = (numbers: number[] | undefined) => numbers?.reduce((a, b) => a + b, 0);
+
+/** The days of each series: one question at a time, so that other viewers are not kept waiting. */
+function useDays(series: Series[]): Record<string, Days> {
+  const [days, set] = useState<Record<string, Days>>({});
+  useEffect(() => {
+    const abort = new AbortController();
+    (async () => {
+      for (const { spacecraft, parameter, origin, ...one } of series) {
+        if (abort.signal.aborted) return;
+        try {
+          const answer = await ask<Days>("completeness", { spacecraft, parameter, origin }, abort.signal);
+          set((before) => ({ ...before, [keyOf({ spacecraft, parameter, origin, ...one })]: answer }));
+        } catch {
+          continue;  // its row keeps its dashes
+        }
+      }
+    })();
+    return () => abort.abort();
+  }, [series]);
+  return days;
+}
+
+function All({ series }: { series: Series[] }) {
+  const zone = useZone();
+  const days = useDays(series);
+  return (
+    <Table name="completeness" caption="Telemetry" rows={series} empty="No telemetry is archived." columns={[
+      { title: "parameter", text: (row) => `${row.spacecraft} ${row.parameter}${row.origin === "real" ? "" : ` (${row.origin})`}` },
+      { title: "days (UTC)", text: (row) => String(days[keyOf(row)]?.begin.length ?? ""),
+        cell: (row) => (days[keyOf(row)] ? <Calendar name={row.parameter} days={days[keyOf(row)]!} /> : <span class="unknown">…</span>) },
+      { title: "came", text: (row) => count(sum(days[keyOf(row)]?.came)), isNumber: true },
+      { title: "missing", text: (row) => count(sum(days[keyOf(row)]?.missing)), isNumber: true },
+      { title: "gaps", text: (row) => count(sum(days[keyOf(row)]?.gaps)), isNumber: true },
+      { title: "longest gap", text: (row) => durationText(days[keyOf(row)] ? Math.max(0, ...days[keyOf(row)]!.longest_gap_s) : NaN), isNumber: true },
+      { title: `first (${zone})`, text: (row) => timeText(row.first) },
+      { title: `last (${zone})`, text: (row) => timeText(row.last) },
+    ]} />
+  );
+}
+
+export function CompletenessView({ parameters }: { parameters: Record<string, string> }) {
+  const answer = useAnswer<{ series: Series[] }>("series", {});
+  const [shown, setShown] = useState<Series[]>([]);
+  const { find = "" } = parameters;
+  useEffect(() => setShown((answer.data?.series ?? []).filter((one) => keyOf(one).toLowerCase().includes(find.toLowerCase()))), [answer.data, find]);
+  return (
+    <Loaded answer={answer}>
+      {() => (
+        <>
+          <form class="toolbar" onSubmit={(event) => event.preventDefault()}>
+            <label>parameter <input type="search" value={find} onInput={(event) => change({ find: (event.target as HTMLInputElement).value }, true)} /></label>
+          </form>
+          <p class="legend">days: <span class="swatch full" /> complete <span class="swatch most" /> 95 % <span class="swatch half" /> half <span class="swatch little" /> less</p>
+          <All series={shown} />
+        </>
+      )}
+    </Loaded>
+  );
+}

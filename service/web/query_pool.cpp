@@ -1,0 +1,84 @@
+#include "service/web/query_pool.hpp"
+
+#include <utility>
+
+#include "service/support/log.hpp"
+
+namespace reident::web {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds longest_answer{10};
+
+}  // namespace
+
+void Stored::check_time() const {
+  if (SteadyClock::now() > deadline_)
+    throw TooSlow("the answer takes too long; ask for a shorter range, or again later");
+}
+
+QueryPool::QueryPool(std::filesystem::path database, unsigned threads, std::size_t queue)
+    : database_(std::move(database)), most_(queue) {
+  for (unsigned i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
+}
+
+QueryPool::~QueryPool() {
+  {
+    const MutexLock lock(mutex_);
+    stopping_ = true;
+  }
+  more_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void QueryPool::ask(Question question, bool compressed, Respond respond) {
+  {
+    const MutexLock lock(mutex_);
+    if (waiting_.size() < most_) {
+      waiting_.push_back({std::move(question), compressed, std::move(respond)});
+      more_.notify_one();
+      return;
+    }
+  }
+  HttpResponse busy = problem(503, "busy", "too many questions wait; ask again in a second");
+  busy.headers.emplace_back("Retry-After", "1");
+  respond(std::move(busy));
+}
+
+void QueryPool::run() {
+  for (;;) {
+    mutex_.lock();
+    while (!stopping_ && waiting_.empty()) more_.wait(mutex_);
+    if (stopping_) {
+      mutex_.unlock();
+      return;
+    }
+    const Waiting next = std::move(waiting_.front());
+    waiting_.pop_front();
+    mutex_.unlock();
+    HttpResponse response = answer(next.question);
+    if (next.compressed) compress(response);
+    next.respond(std::move(response));
+  }
+}
+
+HttpResponse QueryPool::answer(const Question& question) const {
+  try {
+    storage::Database database(database_, storage::Database::Mode::read_only);
+    return question(Stored(database, SteadyClock::now() + longest_answer));
+  } catch (const BadRequest& mistake) {
+    return problem(mistake.status, mistake.status == 404 ? "not_found" : "question",
+                   mistake.what());
+  } catch (const TooSlow& error) {
+    return problem(503, "too_slow", error.what());
+  } catch (const storage::Error& error) {
+    log::warning("web", "a question could not be answered", {{"error", error.what()}});
+    return problem(503, "database", error.what());
+  } catch (const std::exception& error) {
+    log::error("web", "a question failed", {{"error", error.what()}});
+    return problem(500, "failed", error.what());
+  }
+}
+
+}  // namespace reident::web
