@@ -105,7 +105,8 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"continuous", to_json(outcome.continuous)},
       {"search_work", outcome.identified.search_work},
       {"timing_ms", timing},
-      {"warnings", warnings}};
+      {"warnings", warnings},
+      {"found", outcome.found}};
   std::string text;
   for (const auto& [key, value] : entries)
     text += fmt::format("{}\n  \"{}\": {}", text.empty() ? "{" : ",", key, dumped(value));

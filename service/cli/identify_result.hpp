@@ -22,6 +22,7 @@ struct IdentifyOutcome {
   std::vector<DerivedInput> derived;
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::string> warnings;
+  std::string found;  // how the file is read
 };
 
 /// One JSON object, a key a line.

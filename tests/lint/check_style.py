@@ -44,6 +44,8 @@ FORBIDDEN_INCLUDES = [  # folder, pattern of what it must not include, why
     ("service/(config|windows|judgement)/", r"service/dds/", "no decision depends on the middleware"),
     ("service/cli/", r"service/daemon/", "the command line works without the daemon"),
     ("service/(client|dds|model)/", r"storage/(?!types/)", "simulators hold no database"),
+    ("service/telemetry_file/", r"storage/|service/(?!support/|telemetry_file/)",
+     "the reader of files knows files alone"),
 ]
 ALLOWED = re.compile(r"service/dds/dds\.hpp$")
 
