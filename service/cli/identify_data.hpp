@@ -12,6 +12,7 @@
 #include "identification/screening/sensor_screening.hpp"
 #include "service/cli/command.hpp"
 #include "service/model/derived_inputs.hpp"
+#include "service/telemetry_file/telemetry_file.hpp"
 
 namespace reident::cli {
 
@@ -19,9 +20,12 @@ struct DataRequest {
   std::filesystem::path file;
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
-  std::vector<std::string> derive;      // "NAME=EXPRESSION", inputs that follow from columns
-  std::optional<std::string> time;      // column; without it rows are one period apart
-  std::optional<double> period_s;       // default: 1, or the median step of the time column
+  std::vector<std::string> derive;  // "NAME=EXPRESSION", inputs that follow from columns
+  /// How the file is read. Without a time column rows are one period apart.
+  telemetry_file::ReadingOptions reading;
+  bool skip_bad_lines = false;
+  std::optional<double> period_s;       // default: 1, or the median step of the slowest column
+  std::optional<std::int64_t> hold_ns;  // how long a value serves; default: 3 periods
   std::optional<std::string> identify;  // "A:B", rows of the file
   std::optional<std::string> validate;
   bool screening = true;  // leave out rows at which a column shows a fault
@@ -43,6 +47,8 @@ struct IdentifyData {
   std::vector<std::int64_t> file_ticks;      // of the rows of the file
   std::vector<LeftOut> left_out;
   std::vector<std::string> warnings;
+  std::string found;   // how the file is read
+  std::string advice;  // where few ticks are complete: which --hold would mend it
 };
 
 std::variant<IdentifyData, Refusal> read_data(const DataRequest& request);

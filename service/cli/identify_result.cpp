@@ -146,7 +146,8 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"search_work", outcome.identified.search_work},
       {"left_out", outcome.left_out},
       {"timing_ms", timing},
-      {"warnings", warnings}};
+      {"warnings", warnings},
+      {"found", outcome.found}};
   std::string text;
   for (const auto& [key, value] : entries)
     text += fmt::format("{}\n  \"{}\": {}", text.empty() ? "{" : ",", key, dumped(value));

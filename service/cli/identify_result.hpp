@@ -25,6 +25,7 @@ struct IdentifyOutcome {
   nlohmann::ordered_json left_out;  // left_out_json()
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::string> warnings;
+  std::string found;  // how the file is read
 };
 
 /// One JSON object, a key a line.

@@ -87,10 +87,11 @@ std::optional<Decimal> take_decimal(std::string_view& text) {
   return number;
 }
 
-/// number * unit, rounded to the nearest integer (halves away from zero).
-std::optional<std::int64_t> scaled(const Decimal& number, std::int64_t unit) {
+/// number * unit, rounded to the nearest integer (halves away from zero); empty far outside 64
+/// bits.
+std::optional<Wide> scaled_wide(const Decimal& number, std::int64_t unit) {
   Wide value = number.digits * unit;
-  constexpr Wide limit = static_cast<Wide>(std::numeric_limits<std::int64_t>::max());
+  constexpr Wide limit = static_cast<Wide>(std::numeric_limits<std::int64_t>::max()) * second_ns;
   for (int e = number.exponent; e > 0 && value != 0; --e) {
     if (value > limit) return std::nullopt;
     value *= 10;
@@ -103,7 +104,12 @@ std::optional<std::int64_t> scaled(const Decimal& number, std::int64_t unit) {
     }
     value = (value + divisor / 2) / divisor;
   }
-  return narrow(number.negative ? -value : value);
+  return number.negative ? -value : value;
+}
+
+std::optional<std::int64_t> scaled(const Decimal& number, std::int64_t unit) {
+  const auto value = scaled_wide(number, unit);
+  return value ? narrow(*value) : std::nullopt;
 }
 
 /// Takes `least` to `most` digits off the front.
@@ -216,6 +222,15 @@ std::optional<std::int64_t> parse_time(std::string_view text) {
   const auto number = take_decimal(text);
   if (!number || !text.empty()) return std::nullopt;
   return scaled(*number, second_ns);
+}
+
+std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t unit_ns,
+                                        std::int64_t origin_s) {
+  text = trimmed(text);
+  const auto number = take_decimal(text);
+  if (!number || !text.empty()) return std::nullopt;
+  const auto value = scaled_wide(*number, unit_ns);
+  return value ? narrow(*value - static_cast<Wide>(origin_s) * second_ns) : std::nullopt;
 }
 
 std::optional<std::int64_t> parse_duration(std::string_view text) {

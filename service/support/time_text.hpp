@@ -17,6 +17,12 @@ namespace reident {
 /// (1677-09-22 to 2262-04-11).
 std::optional<std::int64_t> parse_time(std::string_view text);
 
+/// Nanoseconds since 1970 of a decimal number of units that are counted from `origin_s` seconds
+/// before 1970, exact but for digits below a nanosecond. Empty when the text is no number or 64 bits
+/// cannot hold the time. Requires a positive unit.
+std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t unit_ns,
+                                        std::int64_t origin_s = 0);
+
 /// Nanoseconds from "250ns", "10us", "500ms", "2.5s", "90min", "2h", "3d" or plain seconds. It may
 /// be negative. Empty when the text is none of these or 64 bits cannot hold it.
 std::optional<std::int64_t> parse_duration(std::string_view text);

@@ -11,7 +11,8 @@ namespace reident::transfer {
 namespace {
 
 using csv::Error;
-using csv::Reader;
+using telemetry_file::Damage;
+using Reader = telemetry_file::TelemetryFile;
 
 constexpr std::uint64_t digest_bytes = std::uint64_t{64} << 10;
 constexpr std::size_t bad_lines_shown = 5;
@@ -29,8 +30,7 @@ std::string request_text(const ImportOptions& options, const Reader& reader) {
       {"source", text(options.source)},
       {"origin", options.origin ? nlohmann::ordered_json(storage::name(*options.origin))
                                 : nlohmann::ordered_json()},
-      {"time", text(options.time_column)},
-      {"time_unit", static_cast<int>(options.time_unit)},
+      {"reading", reader.found()},
       {"map", mappings},
       {"only", options.only},
       {"leave_out", options.leave_out},
@@ -83,6 +83,9 @@ class Import {
   std::int64_t id_ = 0;
   storage::ImportPosition at_;
   ImportReport report_;
+  bool tells_steps_back_ = true;  // a file of one sample a row has one series after the other
+  std::uint64_t steps_back_ = 0;
+  std::string first_step_;
 };
 
 std::variant<ImportReport, Error> Import::run(const std::function<storage::Time()>& now,
@@ -94,13 +97,19 @@ std::variant<ImportReport, Error> Import::run(const std::function<storage::Time(
     broken = fill(at_end);
     commit();
     if (!broken)
-      go_on = observer({static_cast<double>(at_.position) / static_cast<double>(reader_.size()),
-                        report_.samples, at_});
+      go_on = observer(
+          {std::min(1.0, static_cast<double>(at_.position) / static_cast<double>(reader_.size())),
+           report_.samples, at_});
   }
   if (broken && at_.rows > 0)
     return Error{broken->message +
                  "; the lines before it are imported, the same command goes on there"};
   if (broken) return *std::move(broken);
+  for (const std::string& remark : reader_.remarks()) report_.remarks.push_back(remark);
+  if (steps_back_ > 0 && tells_steps_back_)
+    report_.remarks.push_back(
+        first_step_ +
+        (steps_back_ == 1 ? "" : ", and " + std::to_string(steps_back_ - 1) + " times more"));
   if (at_end) {
     archive_.compact();
     log_.finish(id_, now());
@@ -112,21 +121,20 @@ std::variant<ImportReport, Error> Import::run(const std::function<storage::Time(
 
 std::optional<Error> Import::start(const std::function<storage::Time()>& now) {
   const std::uint64_t first_row = reader_.bytes_read(), first_line = reader_.next_line();
-  Reader::Step step = reader_.next();
-  while (step == Reader::Step::error && reader_.only_row_is_bad() && options_.skip_bad_lines)
-    step = reader_.next();
-  if (step == Reader::Step::error) return reader_.error();
-  if (step == Reader::Step::end)
+  if (!reader_.has_rows())
     return Error{options_.file.string() +
                  ": the header is not followed by a row; there is nothing to import"};
   auto rows = import_rows(options_, reader_, archive_);
   if (auto* error = std::get_if<Error>(&rows)) return std::move(*error);
   rows_ = std::get<std::unique_ptr<ImportRows>>(std::move(rows));
+  tells_steps_back_ = !is_long_layout(reader_.columns());
+  report_.found = reader_.found();
+  report_.remarks = rows_->left_out();
   const std::string request = request_text(options_, reader_);
   at_.position = first_row;
   at_.line = first_line;
   for (auto& before : log_.unfinished(request)) {
-    if (before.at.rows + before.at.bad_lines == 0 || before.at.position > reader_.size() ||
+    if (before.at.rows + before.at.bad_lines == 0 ||
         before.at.digest != digest_before(options_.file, before.at.position))
       continue;
     id_ = before.id;
@@ -145,16 +153,24 @@ std::optional<Error> Import::fill(bool& at_end) {
     at_end = step == Reader::Step::end;
     if (at_end) break;
     std::optional<Error> error;
+    Damage damage = Damage::value;
     if (step == Reader::Step::error) {
       error = reader_.error();
-      if (!reader_.only_row_is_bad()) return error;
+      damage = reader_.damage();
+      if (damage == Damage::none) return error;
     } else {
       error = rows_->add(reader_, batch_);
+      if (error && reader_.has_nul_bytes()) damage = Damage::nul_bytes;
+      if (reader_.clock_step() && steps_back_++ == 0)
+        first_step_ = reader_.error_here(reader_.clock_step()->what).message;
     }
     if (error && !options_.skip_bad_lines) return error;
     ++(error ? at_.bad_lines : at_.rows);
-    if (error && report_.first_bad_lines.size() < bad_lines_shown)
-      report_.first_bad_lines.push_back(std::move(error->message));
+    if (error) {
+      report_.left_out.add(damage, *error);
+      if (report_.first_bad_lines.size() < bad_lines_shown)
+        report_.first_bad_lines.push_back(std::move(error->message));
+    }
     at_.position = reader_.bytes_read();
     at_.line = reader_.next_line();
   }
@@ -175,7 +191,7 @@ std::variant<ImportReport, Error> import_file(storage::Database& database,
                                               const std::function<storage::Time()>& now,
                                               const ImportObserver& observer,
                                               const ImportLimits& limits) {
-  auto opened = Reader::open(options.file);
+  auto opened = Reader::open(options.file, options.reading);
   if (auto* error = std::get_if<Error>(&opened)) return std::move(*error);
   std::error_code failed;
   if (!std::filesystem::is_regular_file(options.file, failed))

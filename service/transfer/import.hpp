@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "service/support/csv.hpp"
 #include "service/transfer/import_rows.hpp"
 #include "storage/archive/import_log.hpp"
 
@@ -34,7 +33,10 @@ struct ImportReport {
   std::uint64_t new_parameters = 0;
   std::uint64_t resumed_at = 0;              // line; 0 where it started at the first row
   bool complete = false;                     // false: stopped before the end
+  telemetry_file::LeftOut left_out;          // rows of this run
   std::vector<std::string> first_bad_lines;  // at most 5 messages
+  std::string found;                         // how the file is read
+  std::vector<std::string> remarks;          // what else a user has to know, one sentence each
 };
 
 /// Called after each batch; false stops the import there.

@@ -13,29 +13,10 @@ namespace reident::transfer {
 namespace {
 
 using csv::Error;
-using csv::Reader;
+using telemetry_file::Cell;
+using Reader = telemetry_file::TelemetryFile;
 using storage::TelemetryFrame;
 using Entry = ParameterBook::Entry;
-
-std::string shown(std::string_view cell) {
-  constexpr std::size_t most = 40;
-  return "'" + std::string(cell.substr(0, most)) + "'";
-}
-
-Error cell_error(const Reader& reader, std::size_t column, std::string_view what) {
-  return reader.error_here(fmt::format("{} in column '{}' {}", shown(reader.cells()[column]),
-                                       reader.columns()[column], what));
-}
-
-std::variant<storage::Time, Error> time_at(const Reader& reader, std::size_t column,
-                                           TimeUnit unit) {
-  if (const auto time = parse_time_in(unit, reader.cells()[column])) return *time;
-  if (unit == TimeUnit::any)
-    return cell_error(reader, column,
-                      "is no time; use 2023-04-29T16:22:37.5Z or seconds since 1970-01-01 UTC, or "
-                      "say with --time-unit what the numbers are");
-  return cell_error(reader, column, "is no number of the unit that --time-unit or the name says");
-}
 
 std::string source_of(const ImportOptions& options) {
   return options.source.value_or("import:" + options.file.filename().string());
@@ -43,8 +24,7 @@ std::string source_of(const ImportOptions& options) {
 
 /// Those of --only without those of --leave-out; none named means all.
 std::variant<std::vector<std::string>, Error> taken_columns(const ImportOptions& options,
-                                                            const Reader& reader,
-                                                            std::size_t time_column) {
+                                                            const Reader& reader) {
   if (options.leave_out.empty()) return options.only;
   for (const std::string& column : options.leave_out) {
     const auto found = reader.find(column);
@@ -52,8 +32,8 @@ std::variant<std::vector<std::string>, Error> taken_columns(const ImportOptions&
   }
   std::vector<std::string> taken = options.only;
   if (taken.empty())
-    for (const std::string& column : reader.columns())
-      if (!column.empty() && column != reader.columns()[time_column]) taken.push_back(column);
+    for (std::size_t c = 0; c < reader.columns().size(); ++c)
+      if (!reader.columns()[c].empty() && !reader.is_time(c)) taken.push_back(reader.columns()[c]);
   std::erase_if(taken, [&](const std::string& column) {
     const auto& out = options.leave_out;
     return std::find(out.begin(), out.end(), column) != out.end();
@@ -61,6 +41,10 @@ std::variant<std::vector<std::string>, Error> taken_columns(const ImportOptions&
   if (!taken.empty()) return taken;
   return Error{options.file.string() +
                ": --leave-out leaves no column; there is nothing to import"};
+}
+
+storage::Quality quality_of(const Cell& cell) {
+  return cell.is_flagged ? storage::Quality::out_of_limits : storage::Quality::good;
 }
 
 void describe_once(Entry& entry, ImportBatch& batch) {
@@ -77,9 +61,10 @@ class WideRows : public ImportRows {
         origin_(options.origin.value_or(storage::Origin::real)),
         book_(archive, spacecraft_) {}
 
-  std::optional<Error> prepare(const ImportOptions& options, const Reader& reader);
+  std::optional<Error> prepare(const ImportOptions& options, Reader& reader);
 
   std::optional<Error> add(const Reader& reader, ImportBatch& batch) override;
+  std::vector<std::string> left_out() const override { return left_out_; }
 
  private:
   struct Column {
@@ -92,64 +77,58 @@ class WideRows : public ImportRows {
   std::string spacecraft_, source_;
   storage::Origin origin_;
   ParameterBook book_;
-  std::size_t time_column_ = 0;
-  TimeUnit unit_ = TimeUnit::any;
   std::vector<Column> columns_;
+  std::vector<std::string> left_out_;
 };
 
-std::optional<Error> WideRows::prepare(const ImportOptions& options, const Reader& reader) {
-  const auto unit_of = [&](std::string_view column) {
-    return options.time_unit == TimeUnit::any ? unit_of_column(column) : options.time_unit;
-  };
-  const auto time = satcs::find_time_column(
-      reader, options.time_column, [&](std::string_view column, std::string_view cell) {
-        return parse_time_in(unit_of(column), cell).has_value();
-      });
-  if (const auto* error = std::get_if<Error>(&time)) return *error;
+std::optional<Error> WideRows::prepare(const ImportOptions& options, Reader& reader) {
+  if (auto error = reader.find_time()) return error;
   satcs::ReplayPlan plan;
   plan.file = options.file;
-  plan.time_position = time_column_ = std::get<std::size_t>(time);
-  plan.time_column = reader.columns()[time_column_];
-  unit_ = unit_of(plan.time_column);
+  plan.time_column = reader.columns()[reader.clock().columns().front()];
   satcs::ReplayOptions columns;
   columns.mappings = options.mappings;
   columns.keep_names = options.keep_names;
-  auto taken = taken_columns(options, reader, plan.time_position);
+  auto taken = taken_columns(options, reader);
   if (auto* error = std::get_if<Error>(&taken)) return std::move(*error);
   columns.only = std::get<std::vector<std::string>>(std::move(taken));
-  // Which columns hold numbers is seen on the way: a file may be too large to read it twice.
-  const std::vector<std::uint64_t> numbers(reader.columns().size(), 1);
+  // Numbers behind the head of the file are seen on the way: it may be too large to read it twice.
+  std::vector<std::uint64_t> numbers;
+  for (std::size_t c = 0; c < reader.columns().size(); ++c)
+    numbers.push_back(reader.format(c).kind == telemetry_file::CellFormat::Kind::text ? 0 : 1);
   if (const auto error = satcs::choose_columns(columns, reader, numbers, plan)) {
     const std::string file = options.file.string() + ": ";
     return error->message.starts_with(file) ? *error : Error{file + error->message};
   }
+  for (const std::string& column : plan.left_out)
+    left_out_.push_back(
+        fmt::format("column '{0}' is left out, its cells are no numbers: {1}; --map-states "
+                    "{0}:STATE=NUMBER,... "
+                    "makes numbers of states",
+                    column, reader.first_word(std::get<std::size_t>(reader.find(column)))));
   return find_parameters(reader, plan);
 }
 
 std::optional<Error> WideRows::add(const Reader& reader, ImportBatch& batch) {
-  const auto time = time_at(reader, time_column_, unit_);
-  if (const auto* error = std::get_if<Error>(&time)) return *error;
   TelemetryFrame& frame = batch.next();
-  const auto cells = reader.cells();
   for (const Column& column : columns_) {
-    const std::string_view cell = cells[column.position];
-    const auto value = parse_value(cell);
-    if (value) {
-      frame.samples.push_back({column.entry->descriptor.id, storage::Quality::good, *value});
-    } else if (!trimmed(cell).empty()) {
-      return cell_error(reader, column.position,
-                        "is no number; mend it, or leave out the column (--leave-out) or such "
-                        "lines (--skip-bad-lines)");
-    }
+    const Cell cell = reader.cell(column.position);
+    if (cell.kind == Cell::Kind::number)
+      frame.samples.push_back({column.entry->descriptor.id, quality_of(cell), cell.value});
+    else if (cell.kind == Cell::Kind::bad)
+      return reader.cell_error(
+          column.position,
+          "is no number; mend it, say with --missing that it stands for no value, or leave out the "
+          "column (--leave-out) or such lines (--skip-bad-lines)");
   }
   if (frame.samples.empty()) return std::nullopt;
   for (const Column& column : columns_)
-    if (!column.entry->is_described && parse_value(cells[column.position]))
+    if (!column.entry->is_described && reader.cell(column.position).kind == Cell::Kind::number)
       describe_once(*column.entry, batch);
   frame.spacecraft = spacecraft_;
   frame.source = source_;
   frame.origin = origin_;
-  frame.generation_time = frame.reception_time = std::get<storage::Time>(time);
+  frame.generation_time = frame.reception_time = reader.time_ns();
   batch.keep();
   return std::nullopt;
 }
@@ -158,7 +137,7 @@ std::optional<Error> WideRows::find_parameters(const Reader& reader,
                                                const satcs::ReplayPlan& plan) {
   for (const auto& column : plan.columns) {
     const auto& wanted = column.parameter;
-    const auto found = book_.find(wanted.name, wanted.unit, wanted.description);
+    const auto found = book_.find(wanted);
     if (const auto* refusal = std::get_if<std::string>(&found))
       return Error{fmt::format("{}: column '{}': {}; give it another name with --map {}=NAME",
                                plan.file.string(), reader.columns()[column.position], *refusal,
@@ -190,7 +169,7 @@ class LongRows : public ImportRows {
   const ImportOptions& options_;
   const storage::Archive& archive_;
   const std::string own_source_;
-  std::size_t parameter_ = 0, time_ = 0, value_ = 0;
+  std::size_t parameter_ = 0, value_ = 0;
   std::optional<std::size_t> spacecraft_, source_, origin_, quality_, unit_;
   std::map<std::string, ParameterBook> books_;
 
@@ -210,7 +189,6 @@ LongRows::LongRows(const ImportOptions& options, const Reader& reader,
     return at && !is_asked_for ? std::optional(*at) : std::nullopt;
   };
   parameter_ = *column("parameter", false);
-  time_ = *column("time", false);
   value_ = *column("value", false);
   spacecraft_ = column("spacecraft", options.spacecraft.has_value());
   source_ = column("source", options.source.has_value());
@@ -222,29 +200,28 @@ LongRows::LongRows(const ImportOptions& options, const Reader& reader,
 std::optional<Error> LongRows::add(const Reader& reader, ImportBatch& batch) {
   const auto cells = reader.cells();
   storage::Sample sample;
-  const auto value = parse_value(cells[value_]);
-  if (!value) {
-    if (trimmed(cells[value_]).empty()) return std::nullopt;
-    return cell_error(reader, value_,
-                      "is no number; mend it or leave out such lines with "
-                      "--skip-bad-lines");
-  }
-  sample.value = *value;
+  const Cell cell = reader.cell(value_);
+  // What a state is could not be said of one parameter of many.
+  if (cell.kind == Cell::Kind::bad ||
+      reader.format(value_).kind == telemetry_file::CellFormat::Kind::state)
+    return reader.cell_error(value_,
+                             "is no number; mend it or leave out such lines with --skip-bad-lines");
+  if (cell.kind != Cell::Kind::number) return std::nullopt;
+  sample.value = cell.value;
+  sample.quality = quality_of(cell);
   if (auto error = read_quality(reader, sample.quality)) return error;
-  const auto time = time_at(reader, time_, options_.time_unit);
-  if (const auto* error = std::get_if<Error>(&time)) return *error;
   if (auto error = read_stream(reader)) return error;
   if (auto error = read_parameter(reader)) return error;
   sample.parameter = entry_->descriptor.id;
   describe_once(*entry_, batch);
-  place(sample, std::get<storage::Time>(time), batch);
+  place(sample, reader.time_ns(), batch);
   return std::nullopt;
 }
 
 std::optional<Error> LongRows::read_quality(const Reader& reader, storage::Quality& quality) const {
   if (!quality_ || trimmed(reader.cells()[*quality_]).empty()) return std::nullopt;
   const auto read = parse_quality(reader.cells()[*quality_]);
-  if (!read) return cell_error(reader, *quality_, "is no quality; use " + storage::quality_names());
+  if (!read) return reader.cell_error(*quality_, "is no quality; use " + storage::quality_names());
   quality = *read;
   return std::nullopt;
 }
@@ -261,12 +238,12 @@ std::optional<Error> LongRows::read_stream(const Reader& reader) {
   stream.origin = options_.origin.value_or(storage::Origin::real);
   if (!text(origin_).empty()) {
     const auto origin = parse_origin(text(origin_));
-    if (!origin) return cell_error(reader, *origin_, "is no origin; use real or simulated");
+    if (!origin) return reader.cell_error(*origin_, "is no origin; use real or simulated");
     stream.origin = *origin;
   }
   stream.spacecraft = options_.spacecraft.value_or(std::string(text(spacecraft_)));
   if (stream.spacecraft.empty())
-    return cell_error(reader, *spacecraft_, "names no spacecraft; name it with --spacecraft");
+    return reader.cell_error(*spacecraft_, "names no spacecraft; name it with --spacecraft");
   stream.source = text(source_).empty() ? own_source_ : std::string(text(source_));
   book_ = &books_.try_emplace(stream.spacecraft, archive_, stream.spacecraft).first->second;
   entry_ = nullptr;
@@ -280,9 +257,12 @@ std::optional<Error> LongRows::read_stream(const Reader& reader) {
 std::optional<Error> LongRows::read_parameter(const Reader& reader) {
   const std::string_view name = trimmed(reader.cells()[parameter_]);
   if (entry_ && entry_->descriptor.name == name) return std::nullopt;
-  if (name.empty()) return cell_error(reader, parameter_, "names no parameter; mend the line");
-  const auto found = book_->find(name, unit_ ? trimmed(reader.cells()[*unit_]) : std::string_view(),
-                                 "imported from " + options_.file.filename().string());
+  if (name.empty()) return reader.cell_error(parameter_, "names no parameter; mend the line");
+  storage::ParameterDescriptor wanted;
+  wanted.name = name;
+  if (unit_) wanted.unit = trimmed(reader.cells()[*unit_]);
+  wanted.description = "imported from " + options_.file.filename().string();
+  const auto found = book_->find(wanted);
   if (const auto* refusal = std::get_if<std::string>(&found))
     return reader.error_here(*refusal + "; give it another name in the file");
   entry_ = std::get<Entry*>(found);
@@ -325,14 +305,14 @@ void ImportBatch::clear() {
 }
 
 std::variant<std::unique_ptr<ImportRows>, Error> import_rows(const ImportOptions& options,
-                                                             const Reader& reader,
+                                                             Reader& reader,
                                                              const storage::Archive& archive) {
   const auto needs_spacecraft = [&] {
     return Error{options.file.string() +
                  ": the file does not say which spacecraft it is of; name it with --spacecraft"};
   };
   if (is_long_layout(reader.columns())) {
-    if (options.time_column || !options.mappings.empty() || !options.only.empty() ||
+    if (options.reading.time.column || !options.mappings.empty() || !options.only.empty() ||
         !options.leave_out.empty() || options.keep_names)
       return Error{options.file.string() +
                    ": the file has one sample a row (columns parameter, time and value); --time, "
@@ -340,6 +320,7 @@ std::variant<std::unique_ptr<ImportRows>, Error> import_rows(const ImportOptions
                    "each parameter"};
     auto rows = std::make_unique<LongRows>(options, reader, archive);
     if (!rows->knows_spacecraft()) return needs_spacecraft();
+    if (auto error = reader.find_time(true)) return *std::move(error);
     return rows;
   }
   if (!options.spacecraft) return needs_spacecraft();

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "service/satcs/replay/replay.hpp"
-#include "service/support/csv.hpp"
+#include "service/telemetry_file/telemetry_file.hpp"
 #include "service/transfer/telemetry_csv.hpp"
 #include "storage/archive/archive.hpp"
 
@@ -23,9 +23,7 @@ struct ImportOptions {
   std::optional<std::string> spacecraft;
   std::optional<std::string> source;      // otherwise import:FILE
   std::optional<storage::Origin> origin;  // otherwise real
-  /// The time column of a wide file; absent: the first that looks like a time.
-  std::optional<std::string> time_column;
-  TimeUnit time_unit = TimeUnit::any;  // `any`: by the column's name
+  telemetry_file::ReadingOptions reading;
   /// Columns of a wide file, as satcs-replay takes them.
   std::vector<satcs::ColumnMapping> mappings;
   std::vector<std::string> only;
@@ -67,16 +65,19 @@ class ImportRows {
  public:
   virtual ~ImportRows() = default;
   /// Adds the row that the reader stands at, or nothing of it and an error. An empty cell is no
-  /// sample, and a row without one no frame.
-  virtual std::optional<csv::Error> add(const csv::Reader& reader, ImportBatch& batch) = 0;
+  /// sample, nor is a value that is named as missing, and a row without a sample is no frame.
+  virtual std::optional<csv::Error> add(const telemetry_file::TelemetryFile& reader,
+                                        ImportBatch& batch) = 0;
+  /// Columns that are left out since no cell of them is a number; one sentence each.
+  virtual std::vector<std::string> left_out() const { return {}; }
 };
 
-/// Returns the rows of the layout that the reader's file has. Requires a reader that stands at the
-/// first row, which shows which column holds a time. An error where no spacecraft is known, no
-/// column holds a time, a column that is named is not there, or a parameter has another unit in the
-/// archive. Options and archive must outlive the result.
-std::variant<std::unique_ptr<ImportRows>, csv::Error> import_rows(const ImportOptions& options,
-                                                                  const csv::Reader& reader,
-                                                                  const storage::Archive& archive);
+/// Returns the rows of the layout that the reader's file has, and finds the reader's time. Requires
+/// a reader whose head holds a row. An error where no spacecraft is known, no column holds a time,
+/// a column that is named is not there, or a parameter has another unit in the archive. Options and
+/// archive must outlive the result.
+std::variant<std::unique_ptr<ImportRows>, csv::Error> import_rows(
+    const ImportOptions& options, telemetry_file::TelemetryFile& reader,
+    const storage::Archive& archive);
 
 }  // namespace reident::transfer

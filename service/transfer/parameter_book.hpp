@@ -25,17 +25,16 @@ class ParameterBook {
         false;  // the archive has a descriptor, a batch does, or there is to be none
   };
 
-  /// The entry of a parameter by its name: the one that the archive has; else a new one, whose
-  /// number follows from the name as satcs-replay makes it. A whole number that names no parameter
-  /// is the number of one without a descriptor. The text of a refusal where `unit` is not empty and
-  /// not the archive's, or where the number belongs to another name. Entries stay where they are.
-  std::variant<Entry*, std::string> find(std::string_view name, std::string_view unit,
-                                         std::string_view description);
+  /// The entry of the parameter with the name of `wanted`: the one that the archive has; else a new
+  /// one with what `wanted` says, whose number follows from the name as satcs-replay makes it. A
+  /// whole number that names no parameter is the number of one without a descriptor. The text of a
+  /// refusal where the unit is not empty and not the archive's, where states have other numbers
+  /// there, or where the number belongs to another name. Entries stay where they are.
+  std::variant<Entry*, std::string> find(const storage::ParameterDescriptor& wanted);
 
  private:
   /// The entry of a name that is new here.
-  std::variant<Entry*, std::string> add(std::string_view name, std::string_view unit,
-                                        std::string_view description);
+  std::variant<Entry*, std::string> add(const storage::ParameterDescriptor& wanted);
 
   std::string spacecraft_;
   std::map<std::string, Entry, std::less<>> by_name_;

@@ -27,24 +27,10 @@ inline constexpr std::array<std::string_view, 7> long_columns = {
 /// Whether a file with these columns is long.
 bool is_long_layout(const std::vector<std::string>& columns);
 
-/// Returns the number in a cell, with blanks around it and a sign; "nan" and "inf" too. Empty for
-/// anything else.
-std::optional<double> parse_value(std::string_view cell);
-
 /// Each takes the words that storage::name gives, with '_' or a blank between them. Empty for
 /// anything else.
 std::optional<storage::Quality> parse_quality(std::string_view cell);
 std::optional<storage::Origin> parse_origin(std::string_view cell);
-
-/// What a number is that stands for a time. `any`: seconds, but whole numbers of 17 digits and more
-/// are nanoseconds; a date and time as parse_time() takes them.
-enum class TimeUnit { any, s, ms, us, ns };
-/// Takes "s", "ms", "us" or "ns"; empty for anything else.
-std::optional<TimeUnit> parse_time_unit(std::string_view text);
-/// By the end of a column's name, as in time_ms; else `any`.
-TimeUnit unit_of_column(std::string_view column);
-/// Returns the time in a cell whose numbers are of this unit; empty where it is none.
-std::optional<storage::Time> parse_time_in(TimeUnit unit, std::string_view cell);
 
 /// Each appends to `line`. A value has the fewest digits that give its bits back, a time as many
 /// decimals of a second as it needs, a text quotes where CSV needs them.

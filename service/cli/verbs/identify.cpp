@@ -21,6 +21,9 @@
 #include "service/support/parallel.hpp"
 #include "service/support/phase_timer.hpp"
 #include "service/support/terminal.hpp"
+#include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
+#include "service/telemetry_file/reading_options.hpp"
 
 namespace reident::cli::identify_verb {
 namespace {
@@ -36,6 +39,8 @@ constexpr std::size_t max_threads = 256;
 
 struct Arguments {
   DataRequest data;
+  telemetry_file::ReadingArguments reading;
+  std::optional<std::string> hold;
   ModelRequest model;
   std::optional<std::string> threads;
   bool json = false;
@@ -130,22 +135,59 @@ void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
              : diagnose(identified.model, data.record, run, data.validate, identified.x0);
 }
 
-int print_rejection(const Verdict& verdict, const nlohmann::ordered_json& left_out, bool json) {
+int print_rejection(const Verdict& verdict, const IdentifyData& data, bool json) {
+  const std::string advice = data.advice.empty() ? "" : "; " + data.advice;
+  const std::vector<std::string> left_out = left_out_sentences(data);
   if (json) {
-    const nlohmann::ordered_json object = {
-        {"rejected", name(verdict.code)}, {"reason", verdict.reason}, {"left_out", left_out}};
+    const nlohmann::ordered_json object = {{"rejected", name(verdict.code)},
+                                           {"reason", verdict.reason + advice},
+                                           {"found", data.found},
+                                           {"left_out", left_out_json(data)},
+                                           {"warnings", data.warnings}};
     fmt::print("{}\n", object.dump());
   } else {
-    print_error("reident: no model ({}): {}", name(verdict.code), verdict.reason);
+    print_error("reident: no model ({}): {}{}", name(verdict.code), verdict.reason, advice);
+    for (const auto* sentences : {&data.warnings, &left_out})
+      for (const std::string& sentence : *sentences) print_error("warning: {}", sentence);
   }
   return exit_no_model;
 }
 
+/// The request for data with all that the command line says of the file.
+std::variant<DataRequest, Refusal> complete(const Arguments& arguments) {
+  DataRequest request = arguments.data;
+  auto reading = telemetry_file::reading_options(arguments.reading, utc_now());
+  if (const auto* error = std::get_if<csv::Error>(&reading)) return Refusal{error->message};
+  request.reading = std::get<telemetry_file::ReadingOptions>(std::move(reading));
+  request.reading.clock_may_go_back = arguments.reading.clock_back != "stop";
+  request.skip_bad_lines = arguments.reading.skip_bad_lines;
+  if (!arguments.hold) return request;
+  request.hold_ns = parse_duration(*arguments.hold);
+  if (!request.hold_ns || *request.hold_ns <= 0)
+    return Refusal{
+        fmt::format("--hold {} is no duration; write it as 400, 400s or 10min", *arguments.hold)};
+  return request;
+}
+
+int show(const DataRequest& request) {
+  auto reading = request.reading;
+  reading.force_times = true;
+  const auto shown =
+      telemetry_file::dry_run(request.file, reading, reading.time.column.has_value());
+  if (const auto* error = std::get_if<csv::Error>(&shown)) return refuse({error->message});
+  for (const std::string& line : std::get<std::vector<std::string>>(shown))
+    fmt::print("{}\n", line);
+  return exit_done;
+}
+
 int run(const Arguments& arguments) {
   if (const auto refusal = refuse_arguments(arguments)) return refuse(*refusal);
+  const auto request = complete(arguments);
+  if (const auto* refusal = std::get_if<Refusal>(&request)) return refuse(*refusal);
+  if (arguments.reading.dry_run) return show(std::get<DataRequest>(request));
   PhaseTimer timer;
   timer.begin("read");
-  auto read = read_data(arguments.data);
+  auto read = read_data(std::get<DataRequest>(request));
   if (const auto* refusal = std::get_if<Refusal>(&read)) return refuse(*refusal);
   auto& data = std::get<IdentifyData>(read);
   timer.end();
@@ -161,12 +203,8 @@ int run(const Arguments& arguments) {
   options.input_names = data.inputs;
   options.output_names = data.outputs;
   auto result = identification::identify(data.record, data.identify, options);
-  if (const auto* verdict = std::get_if<Verdict>(&result)) {
-    if (!arguments.json)
-      for (const std::string& sentence : left_out_sentences(data))
-        fmt::print(stderr, "reident: {}\n", sentence);
-    return print_rejection(*verdict, left_out_json(data), arguments.json);
-  }
+  if (const auto* verdict = std::get_if<Verdict>(&result))
+    return print_rejection(*verdict, data, arguments.json);
 
   timer.begin("score");
   IdentifyOutcome outcome;
@@ -186,6 +224,8 @@ int run(const Arguments& arguments) {
       without_delay_states(outcome.identified.model, outcome.identified.input_delays));
   timer.end();
   outcome.timing_ms = timer.phases();
+  outcome.found = data.found;
+  if (!arguments.json) fmt::print(stderr, "{}: {}\n", arguments.data.file.string(), data.found);
   fmt::print("{}", arguments.json ? to_json_text(outcome) : to_report(outcome));
   return exit_done;
 }
@@ -201,10 +241,14 @@ std::function<int()> declare(CLI::App& command) {
                   "NAME=EXPRESSION: an input for --input that follows from columns, such as "
                   "\"P=u*i\"; + - * / ^ ( ), comparisons, a ? b : c, abs, min, max")
       ->allow_extra_args(false);
-  command.add_option("--time", arguments->data.time,
-                     "column of times: seconds or ISO 8601; gaps split the rows");
-  command.add_option("--period", arguments->data.period_s,
-                     "seconds between rows, or of the grid with --time (the median step)");
+  command.add_option(
+      "--period", arguments->data.period_s,
+      "seconds between rows, or of the grid with --time (the median step of the slowest column)");
+  command
+      .add_option(
+          "--hold", arguments->hold,
+          "how long a value serves, such as 400s, where it comes on change or seldom (3 periods)")
+      ->type_name("DURATION");
   command.add_option("--identify", arguments->data.identify,
                      "rows A:B of the file, 0-based and half-open (the first two thirds)");
   command.add_option("--validate", arguments->data.validate,
@@ -213,6 +257,7 @@ std::function<int()> declare(CLI::App& command) {
                    "keep rows at which a column shows a fault: a fill value, a stuck sensor, a "
                    "spike, a burst of noise");
   add_model_options(command, arguments->model);
+  add_reading_options(command, arguments->reading);
   command.add_option("--threads", arguments->threads,
                      "threads of the search, which finds the same with any number of them (one "
                      "for each core)");

@@ -12,6 +12,7 @@
 #include "service/support/stop_signal.hpp"
 #include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
+#include "service/telemetry_file/reading_options.hpp"
 
 namespace reident::cli::import_verb {
 namespace {
@@ -24,7 +25,8 @@ struct Arguments {
   DatabaseOptions database;
   ImportOptions import;
   std::vector<std::string> mappings;
-  std::optional<std::string> origin, time_unit;
+  std::optional<std::string> origin;
+  telemetry_file::ReadingArguments reading;
   bool json = false;
 };
 
@@ -35,8 +37,10 @@ std::optional<Refusal> complete(Arguments& arguments) {
     arguments.import.mappings.push_back(*mapping);
   }
   if (arguments.origin) arguments.import.origin = transfer::parse_origin(*arguments.origin);
-  if (arguments.time_unit)
-    arguments.import.time_unit = *transfer::parse_time_unit(*arguments.time_unit);
+  auto reading = telemetry_file::reading_options(arguments.reading, utc_now());
+  if (const auto* error = std::get_if<csv::Error>(&reading)) return Refusal{error->message};
+  arguments.import.reading = std::get<telemetry_file::ReadingOptions>(std::move(reading));
+  arguments.import.skip_bad_lines = arguments.reading.skip_bad_lines;
   return std::nullopt;
 }
 
@@ -51,7 +55,10 @@ std::string outcome(const ImportReport& report) {
 
 void print_json(const ImportReport& report, double seconds) {
   const auto& total = report.total;
-  const nlohmann::ordered_json object = {{"complete", report.complete},
+  const nlohmann::ordered_json object = {{"found", report.found},
+                                         {"remarks", report.remarks},
+                                         {"left_out", report.left_out.sentences()},
+                                         {"complete", report.complete},
                                          {"resumed_at_line", report.resumed_at},
                                          {"rows", total.rows},
                                          {"samples", total.samples},
@@ -73,14 +80,25 @@ void print_text(const ImportReport& report, double seconds) {
              total.samples, total.rows, total.stored, total.duplicates, total.conflicts);
   if (report.new_parameters > 0) fmt::print("{} new parameters\n", report.new_parameters);
   if (total.bad_lines > 0) fmt::print("{} bad lines left out\n", total.bad_lines);
+  for (const std::string& sentence : report.left_out.sentences()) fmt::print("  {}\n", sentence);
   fmt::print("{} ({} samples in {:.1f} s, {}/s)\n", outcome(report), report.samples, seconds,
              short_count(static_cast<double>(report.samples) / seconds));
 }
 
+int show(const ImportOptions& options) {
+  const auto shown = telemetry_file::dry_run(options.file, options.reading, true);
+  if (const auto* error = std::get_if<csv::Error>(&shown)) return refuse({error->message});
+  for (const std::string& line : std::get<std::vector<std::string>>(shown))
+    fmt::print("{}\n", line);
+  return exit_done;
+}
+
 int run(Arguments& arguments) {
   if (const auto refusal = complete(arguments)) return refuse(*refusal);
+  if (arguments.reading.dry_run) return show(arguments.import);
   // Before a database is made for nothing.
-  const auto readable = csv::Reader::open(arguments.import.file);
+  const auto readable =
+      telemetry_file::TelemetryFile::open(arguments.import.file, arguments.import.reading);
   if (const auto* error = std::get_if<csv::Error>(&readable)) return refuse({error->message});
   const StopSignal stop;
   return with_writable_database(arguments.database, [&](storage::Database& database) {
@@ -94,6 +112,9 @@ int run(Arguments& arguments) {
     bar.clear();
     if (const auto* error = std::get_if<csv::Error>(&imported)) return refuse({error->message});
     const auto& report = std::get<ImportReport>(imported);
+    if (!arguments.json)
+      fmt::print(stderr, "{}: {}\n", arguments.import.file.string(), report.found);
+    for (const std::string& remark : report.remarks) fmt::print(stderr, "reident: {}\n", remark);
     for (const std::string& message : report.first_bad_lines)
       print_error("reident: left out: {}", message);
     if (arguments.json)
@@ -105,15 +126,6 @@ int run(Arguments& arguments) {
 }
 
 void add_column_options(CLI::App& command, Arguments& arguments) {
-  command
-      .add_option("--time", arguments.import.time_column,
-                  "column of the time (the first that looks like one)")
-      ->type_name("COLUMN");
-  command
-      .add_option("--time-unit", arguments.time_unit,
-                  "what numbers of the time are (seconds since 1970 UTC; by the column's name, as "
-                  "in time_ms; whole numbers of 17 digits and more are nanoseconds)")
-      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   command
       .add_option("--map", arguments.mappings, "import a column as a parameter; may be given again")
       ->type_name("COLUMN=PARAMETER[:UNIT]")
@@ -141,8 +153,7 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--origin", arguments->origin, "real or simulated (real)")
       ->check(CLI::IsMember({"real", "simulated"}));
   add_column_options(command, *arguments);
-  command.add_flag("--skip-bad-lines", arguments->import.skip_bad_lines,
-                   "leave out lines that cannot be read, and count them");
+  add_reading_options(command, arguments->reading);
   command.add_flag("--json", arguments->json, "one JSON object with the counts");
   command.footer(
       "A file has a column with the time and one for each parameter, or one sample a row in the\n"

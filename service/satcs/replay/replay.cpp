@@ -1,6 +1,7 @@
 #include "service/satcs/replay/replay.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -13,32 +14,68 @@ namespace reident::satcs {
 namespace {
 
 using csv::Error;
-using csv::Reader;
+using telemetry_file::Cell;
+using telemetry_file::TelemetryFile;
+
+constexpr std::size_t examples = 3;  // of what is no number, a column
 
 /// What a first reading of the file found.
 struct Survey {
   std::vector<std::uint64_t> numbers;  // cells with a number, for each column of the file
+  std::vector<std::uint64_t> bad;      // cells that are no numbers and no blanks
+  std::vector<std::string> first_bad;  // "'x' in line 7, ..."
   std::vector<storage::Time> times;
+  telemetry_file::LeftOut left_out;
+  std::vector<std::string> remarks;
 };
 
-std::variant<Survey, Error> survey(const ReplayOptions& options, std::size_t time_position) {
-  auto opened = Reader::open(options.file);
-  if (auto* error = std::get_if<Error>(&opened)) return std::move(*error);
-  auto& reader = std::get<Reader>(opened);
+void count_cells(const TelemetryFile& reader, Survey& result) {
+  for (std::size_t c = 0; c < result.numbers.size(); ++c) {
+    const auto cell = reader.cell(c);
+    if (cell.kind == Cell::Kind::number && std::isfinite(cell.value)) ++result.numbers[c];
+    if (cell.kind != Cell::Kind::bad) continue;
+    if (result.bad[c]++ >= examples) continue;
+    std::string& text = result.first_bad[c];
+    text += (text.empty() ? "'" : ", '") + std::string(trimmed(reader.cells()[c]).substr(0, 40)) +
+            "' in line " + std::to_string(reader.line());
+  }
+}
+
+std::variant<Survey, Error> survey(TelemetryFile& reader, bool skip_bad_lines) {
   Survey result;
   result.numbers.resize(reader.columns().size());
-  Reader::Step step = reader.next();
-  for (; step == Reader::Step::row; step = reader.next()) {
-    const auto time = reader.time_at(time_position);
-    if (const auto* error = std::get_if<Error>(&time)) return *error;
-    result.times.push_back(std::get<std::int64_t>(time));
-    const auto cells = reader.cells();
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      if (csv::to_number(cells[c])) ++result.numbers[c];
+  result.bad.resize(reader.columns().size());
+  result.first_bad.resize(reader.columns().size());
+  std::uint64_t steps_back = 0;
+  for (auto step = reader.next(); step != TelemetryFile::Step::end; step = reader.next()) {
+    if (step == TelemetryFile::Step::error) {
+      if (!skip_bad_lines || reader.damage() == telemetry_file::Damage::none) return reader.error();
+      result.left_out.add(reader.damage(), reader.error());
+      continue;
     }
+    result.times.push_back(reader.time_ns());
+    if (reader.clock_step() && steps_back++ == 0)
+      result.remarks.push_back(reader.error_here(reader.clock_step()->what).message);
+    count_cells(reader, result);
   }
-  if (step == Reader::Step::error) return reader.error();
+  if (steps_back > 1)
+    result.remarks.push_back("the clock goes back " + std::to_string(steps_back) + " times");
+  for (const auto& remark : reader.remarks()) result.remarks.push_back(remark);
+  for (const auto& sentence : result.left_out.sentences()) result.remarks.push_back(sentence);
   return result;
+}
+
+void say_cells(const TelemetryFile& reader, const Survey& surveyed, ReplayPlan& plan) {
+  for (const auto& column : plan.columns)
+    if (const auto c = column.position; surveyed.bad[c] > 0)
+      plan.remarks.push_back(
+          "column '" + reader.columns()[c] + "': " + std::to_string(surveyed.bad[c]) +
+          " cells are no numbers and are sent as invalid: " + surveyed.first_bad[c]);
+  for (const auto& column : plan.left_out)
+    if (const auto at = std::get<std::size_t>(reader.find(column)); surveyed.bad[at] > 0)
+      plan.remarks.push_back("column '" + column + "' is left out, its cells are no numbers: " +
+                             surveyed.first_bad[at] + "; --map-states " + column +
+                             ":STATE=NUMBER,... makes numbers of states");
 }
 
 /// The range that the options ask for, in a file whose earliest and latest rows are given.
@@ -58,10 +95,18 @@ bool within(storage::TimeRange range, storage::Time time) {
   return range.begin <= time && time < range.end;
 }
 
-Reader reopened(const std::filesystem::path& file) {
-  auto opened = Reader::open(file);
+std::variant<TelemetryFile, Error> opened_with_time(const std::filesystem::path& file,
+                                                    const telemetry_file::ReadingOptions& reading) {
+  auto opened = TelemetryFile::open(file, reading);
+  if (auto* reader = std::get_if<TelemetryFile>(&opened); reader && reader->has_rows())
+    if (auto error = reader->find_time()) return *std::move(error);
+  return opened;
+}
+
+TelemetryFile reopened(const ReplayPlan& plan) {
+  auto opened = opened_with_time(plan.file, plan.reading);
   if (const auto* error = std::get_if<Error>(&opened)) throw std::runtime_error(error->message);
-  return std::get<Reader>(std::move(opened));
+  return std::get<TelemetryFile>(std::move(opened));
 }
 
 }  // namespace
@@ -96,26 +141,27 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
       !std::filesystem::is_directory(options.file, failed)) {
     return Error{file + ": is no regular file and cannot be read twice; save it as one first"};
   }
-  auto opened = Reader::open(options.file);
+  auto opened = opened_with_time(options.file, options.reading);
   if (auto* error = std::get_if<Error>(&opened)) return std::move(*error);
-  auto& head = std::get<Reader>(opened);
-  const Reader::Step first = head.next();
-  if (first == Reader::Step::error) return head.error();
-  if (first == Reader::Step::end) {
+  auto& reader = std::get<TelemetryFile>(opened);
+  if (!reader.has_rows())
     return Error{file + ": the header is not followed by a row; there is nothing to replay"};
-  }
-  const auto time_position = find_time_column(head, options.time_column);
-  if (const auto* error = std::get_if<Error>(&time_position)) return *error;
 
   ReplayPlan plan;
   plan.file = options.file;
+  plan.reading = options.reading;
   plan.skip_blanks = options.skip_blanks;
-  plan.time_position = std::get<std::size_t>(time_position);
-  plan.time_column = head.columns()[plan.time_position];
-  auto surveyed = survey(options, plan.time_position);
+  plan.skip_bad_lines = options.skip_bad_lines;
+  plan.time_column = reader.columns()[reader.clock().columns().front()];
+  plan.found = reader.found();
+  auto surveyed = survey(reader, options.skip_bad_lines);
   if (auto* error = std::get_if<Error>(&surveyed)) return std::move(*error);
-  const auto& [numbers, times] = std::get<Survey>(surveyed);
-  if (auto error = choose_columns(options, head, numbers, plan)) return *std::move(error);
+  auto& seen = std::get<Survey>(surveyed);
+  if (auto error = choose_columns(options, reader, seen.numbers, plan)) return *std::move(error);
+  plan.remarks = std::move(seen.remarks);
+  say_cells(reader, seen, plan);
+  const auto& times = seen.times;
+  if (times.empty()) return Error{file + ": every row is bad; there is nothing to replay"};
 
   const auto [earliest, latest] = std::minmax_element(times.begin(), times.end());
   plan.range = chosen_range(options, *earliest);
@@ -129,7 +175,7 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
 }
 
 ReplayStream::ReplayStream(ReplayPlan plan, Sender sender)
-    : plan_(std::move(plan)), reader_(reopened(plan_.file)), sender_(std::move(sender)) {}
+    : plan_(std::move(plan)), reader_(reopened(plan_)), sender_(std::move(sender)) {}
 
 std::vector<storage::ParameterDescriptor> ReplayStream::parameters() const {
   std::vector<storage::ParameterDescriptor> parameters;
@@ -139,12 +185,13 @@ std::vector<storage::ParameterDescriptor> ReplayStream::parameters() const {
 
 bool ReplayStream::next(storage::TelemetryFrame& frame) {
   while (true) {
-    const Reader::Step step = reader_.next();
-    if (step == Reader::Step::end) return false;
-    if (step == Reader::Step::error) throw std::runtime_error(reader_.error().message);
-    const auto time = reader_.time_at(plan_.time_position);
-    if (const auto* error = std::get_if<Error>(&time)) throw std::runtime_error(error->message);
-    frame.generation_time = frame.reception_time = std::get<std::int64_t>(time);
+    const auto step = reader_.next();
+    if (step == TelemetryFile::Step::end) return false;
+    if (step == TelemetryFile::Step::error) {
+      if (plan_.skip_bad_lines && reader_.damage() != telemetry_file::Damage::none) continue;
+      throw std::runtime_error(reader_.error().message);
+    }
+    frame.generation_time = frame.reception_time = reader_.time_ns();
     if (within(plan_.range, frame.generation_time)) break;
   }
   frame.source = sender_.source;
@@ -152,12 +199,15 @@ bool ReplayStream::next(storage::TelemetryFrame& frame) {
   frame.sequence = sender_.first_sequence + rows_done_;
   frame.samples.clear();
   for (const auto& column : plan_.columns) {
-    const auto& cell = reader_.cells()[column.position];
-    if (plan_.skip_blanks && trimmed(cell).empty()) continue;
-    const auto number = csv::to_number(cell);
-    frame.samples.push_back({column.parameter.id,
-                             number ? storage::Quality::good : storage::Quality::invalid,
-                             number.value_or(std::numeric_limits<double>::quiet_NaN())});
+    const Cell cell = reader_.cell(column.position);
+    if ((plan_.skip_blanks && cell.kind == Cell::Kind::blank) || cell.kind == Cell::Kind::missing)
+      continue;
+    const bool is_value = cell.kind == Cell::Kind::number && std::isfinite(cell.value);
+    const auto quality = !is_value         ? storage::Quality::invalid
+                         : cell.is_flagged ? storage::Quality::out_of_limits
+                                           : storage::Quality::good;
+    frame.samples.push_back({column.parameter.id, quality,
+                             is_value ? cell.value : std::numeric_limits<double>::quiet_NaN()});
   }
   ++rows_done_;
   return true;

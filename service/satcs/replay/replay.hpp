@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "service/satcs/frame_stream.hpp"
-#include "service/support/csv.hpp"
+#include "service/telemetry_file/telemetry_file.hpp"
 
 namespace reident::satcs {
 
@@ -37,7 +37,8 @@ std::optional<ReplayBound> parse_bound(std::string_view text);
 /// What satcs-replay was asked.
 struct ReplayOptions {
   std::filesystem::path file;
-  std::optional<std::string> time_column;  // absent: the first that looks like one
+  telemetry_file::ReadingOptions reading;
+  bool skip_bad_lines = false;
   std::vector<ColumnMapping> mappings;
   /// Unmapped columns keep their names; otherwise a unit at the end of a name becomes the
   /// parameter's unit: bus_u_mv is bus_u in mV.
@@ -55,13 +56,18 @@ struct ReplayPlan {
     storage::ParameterDescriptor parameter;
   };
   std::filesystem::path file;
-  std::size_t time_position = 0;
-  std::string time_column;
+  telemetry_file::ReadingOptions reading;
+  std::string time_column;  // the first of those that hold the time
   std::vector<Column> columns;
   bool skip_blanks = false;
+  bool skip_bad_lines = false;
   std::vector<std::string> left_out;  // columns without a single number
-  storage::TimeRange range;           // of the rows to replay
-  std::uint64_t rows = 0;             // in that range
+  std::string found;                  // how the file is read
+  /// What a user has to know: rows and columns that are left out, cells that are no numbers, clocks
+  /// that go back; one sentence each.
+  std::vector<std::string> remarks;
+  storage::TimeRange range;  // of the rows to replay
+  std::uint64_t rows = 0;    // in that range
 };
 
 /// Reads the whole file; every mistake in the options or the file is one sentence.
@@ -69,7 +75,8 @@ std::variant<ReplayPlan, csv::Error> plan_replay(const ReplayOptions& options);
 
 /// Rows in the order of the file, whatever their times are, each received when it was generated. A
 /// cell without a finite number becomes a sample of quality invalid whose value is NaN, or none
-/// where it is blank and blanks are skipped.
+/// where it is blank and blanks are skipped, or its value is one that the options name as missing.
+/// A number with a flag of limits behind it is out of limits.
 class ReplayStream : public FrameStream {
  public:
   /// Throws std::runtime_error when the file cannot be opened any more.
@@ -81,7 +88,7 @@ class ReplayStream : public FrameStream {
 
  private:
   ReplayPlan plan_;
-  csv::Reader reader_;
+  telemetry_file::TelemetryFile reader_;
   Sender sender_;
   std::uint64_t rows_done_ = 0;
 };

@@ -5,32 +5,16 @@
 #include <map>
 
 #include "service/satcs/parameter_id.hpp"
-#include "service/support/text.hpp"
-#include "service/support/time_text.hpp"
+#include "service/telemetry_file/head_lines.hpp"
 
 namespace reident::satcs {
 namespace {
 
 using csv::Error;
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
-bool named_like_a_time(std::string_view column) {
-  const std::string name = lower(column);
-  if (name == "t" || name == "t_s") return true;
-  constexpr std::array<std::string_view, 5> hints = {"time", "unix", "date", "utc", "epoch"};
-  return std::any_of(hints.begin(), hints.end(),
-                     [&](std::string_view hint) { return name.find(hint) != std::string::npos; });
-}
+using telemetry_file::TelemetryFile;
 
 /// The columns that the options name, all of them being in the file.
-std::optional<Error> check_names(const ReplayOptions& options, const csv::Reader& reader) {
+std::optional<Error> check_names(const ReplayOptions& options, const TelemetryFile& reader) {
   const auto find = [&](const std::string& column) -> std::optional<Error> {
     const auto found = reader.find(column);
     if (const auto* error = std::get_if<Error>(&found)) return *error;
@@ -57,7 +41,7 @@ const ColumnMapping* mapping_of(const ReplayOptions& options, const std::string&
 }
 
 /// Every parameter once, by name and by id.
-std::optional<Error> check_parameters(const csv::Reader& reader, const ReplayPlan& plan) {
+std::optional<Error> check_parameters(const TelemetryFile& reader, const ReplayPlan& plan) {
   std::map<std::uint32_t, const ReplayPlan::Column*> seen;
   for (const auto& column : plan.columns) {
     const auto [other, added] = seen.emplace(column.parameter.id, &column);
@@ -69,53 +53,55 @@ std::optional<Error> check_parameters(const csv::Reader& reader, const ReplayPla
   return std::nullopt;
 }
 
+/// The unit in brackets at the end of a name, as in "I load (A)"; empty where there is none.
+std::string unit_in_brackets(std::string_view column) {
+  const auto open = column.find_last_of("([");
+  if (open == std::string_view::npos || open == 0 ||
+      column.find_first_of(")]", open) + 1 != column.size())
+    return {};
+  const std::string_view unit = column.substr(open + 1, column.size() - open - 2);
+  return telemetry_file::is_unit_word(unit) ? std::string(unit) : std::string();
+}
+
+storage::ParameterDescriptor parameter_of(const ReplayOptions& options, const TelemetryFile& reader,
+                                          std::size_t position, const std::string& file) {
+  const std::string& column = reader.columns()[position];
+  NameAndUnit as{column, {}};
+  if (const ColumnMapping* mapping = mapping_of(options, column); mapping != nullptr)
+    as = {mapping->parameter, mapping->unit};
+  else if (!options.keep_names)
+    as = split_unit(column);
+  if (as.unit.empty()) as.unit = reader.unit(position);
+  if (as.unit.empty()) as.unit = unit_in_brackets(column);
+  storage::ParameterDescriptor parameter;
+  parameter.id = parameter_id(as.name);
+  parameter.name = as.name;
+  parameter.unit = as.unit;
+  parameter.description = "column " + column + " of " + file;
+  const auto& format = reader.format(position);
+  if (format.kind == telemetry_file::CellFormat::Kind::state) {
+    parameter.kind = storage::ParameterKind::digital;
+    parameter.description =
+        "states " + telemetry_file::states_text(format.states) + "; " + parameter.description;
+  }
+  return parameter;
+}
+
 }  // namespace
 
-bool is_time(std::string_view, std::string_view cell) {
-  return parse_time(cell).has_value();
-}
-
-std::variant<std::size_t, Error> find_time_column(const csv::Reader& reader,
-                                                  const std::optional<std::string>& asked,
-                                                  const IsTime& holds_time) {
-  if (asked) return reader.find(*asked);
-  const auto& columns = reader.columns();
-  const auto cells = reader.cells();
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (named_like_a_time(columns[c]) && holds_time(columns[c], cells[c])) return c;
-  }
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (!csv::to_number(cells[c]) && holds_time(columns[c], cells[c])) return c;
-  }
-  return reader.error_here("no column looks like a time; name it with --time (the columns are: " +
-                           joined(columns) + ")");
-}
-
-std::optional<Error> choose_columns(const ReplayOptions& options, const csv::Reader& reader,
+std::optional<Error> choose_columns(const ReplayOptions& options, const TelemetryFile& reader,
                                     const std::vector<std::uint64_t>& numbers, ReplayPlan& plan) {
   if (auto error = check_names(options, reader)) return error;
   const auto& only = options.only;
   for (std::size_t c = 0; c < numbers.size(); ++c) {
     const std::string& column = reader.columns()[c];
-    if (c == plan.time_position || column.empty()) continue;
+    if (reader.is_time(c) || column.empty()) continue;
     if (!only.empty() && std::find(only.begin(), only.end(), column) == only.end()) continue;
-    const ColumnMapping* mapping = mapping_of(options, column);
-    if (numbers[c] == 0 && mapping == nullptr) {
+    if (numbers[c] == 0 && mapping_of(options, column) == nullptr) {
       plan.left_out.push_back(column);
       continue;
     }
-    NameAndUnit as{column, {}};
-    if (mapping != nullptr) {
-      as = {mapping->parameter, mapping->unit};
-    } else if (!options.keep_names) {
-      as = split_unit(column);
-    }
-    storage::ParameterDescriptor parameter;
-    parameter.id = parameter_id(as.name);
-    parameter.name = as.name;
-    parameter.unit = as.unit;
-    parameter.description = "column " + column + " of " + plan.file.filename().string();
-    plan.columns.push_back({c, std::move(parameter)});
+    plan.columns.push_back({c, parameter_of(options, reader, c, plan.file.filename().string())});
   }
   if (plan.columns.empty()) {
     return Error{plan.file.string() + ": no column holds numbers besides the time '" +

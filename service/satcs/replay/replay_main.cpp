@@ -9,10 +9,14 @@
 #include "service/satcs/program.hpp"
 #include "service/satcs/replay/replay.hpp"
 #include "service/support/log.hpp"
+#include "service/support/utc_clock.hpp"
+#include "service/telemetry_file/reading_options.hpp"
 
 namespace {
 
 using namespace reident::satcs;
+using reident::telemetry_file::ReadingArguments;
+using reident::telemetry_file::ReadingOptions;
 
 constexpr const char* about =
     "Publishes the rows of a CSV file as SATCS telemetry frames, one frame a row.\n\n"
@@ -28,11 +32,6 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
   app.add_option("file", options.file, "CSV file with a header row and a time column")
       ->required()
       ->type_name("FILE");
-  app.add_option_function<std::string>(
-         "--time", [&options](const std::string& column) { options.time_column = column; },
-         "Column of the time: seconds since 1970 UTC, or a date and time (the first that looks "
-         "like one)")
-      ->type_name("COLUMN");
   app.add_option_function<std::vector<std::string>>(
          "--map",
          [&options](const std::vector<std::string>& texts) {
@@ -63,16 +62,37 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
       ->type_name("TIME|OFFSET");
 }
 
+void say(const ReplayPlan& plan) {
+  fmt::print(stderr, "{}: {}\n", plan.file.string(), plan.found);
+  for (const auto& remark : plan.remarks) fmt::print(stderr, "satcs-replay: {}\n", remark);
+  for (const auto& column : plan.left_out)
+    reident::log::info("satcs", "column left out, there is no number in it", {{"column", column}});
+}
+
+void read_arguments(const ReadingArguments& arguments, ReplayOptions& options) {
+  auto reading = reading_options(arguments, reident::utc_now());
+  if (const auto* error = std::get_if<reident::csv::Error>(&reading))
+    throw BadRequest(error->message);
+  options.reading = std::get<ReadingOptions>(std::move(reading));
+  options.skip_bad_lines = arguments.skip_bad_lines;
+}
+
 ReplayStream open_replay(const ReplayOptions& options, const Sender& sender) {
   auto planned = plan_replay(options);
   if (const auto* error = std::get_if<reident::csv::Error>(&planned)) {
     throw BadRequest(error->message);
   }
   auto& plan = std::get<ReplayPlan>(planned);
-  for (const auto& column : plan.left_out) {
-    reident::log::info("satcs", "column left out, there is no number in it", {{"column", column}});
-  }
+  say(plan);
   return ReplayStream(std::move(plan), sender);
+}
+
+int show(const ReplayOptions& options) {
+  const auto shown = reident::telemetry_file::dry_run(options.file, options.reading, true);
+  if (const auto* error = std::get_if<reident::csv::Error>(&shown))
+    throw BadRequest(error->message);
+  for (const auto& line : std::get<std::vector<std::string>>(shown)) fmt::print("{}\n", line);
+  return exit_complete;
 }
 
 }  // namespace
@@ -83,10 +103,14 @@ int main(int argc, char** argv) {
   Sender sender{.source = "replay"};
   PublisherOptions publisher;
   bool json = false;
+  ReadingArguments reading;
   add_replay_options(app, replay);
+  add_reading_options(app, reading);
   add_publisher_options(app, sender, publisher, json);
   app.get_option("--spacecraft")->required();
   return run_program(app, argc, argv, [&] {
+    read_arguments(reading, replay);
+    if (reading.dry_run) return show(replay);
     ReplayStream stream = open_replay(replay, sender);
     return publish_and_report(stream, sender, publisher, json);
   });

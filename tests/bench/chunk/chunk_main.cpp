@@ -10,7 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "service/support/csv.hpp"
+#include "service/telemetry_file/telemetry_file.hpp"
 #include "storage/chunks/chunk.hpp"
 
 namespace {
@@ -54,27 +54,34 @@ double cpu_seconds() {
 /// Every column of a file but its time; cells without a number give no sample. All samples are good
 /// and of one source.
 std::vector<Column> read_columns(const std::string& file, const std::string& time_column) {
-  auto opened = reident::csv::Reader::open(file);
+  using reident::telemetry_file::Cell;
+  using reident::telemetry_file::TelemetryFile;
+  reident::telemetry_file::ReadingOptions options;
+  options.time.column = time_column;
+  auto opened = TelemetryFile::open(file, options);
   if (const auto* error = std::get_if<reident::csv::Error>(&opened))
     throw CLI::ValidationError(error->message);
-  std::vector<std::string> names = std::get<reident::csv::Reader>(opened).columns();
-  std::erase(names, time_column);
-  const auto read = reident::csv::read_table(file, names, time_column);
-  if (const auto* error = std::get_if<reident::csv::Error>(&read))
-    throw CLI::ValidationError(error->message);
-  const auto& table = std::get<reident::csv::Table>(read);
+  auto& reader = std::get<TelemetryFile>(opened);
+  if (const auto error = reader.find_time()) throw CLI::ValidationError(error->message);
   std::vector<Column> columns;
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    Column column;
-    column.name = names[c];
-    for (std::size_t row = 0; row < table.rows; ++row) {
-      if (std::isnan(table.values[c][row])) continue;
-      column.time.push_back(table.time_ns[row]);
-      column.value.push_back(table.values[c][row]);
+  std::vector<std::size_t> positions;
+  for (std::size_t c = 0; c < reader.columns().size(); ++c) {
+    if (reader.is_time(c)) continue;
+    positions.push_back(c);
+    columns.emplace_back().name = reader.columns()[c];
+  }
+  auto step = reader.next();
+  for (; step == TelemetryFile::Step::row; step = reader.next())
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const Cell cell = reader.cell(positions[c]);
+      if (cell.kind != Cell::Kind::number || !std::isfinite(cell.value)) continue;
+      columns[c].time.push_back(reader.time_ns());
+      columns[c].value.push_back(cell.value);
     }
+  if (step == TelemetryFile::Step::error) throw CLI::ValidationError(reader.error().message);
+  for (Column& column : columns) {
     column.quality.assign(column.time.size(), Quality::good);
     column.source.assign(column.time.size(), 1);
-    columns.push_back(std::move(column));
   }
   return columns;
 }

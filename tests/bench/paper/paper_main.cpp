@@ -177,7 +177,7 @@ int main(int argc, char** argv) {
   app.add_option("--input", request.inputs)->required();
   app.add_option("--output", request.outputs)->required();
   app.add_option("--derive", request.derive)->allow_extra_args(false);
-  app.add_option("--time", request.time);
+  app.add_option("--time", request.reading.time.column);
   app.add_option("--period", request.period_s);
   app.add_option("--identify", request.identify)->required();
   app.add_option("--validate", request.validate)->required();

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   app.add_option("FILE", request.file, "CSV file")->required();
   app.add_option("--input", request.inputs, "Columns of one equipment")->required();
   app.add_option("--output", request.outputs, "The same")->required();
-  app.add_option("--time", request.time, "Column of the time");
+  app.add_option("--time", request.reading.time.column, "Column of the time");
   app.add_option("--period", request.period_s, "Of the grid");
   app.add_option("--window", window_rows, "Rows of a window")->check(CLI::Range(100, 10'000'000));
   CLI11_PARSE(app, argc, argv);

@@ -262,7 +262,8 @@ TEST_F(Programs, RefuseImpossibleRequestsInOneLine) {
            Case{"--linger -1s",
                 "satcs-replay: --linger: '-1s' is not a duration such as 30s; see "
                 "satcs-replay --help\n"},
-           Case{"--only b", "satcs-replay: t.csv: there is no column 'b'; the columns are: t, a\n"},
+           Case{"--force-times --only b",
+                "satcs-replay: t.csv: there is no column 'b'; the columns are: t, a\n"},
        }) {
     EXPECT_EQ(Child(replay(arguments)).wait(), 2) << arguments;
     EXPECT_EQ(errors(), complaint);

@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "service/telemetry_file/number_text.hpp"
+
 namespace reident::transfer::telemetry_csv_test {
 namespace {
 
@@ -18,45 +20,14 @@ TEST(TelemetryCsv, ValuesComeBackBitForBit) {
                              Limits::max(), Limits::infinity(), -Limits::infinity()}) {
     std::string text;
     append_value(text, value);
-    const auto read = parse_value(text);
+    const auto read = telemetry_file::plain_number(text);
     ASSERT_TRUE(read) << text;
     EXPECT_EQ(std::bit_cast<std::uint64_t>(*read), std::bit_cast<std::uint64_t>(value)) << text;
   }
   std::string nan;
   append_value(nan, -Limits::quiet_NaN());
   EXPECT_EQ(nan, "nan");
-  EXPECT_TRUE(std::isnan(parse_value(nan).value()));
-}
-
-TEST(TelemetryCsv, WhatIsNoNumberIsNoValue) {
-  for (const char* cell : {"", " ", "n/a", "1,5", "1 2", "1x", "--", "1e999", "0x10"})
-    EXPECT_EQ(parse_value(cell), std::nullopt) << cell;
-}
-
-TEST(TelemetryCsv, TimesAreReadByTheUnitThatTheyHave) {
-  constexpr storage::Time time = 1'682'785'357'500'000'000;
-  struct Case {
-    TimeUnit unit;
-    const char* cell;
-    std::optional<storage::Time> time;
-  };
-  for (const auto& [unit, cell, expected] :
-       {Case{TimeUnit::any, "1682785357.5", time}, Case{TimeUnit::any, "1682785357500000000", time},
-        Case{TimeUnit::any, "2023-04-29T16:22:37.5Z", time},
-        Case{TimeUnit::any, "-62785357500000000", -62'785'357'500'000'000},
-        Case{TimeUnit::any, "1682785357500", std::nullopt}, Case{TimeUnit::any, "", std::nullopt},
-        Case{TimeUnit::s, "1682785357.5", time}, Case{TimeUnit::ms, "1682785357500", time},
-        Case{TimeUnit::us, " 1682785357500000 ", time}, Case{TimeUnit::ns, "17", 17},
-        Case{TimeUnit::ms, "0.25", 250'000}, Case{TimeUnit::ms, "5s", std::nullopt},
-        Case{TimeUnit::ms, "noon", std::nullopt}})
-    EXPECT_EQ(parse_time_in(unit, cell), expected) << cell;
-}
-
-TEST(TelemetryCsv, ATimeColumnSaysItsUnit) {
-  EXPECT_EQ(unit_of_column("time_ms"), TimeUnit::ms);
-  EXPECT_EQ(unit_of_column("t_ns"), TimeUnit::ns);
-  EXPECT_EQ(unit_of_column("unix_s"), TimeUnit::any) << "seconds, or a date all the same";
-  EXPECT_EQ(unit_of_column("time"), TimeUnit::any);
+  EXPECT_TRUE(std::isnan(telemetry_file::plain_number(nan).value()));
 }
 
 TEST(TelemetryCsv, QualitiesAreReadAsTheyAreShown) {

@@ -110,8 +110,8 @@ TEST_F(Transfer, KilledAtAnyMomentAnImportGoesOnToTheSameContents) {
 TEST_F(Transfer, AMistakeNamesFileLineAndRemedyAndCanBePassedOver) {
   write("t.csv", "unix_s,u\n1700000000,1\n1700000001,off\n1700000002,3\n");
   EXPECT_THAT(refusal_of(import_of("t.csv", "a.db")),
-              StartsWith("reident: t.csv:3: 'off' in column 'u' is no number; mend it, or leave "
-                         "out the column"));
+              StartsWith("reident: t.csv:3: 'off' in column 'u' is no number; mend it, say with "
+                         "--missing"));
   auto command = import_of("t.csv", "a.db");
   command.push_back("--skip-bad-lines");
   const test::Ran ran = reident(command);

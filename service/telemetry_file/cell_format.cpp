@@ -1,0 +1,297 @@
+#include "service/telemetry_file/cell_format.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "service/support/text.hpp"
+
+namespace reident::telemetry_file {
+namespace {
+
+constexpr double agreement = 0.9;  // of a column's cells, for a spelling that is not plain
+constexpr std::size_t most_states = 32;
+constexpr std::size_t words_shown = 5;
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return result;
+}
+
+/// Pairs of words that everybody reads as 0 and 1.
+constexpr std::array<std::array<std::string_view, 2>, 10> known_pairs = {{{"OFF", "ON"},
+                                                                          {"FALSE", "TRUE"},
+                                                                          {"NO", "YES"},
+                                                                          {"DISABLED", "ENABLED"},
+                                                                          {"DISABLE", "ENABLE"},
+                                                                          {"DIS", "ENA"},
+                                                                          {"INACTIVE", "ACTIVE"},
+                                                                          {"F", "T"},
+                                                                          {"N", "Y"},
+                                                                          {"LOW", "HIGH"}}};
+
+/// The other word in the letter case of the first one: "Off" for "On".
+std::string in_case_of(std::string_view word, std::string_view other) {
+  std::string result(other);
+  const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (is_lower(word[i == 0 ? 0 : word.size() - 1]))
+      result[i] = static_cast<char>(result[i] | 0x20);
+  return result;
+}
+
+/// Adds both words of a known pair; false where the word is of none.
+bool add_pair(const std::string& word, StateMap& states) {
+  const std::string capital = upper(word);
+  for (const auto& pair : known_pairs)
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (pair[i] != capital) continue;
+      for (const auto& [name, value] :
+           {std::pair(word, static_cast<double>(i)),
+            std::pair(in_case_of(word, pair[1 - i]), static_cast<double>(1 - i))})
+        if (std::none_of(states.begin(), states.end(),
+                         [&](const auto& state) { return state.first == name; }))
+          states.emplace_back(name, value);
+      return true;
+    }
+  return false;
+}
+
+const StateMap* given_states(const CellOptions& options, const std::string& column) {
+  for (const auto& [name, states] : options.states)
+    if (name == column) return &states;
+  for (const auto& [name, states] : options.states)
+    if (name.empty()) return &states;
+  return nullptr;
+}
+
+bool is_missing(std::string_view cell, const std::vector<std::string>& missing) {
+  return std::any_of(missing.begin(), missing.end(), [&](const std::string& word) {
+    if (cell == word) return true;
+    const auto value = plain_number(cell), named = plain_number(word);
+    return value && named && *value == *named;
+  });
+}
+
+/// "1 (ON)" and "ON (1)": the word and its number.
+std::optional<std::pair<std::string, double>> coded_state(std::string_view cell) {
+  const auto open = cell.find_first_of("([");
+  if (open == std::string_view::npos || (cell.back() != ')' && cell.back() != ']'))
+    return std::nullopt;
+  const std::string_view outside = trimmed(cell.substr(0, open));
+  const std::string_view within = trimmed(cell.substr(open + 1, cell.size() - open - 2));
+  if (outside.empty() || within.empty()) return std::nullopt;
+  const auto first = plain_number(outside), second = plain_number(within);
+  if (first.has_value() == second.has_value()) return std::nullopt;
+  return first ? std::pair(std::string(within), *first) : std::pair(std::string(outside), *second);
+}
+
+/// The states of cells that are words, where they are given or known.
+StateMap states_of(const std::set<std::string>& words, const StateMap* given) {
+  StateMap states;
+  for (const std::string& word : words) {
+    if (const auto coded = coded_state(word)) {
+      states.emplace_back(word, coded->second);
+      continue;
+    }
+    if (given) {
+      const auto named = std::find_if(given->begin(), given->end(),
+                                      [&](const auto& state) { return state.first == word; });
+      if (named == given->end()) return {};
+      states = *given;
+      continue;
+    }
+    if (!add_pair(word, states)) return {};
+  }
+  std::sort(states.begin(), states.end(),
+            [](const auto& a, const auto& b) { return a.second < b.second; });
+  return states;
+}
+
+struct Counts {
+  std::size_t all = 0, point = 0, comma = 0, point_or = 0, comma_or = 0, bare = 0;
+  std::string_view first_point, first_comma, first_ambiguous;
+};
+
+}  // namespace
+
+std::optional<StateMap> parse_states(std::string_view text) {
+  StateMap states;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(','), text.size());
+    const std::string_view part = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::size_t equals = part.rfind('=');
+    if (equals == std::string_view::npos || equals == 0) return std::nullopt;
+    const auto value = plain_number(part.substr(equals + 1));
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    states.emplace_back(trimmed(part.substr(0, equals)), *value);
+  }
+  if (states.empty()) return std::nullopt;
+  return states;
+}
+
+std::string states_text(const StateMap& states) {
+  std::string text;
+  for (const auto& [word, value] : states)
+    text += fmt::format("{}{}={}", text.empty() ? "" : ", ", word, value);
+  return text;
+}
+
+std::variant<NumberStyle, std::string> find_style(
+    std::span<const std::vector<std::string_view>> columns, char separator) {
+  Counts all;
+  char apart = '\0';
+  std::optional<NumberStyle> certain;
+  std::size_t whole_columns = 0;  // of cells that all could be either
+  for (const auto& cells : columns) {
+    Counts here;
+    for (const std::string_view cell : cells) {
+      const auto evidence = marks_in(cell);
+      if (!evidence) continue;
+      ++here.all;
+      if (evidence->blank_group != '\0') apart = evidence->blank_group;
+      switch (evidence->mark) {
+        case Mark::none:
+          ++here.bare;
+          break;
+        case Mark::point:
+          if (all.point++ == 0) all.first_point = cell;
+          break;
+        case Mark::comma:
+          if (all.comma++ == 0) all.first_comma = cell;
+          break;
+        case Mark::point_or_thousands:
+          ++all.point_or;
+          break;
+        case Mark::comma_or_thousands:
+          if (all.comma_or++ == 0) all.first_ambiguous = cell;
+          ++here.comma_or;
+          break;
+        case Mark::both:
+          if (certain && *certain != evidence->style)
+            return fmt::format(
+                "'{}' and others write numbers in two ways; say with --decimal point "
+                "or --decimal comma which is right",
+                cell);
+          certain = evidence->style;
+          break;
+      }
+    }
+    if (here.all >= 5 && here.comma_or == here.all) ++whole_columns;
+  }
+  if (certain && (certain->decimal == '.' ? all.comma == 0 : all.point == 0)) return *certain;
+  if (all.point > 0 && all.comma > 0)
+    return fmt::format(
+        "'{}' and '{}' have different decimal marks; say with --decimal point or "
+        "--decimal comma which is right",
+        all.first_point, all.first_comma);
+  if (all.comma > 0) return NumberStyle{',', all.point_or > 0 ? '.' : apart};
+  if (all.comma_or == 0) return NumberStyle{'.', apart};
+  if (all.point > 0 || all.point_or > 0) return NumberStyle{'.', ','};
+  // Every comma stands before three digits. Thousands of all cells would be never below 1,000.
+  if (separator != ',' || whole_columns >= 2) return NumberStyle{',', '\0'};
+  return fmt::format(
+      "'{}' may be a decimal comma or thousands; say --decimal comma or --thousands "
+      "comma",
+      all.first_ambiguous);
+}
+
+CellFormat find_format(std::span<const std::string_view> cells, const std::string& column,
+                       NumberStyle style, const CellOptions& options) {
+  CellFormat format;
+  format.style = style;
+  format.missing = options.missing;
+  std::size_t filled = 0, numbers = 0, plain = 0, suffixed = 0, flagged = 0;
+  std::map<std::string, std::size_t, std::less<>> suffixes;
+  std::set<std::string> words;
+  unsigned spelling = 0;
+  for (std::string_view cell : cells) {
+    cell = trimmed(cell);
+    if (cell.empty() || is_missing(cell, options.missing)) continue;
+    ++filled;
+    const auto number = read_number(cell, style);
+    const bool is_state = coded_state(cell).has_value();
+    if (!number || is_state) {
+      if (words.size() < most_states) words.insert(std::string(cell));
+      continue;
+    }
+    ++numbers;
+    if (number->spelling == 0) ++plain;
+    spelling |= number->spelling;
+    if (number->suffix.empty()) continue;
+    ++suffixed;
+    if (is_flag(number->suffix)) ++flagged;
+    ++suffixes[std::string(number->suffix)];
+  }
+  if (filled == 0) return format;
+  if (numbers == 0) {
+    format.states =
+        words.size() < most_states ? states_of(words, given_states(options, column)) : StateMap{};
+    format.kind = format.states.empty() ? CellFormat::Kind::text : CellFormat::Kind::state;
+    for (const std::string& word : words)
+      if (format.words.size() < words_shown) format.words.push_back(word);
+    return format;
+  }
+  format.kind = CellFormat::Kind::number;
+  if (plain == numbers && style.decimal == '.') return format;
+  const auto share = [&](std::size_t count) {
+    return static_cast<double>(count) / static_cast<double>(numbers);
+  };
+  const bool one_unit = suffixes.size() == 1 && share(suffixed) >= agreement;
+  if (one_unit && !(flagged == suffixed && suffixed < numbers))
+    format.unit = suffixes.begin()->first;
+  if (!one_unit && flagged != suffixed) spelling &= ~static_cast<unsigned>(with_suffix);
+  format.spelling = spelling;
+  if (format.unit.empty() && suffixed > 0 && flagged != suffixed && share(plain) < 0.5 * agreement)
+    format.spelling &= ~static_cast<unsigned>(with_suffix);
+  return format;
+}
+
+Cell read_cell(std::string_view text, const CellFormat& format) {
+  if (!format.missing.empty() && is_missing(trimmed(text), format.missing))
+    return {Cell::Kind::missing, 0, false};
+  if (format.kind == CellFormat::Kind::state) {
+    const std::string_view word = trimmed(text);
+    if (word.empty()) return {};
+    for (const auto& [state, value] : format.states)
+      if (state == word) return {Cell::Kind::number, value, false};
+    return {Cell::Kind::bad, 0, false};
+  }
+  if (format.spelling == 0 && format.style.decimal == '.') {
+    if (const auto value = plain_number(text)) return {Cell::Kind::number, *value, false};
+    return {trimmed(text).empty() ? Cell::Kind::blank : Cell::Kind::bad, 0, false};
+  }
+  if (trimmed(text).empty()) return {};
+  const auto number = read_number(text, format.style);
+  if (!number || (number->spelling & ~(format.spelling | grouped | decimal_comma)) != 0)
+    return {Cell::Kind::bad, 0, false};
+  const bool is_flagged = !number->suffix.empty() && number->suffix != format.unit;
+  if (is_flagged && !is_flag(number->suffix)) return {Cell::Kind::bad, 0, false};
+  return {Cell::Kind::number, number->value, is_flagged};
+}
+
+std::string describe(const CellFormat& format) {
+  if (format.kind == CellFormat::Kind::state) return states_text(format.states);
+  if (format.kind != CellFormat::Kind::number) return {};
+  std::string text;
+  const auto add = [&](bool is_there, std::string_view what) {
+    if (is_there) text += fmt::format("{}{}", text.empty() ? "" : ", ", what);
+  };
+  add((format.spelling & in_brackets) != 0, "numbers in brackets are negative");
+  add((format.spelling & hexadecimal) != 0, "hexadecimal");
+  add((format.spelling & fortran) != 0, "exponents with D");
+  add((format.spelling & true_minus) != 0, "U+2212 is minus");
+  add(!format.unit.empty(), fmt::format("in {}", format.unit));
+  add((format.spelling & with_suffix) != 0 && format.unit.empty(),
+      "flags of limits behind numbers");
+  return text;
+}
+
+}  // namespace reident::telemetry_file

@@ -1,0 +1,174 @@
+#include "service/telemetry_file/clock.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "service/support/text.hpp"
+#include "service/support/time_text.hpp"
+#include "service/telemetry_file/time_units.hpp"
+
+namespace reident::telemetry_file {
+namespace {
+
+constexpr std::int64_t day_s = 86'400;
+
+struct FormatName {
+  std::string_view name;
+  TimeFormat format;
+};
+constexpr std::array<FormatName, 9> formats = {{{"text", TimeFormat::text},
+                                                {"unix", TimeFormat::unix},
+                                                {"elapsed", TimeFormat::elapsed},
+                                                {"excel", TimeFormat::excel},
+                                                {"mjd", TimeFormat::mjd},
+                                                {"jd", TimeFormat::jd},
+                                                {"matlab", TimeFormat::matlab},
+                                                {"filetime", TimeFormat::filetime},
+                                                {"gps", TimeFormat::gps}}};
+
+std::optional<std::int64_t> rounded(std::optional<std::int64_t> time, std::int64_t quantum) {
+  if (!time || quantum <= 1) return time;
+  const std::int64_t rest = ((*time % quantum) + quantum) % quantum;
+  return *time - rest + (rest * 2 >= quantum ? quantum : 0);
+}
+
+bool all_digits(std::string_view text) {
+  if (!text.empty() && text.front() == '-') text.remove_prefix(1);
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+}  // namespace
+
+std::optional<TimeFormat> parse_time_format(std::string_view text) {
+  for (const FormatName& known : formats)
+    if (known.name == text) return known.format;
+  return std::nullopt;
+}
+
+std::string time_format_names() {
+  std::string text;
+  for (const FormatName& known : formats)
+    text += std::string(text.empty() ? "" : ", ") + std::string(known.name);
+  return text;
+}
+
+std::optional<std::int64_t> parse_time_unit(std::string_view text) {
+  if (text.empty() || text.find_first_of("0123456789.+-") != std::string_view::npos)
+    return std::nullopt;
+  return parse_duration("1" + std::string(text));
+}
+
+std::optional<std::int64_t> Clock::read(std::span<const std::string_view> cells) {
+  return parts_ == Parts::one ? read_one(cells[columns_.front()]) : read_parts(cells);
+}
+
+std::optional<std::int64_t> Clock::absolute(const DateText& text) {
+  std::int64_t time = 0;
+  if (text.offset_ns)
+    return __builtin_sub_overflow(text.clock_ns, *text.offset_ns, &time) ? std::nullopt
+                                                                         : std::optional(time);
+  if (__builtin_add_overflow(text.clock_ns, text.has_date ? 0 : epoch_ns_, &time))
+    return std::nullopt;
+  return zone_ ? zone_->to_utc(time) : std::optional(time);
+}
+
+std::optional<std::int64_t> Clock::read_number_of(std::string_view cell) const {
+  std::string with_point;
+  if (has_decimal_comma_) {
+    with_point = cell;
+    std::replace(with_point.begin(), with_point.end(), ',', '.');
+    cell = with_point;
+  }
+  const auto serial = [&](std::int64_t origin_days, std::int64_t half_days = 0) {
+    return rounded(parse_count(cell, day_ns, origin_days * day_s + half_days * day_s / 2),
+                   quantum_ns_);
+  };
+  switch (format_) {
+    case TimeFormat::excel:
+      return serial(25'569);
+    case TimeFormat::mjd:
+      return serial(40'587);
+    case TimeFormat::jd:
+      return serial(2'440'587, 1);
+    case TimeFormat::matlab:
+      return serial(719'529);
+    case TimeFormat::filetime:
+      return parse_count(cell, 100, 11'644'473'600);
+    case TimeFormat::gps: {
+      const auto time = parse_count(cell, unit_ns_);
+      return time ? std::optional(utc_of_gps(*time)) : std::nullopt;
+    }
+    case TimeFormat::mixed:
+    case TimeFormat::text:
+    case TimeFormat::unix:
+    case TimeFormat::elapsed:
+      break;
+  }
+  const auto time = parse_count(cell, unit_ns_);
+  std::int64_t sum = 0;
+  if (!time || __builtin_add_overflow(*time, epoch_ns_, &sum)) return std::nullopt;
+  return sum;
+}
+
+std::optional<std::int64_t> Clock::read_one(std::string_view cell) {
+  if (format_ == TimeFormat::mixed) {
+    const std::string_view text = trimmed(cell);
+    if (unit_ns_ == second_ns && text.size() >= 17 && all_digits(text)) return parse_count(text, 1);
+    if (const auto time = parse_count(text, unit_ns_)) return time;
+    if (!zone_)
+      if (const auto time = parse_time(text)) return time;
+  } else if (format_ != TimeFormat::text) {
+    const auto time = read_number_of(cell);
+    return time && zone_ && format_ == TimeFormat::excel ? zone_->to_utc(*time) : time;
+  } else if (!zone_) {
+    const std::string_view text = trimmed(cell);
+    if (text.size() > 4 && text[4] == '-')
+      if (const auto time = parse_time(text)) return time;
+  }
+  const auto text = read_date_text(cell, order_);
+  return text ? absolute(*text) : std::nullopt;
+}
+
+std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> cells) {
+  if (parts_ == Parts::joined) {
+    const std::string both =
+        std::string(trimmed(cells[columns_[0]])) + " " + std::string(trimmed(cells[columns_[1]]));
+    const auto text = read_date_text(both, order_);
+    return text ? absolute(*text) : std::nullopt;
+  }
+  const auto number = [&](std::size_t part, std::int64_t unit) {
+    return parse_count(cells[columns_[part]], unit);
+  };
+  if (parts_ == Parts::gps_week) {
+    const auto week = number(0, 7 * day_ns), of_week = number(1, unit_ns_);
+    if (!week || !of_week) return std::nullopt;
+    return utc_of_gps(*week + *of_week);
+  }
+  const bool is_ordinal = parts_ == Parts::day_of_year;
+  const std::string date =
+      std::string(trimmed(cells[columns_[0]])) + "/" + std::string(trimmed(cells[columns_[1]])) +
+      (is_ordinal ? std::string() : "/" + std::string(trimmed(cells[columns_[2]])));
+  std::string ordinal = date;
+  // 9 is the day 009 of the year.
+  if (is_ordinal)
+    while (ordinal.size() < 8) ordinal.insert(5, "0");
+  const auto day = read_date_text(ordinal, order_);
+  if (!day) return std::nullopt;
+  DateText time = *day;
+  const std::size_t first = is_ordinal ? 2 : 3;
+  for (std::size_t part = first; part < columns_.size(); ++part) {
+    if (part_unit_ns_[part - first] == 0) {  // a time of day as text
+      const auto of_day = read_date_text(cells[columns_[part]], order_);
+      if (!of_day || of_day->has_date) return std::nullopt;
+      time.clock_ns += of_day->clock_ns;
+      time.offset_ns = of_day->offset_ns;
+      continue;
+    }
+    const auto value = number(part, part_unit_ns_[part - first]);
+    if (!value) return std::nullopt;
+    time.clock_ns += *value;
+  }
+  return absolute(time);
+}
+
+}  // namespace reident::telemetry_file

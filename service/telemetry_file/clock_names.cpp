@@ -1,0 +1,160 @@
+#include "service/telemetry_file/clock_names.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace reident::telemetry_file {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t s = 1'000 * ms;
+
+/// "unix time [ms]" and "unixTimeMs" as unix, time, ms.
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words(1);
+  char before = '\0';
+  for (const char c : name) {
+    const bool is_upper = c >= 'A' && c <= 'Z', is_lower = c >= 'a' && c <= 'z';
+    const bool is_word = is_upper || is_lower || (c >= '0' && c <= '9') || (c & 0x80) != 0;
+    const bool humps = is_upper && before >= 'a' && before <= 'z';
+    if ((!is_word || humps) && !words.back().empty()) words.emplace_back();
+    if (is_word) words.back() += static_cast<char>(is_upper ? c | 0x20 : c);
+    before = c;
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+std::optional<std::int64_t> unit_of(const std::string& word) {
+  static const std::map<std::string, std::int64_t> units = {
+      {"ns", 1},           {"nsec", 1},         {"nanoseconds", 1},     {"us", 1000},
+      {"usec", 1000},      {"\xC2\xB5s", 1000}, {"microseconds", 1000}, {"ms", ms},
+      {"msec", ms},        {"millis", ms},      {"milliseconds", ms},   {"s", s},
+      {"sec", s},          {"secs", s},         {"seconds", s},         {"min", 60 * s},
+      {"minutes", 60 * s}, {"h", 3600 * s},     {"hours", 3600 * s},    {"d", 86400 * s},
+      {"days", 86400 * s}};
+  const auto found = units.find(word);
+  return found == units.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<TimeFormat> format_of(const std::string& word) {
+  static const std::map<std::string, TimeFormat> formats = {
+      {"mjd", TimeFormat::mjd},         {"jd", TimeFormat::jd},
+      {"julian", TimeFormat::jd},       {"excel", TimeFormat::excel},
+      {"serial", TimeFormat::excel},    {"filetime", TimeFormat::filetime},
+      {"datenum", TimeFormat::matlab},  {"gps", TimeFormat::gps},
+      {"gpst", TimeFormat::gps},        {"gnss", TimeFormat::gps},
+      {"unix", TimeFormat::unix},       {"unixtime", TimeFormat::unix},
+      {"posix", TimeFormat::unix},      {"met", TimeFormat::elapsed},
+      {"elapsed", TimeFormat::elapsed}, {"mission", TimeFormat::elapsed},
+      {"tow", TimeFormat::elapsed},     {"itow", TimeFormat::elapsed},
+      {"uptime", TimeFormat::elapsed}};
+  const auto found = formats.find(word);
+  return found == formats.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace
+
+NameHint hint_of(std::string_view name, std::string_view unit) {
+  NameHint hint;
+  const auto words = words_of(name);
+  for (const std::string& word : words)
+    if (const auto format = format_of(word)) {
+      // The time of a GPS week is no time since 1980.
+      if (!hint.format || *format == TimeFormat::elapsed) hint.format = format;
+    }
+  if (words.size() > 1) hint.unit_ns = unit_of(words.back());
+  const auto unit_words = words_of(unit);
+  if (!unit_words.empty()) {
+    if (const auto said = unit_of(unit_words.front())) hint.unit_ns = said;
+    if (const auto format = format_of(unit_words.front()); format && !hint.format)
+      hint.format = format;
+  }
+  return hint;
+}
+
+bool is_named_like_a_time(std::string_view name) {
+  const auto words = words_of(name);
+  std::string all;
+  for (const std::string& word : words) {
+    if (word == "t" || word == "mjd" || word == "jd" || word == "tow" || word == "met" ||
+        word == "ts") {
+      if (&word == &words.front() || words.size() == 1) return true;
+    }
+    all += word;
+  }
+  constexpr std::array<std::string_view, 8> hints = {"time",  "unix", "date",  "utc",
+                                                     "epoch", "zeit", "datum", "stamp"};
+  return std::any_of(hints.begin(), hints.end(),
+                     [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
+}
+
+TimePart part_of(std::string_view name) {
+  static const std::map<std::string, TimePart> parts = {
+      {"year", TimePart::year},
+      {"yyyy", TimePart::year},
+      {"yr", TimePart::year},
+      {"month", TimePart::month},
+      {"mon", TimePart::month},
+      {"day", TimePart::day},
+      {"dayofmonth", TimePart::day},
+      {"dd", TimePart::day},
+      {"doy", TimePart::day_of_year},
+      {"dayofyear", TimePart::day_of_year},
+      {"ddd", TimePart::day_of_year},
+      {"yday", TimePart::day_of_year},
+      {"hour", TimePart::hour},
+      {"hours", TimePart::hour},
+      {"hh", TimePart::hour},
+      {"hr", TimePart::hour},
+      {"minute", TimePart::minute},
+      {"min", TimePart::minute},
+      {"minutes", TimePart::minute},
+      {"second", TimePart::second},
+      {"sec", TimePart::second},
+      {"seconds", TimePart::second},
+      {"ss", TimePart::second},
+      {"s", TimePart::second},
+      {"secofday", TimePart::second_of_day},
+      {"secondofday", TimePart::second_of_day},
+      {"secondsofday", TimePart::second_of_day},
+      {"sod", TimePart::second_of_day},
+      {"secday", TimePart::second_of_day},
+      {"msofday", TimePart::millisecond_of_day},
+      {"millisecofday", TimePart::millisecond_of_day},
+      {"msod", TimePart::millisecond_of_day},
+      {"date", TimePart::date},
+      {"datum", TimePart::date},
+      {"utcdate", TimePart::date},
+      {"dateutc", TimePart::date},
+      {"time", TimePart::clock},
+      {"clock", TimePart::clock},
+      {"zeit", TimePart::clock},
+      {"uhrzeit", TimePart::clock},
+      {"utc", TimePart::clock},
+      {"utctime", TimePart::clock},
+      {"timeutc", TimePart::clock},
+      {"timeofday", TimePart::clock},
+      {"gpsweek", TimePart::gps_week},
+      {"week", TimePart::gps_week},
+      {"wn", TimePart::gps_week},
+      {"weekno", TimePart::gps_week},
+      {"tow", TimePart::week_second},
+      {"tows", TimePart::week_second},
+      {"towms", TimePart::week_second},
+      {"itow", TimePart::week_second},
+      {"gpstow", TimePart::week_second},
+      {"sow", TimePart::week_second},
+      {"gpssow", TimePart::week_second},
+      {"secondofweek", TimePart::week_second},
+      {"timeofweek", TimePart::week_second},
+      {"gpsseconds", TimePart::week_second},
+      {"secofweek", TimePart::week_second}};
+  std::string all;
+  for (const std::string& word : words_of(name)) all += word;
+  const auto found = parts.find(all);
+  return found == parts.end() ? TimePart::none : found->second;
+}
+
+}  // namespace reident::telemetry_file

@@ -1,0 +1,42 @@
+// What the names of columns say about times.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "service/telemetry_file/clock.hpp"
+
+namespace reident::telemetry_file {
+
+/// What a column's name, and its unit where there is a row of units, say about its numbers.
+struct NameHint {
+  std::optional<std::int64_t> unit_ns;
+  std::optional<TimeFormat> format;
+};
+NameHint hint_of(std::string_view name, std::string_view unit);
+
+/// Whether a column is named as times are.
+bool is_named_like_a_time(std::string_view name);
+
+/// What a column is a part of a time by its name.
+enum class TimePart {
+  none,
+  year,
+  month,
+  day,
+  day_of_year,
+  hour,
+  minute,
+  second,
+  second_of_day,
+  millisecond_of_day,
+  date,
+  clock,
+  gps_week,
+  week_second,
+};
+TimePart part_of(std::string_view name);
+
+}  // namespace reident::telemetry_file

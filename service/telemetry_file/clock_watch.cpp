@@ -1,0 +1,78 @@
+#include "service/telemetry_file/clock_watch.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "service/support/time_text.hpp"
+#include "service/telemetry_file/time_units.hpp"
+
+namespace reident::telemetry_file {
+namespace {
+
+struct Wrap {
+  double counts;  // of the clock's unit
+  std::string_view text;
+};
+constexpr std::array<Wrap, 8> wraps = {{{65'536, "65,536"},
+                                        {16'777'216, "2^24"},
+                                        {2'147'483'648, "2^31"},
+                                        {4'294'967'296, "2^32"},
+                                        {1024 * 604'800.0, "1024 weeks"},
+                                        {604'800, "a week of seconds"},
+                                        {604'800'000, "a week of milliseconds"},
+                                        {86'400, "a day of seconds"}}};
+
+}  // namespace
+
+std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t line) {
+  std::optional<ClockStep> step;
+  if (last_ns_ && time_ns < *last_ns_)
+    step = explained(time_ns, line);
+  else if (last_ns_ && time_ns > *last_ns_)
+    usual_ns_ = time_ns - *last_ns_;
+  last_ns_ = time_ns;
+  return step;
+}
+
+ClockStep ClockWatch::explained(std::int64_t time_ns, std::uint64_t line) const {
+  ClockStep step;
+  step.line = line;
+  if (__builtin_sub_overflow(*last_ns_, time_ns, &step.back_ns)) return step;
+  // What the clock would have shown if it had gone on as before.
+  const std::int64_t lost_ns = step.back_ns + usual_ns_;
+  const std::int64_t tolerance_ns = std::max(second_ns, 2 * usual_ns_);
+  const auto by_about = [&](double ns) {
+    return std::abs(static_cast<double>(lost_ns) - ns) <= static_cast<double>(tolerance_ns);
+  };
+  const std::string back = duration_text(step.back_ns);
+  if (may_be_local_ && by_about(static_cast<double>(hour_ns))) {
+    step.kind = ClockStep::Kind::hour;
+    step.missing_ns = hour_ns;
+    step.what = fmt::format(
+        "the clock goes back {}, an hour less a step: a local time at the end of daylight "
+        "saving",
+        back);
+    return step;
+  }
+  for (const Wrap& wrap : wraps) {
+    const double ns = wrap.counts * static_cast<double>(unit_ns_);
+    if (is_absolute_ || ns > 9e18 || !by_about(ns) || ns < 4 * static_cast<double>(usual_ns_))
+      continue;
+    step.kind = ClockStep::Kind::wrap;
+    step.missing_ns = static_cast<std::int64_t>(ns);
+    step.what = fmt::format("the clock goes back {}: a counter that wraps at {}", back, wrap.text);
+    return step;
+  }
+  if (!is_absolute_ && std::abs(time_ns) <= tolerance_ns) {
+    step.kind = ClockStep::Kind::restart;
+    step.what =
+        fmt::format("the clock goes back {} to zero: whatever counts was started again", back);
+    return step;
+  }
+  step.what = fmt::format("the clock goes back {}", back);
+  return step;
+}
+
+}  // namespace reident::telemetry_file

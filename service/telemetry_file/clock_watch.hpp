@@ -1,0 +1,46 @@
+// Clocks that go back from one row to the next.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace reident::telemetry_file {
+
+/// A step back between two rows, and what it looks like.
+struct ClockStep {
+  enum class Kind {
+    out_of_order,  // nothing known: a row that came late
+    hour,          // an hour: daylight saving of a local time
+    restart,       // to zero: whatever counts began again
+    wrap,          // a counter of a whole number of bits or of a day or week began again
+  };
+  Kind kind = Kind::out_of_order;
+  std::uint64_t line = 0;
+  std::int64_t back_ns = 0;     // how far
+  std::int64_t missing_ns = 0;  // what continues the clock where it is added; 0: nothing does
+  std::string what;             // "goes back 1h: local time at the end of daylight saving"
+};
+
+/// Looks at the times of rows in their order.
+class ClockWatch {
+ public:
+  /// Watches a clock in units of `unit_ns` whose times are since an epoch or, not `is_absolute`,
+  /// since nobody knows when; `may_be_local`: it may have a daylight change.
+  ClockWatch(std::int64_t unit_ns, bool is_absolute, bool may_be_local)
+      : unit_ns_(unit_ns), is_absolute_(is_absolute), may_be_local_(may_be_local) {}
+
+  /// Returns the step where the time is earlier than the one before.
+  std::optional<ClockStep> next(std::int64_t time_ns, std::uint64_t line);
+
+ private:
+  ClockStep explained(std::int64_t time_ns, std::uint64_t line) const;
+
+  std::int64_t unit_ns_;
+  bool is_absolute_, may_be_local_;
+  std::optional<std::int64_t> last_ns_;
+  std::int64_t usual_ns_ = 0;  // the last step ahead
+};
+
+}  // namespace reident::telemetry_file

@@ -1,0 +1,339 @@
+#include "service/telemetry_file/dialect.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include "service/support/text.hpp"
+#include "service/telemetry_file/head_lines.hpp"
+
+namespace reident::telemetry_file {
+namespace {
+
+constexpr std::size_t rows_above_a_header = 5;  // of metadata that look like data
+
+/// Which columns of the rows hold values.
+std::vector<bool> value_columns(const HeadLines& lines, const std::string& comment,
+                                std::size_t usual) {
+  std::vector<const HeadLine*> rows;  // each text once: a header may come again
+  std::set<std::string_view> seen;
+  for (const HeadLine& line : lines)
+    if (!is_comment(line, comment) && line.cells.size() >= usual && seen.insert(line.text).second)
+      rows.push_back(&line);
+  std::vector<std::size_t> values(usual), cells(usual);
+  for (std::size_t i = rows.size() / 2; i < rows.size(); ++i)
+    for (std::size_t c = 0; c < usual; ++c) {
+      if (trimmed(rows[i]->cells[c]).empty()) continue;
+      ++cells[c];
+      if (looks_like_value(rows[i]->cells[c])) ++values[c];
+    }
+  std::vector<bool> result(usual);
+  for (std::size_t c = 0; c < usual; ++c) result[c] = values[c] * 2 > cells[c];
+  return result;
+}
+
+/// Whether a line is a row: a value stands in a column of values.
+bool is_row(const HeadLine& line, const std::vector<bool>& values) {
+  for (std::size_t c = 0; c < values.size() && c < line.cells.size(); ++c)
+    if (values[c] && looks_like_value(line.cells[c])) return true;
+  return false;
+}
+
+/// Where a name stands in the column that all rows begin with, numbers are names of parameters.
+bool names_parameters(const HeadLine& line, const std::vector<bool>& values) {
+  const auto first = std::find(values.begin(), values.end(), true);
+  if (first == values.end()) return true;
+  const std::string& cell = line.cells[static_cast<std::size_t>(first - values.begin())];
+  return !trimmed(cell).empty() && !looks_like_value(cell) &&
+         trimmed(cell).find_first_of("0123456789#") == std::string_view::npos;
+}
+
+/// HeadLines by their number among those of the usual number of cells.
+class Head {
+ public:
+  Head(const HeadLines& lines, const std::string& comment, std::size_t usual)
+      : lines_(lines),
+        comment_(comment),
+        usual_(usual),
+        values_(value_columns(lines, comment, usual)) {}
+
+  bool has_cells(std::size_t i) const {
+    const HeadLine& line = lines_[i];
+    if (is_blank(line) || is_comment(line, comment_)) return false;
+    const std::size_t count = line.cells.size();
+    return count == usual_ || (count == usual_ + 1 && trimmed(line.cells.back()).empty());
+  }
+  /// A line of names, units or descriptions.
+  bool is_text(std::size_t i, bool is_first) const {
+    if (!has_cells(i)) return false;
+    if (std::find(values_.begin(), values_.end(), true) == values_.end()) return is_first;
+    if (!is_row(lines_[i], values_)) return true;
+    return is_first && names_parameters(lines_[i], values_);
+  }
+  /// The first line of the rows: behind the last lines of text at the top.
+  std::size_t first_row() const {
+    std::size_t rows = 0, last_text = lines_.size();
+    std::set<std::string_view> seen;
+    bool is_first = true;
+    for (std::size_t i = 0; i < lines_.size() && rows <= rows_above_a_header; ++i) {
+      if (!has_cells(i)) continue;
+      if (is_text(i, is_first)) {
+        if (seen.insert(lines_[i].text).second) last_text = i;
+      } else {
+        ++rows;
+      }
+      is_first = false;
+    }
+    for (std::size_t i = last_text == lines_.size() ? 0 : last_text + 1; i < lines_.size(); ++i)
+      if (has_cells(i) ||
+          (!is_blank(lines_[i]) && !is_comment(lines_[i], comment_) && last_text != lines_.size()))
+        return i;
+    return lines_.size();
+  }
+  /// The lines of text right above the rows, the upper one first.
+  std::vector<std::size_t> block_above(std::size_t first_row) const {
+    std::vector<std::size_t> block;
+    for (std::size_t i = first_row; i-- > 0;) {
+      if (is_blank(lines_[i]) || is_comment(lines_[i], comment_)) {
+        if (block.empty()) continue;
+        break;
+      }
+      if (!is_text(i, true)) break;
+      block.insert(block.begin(), i);
+    }
+    return block;
+  }
+
+ private:
+  const HeadLines& lines_;
+  const std::string& comment_;
+  std::size_t usual_;
+  std::vector<bool> values_;
+};
+
+bool are_units(const HeadLine& line) {
+  bool any = false;
+  for (const std::string& cell : line.cells) {
+    const std::string_view word = trimmed(cell);
+    if (word.empty() || word == "-") continue;
+    if (!is_unit_word(word)) return false;
+    any = true;
+  }
+  return any;
+}
+
+bool are_names(const HeadLine& line) {
+  std::set<std::string_view> seen;
+  std::size_t empty = 0;
+  for (const std::string& cell : line.cells) {
+    if (trimmed(cell).empty())
+      ++empty;
+    else if (!seen.insert(trimmed(cell)).second)
+      return false;
+  }
+  return empty <= 1;
+}
+
+/// The header among lines of text: the one with the names that are wanted; the one above units;
+/// the upper of two, whose lower one describes.
+std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& block,
+                      const std::vector<std::string>& wanted) {
+  for (const std::size_t i : block) {
+    const auto& cells = lines[i].cells;
+    const bool has_all = std::all_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
+      return std::any_of(cells.begin(), cells.end(),
+                         [&](const std::string& cell) { return trimmed(cell) == name; });
+    });
+    if (!wanted.empty() && has_all) return i;
+  }
+  const std::size_t last = block.back();
+  if (block.size() == 1) return last;
+  const std::size_t above = block[block.size() - 2];
+  if (are_units(lines[last])) return above;
+  if (are_units(lines[above]) && block.size() > 2) return block[block.size() - 3];
+  const bool is_pair = block.size() == 2 && are_names(lines[above]);
+  return is_pair && trimmed(lines[above].text).find_first_of(":=") == std::string_view::npos &&
+                 std::none_of(lines[above].cells.begin(), lines[above].cells.end(),
+                              looks_like_value)
+             ? above
+             : last;
+}
+
+Error whole_file(const std::string& name, std::string_view what) {
+  return {name + ": " + std::string(what)};
+}
+Error at_line(const std::string& name, std::uint64_t line, std::string_view what) {
+  return {name + ":" + std::to_string(line) + ": " + std::string(what)};
+}
+
+std::optional<Error> take_names(Dialect& dialect, const DialectOptions& options,
+                                std::vector<std::string> cells, const std::string& name) {
+  for (std::string& cell : cells) cell = trimmed(cell);
+  const std::size_t usual = dialect.layout.cells;
+  if (!options.names.empty()) {
+    if (options.names.size() != usual)
+      return at_line(name, dialect.first_line,
+                     "--names gives " + std::to_string(options.names.size()) +
+                         " names, the rows have " + std::to_string(usual) + " cells");
+    cells = options.names;
+  }
+  if (cells.size() == usual + 1 && cells.back().empty()) cells.pop_back();
+  auto sorted = cells;
+  std::sort(sorted.begin(), sorted.end());
+  for (auto twin = std::adjacent_find(sorted.begin(), sorted.end()); twin != sorted.end();
+       twin = std::adjacent_find(twin + 1, sorted.end()))
+    if (!twin->empty())
+      return at_line(name, std::max<std::uint64_t>(dialect.header_line, 1),
+                     "two columns are called '" + *twin +
+                         "'; give each column its own name, in the file or with --names");
+  dialect.columns = std::move(cells);
+  return std::nullopt;
+}
+
+/// The names in a comment right above the rows, as "# time, i_load".
+std::optional<std::size_t> header_in_comment(HeadLines& lines, std::size_t first_row,
+                                             char separator, const std::string& comment,
+                                             std::size_t usual) {
+  for (std::size_t i = first_row; i-- > 0;) {
+    if (is_blank(lines[i])) continue;
+    if (!is_comment(lines[i], comment)) return std::nullopt;
+    std::string text(trimmed(lines[i].text.substr(comment.size())));
+    std::vector<std::string_view> cells;
+    if (split_cells(text, separator, cells)) return std::nullopt;
+    HeadLine& line = lines[i];
+    line.cells.assign(cells.begin(), cells.end());
+    if (cells.size() == usual && are_names(line)) return i;
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+struct Found {
+  std::size_t first_row = 0;
+  std::optional<std::size_t> header, units;
+};
+
+std::variant<Found, Error> find_header(HeadLines& lines, const Dialect& dialect,
+                                       const DialectOptions& options, const std::string& name) {
+  const Layout& layout = dialect.layout;
+  const Head head(lines, layout.comment, layout.cells);
+  Found found;
+  if (options.header_line) {
+    const std::uint64_t wanted = *options.header_line;
+    if (wanted > lines.size())
+      return whole_file(name, "--header " + std::to_string(wanted) + " is behind the last line");
+    if (wanted > 0) found.header = static_cast<std::size_t>(wanted) - 1;
+    found.first_row = found.header ? *found.header + 1 : 0;
+    while (found.first_row < lines.size() &&
+           (!head.has_cells(found.first_row) || head.is_text(found.first_row, false))) {
+      if (found.header && head.has_cells(found.first_row) && are_units(lines[found.first_row]))
+        found.units = found.first_row;
+      ++found.first_row;
+    }
+    return found;
+  }
+  found.first_row = head.first_row();
+  const auto block = head.block_above(found.first_row);
+  if (block.empty()) {
+    found.header =
+        header_in_comment(lines, found.first_row, layout.separator, layout.comment, layout.cells);
+    if (found.header || !options.names.empty()) return found;
+    const HeadLine& line = lines[std::min(found.first_row, lines.size() - 1)];
+    return at_line(name, line.number,
+                   "the line holds values ('" + std::string(line.text.substr(0, 40)) +
+                       "'), and no line above it names the columns; name them with --names "
+                       "NAME,NAME,..., or say with --header N which line does");
+  }
+  found.header = header_in(lines, block, options.wanted);
+  for (const std::size_t i : block)
+    if (i > *found.header && are_units(lines[i])) found.units = i;
+  return found;
+}
+
+/// The separator in a first line "sep=;".
+std::optional<char> told_separator(const HeadLines& lines) {
+  if (lines.empty()) return std::nullopt;
+  const std::string_view text = trimmed(lines[0].text);
+  if (text.size() == 5 && (text.starts_with("sep=") || text.starts_with("SEP="))) return text[4];
+  if (lines[0].text == "sep=\t") return '\t';
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
+                                          const DialectOptions& options, const std::string& name) {
+  Dialect dialect;
+  Layout& layout = dialect.layout;
+  layout.line_end = find_line_end(head.text);
+  HeadLines lines = lines_of(head, layout.line_end);
+  if (std::all_of(lines.begin(), lines.end(), is_blank))
+    return whole_file(name,
+                      "the file is empty; a header row with the names of the columns is needed");
+  std::optional<char> separator = options.separator;
+  const auto told = told_separator(lines);
+  if (told && !separator) separator = told;
+  if (told) lines[0].text = {};
+  layout.comment = options.comment ? *options.comment : find_comment(lines);
+  layout.separator = separator ? *separator : find_separator(lines, layout.comment);
+  split(lines, layout.separator);
+  layout.cells = usual_cells(lines, layout.comment);
+  if (!options.names.empty() && layout.cells == 0) layout.cells = options.names.size();
+  // A blank last cell of all rows, behind a separator that ends them, is no column.
+  const auto found = find_header(lines, dialect, options, name);
+  if (const auto* error = std::get_if<Error>(&found)) return *error;
+  const auto& [first_row, header, units] = std::get<Found>(found);
+  std::vector<std::string> cells;
+  if (header) {
+    const HeadLine& line = lines[*header];
+    cells = line.cells;
+    dialect.header_line = line.number;
+    layout.header = line.text;
+    if (is_comment(line, layout.comment)) layout.header.clear();
+  } else {
+    for (std::size_t c = 0; c < layout.cells; ++c)
+      cells.push_back("column " + std::to_string(c + 1));
+  }
+  if (cells.size() + 1 == layout.cells) layout.cells = cells.size();
+  for (const HeadLine& line : lines)
+    if (line.number < (header ? dialect.header_line : first_row + 1) && !is_blank(line))
+      ++dialect.lines_above;
+  if (first_row < lines.size()) {
+    dialect.first_line = lines[first_row].number;
+    dialect.first_position = lines[first_row].position;
+  } else {
+    dialect.first_line = lines.back().number + 1;
+    dialect.first_position = lines.back().position + lines.back().text.size();
+    const std::string_view rest = head.text.substr(dialect.first_position);
+    dialect.first_position += rest.starts_with("\r\n") ? 2U : rest.empty() ? 0U : 1U;
+  }
+  if (auto error = take_names(dialect, options, std::move(cells), name)) return *std::move(error);
+  layout.cells = dialect.columns.size();
+  if (units) {
+    dialect.units_line = lines[*units].number;
+    for (const std::string& cell : lines[*units].cells) dialect.units.emplace_back(trimmed(cell));
+    dialect.units.resize(dialect.columns.size());
+    for (std::string& unit : dialect.units)
+      if (unit.size() > 2 && (unit.front() == '[' || unit.front() == '('))
+        unit = unit.substr(1, unit.size() - 2);
+  }
+  return dialect;
+}
+
+std::string describe(const Dialect& dialect) {
+  static const std::map<char, std::string> words = {
+      {',', "commas"}, {';', "semicolons"}, {'\t', "tabs"}, {'|', "bars"}, {' ', "blanks"}};
+  const auto word = words.find(dialect.layout.separator);
+  std::string text = word == words.end()
+                         ? "separated by '" + std::string(1, dialect.layout.separator) + "'"
+                         : word->second;
+  text += dialect.header_line == 0 ? ", no header"
+                                   : ", header in line " + std::to_string(dialect.header_line);
+  if (dialect.units_line != 0) text += ", units in line " + std::to_string(dialect.units_line);
+  if (dialect.layout.line_end == '\r') text += ", lines end in CR";
+  if (!dialect.layout.comment.empty()) text += ", comments begin with " + dialect.layout.comment;
+  return text;
+}
+
+}  // namespace reident::telemetry_file

@@ -1,0 +1,103 @@
+#include "service/telemetry_file/encoding.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <iconv.h>
+
+namespace reident::telemetry_file {
+namespace {
+
+constexpr std::string_view replacement = "\xEF\xBF\xBD";
+
+unsigned at(std::string_view text, std::size_t index) {
+  return static_cast<unsigned char>(text[index]);
+}
+
+/// Bytes of the character that begins with `first`; 0 where none does in UTF-8.
+std::size_t utf8_length(unsigned first) {
+  if (first < 0x80) return 1;
+  if (first >= 0xC2 && first < 0xE0) return 2;
+  if (first >= 0xE0 && first < 0xF0) return 3;
+  if (first >= 0xF0 && first < 0xF5) return 4;
+  return 0;
+}
+
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(at(text, i));
+    if (length == 0) return false;
+    for (std::size_t k = 1; k < length; ++k) {
+      if (i + k == text.size()) return true;  // cut off
+      if ((at(text, i + k) & 0xC0U) != 0x80) return false;
+    }
+    i += length;
+  }
+  return true;
+}
+
+/// The shares of zeros at even and odd places.
+std::array<double, 2> zeros(std::string_view head) {
+  std::array<double, 2> counts = {0, 0};
+  for (std::size_t i = 0; i < head.size(); ++i) counts[i % 2] += head[i] == '\0' ? 1 : 0;
+  const double half = std::max(1.0, static_cast<double>(head.size()) / 2);
+  return {counts[0] / half, counts[1] / half};
+}
+
+}  // namespace
+
+std::string find_encoding(std::string_view head) {
+  if (head.starts_with("\xFF\xFE")) return "UTF-16LE";
+  if (head.starts_with("\xFE\xFF")) return "UTF-16BE";
+  const auto [even, odd] = zeros(head);
+  if (odd > 0.7 && even < 0.2) return "UTF-16LE";
+  if (even > 0.7 && odd < 0.2) return "UTF-16BE";
+  if (is_utf8(head)) return "UTF-8";
+  const bool has_c1 = std::any_of(head.begin(), head.end(), [](char c) {
+    return static_cast<unsigned char>(c) >= 0x80 && static_cast<unsigned char>(c) < 0xA0;
+  });
+  return has_c1 ? "WINDOWS-1252" : "ISO-8859-1";
+}
+
+bool is_binary(std::string_view head) {
+  if (head.starts_with("\x1F\x8B") || head.starts_with("PK\x03\x04")) return true;
+  if (find_encoding(head).starts_with("UTF-16")) return false;
+  const auto controls = std::count_if(head.begin(), head.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
+  });
+  return static_cast<double>(controls) > 0.3 * static_cast<double>(head.size());
+}
+
+std::unique_ptr<Decoder> Decoder::of(const std::string& encoding) {
+  iconv_t handle = iconv_open("UTF-8", encoding.c_str());
+  if (handle == reinterpret_cast<iconv_t>(-1)) return nullptr;
+  return std::unique_ptr<Decoder>(new Decoder(handle));
+}
+
+Decoder::~Decoder() {
+  iconv_close(static_cast<iconv_t>(handle_));
+}
+
+void Decoder::decode(std::string_view bytes, bool at_end, std::string& text) {
+  std::string input = rest_ + std::string(bytes);
+  rest_.clear();
+  char* from = input.data();
+  std::size_t left = input.size();
+  std::array<char, 4096> block;
+  while (left > 0) {
+    char* to = block.data();
+    std::size_t room = block.size();
+    const bool done = iconv(static_cast<iconv_t>(handle_), &from, &left, &to, &room) !=
+                      static_cast<std::size_t>(-1);
+    const int code = errno;
+    text.append(block.data(), block.size() - room);
+    if (done || code == E2BIG) continue;
+    if (code == EINVAL && !at_end) break;
+    text += replacement;
+    ++from;
+    --left;
+  }
+  rest_.assign(from, left);
+}
+
+}  // namespace reident::telemetry_file

@@ -1,0 +1,185 @@
+#include "service/telemetry_file/head_lines.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "service/support/text.hpp"
+
+namespace reident::telemetry_file {
+namespace {
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+constexpr std::size_t lines_looked_at = 400;
+constexpr int lines_in_a_cell = 20;  // more are a stray quote
+
+/// The end of the line at `at`, lines with an open quote joined.
+std::size_t row_end(std::string_view text, std::size_t at, char line_end) {
+  const std::size_t first = std::min(text.find(line_end, at), text.size());
+  std::size_t end = first;
+  for (int lines = 0; lines < lines_in_a_cell; ++lines) {
+    const std::string_view row = text.substr(at, end - at);
+    if (std::count(row.begin(), row.end(), '"') % 2 == 0) return end;
+    if (end == text.size()) break;
+    end = std::min(text.find(line_end, end + 1), text.size());
+  }
+  return first;
+}
+
+}  // namespace
+
+char find_line_end(std::string_view text) {
+  if (text.find('\n') != std::string_view::npos) return '\n';
+  return text.find('\r') != std::string_view::npos ? '\r' : '\n';
+}
+
+HeadLines lines_of(const RowReader::Head& head, char line_end) {
+  HeadLines lines;
+  std::size_t at = head.text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+  std::uint64_t number = 1;
+  while (at < head.text.size() && lines.size() < lines_looked_at) {
+    const std::size_t end = row_end(head.text, at, line_end);
+    if (end == head.text.size() && !head.is_all && !lines.empty()) break;  // a part of a line
+    std::string_view text = head.text.substr(at, end - at);
+    const auto ends = std::count(text.begin(), text.end(), line_end);
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    lines.push_back({text, number, at, {}});
+    number += static_cast<std::uint64_t>(ends) + 1;
+    at = end + 1;
+  }
+  return lines;
+}
+
+bool is_blank(const HeadLine& line) {
+  return trimmed(line.text).empty();
+}
+
+std::string find_comment(const HeadLines& lines) {
+  for (const HeadLine& line : lines) {
+    if (is_blank(line)) continue;
+    for (const std::string_view mark : {"#", "%", "//", "\"#", "!"})
+      if (line.text.starts_with(mark)) return std::string(mark);
+    if (looks_like_value(line.text.substr(0, line.text.find_first_of(",;\t|")))) break;
+  }
+  return "";
+}
+
+bool is_comment(const HeadLine& line, const std::string& mark) {
+  return !mark.empty() && line.text.starts_with(mark);
+}
+
+void split(HeadLines& lines, char separator) {
+  std::vector<std::string_view> cells;
+  for (HeadLine& line : lines) {
+    std::string text(line.text);
+    line.cells.clear();
+    if (split_cells(text, separator, cells)) continue;
+    line.cells.assign(cells.begin(), cells.end());
+  }
+}
+
+std::size_t usual_cells(const HeadLines& lines, const std::string& comment) {
+  std::map<std::size_t, std::size_t> counts;
+  for (const HeadLine& line : lines)
+    if (!is_blank(line) && !is_comment(line, comment) && !line.cells.empty())
+      ++counts[line.cells.size()];
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+        return a.second < b.second || (a.second == b.second && a.first < b.first);
+      });
+  return most == counts.end() ? 0 : most->first;
+}
+
+namespace {
+
+/// How well a separator cuts the lines: the share of lines with the usual number of cells, and of
+/// values among those cells.
+double quality_of(HeadLines& lines, char separator, const std::string& comment) {
+  split(lines, separator);
+  const std::size_t usual = usual_cells(lines, comment);
+  if (usual < 2) return 0;
+  double all = 0, fitting = 0, cells = 0, values = 0;
+  for (const HeadLine& line : lines) {
+    if (is_blank(line) || is_comment(line, comment)) continue;
+    all += 1;
+    if (line.cells.size() != usual) continue;
+    fitting += 1;
+    for (const std::string& cell : line.cells) {
+      if (trimmed(cell).empty()) continue;
+      cells += 1;
+      values += looks_like_value(cell) ? 1 : 0;
+    }
+  }
+  return fitting / all * (0.2 + values / std::max(1.0, cells)) * (separator == ' ' ? 0.9 : 1);
+}
+
+}  // namespace
+
+char find_separator(HeadLines& lines, const std::string& comment) {
+  char best = ',';
+  double most = 0;
+  const bool has_tabs = std::any_of(lines.begin(), lines.end(), [](const HeadLine& line) {
+    return line.text.find('\t') != std::string_view::npos;
+  });
+  for (const char separator : {',', ';', '\t', '|', ' '}) {
+    if (separator == ' ' && has_tabs) continue;
+    const double quality = quality_of(lines, separator, comment);
+    if (quality > most + 1e-9) {
+      most = quality;
+      best = separator;
+    }
+  }
+  return best;
+}
+
+bool looks_like_value(std::string_view cell) {
+  cell = trimmed(cell);
+  constexpr std::string_view minus = "\xE2\x88\x92";
+  if (cell.starts_with(minus)) cell.remove_prefix(minus.size());
+  if (cell.starts_with('"')) cell.remove_prefix(1);
+  if (cell.empty() ||
+      std::string_view("0123456789+-.(,").find(cell.front()) == std::string_view::npos)
+    return false;
+  if (cell.find_first_of("0123456789") == std::string_view::npos) return false;
+  if (cell.find_first_of(";|\t\"") != std::string_view::npos) return false;
+  const bool has_clock = cell.find(':') != std::string_view::npos;
+  if (cell.find(' ') != std::string_view::npos && !has_clock) {
+    // A group of thousands or a unit may stand apart, another number may not.
+    const std::string_view rest = trimmed(cell.substr(cell.find(' ')));
+    const bool is_group =
+        rest.size() >= 3 && rest.find_first_not_of("0123456789") >= 3 &&
+        (rest.size() == 3 || std::string_view(" .,").find(rest[3]) != std::string_view::npos);
+    return is_group || rest.find_first_of("0123456789") == std::string_view::npos ||
+           cell.find_first_of("-/.") == 4;
+  }
+  const std::size_t digits = static_cast<std::size_t>(
+      std::count_if(cell.begin(), cell.end(), [](char c) { return c >= '0' && c <= '9'; }));
+  if (has_clock)
+    return cell.rfind(',') == std::string_view::npos || cell.rfind(',') > cell.rfind(':');
+  return digits * 2 + 8 >= cell.size();
+}
+
+bool is_unit_word(std::string_view word) {
+  word = trimmed(word);
+  if (word.size() > 2 &&
+      ((word.front() == '[' && word.back() == ']') || (word.front() == '(' && word.back() == ')')))
+    return true;
+  if (word.empty() || word.find(' ') != std::string_view::npos) return false;
+  constexpr std::string_view words =
+      " "
+      "V mV uV kV \xC2\xB5"
+      "V A mA uA \xC2\xB5"
+      "A \xCE\xBC"
+      "A W mW kW Ah mAh Wh As C "
+      "degC \xC2\xB0"
+      "C \xC2\xB0"
+      " K F deg rad rad/s deg/s Hz kHz MHz Pa kPa hPa bar mbar "
+      "psi Ohm ohm \xCE\xA9"
+      " % pct rpm N Nm T nT uT m km mm m/s km/s kg g s sec ms us ns "
+      "min h d UTC utc ISO ISO8601 counts DN LSB bool enum 1 dB dBm Volt Volts volts Amp "
+      "Amps amps Ampere Celsius seconds Seconds J l/min lux Gs G mT raw n/a none unix time "
+      "date datetime ";
+  return words.find(" " + std::string(word) + " ") != std::string_view::npos;
+}
+
+}  // namespace reident::telemetry_file

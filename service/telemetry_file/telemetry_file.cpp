@@ -1,0 +1,347 @@
+#include "service/telemetry_file/telemetry_file.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "service/support/text.hpp"
+#include "service/support/time_text.hpp"
+
+namespace reident::telemetry_file {
+namespace {
+
+constexpr std::size_t head_bytes = std::size_t{1} << 20;
+constexpr std::size_t head_rows = 20'000;
+constexpr std::int64_t earliest_ns = 631'152'000'000'000'000;  // 1990
+constexpr std::size_t cell_shown = 40;
+
+std::string quoted(std::string_view cell) {
+  return "'" + std::string(cell.substr(0, cell_shown)) + "'";
+}
+
+}  // namespace
+
+struct TelemetryFile::Impl {
+  Impl(TextSource source, ReadingOptions chosen)
+      : options(std::move(chosen)), rows(std::move(source)) {}
+
+  ReadingOptions options;
+  RowReader rows;
+  Dialect dialect;
+  NumberStyle style;
+  std::vector<CellFormat> formats;
+  // The head, kept for finding the time.
+  std::vector<std::string> head_text;  // one a row
+  std::vector<std::vector<std::string_view>> head_columns;
+  std::vector<std::uint64_t> head_lines;
+  std::optional<Clock> clock;
+  std::optional<Clock> clock_at_start;  // before any row
+  std::optional<ClockWatch> watch;
+  std::optional<ClockStep> step;
+  std::int64_t time_ns = 0;
+  Error error;
+  Damage damage = Damage::none;
+
+  std::optional<Error> start();
+  void keep_head();
+  std::optional<Error> find_cells();
+  Step fail(Damage what, Error why) {
+    damage = what;
+    error = std::move(why);
+    return Step::error;
+  }
+  Step read_time();
+};
+
+std::optional<Error> TelemetryFile::Impl::start() {
+  const auto head = rows.head(head_bytes);
+  if (const auto* failed = std::get_if<Error>(&head)) return *failed;
+  auto found = find_dialect(std::get<RowReader::Head>(head), options.dialect, rows.source().name());
+  if (auto* failed = std::get_if<Error>(&found)) return std::move(*failed);
+  dialect = std::get<Dialect>(std::move(found));
+  // The head is looked at in a reader of its own, so that the file is not read twice.
+  std::string text(std::get<RowReader::Head>(head).text);
+  if (!std::get<RowReader::Head>(head).is_all)
+    text.resize(std::min(text.rfind(dialect.layout.line_end), text.size() - 1) + 1);
+  RowReader looked(TextSource::of_text(std::move(text), rows.source().name()));
+  if (auto failed = looked.head(head_bytes); std::holds_alternative<Error>(failed))
+    return std::get<Error>(failed);
+  if (auto failed = looked.start(dialect.layout, dialect.first_position, dialect.first_line))
+    return failed;
+  head_columns.resize(dialect.columns.size());
+  for (Step at = looked.next(); at != Step::end && head_lines.size() < head_rows;
+       at = looked.next()) {
+    if (at == Step::error && looked.damage() == Damage::none) break;
+    if (at == Step::error) continue;
+    head_lines.push_back(looked.line());
+    std::string& kept = head_text.emplace_back();
+    std::size_t size = 0;
+    for (const auto& cell : looked.cells()) size += cell.size();
+    kept.reserve(std::max<std::size_t>(size, 32));
+    for (std::size_t c = 0; c < head_columns.size(); ++c) {
+      const std::size_t from = kept.size();
+      kept += looked.cells()[c];
+      head_columns[c].emplace_back(kept.data() + from, kept.size() - from);
+    }
+  }
+  if (auto failed = find_cells()) return failed;
+  return rows.start(dialect.layout, dialect.first_position, dialect.first_line);
+}
+
+std::optional<Error> TelemetryFile::Impl::find_cells() {
+  if (options.cells.style) {
+    style = *options.cells.style;
+  } else {
+    auto found = find_style(head_columns, dialect.layout.separator);
+    if (const auto* problem = std::get_if<std::string>(&found))
+      return Error{rows.source().name() + ": " + *problem};
+    style = std::get<NumberStyle>(found);
+  }
+  for (std::size_t c = 0; c < head_columns.size(); ++c)
+    formats.push_back(find_format(head_columns[c], dialect.columns[c], style, options.cells));
+  return std::nullopt;
+}
+
+TelemetryFile::TelemetryFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+TelemetryFile::~TelemetryFile() = default;
+TelemetryFile::TelemetryFile(TelemetryFile&&) noexcept = default;
+TelemetryFile& TelemetryFile::operator=(TelemetryFile&&) noexcept = default;
+
+std::variant<TelemetryFile, Error> TelemetryFile::start(TextSource source,
+                                                        const ReadingOptions& options) {
+  auto impl = std::make_unique<Impl>(std::move(source), options);
+  if (auto error = impl->start()) return *std::move(error);
+  return TelemetryFile(std::move(impl));
+}
+
+std::variant<TelemetryFile, Error> TelemetryFile::open(const std::filesystem::path& path,
+                                                       const ReadingOptions& options) {
+  auto source = TextSource::open(path, options.encoding);
+  if (auto* error = std::get_if<Error>(&source)) return std::move(*error);
+  return start(std::get<TextSource>(std::move(source)), options);
+}
+
+std::variant<TelemetryFile, Error> TelemetryFile::of_text(std::string text, std::string name,
+                                                          const ReadingOptions& options) {
+  return start(TextSource::of_text(std::move(text), std::move(name)), options);
+}
+
+const std::vector<std::string>& TelemetryFile::columns() const {
+  return impl_->dialect.columns;
+}
+const CellFormat& TelemetryFile::format(std::size_t column) const {
+  return impl_->formats[column];
+}
+
+std::string TelemetryFile::unit(std::size_t column) const {
+  if (!impl_->dialect.units.empty() && !impl_->dialect.units[column].empty())
+    return impl_->dialect.units[column];
+  return impl_->formats[column].unit;
+}
+
+std::variant<std::size_t, Error> TelemetryFile::find(std::string_view column) const {
+  const auto& names = columns();
+  const auto found = std::find(names.begin(), names.end(), column);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  return Error{impl_->rows.source().name() + ": there is no column '" + std::string(column) +
+               "'; the columns are: " + joined(names)};
+}
+
+bool TelemetryFile::has_rows() const {
+  return !impl_->head_lines.empty();
+}
+
+std::string TelemetryFile::first_word(std::size_t column) const {
+  const auto& cells = impl_->head_columns[column];
+  for (std::size_t row = 0; row < cells.size(); ++row)
+    if (!trimmed(cells[row]).empty())
+      return fmt::format("{} in line {}", quoted(cells[row]), impl_->head_lines[row]);
+  return "no cell";
+}
+
+std::optional<Error> TelemetryFile::find_time(bool is_series_after_series) {
+  Impl& at = *impl_;
+  if (is_series_after_series) at.options.clock_may_go_back = true;
+  const HeadCells head{at.dialect.columns, at.dialect.units, at.head_columns, at.head_lines,
+                       at.style};
+  auto found = Clock::find(head, at.options.time, at.options.latest_ns);
+  if (const auto* problem = std::get_if<Clock::Problem>(&found)) {
+    const std::string line = problem->line == 0 ? "" : ":" + std::to_string(problem->line);
+    return Error{at.rows.source().name() + line + ": " + problem->text};
+  }
+  at.clock = std::get<Clock>(std::move(found));
+  at.clock_at_start = at.clock;
+  at.watch.emplace(at.clock->unit_ns(), at.clock->is_absolute(), at.clock->may_be_local());
+  return std::nullopt;
+}
+
+const Clock& TelemetryFile::clock() const {
+  return *impl_->clock;
+}
+
+bool TelemetryFile::is_time(std::size_t column) const {
+  if (!impl_->clock) return false;
+  const auto& columns = impl_->clock->columns();
+  return std::find(columns.begin(), columns.end(), column) != columns.end();
+}
+
+std::string TelemetryFile::found() const {
+  const Impl& at = *impl_;
+  std::string text = describe(at.dialect);
+  if (at.style.decimal == ',') text += ", decimal commas";
+  if (at.style.thousands != '\0') text += fmt::format(", thousands with '{}'", at.style.thousands);
+  text += ", " + at.rows.source().encoding();
+  if (at.clock)
+    text += ", time: " + (at.clock->description().empty() ? "none yet" : at.clock->description());
+  for (std::size_t c = 0; c < at.formats.size(); ++c) {
+    if (is_time(c)) continue;
+    const std::string format = describe(at.formats[c]);
+    if (!format.empty()) text += fmt::format("; {}: {}", at.dialect.columns[c], format);
+  }
+  return text;
+}
+
+std::vector<std::string> TelemetryFile::remarks() const {
+  const RowReader& rows = impl_->rows;
+  std::vector<std::string> remarks;
+  if (rows.repeated_headers() > 0)
+    remarks.push_back(
+        fmt::format("{}:{}: the header stands here again, as where files were joined ({} in all)",
+                    rows.source().name(), rows.first_repeated_header(), rows.repeated_headers()));
+  if (rows.cut_line() > 0)
+    remarks.push_back(fmt::format("{}:{}: the last line was cut and is left out",
+                                  rows.source().name(), rows.cut_line()));
+  return remarks;
+}
+
+TelemetryFile::Step TelemetryFile::next() {
+  Impl& at = *impl_;
+  at.damage = Damage::none;
+  const Step step = at.rows.next();
+  if (step == Step::error) return at.fail(at.rows.damage(), at.rows.error());
+  return step == Step::end || !at.clock ? step : at.read_time();
+}
+
+TelemetryFile::Step TelemetryFile::Impl::read_time() {
+  const std::size_t column = clock->columns().front();
+  const auto time = clock->read(rows.cells());
+  const auto here = [&](std::string_view what) {
+    return rows.error_here(fmt::format("{} in column '{}' {}", quoted(rows.cells()[column]),
+                                       dialect.columns[column], what));
+  };
+  if (!time) {
+    if (rows.has_nul_bytes()) return fail(Damage::nul_bytes, rows.error_here({}));
+    return fail(
+        Damage::time,
+        here(clock->description().empty()
+                 ? std::string("is no time; use 2023-04-29T16:22:37.5Z or seconds since 1970-01-01 "
+                               "UTC, or say what it is with --time-format, --time-unit or --epoch")
+                 : "is no time as the others (" + clock->description() +
+                       "); mend it, or leave such rows out with --skip-bad-lines"));
+  }
+  time_ns = *time;
+  if (!options.force_times && (time_ns < earliest_ns || time_ns > options.latest_ns))
+    return fail(
+        Damage::none,
+        here(fmt::format("would be {}, {}: say {}, or that it is right with --force-times",
+                         time_text(time_ns),
+                         time_ns < earliest_ns ? "before 1990" : "later than tomorrow",
+                         clock->is_absolute() ? "what it is with --time-format or --time-unit"
+                                              : "since when it counts with --epoch, or what it is "
+                                                "with --time-format or --time-unit")));
+  step = watch->next(time_ns, rows.line());
+  if (step && step->kind != ClockStep::Kind::out_of_order && !options.clock_may_go_back) {
+    const std::string_view remedy =
+        step->kind == ClockStep::Kind::hour
+            ? "name the zone with --time-zone, as Europe/Berlin, or go on with --clock-back go-on"
+            : "go on with --clock-back go-on, or import each part by itself with its own --epoch";
+    return fail(Damage::none, here(fmt::format("{}; {}", step->what, remedy)));
+  }
+  return Step::row;
+}
+
+std::span<const std::string_view> TelemetryFile::cells() const {
+  return impl_->rows.cells();
+}
+Cell TelemetryFile::cell(std::size_t column) const {
+  return read_cell(impl_->rows.cells()[column], impl_->formats[column]);
+}
+std::int64_t TelemetryFile::time_ns() const {
+  return impl_->time_ns;
+}
+const std::optional<ClockStep>& TelemetryFile::clock_step() const {
+  return impl_->step;
+}
+std::uint64_t TelemetryFile::line() const {
+  return impl_->rows.line();
+}
+const Error& TelemetryFile::error() const {
+  return impl_->error;
+}
+Damage TelemetryFile::damage() const {
+  return impl_->damage;
+}
+Error TelemetryFile::error_here(std::string_view what) const {
+  return impl_->rows.error_here(what);
+}
+bool TelemetryFile::has_nul_bytes() const {
+  return impl_->rows.has_nul_bytes();
+}
+Error TelemetryFile::cell_error(std::size_t column, std::string_view what) const {
+  return error_here(
+      fmt::format("{} in column '{}' {}", quoted(cells()[column]), columns()[column], what));
+}
+std::uint64_t TelemetryFile::bytes_read() const {
+  return impl_->rows.bytes_read();
+}
+std::uint64_t TelemetryFile::next_line() const {
+  return impl_->rows.next_line();
+}
+std::uint64_t TelemetryFile::size() const {
+  return impl_->rows.source().size();
+}
+
+std::optional<Error> TelemetryFile::go_on_at(std::uint64_t position, std::uint64_t line) {
+  Impl& at = *impl_;
+  at.clock = at.clock_at_start;
+  if (at.clock && at.clock->depends_on_order() && position > at.dialect.first_position) {
+    // The times before decide which of two hours it is.
+    if (auto error =
+            at.rows.start(at.dialect.layout, at.dialect.first_position, at.dialect.first_line))
+      return error;
+    while (at.rows.bytes_read() < position) {
+      const Step step = at.rows.next();
+      if (step == Step::end) break;
+      if (step == Step::row) at.clock->read(at.rows.cells());
+    }
+  }
+  if (at.clock)
+    at.watch.emplace(at.clock->unit_ns(), at.clock->is_absolute(), at.clock->may_be_local());
+  return at.rows.start(at.dialect.layout, position, line);
+}
+
+void LeftOut::add(Damage damage, const Error& error) {
+  for (Kind& kind : kinds_)
+    if (kind.damage == damage) {
+      ++kind.count;
+      return;
+    }
+  kinds_.push_back({damage, 1, error.message});
+}
+
+std::uint64_t LeftOut::count() const {
+  std::uint64_t count = 0;
+  for (const Kind& kind : kinds_) count += kind.count;
+  return count;
+}
+
+std::vector<std::string> LeftOut::sentences() const {
+  std::vector<std::string> sentences;
+  for (const Kind& kind : kinds_)
+    sentences.push_back(fmt::format("{} {} left out for {}, the first: {}", kind.count,
+                                    kind.count == 1 ? "row" : "rows", name(kind.damage),
+                                    kind.first));
+  return sentences;
+}
+
+}  // namespace reident::telemetry_file
