@@ -18,8 +18,8 @@ namespace reident {
 std::optional<std::int64_t> parse_time(std::string_view text);
 
 /// Nanoseconds since 1970 of a decimal number of units that are counted from `origin_s` seconds
-/// before 1970, exact but for digits below a nanosecond. Empty when the text is no number or 64 bits
-/// cannot hold the time. Requires a positive unit.
+/// before 1970, exact but for digits below a nanosecond. Empty when the text is no number or 64
+/// bits cannot hold the time. Requires a positive unit.
 std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t unit_ns,
                                         std::int64_t origin_s = 0);
 
