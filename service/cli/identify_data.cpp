@@ -102,6 +102,23 @@ std::variant<TelemetryFile, Refusal> open_file(const DataRequest& request) {
   return std::get<TelemetryFile>(std::move(opened));
 }
 
+Refusal refuse_without_inputs(const DataRequest& request, const std::vector<std::string>& columns) {
+  std::vector<std::string> others;
+  for (const std::string& column : columns)
+    if (!contains(request.outputs, column) && column != request.reading.time.column)
+      others.push_back(column);
+  const std::string outputs = fmt::format("{}", fmt::join(request.outputs, ", "));
+  if (others.empty())
+    return Refusal{fmt::format(
+        "--input is missing: a model computes {} from what drives it, and the file holds nothing "
+        "else. Add telemetry of the cause, such as a current, a power or a command; of an output "
+        "alone a simulation can only repeat the mean",
+        outputs)};
+  return Refusal{fmt::format(
+      "--input is missing: a model computes {} from what drives it; name columns that do, of {}",
+      outputs, fmt::join(others, ", "))};
+}
+
 /// Resolves the names of the request in place, and finds the time where it has one.
 std::optional<Refusal> resolve_columns(const std::vector<DerivedInput>& derived,
                                        DataRequest& request, TelemetryFile& reader) {
@@ -125,6 +142,7 @@ std::optional<Refusal> resolve_columns(const std::vector<DerivedInput>& derived,
                       name)};
   if (auto refusal = refuse_derived(derived, request, reader)) return refusal;
   const auto& time = request.reading.time.column;
+  if (request.inputs.empty()) return refuse_without_inputs(request, reader.columns());
   if (!time) return std::nullopt;
   if (seen.contains(*time))
     return Refusal{fmt::format("--time {} is an input or output too; leave it out there", *time)};

@@ -233,7 +233,7 @@ int run(const Arguments& arguments) {
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.add_option("file", arguments->data.file, "CSV file with a header row; opened read-only");
-  command.add_option("--input", arguments->data.inputs, "columns that drive the model")->required();
+  command.add_option("--input", arguments->data.inputs, "columns that drive the model");
   command.add_option("--output", arguments->data.outputs, "columns that the model computes")
       ->required();
   command

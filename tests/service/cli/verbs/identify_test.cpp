@@ -273,6 +273,13 @@ TEST_F(Identify, NamesTheSensorThatStandsStillInAllValidationRows) {
   EXPECT_THAT(ran.err, HasSubstr("--no-screening"));
 }
 
+TEST_F(Identify, SaysWhatIsMissingWhereNothingDrivesTheOutput) {
+  write("alone.csv", "time,v\n0,28\n1,28.1\n2,28\n3,28.1\n");
+  const test::Ran ran = reident({"identify", "alone.csv", "--time", "time", "--output", "v"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, HasSubstr("Add telemetry of the cause"));
+}
+
 TEST_F(Identify, LeavesOutFaultsAndSaysWhichRows) {
   Plant data = plant(600);
   for (const int row : {20, 21, 200, 450}) data.y(row, 0) = -999;
@@ -389,7 +396,7 @@ const Impossible requests[] = {
     {"no_file", "none.csv --input u1 --output y1", "none.csv"},
     {"a_folder", ". --input u1 --output y1", "is a directory"},
     {"no_regular_file", "/dev/null --input u1 --output y1", "save it to a file"},
-    {"no_input", "plant.csv --output y1", "--input is required"},
+    {"no_input", "plant.csv --output y1", "name columns that do, of row, u1, u2, y2, mode"},
     {"no_output", "plant.csv --input u1", "--output is required"},
     {"file_after_the_names", "--input u1 --output y1 plant.csv --json",
      "name the CSV file before the flags"},
