@@ -15,7 +15,7 @@ for option in "$@"; do
   case $option in
     --with-tests)
       packages+=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
-                 clang clang-format clang-tidy python3 sqlite3 git octave)
+                 clang clang-format clang-tidy python3 sqlite3 git octave valgrind)
       ;;
     --with-bench)  # what identification is compared with
       packages+=(libslicot-dev libopenblas0 octave-control)

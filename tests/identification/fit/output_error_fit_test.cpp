@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "identification/fit/regression.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "tests/support/naive_n4sid.hpp"
 #include "tests/support/systems.hpp"
@@ -146,6 +147,19 @@ TEST(Refinement, OfNoStepsIsTheFit) {
   const Record record = test::excited(truth, noise, 300, 0.1);
   const Response fit = fit_response(truth.A, truth.C, true, record, record.all(), Accuracy::fast);
   EXPECT_EQ(refine_response(truth.A, truth.C, true, record, record.all(), 0).model.B, fit.model.B);
+}
+
+TEST(Regression, HasNoSubnormalNumbersHoweverLongTheSegmentIs) {
+  test::Noise noise(1);
+  const StateSpaceModel model = test::random_system(noise, 4, 2, 1, 0.9);
+  const Record record = test::excited(model, noise, 20'000, 0.1);
+  Index subnormal = 0;
+  walk_regression({4, 2, 1, true, false}, model, record, record.segments.front(), {},
+                  [&subnormal](const RegressionRows& rows) {
+                    subnormal +=
+                        (rows.values.array() != 0 && rows.values.array().abs() < 1e-300).count();
+                  });
+  EXPECT_EQ(subnormal, 0);
 }
 
 }  // namespace
