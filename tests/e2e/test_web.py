@@ -19,7 +19,9 @@ import plant
 from harness import BIN, DEADLINE_S, EndToEnd, wait_until
 
 
-class Web(EndToEnd):
+class WebCase(EndToEnd):
+    """A service, the page's server, and requests to it."""
+
     def start_web(self, *options, name="web", user=None):
         web = self.start("reident-web", "--config", self.folder / "reident.toml", "--port", 0,
                          *options, name=name, user=user)
@@ -95,6 +97,40 @@ class Web(EndToEnd):
         except AssertionError:
             return False
 
+    def with_accounts(self):
+        """A service with versions that wait, and Ana (approver), Olaf (operator) and Vic (viewer)."""
+        self.flown(approval="by_hand")
+        lines = []
+        for name, role in (("Ana", "approver"), ("Bo", "approver"), ("Olaf", "operator"),
+                           ("Vic", "viewer")):
+            hashed = subprocess.run([str(BIN / "reident-web"), "--hash-password"], text=True,
+                                    input=f"{name}'s secret\n", capture_output=True, check=True)
+            lines += ["[[account]]", f'name = "{name}"', f'role = "{role}"',
+                      f'password = "{hashed.stdout.strip()}"']
+        accounts = self.folder / "accounts.toml"
+        accounts.write_text("\n".join(lines))
+        self.options = ["--accounts", accounts, "--audit", self.folder / "audit.jsonl"]
+        return self.start_web(*self.options)
+
+    def post(self, path, body, cookie="", token="", origin=None):
+        status, headers, answer = self.request(
+            f"/api/v1/{path}", "POST", body=json.dumps(body), headers={
+                "Content-Type": "application/json", "Cookie": cookie, "X-Reident-Token": token,
+                "Origin": origin or f"http://127.0.0.1:{self.port}"})
+        return status, headers, json.loads(answer)
+
+    def log_in(self, name):
+        status, headers, answer = self.post("login", {"name": name, "password": f"{name}'s secret"})
+        self.assertEqual(status, 200, answer)
+        cookie = headers["Set-Cookie"].split(";")[0]
+        self.assertIn("HttpOnly", headers["Set-Cookie"])
+        _, _, body = self.request("/api/v1/session", headers={"Cookie": cookie})
+        session = json.loads(body)
+        self.assertEqual(session["user"], name)
+        return {"cookie": cookie, "token": session["token"]}
+
+
+class Web(WebCase):
     def test_every_answer_is_as_the_document_for_programs_says(self):
         self.flown()
         self.start_web()
@@ -289,38 +325,6 @@ class Web(EndToEnd):
             self.assertIn(named, web.text())
 
     # -- who may what
-
-    def with_accounts(self):
-        """A service with versions that wait, and Ana (approver), Olaf (operator) and Vic (viewer)."""
-        self.flown(approval="by_hand")
-        lines = []
-        for name, role in (("Ana", "approver"), ("Bo", "approver"), ("Olaf", "operator"),
-                           ("Vic", "viewer")):
-            hashed = subprocess.run([str(BIN / "reident-web"), "--hash-password"], text=True,
-                                    input=f"{name}'s secret\n", capture_output=True, check=True)
-            lines += ["[[account]]", f'name = "{name}"', f'role = "{role}"',
-                      f'password = "{hashed.stdout.strip()}"']
-        accounts = self.folder / "accounts.toml"
-        accounts.write_text("\n".join(lines))
-        self.options = ["--accounts", accounts, "--audit", self.folder / "audit.jsonl"]
-        return self.start_web(*self.options)
-
-    def post(self, path, body, cookie="", token="", origin=None):
-        status, headers, answer = self.request(
-            f"/api/v1/{path}", "POST", body=json.dumps(body), headers={
-                "Content-Type": "application/json", "Cookie": cookie, "X-Reident-Token": token,
-                "Origin": origin or f"http://127.0.0.1:{self.port}"})
-        return status, headers, json.loads(answer)
-
-    def log_in(self, name):
-        status, headers, answer = self.post("login", {"name": name, "password": f"{name}'s secret"})
-        self.assertEqual(status, 200, answer)
-        cookie = headers["Set-Cookie"].split(";")[0]
-        self.assertIn("HttpOnly", headers["Set-Cookie"])
-        _, _, body = self.request("/api/v1/session", headers={"Cookie": cookie})
-        session = json.loads(body)
-        self.assertEqual(session["user"], name)
-        return {"cookie": cookie, "token": session["token"]}
 
     def waiting(self):
         return [str(version) for version, in self.query(
