@@ -10,6 +10,7 @@ import secrets
 import signal
 import socket
 import sqlite3
+import ssl
 import subprocess
 import sys
 import threading
@@ -413,6 +414,58 @@ class Web(WebCase):
         status, _, answer = answers[loser]
         text = answer["reply"] if status == 200 else answer["error"]["message"]
         self.assertRegex(text, rf"(by {winner} at|by {winner};)", answers)
+
+    def test_certificates_and_a_trusted_proxy_say_who_it_is(self):
+        self.configure([plant.equipment()])
+        accounts = self.folder / "accounts.toml"
+        accounts.write_text('[[account]]\nname = "Ana"\nrole = "approver"\n')
+
+        def openssl(*arguments):
+            subprocess.run(["openssl", *map(str, arguments)], check=True, capture_output=True,
+                           cwd=self.folder)
+
+        key = ["-newkey", "rsa:2048", "-nodes", "-keyout"]
+        openssl("req", "-x509", *key, "ca.key", "-out", "ca.pem", "-subj", "/CN=authority")
+        for name, subject, more in (("server", "localhost", "subjectAltName=DNS:localhost"),
+                                    ("ana", "Ana", "subjectAltName=email:ana@example.org")):
+            openssl("req", *key, f"{name}.key", "-out", f"{name}.csr", "-subj", f"/CN={subject}")
+            (self.folder / f"{name}.ext").write_text(more)
+            openssl("x509", "-req", "-in", f"{name}.csr", "-CA", "ca.pem", "-CAkey", "ca.key",
+                    "-CAcreateserial", "-extfile", f"{name}.ext", "-out", f"{name}.pem")
+        self.start_web("--certificate", self.folder / "server.pem", "--key",
+                       self.folder / "server.key", "--client-authority", self.folder / "ca.pem",
+                       "--accounts", accounts, name="tls")
+        context = ssl.create_default_context(cafile=self.folder / "ca.pem")
+        with self.assertRaises((ssl.SSLError, ConnectionError)):
+            connection = http.client.HTTPSConnection("localhost", self.port, context=context,
+                                                     timeout=DEADLINE_S)
+            connection.request("GET", "/api/v1/session")
+            connection.getresponse()
+        context.load_cert_chain(self.folder / "ana.pem", self.folder / "ana.key")
+        connection = http.client.HTTPSConnection("localhost", self.port, context=context,
+                                                 timeout=DEADLINE_S)
+        connection.request("GET", "/api/v1/session", headers={"X-User": "Bo"})
+        answer = connection.getresponse()
+        self.assertIn("Strict-Transport-Security", dict(answer.getheaders()))
+        session = json.loads(answer.read())
+        self.assertEqual((session["user"], session["role"]), ("Ana", "approver"))
+        connection.close()
+
+        path = self.folder / "web.sock"
+        proxied = self.start("reident-web", "--config", self.folder / "reident.toml", "--socket",
+                             path, "--user-header", "X-User", "--accounts", accounts, name="proxied")
+        wait_until(lambda: "url=unix:" in proxied.text(), "it serves")
+        for user, expected in (("Ana", "Ana"), ("Stranger", None)):
+            with socket.socket(socket.AF_UNIX) as connection:
+                connection.connect(str(path))
+                connection.sendall(b"GET /api/v1/session HTTP/1.1\r\nHost: ops.example\r\n"
+                                   b"Connection: close\r\nX-User: " + user.encode() + b"\r\n\r\n")
+                got = b""
+                while more := connection.recv(1 << 16):
+                    got += more
+            self.assertEqual(json.loads(got.split(b"\r\n\r\n", 1)[1])["user"], expected)
+        self.assertEqual(proxied.terminate()[0], 0)
+        self.assertFalse(path.exists())
 
     def test_metrics_follow_the_registry_and_are_bounded(self):
         self.flown()
