@@ -3,13 +3,19 @@
 # time, reidentd archives it, identifies its equipment again and again and publishes what passes
 # the gate, and a simulator swaps to each approved version while it runs.
 #
-#   deploy/demo.sh [FOLDER]     leaves reident.db, reident.toml and a picture in FOLDER (default:
-#                               build/demo)
+#   deploy/demo.sh [--stay] [FOLDER]   leaves reident.db, reident.toml and a picture in FOLDER
+#                                      (default: build/demo)
 #
 # Installs missing packages, builds, runs for about two minutes, stays on 127.0.0.1 and ends by
-# itself. Safe to run again: it starts with a new database.
+# itself; with --stay everything goes on until Ctrl-C, to look at on the operators' page. Safe to run
+# again: it starts with a new database.
 set -euo pipefail
 
+stay=
+if [ "${1:-}" = --stay ]; then
+  stay=yes
+  shift
+fi
 root=$(cd "$(dirname "$0")/.." && pwd)
 folder=${1:-$root/build/demo}
 mkdir -p "$folder"
@@ -43,7 +49,7 @@ unset CYCLONEDDS_URI  # the programs then stay on the loopback interface
 domain=$((1 + RANDOM % 200))
 endpoint=(--domain "$domain" --partition demo)
 rm -rf "$folder"/reident.db "$folder"/reident.db-wal "$folder"/reident.db-shm "$folder"/*.log \
-  "$folder/cache"
+  "$folder/page.url" "$folder/cache"
 sed -e "s/^# domain = 0/domain = $domain/" \
     -e 's/^# partition = "operations"/partition = "demo"/' deploy/reident.toml \
     >"$folder/reident.toml"
@@ -61,11 +67,19 @@ pids+=($!)
   --cache "$folder/cache" "${endpoint[@]}" >"$folder/simulator.log" 2>&1 &
 pids+=($!)
 
+"$bin/web/reident-web" --config "$folder/reident.toml" --port 0 >"$folder/page.url" \
+  2>"$folder/page.log" &
+pids+=($!)
+until [ -s "$folder/page.url" ] || ! kill -0 "${pids[2]}" 2>/dev/null; do sleep 0.1; done
+page=$(cat "$folder/page.url")
+[ -n "$page" ] || { tail -5 "$folder/page.log"; exit 1; }
+
 # Prints what the sed script makes of a log, line by line, until the process ends that writes it.
 follow() {
   tail -n +1 -F --pid "$1" "$2" 2>/dev/null | sed -un "$3" | sed -u 's/^\(.\{79\}\).*/\1/' &
 }
 echo "A CBERS-4-class power subsystem flies 24 orbits at 1500 times real time."
+echo "The operators' page, while it flies: $page"
 echo "What the service publishes (<) and what the simulator runs (>):"
 follow "${pids[0]}" "$folder/reidentd.log" '
   s/.*version decided equipment=[^/]*\/\([A-Z0-9]*\) .*decision=approve reason="\(.*\)"$/  < \1: \2/p'
@@ -80,8 +94,10 @@ pids+=($!)
 "$bin/cli/reident" simulators "${endpoint[@]}" >"$folder/simulators.log"
 reident=(env -C "$folder" "$bin/cli/reident")
 "${reident[@]}" overview >"$folder/overview.log" || true  # 1: a version waits for an operator
-trap - EXIT
-cleanup
+if [ -z "$stay" ]; then
+  trap - EXIT
+  cleanup
+fi
 
 "${reident[@]}" history >"$folder/history.log"
 "${reident[@]}" plot CBERS-4/BDR -o "$folder/bdr.svg" >/dev/null
@@ -99,3 +115,9 @@ Look further (the simulators at the end: $where/simulators.log):
 Picture of the BDR's champion: $where/bdr.svg
 Archive and registry:          $where/reident.db
 END
+if [ -n "$stay" ]; then
+  echo
+  echo "Everything goes on until Ctrl-C. The operators' page: $page"
+  trap exit INT TERM
+  wait
+fi

@@ -15,7 +15,10 @@ for option in "$@"; do
   case $option in
     --with-tests)
       packages+=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
-                 clang clang-format clang-tidy python3 sqlite3 git octave valgrind)
+                 clang clang-format clang-tidy python3 sqlite3 git octave valgrind
+                 chromium)
+      # Node from elsewhere brings npm along, and does not go together with Debian's.
+      command -v npm >/dev/null || packages+=(nodejs npm)
       ;;
     --with-bench)  # what identification is compared with
       packages+=(libslicot-dev libopenblas0 octave-control)

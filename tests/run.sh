@@ -13,6 +13,8 @@ if [ "${1:-}" = --preset ]; then
   shift 2
 fi
 deploy/install_packages.sh --with-tests
+[ tests/e2e/browser/node_modules/.package-lock.json -nt tests/e2e/browser/package-lock.json ] ||
+  npm ci --prefix tests/e2e/browser --no-audit --no-fund
 cmake --preset "$preset" -DBUILD_TESTING=ON >/dev/null
 cmake --build --preset "$preset"
 exclude=()

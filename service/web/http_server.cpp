@@ -47,9 +47,10 @@ using LocalStream = beast::basic_stream<Local>;
 using TlsStream = beast::ssl_stream<TcpStream>;
 using namespace std::chrono_literals;
 
-constexpr auto deadline = 10s;        // of a head, a body, an answer
-constexpr auto quiet_interval = 15s;  // a stream without events shows that it lives
-constexpr auto last_wait = 1s;        // for what a refused client still sends
+constexpr auto deadline = 10s;             // of a head, a body, an answer
+constexpr auto quiet_interval = 15s;       // a stream without events shows that it lives
+constexpr int kept_by_system = 128 << 10;  // of an answer to a client that reads slowly
+constexpr auto last_wait = 1s;             // for what a refused client still sends
 constexpr std::size_t most_thrown_away = 64 << 10;
 constexpr auto accept_again_after = 100ms;  // where no descriptor is left
 constexpr auto as_tuple = asio::as_tuple(asio::use_awaitable);
@@ -252,6 +253,7 @@ void HttpServer::Impl::begin(Tcp::socket socket) {
     return;
   }
   socket.set_option(Tcp::no_delay(true), error);
+  socket.set_option(asio::socket_base::send_buffer_size(kept_by_system), error);
   if (tls) {
     asio::co_spawn(context, serve_tls(std::move(socket), address), asio::detached);
     return;

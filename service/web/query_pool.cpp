@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <sys/resource.h>
+
 #include "service/support/log.hpp"
 
 namespace reident::web {
@@ -10,6 +12,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds longest_answer{10};
+constexpr int niceness = 5;  // the service's threads come first
 
 }  // namespace
 
@@ -47,6 +50,7 @@ void QueryPool::ask(Question question, bool compressed, Respond respond) {
 }
 
 void QueryPool::run() {
+  ::setpriority(PRIO_PROCESS, 0, niceness);  // of this thread
   for (;;) {
     mutex_.lock();
     while (!stopping_ && waiting_.empty()) more_.wait(mutex_);

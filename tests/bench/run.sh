@@ -35,6 +35,11 @@
 #                                         hundred simulators that come late and go a hundred times,
 #                                         the output's jump at a swap.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh web [--days N] [--repetitions N] [--archive FILE]
+#                                         the operators' page: bytes and time of its views in
+#                                         Chromium, a year of telemetry, viewers, slow clients, what
+#                                         ingest loses by them.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh build [--suite]    processor and wall time of a build from nothing, without
 #                                         and with the tests; with --suite also of the tests.
 #                                         The last line is one JSON object
@@ -95,6 +100,10 @@ case $what in
     targets=(reident_step_bench reident_swap_bench reident_jump_bench reidentd reident
              reident-simulator satcs-replay)
     ;;
+  web)
+    arguments=(build/release "$@")
+    targets=(reident_web_archive reidentd reident reident-web satcs-replay satcs-reference)
+    ;;
   *)
     usage
     ;;
@@ -111,6 +120,7 @@ if [ "$what" = archive ] &&
   cmake --build --preset release --target help | grep '^reident_telemetry:' >/dev/null; then
   targets+=(reident_telemetry)
 fi
+if [ "$what" = web ]; then npm ci --prefix tests/e2e/browser --no-audit --no-fund >/dev/null; fi
 cmake --build --preset release --target "${targets[@]}" >/dev/null
 if [ "$what" = screening ]; then
   exec build/release/tests/bench/screening/reident_screening_bench "$@"

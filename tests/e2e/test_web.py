@@ -10,6 +10,7 @@ import secrets
 import signal
 import socket
 import sqlite3
+import ssl
 import subprocess
 import sys
 import threading
@@ -19,7 +20,9 @@ import plant
 from harness import BIN, DEADLINE_S, EndToEnd, wait_until
 
 
-class Web(EndToEnd):
+class WebCase(EndToEnd):
+    """A service, the page's server, and requests to it."""
+
     def start_web(self, *options, name="web", user=None):
         web = self.start("reident-web", "--config", self.folder / "reident.toml", "--port", 0,
                          *options, name=name, user=user)
@@ -95,6 +98,40 @@ class Web(EndToEnd):
         except AssertionError:
             return False
 
+    def with_accounts(self):
+        """A service with versions that wait, and Ana (approver), Olaf (operator) and Vic (viewer)."""
+        self.flown(approval="by_hand")
+        lines = []
+        for name, role in (("Ana", "approver"), ("Bo", "approver"), ("Olaf", "operator"),
+                           ("Vic", "viewer")):
+            hashed = subprocess.run([str(BIN / "reident-web"), "--hash-password"], text=True,
+                                    input=f"{name}'s secret\n", capture_output=True, check=True)
+            lines += ["[[account]]", f'name = "{name}"', f'role = "{role}"',
+                      f'password = "{hashed.stdout.strip()}"']
+        accounts = self.folder / "accounts.toml"
+        accounts.write_text("\n".join(lines))
+        self.options = ["--accounts", accounts, "--audit", self.folder / "audit.jsonl"]
+        return self.start_web(*self.options)
+
+    def post(self, path, body, cookie="", token="", origin=None):
+        status, headers, answer = self.request(
+            f"/api/v1/{path}", "POST", body=json.dumps(body), headers={
+                "Content-Type": "application/json", "Cookie": cookie, "X-Reident-Token": token,
+                "Origin": origin or f"http://127.0.0.1:{self.port}"})
+        return status, headers, json.loads(answer)
+
+    def log_in(self, name):
+        status, headers, answer = self.post("login", {"name": name, "password": f"{name}'s secret"})
+        self.assertEqual(status, 200, answer)
+        cookie = headers["Set-Cookie"].split(";")[0]
+        self.assertIn("HttpOnly", headers["Set-Cookie"])
+        _, _, body = self.request("/api/v1/session", headers={"Cookie": cookie})
+        session = json.loads(body)
+        self.assertEqual(session["user"], name)
+        return {"cookie": cookie, "token": session["token"]}
+
+
+class Web(WebCase):
     def test_every_answer_is_as_the_document_for_programs_says(self):
         self.flown()
         self.start_web()
@@ -290,38 +327,6 @@ class Web(EndToEnd):
 
     # -- who may what
 
-    def with_accounts(self):
-        """A service with versions that wait, and Ana (approver), Olaf (operator) and Vic (viewer)."""
-        self.flown(approval="by_hand")
-        lines = []
-        for name, role in (("Ana", "approver"), ("Bo", "approver"), ("Olaf", "operator"),
-                           ("Vic", "viewer")):
-            hashed = subprocess.run([str(BIN / "reident-web"), "--hash-password"], text=True,
-                                    input=f"{name}'s secret\n", capture_output=True, check=True)
-            lines += ["[[account]]", f'name = "{name}"', f'role = "{role}"',
-                      f'password = "{hashed.stdout.strip()}"']
-        accounts = self.folder / "accounts.toml"
-        accounts.write_text("\n".join(lines))
-        self.options = ["--accounts", accounts, "--audit", self.folder / "audit.jsonl"]
-        return self.start_web(*self.options)
-
-    def post(self, path, body, cookie="", token="", origin=None):
-        status, headers, answer = self.request(
-            f"/api/v1/{path}", "POST", body=json.dumps(body), headers={
-                "Content-Type": "application/json", "Cookie": cookie, "X-Reident-Token": token,
-                "Origin": origin or f"http://127.0.0.1:{self.port}"})
-        return status, headers, json.loads(answer)
-
-    def log_in(self, name):
-        status, headers, answer = self.post("login", {"name": name, "password": f"{name}'s secret"})
-        self.assertEqual(status, 200, answer)
-        cookie = headers["Set-Cookie"].split(";")[0]
-        self.assertIn("HttpOnly", headers["Set-Cookie"])
-        _, _, body = self.request("/api/v1/session", headers={"Cookie": cookie})
-        session = json.loads(body)
-        self.assertEqual(session["user"], name)
-        return {"cookie": cookie, "token": session["token"]}
-
     def waiting(self):
         return [str(version) for version, in self.query(
             "SELECT version FROM model_version WHERE status = 'waiting' ORDER BY version")]
@@ -409,6 +414,58 @@ class Web(EndToEnd):
         status, _, answer = answers[loser]
         text = answer["reply"] if status == 200 else answer["error"]["message"]
         self.assertRegex(text, rf"(by {winner} at|by {winner};)", answers)
+
+    def test_certificates_and_a_trusted_proxy_say_who_it_is(self):
+        self.configure([plant.equipment()])
+        accounts = self.folder / "accounts.toml"
+        accounts.write_text('[[account]]\nname = "Ana"\nrole = "approver"\n')
+
+        def openssl(*arguments):
+            subprocess.run(["openssl", *map(str, arguments)], check=True, capture_output=True,
+                           cwd=self.folder)
+
+        key = ["-newkey", "rsa:2048", "-nodes", "-keyout"]
+        openssl("req", "-x509", *key, "ca.key", "-out", "ca.pem", "-subj", "/CN=authority")
+        for name, subject, more in (("server", "localhost", "subjectAltName=DNS:localhost"),
+                                    ("ana", "Ana", "subjectAltName=email:ana@example.org")):
+            openssl("req", *key, f"{name}.key", "-out", f"{name}.csr", "-subj", f"/CN={subject}")
+            (self.folder / f"{name}.ext").write_text(more)
+            openssl("x509", "-req", "-in", f"{name}.csr", "-CA", "ca.pem", "-CAkey", "ca.key",
+                    "-CAcreateserial", "-extfile", f"{name}.ext", "-out", f"{name}.pem")
+        self.start_web("--certificate", self.folder / "server.pem", "--key",
+                       self.folder / "server.key", "--client-authority", self.folder / "ca.pem",
+                       "--accounts", accounts, name="tls")
+        context = ssl.create_default_context(cafile=self.folder / "ca.pem")
+        with self.assertRaises((ssl.SSLError, ConnectionError)):
+            connection = http.client.HTTPSConnection("localhost", self.port, context=context,
+                                                     timeout=DEADLINE_S)
+            connection.request("GET", "/api/v1/session")
+            connection.getresponse()
+        context.load_cert_chain(self.folder / "ana.pem", self.folder / "ana.key")
+        connection = http.client.HTTPSConnection("localhost", self.port, context=context,
+                                                 timeout=DEADLINE_S)
+        connection.request("GET", "/api/v1/session", headers={"X-User": "Bo"})
+        answer = connection.getresponse()
+        self.assertIn("Strict-Transport-Security", dict(answer.getheaders()))
+        session = json.loads(answer.read())
+        self.assertEqual((session["user"], session["role"]), ("Ana", "approver"))
+        connection.close()
+
+        path = self.folder / "web.sock"
+        proxied = self.start("reident-web", "--config", self.folder / "reident.toml", "--socket",
+                             path, "--user-header", "X-User", "--accounts", accounts, name="proxied")
+        wait_until(lambda: "url=unix:" in proxied.text(), "it serves")
+        for user, expected in (("Ana", "Ana"), ("Stranger", None)):
+            with socket.socket(socket.AF_UNIX) as connection:
+                connection.connect(str(path))
+                connection.sendall(b"GET /api/v1/session HTTP/1.1\r\nHost: ops.example\r\n"
+                                   b"Connection: close\r\nX-User: " + user.encode() + b"\r\n\r\n")
+                got = b""
+                while more := connection.recv(1 << 16):
+                    got += more
+            self.assertEqual(json.loads(got.split(b"\r\n\r\n", 1)[1])["user"], expected)
+        self.assertEqual(proxied.terminate()[0], 0)
+        self.assertFalse(path.exists())
 
     def test_metrics_follow_the_registry_and_are_bounded(self):
         self.flown()

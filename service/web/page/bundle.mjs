@@ -1,6 +1,9 @@
-// Makes dist/ of src/: `npm ci && node bundle.mjs`. The same sources give the same bytes; CI compares.
+// Makes dist/, or the folder that is named, of src/: `npm ci && node bundle.mjs [FOLDER]`. The same
+// sources give the same bytes; a test compares.
 import { build } from "esbuild";
 import { cpSync, readFileSync, writeFileSync } from "node:fs";
+
+const target = process.argv[2] ?? "dist";
 
 await build({
   entryPoints: ["src/main.tsx"],
@@ -12,12 +15,12 @@ await build({
   legalComments: "none",
   jsx: "automatic",
   jsxImportSource: "preact",
-  outdir: "dist",
+  outdir: target,
 });
-for (const file of ["index.html", "icon.svg"]) cpSync(`src/${file}`, `dist/${file}`);
+for (const file of ["index.html", "icon.svg"]) cpSync(`src/${file}`, `${target}/${file}`);
 const notices = ["preact", "uplot"].map((name) => {
   const version = JSON.parse(readFileSync(`node_modules/${name}/package.json`, "utf8")).version;
   return `${name} ${version}\n\n${readFileSync(`node_modules/${name}/LICENSE`, "utf8").trim()}\n`;
 });
-writeFileSync("dist/notices.txt",
+writeFileSync(`${target}/notices.txt`,
   `The page contains:\n\n${notices.join("\n----------------------------------------\n\n")}`);

@@ -1,0 +1,50 @@
+"""The operators' page in Debian's Chromium: tests/e2e/browser has what it looks at."""
+
+import json
+import os
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import plant
+import test_web
+from harness import BIN, DEADLINE_S
+
+BROWSER = Path(__file__).parent / "browser"
+PAGE = Path(__file__).parents[2] / "service" / "web" / "page"
+
+
+class Browser(test_web.WebCase):
+    def look(self, **environment):
+        done = subprocess.run(
+            ["node", str(BROWSER / "page.mjs"), f"http://127.0.0.1:{self.port}/", "SAT/PLANT",
+             *([os.environ["REIDENT_PICTURES"]] if "REIDENT_PICTURES" in os.environ else [])],
+            capture_output=True, text=True, timeout=6 * DEADLINE_S, check=False,
+            env={**os.environ, **environment})
+        self.assertEqual(done.returncode, 0, done.stderr[-3000:])
+        return json.loads(done.stdout.splitlines()[-1])
+
+    def test_every_view_in_every_theme_keyboard_zones_and_ten_tabs(self):
+        self.with_accounts()
+        report = self.look(REIDENT_ACCOUNT="Ana:Ana's secret")
+        self.assertEqual([report[key] for key in ("axe", "errors", "foreign", "failures")],
+                         [[], [], [], []])
+        self.assertGreaterEqual(report["views"], 40)
+        self.assertLessEqual(report["requests"], 8)
+        self.assertEqual(self.query("SELECT kind, actor, reason FROM decision WHERE actor != 'gate'"),
+                         [("approve", "Ana", "seen on two passes")])
+
+    def test_the_bundle_is_that_of_its_sources(self):
+        subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=PAGE, check=True,
+                       capture_output=True, timeout=4 * DEADLINE_S)
+        before = {file.name: file.read_bytes() for file in (PAGE / "dist").iterdir()}
+        subprocess.run(["npm", "run", "check"], cwd=PAGE, check=True, timeout=2 * DEADLINE_S)
+        target = self.folder / "dist"
+        subprocess.run(["node", "bundle.mjs", str(target)], cwd=PAGE, check=True,
+                       timeout=2 * DEADLINE_S)
+        self.assertEqual({file.name: file.read_bytes() for file in target.iterdir()}, before)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
