@@ -89,7 +89,9 @@ std::variant<std::int64_t, Refusal> period_of(const GridRequest& request, const 
     warnings.push_back(fmt::format(
         "the rows were put on a grid of {}, the median step of {}{}; --period chooses another",
         duration_text(slowest.step_ns), slowest.name,
-        slowest.name == request.time_name ? "" : ", the slowest column"));
+        slowest.name == request.time_name
+            ? ""
+            : ", the slowest column (--hold lets its samples serve a shorter period)"));
     return slowest.step_ns;
   }
   const auto period = static_cast<std::int64_t>(std::llround(*request.period_s * 1e9));
@@ -228,9 +230,11 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
   if (const auto* refusal = std::get_if<Refusal>(&slowest)) return *refusal;
   const Gaps gaps = gaps_of(table);
   const std::string mend = fmt::format("--hold {}", hold_text(gaps.mends_ns));
-  const auto period =
-      period_of(request, std::get<Slowest>(slowest),
-                fmt::format(", or let samples serve longer, as with {}", mend), made.warnings);
+  const auto period = period_of(
+      request, std::get<Slowest>(slowest),
+      fmt::format(", or let samples serve longer: {} has gaps of up to {}, {} reaches across them",
+                  gaps.name, hold_text(gaps.longest_ns), mend),
+      made.warnings);
   if (const auto* refusal = std::get_if<Refusal>(&period)) return *refusal;
   const auto period_ns = std::get<std::int64_t>(period);
   const std::int64_t hold_ns = request.hold_ns.value_or(sample_hold_periods * period_ns);

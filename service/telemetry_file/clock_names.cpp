@@ -79,7 +79,7 @@ bool is_named_like_a_time(std::string_view name) {
   std::string all;
   for (const std::string& word : words) {
     if (word == "t" || word == "mjd" || word == "jd" || word == "tow" || word == "met" ||
-        word == "ts") {
+        word == "ts" || word == "gps" || word == "obt" || word == "scet") {
       if (&word == &words.front() || words.size() == 1) return true;
     }
     all += word;

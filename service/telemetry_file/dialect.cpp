@@ -1,11 +1,12 @@
 #include "service/telemetry_file/dialect.hpp"
 
 #include <algorithm>
-#include <array>
+#include <functional>
 #include <map>
 #include <set>
 
 #include "service/support/text.hpp"
+#include "service/telemetry_file/date_text.hpp"
 #include "service/telemetry_file/head_lines.hpp"
 
 namespace reident::telemetry_file {
@@ -147,17 +148,17 @@ std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& bl
     });
     if (!wanted.empty() && has_all) return i;
   }
-  const std::size_t last = block.back();
-  if (block.size() == 1) return last;
-  const std::size_t above = block[block.size() - 2];
-  if (are_units(lines[last])) return above;
-  if (are_units(lines[above]) && block.size() > 2) return block[block.size() - 3];
-  const bool is_pair = block.size() == 2 && are_names(lines[above]);
-  return is_pair && trimmed(lines[above].text).find_first_of(":=") == std::string_view::npos &&
-                 std::none_of(lines[above].cells.begin(), lines[above].cells.end(),
-                              looks_like_value)
-             ? above
-             : last;
+  std::vector<std::size_t> names;  // without the units
+  for (const std::size_t i : block)
+    if (!are_units(lines[i])) names.push_back(i);
+  if (names.empty()) return block.front();
+  const std::size_t last = names.back();
+  if (names.size() == 1) return last;
+  const HeadLine& above = lines[names[names.size() - 2]];
+  const bool is_pair = names.size() == 2 && are_names(above) &&
+                       above.text.find_first_of(":=") == std::string_view::npos &&
+                       std::none_of(above.cells.begin(), above.cells.end(), looks_like_value);
+  return is_pair ? names.front() : last;
 }
 
 Error whole_file(const std::string& name, std::string_view what) {
@@ -207,6 +208,45 @@ std::optional<std::size_t> header_in_comment(HeadLines& lines, std::size_t first
     return std::nullopt;
   }
   return std::nullopt;
+}
+
+/// Whether the header has a cell less than the rows, which `fits` says of a row's cells.
+bool rows_have_one_more(const HeadLines& lines, std::size_t usual, const std::string& comment,
+                        const std::function<bool(const std::vector<std::string>&)>& fits) {
+  std::size_t rows = 0, fitting = 0;
+  bool has_header = false;
+  for (const HeadLine& line : lines) {
+    if (is_blank(line) || is_comment(line, comment)) continue;
+    if (line.cells.size() + 1 == usual && fitting == 0 &&
+        std::none_of(line.cells.begin(), line.cells.end(), looks_like_value))
+      has_header = true;
+    if (line.cells.size() != usual) continue;
+    ++rows;
+    fitting += fits(line.cells) ? 1U : 0U;
+  }
+  return has_header && rows > 0 && fitting == rows;
+}
+
+/// Dates and times of day that stand a blank apart, under one name; a separator at the end of every
+/// row that the header has not.
+void join_cells(HeadLines& lines, Layout& layout) {
+  if (layout.cells < 2) return;
+  if (layout.separator == ' ' &&
+      rows_have_one_more(lines, layout.cells, layout.comment, [](const auto& cells) {
+        const auto date = read_date_text(cells[0], DateOrder::day_first);
+        return date && date->has_date && cells[1].find(':') != std::string::npos;
+      })) {
+    layout.joins_date = true;
+    for (HeadLine& line : lines)
+      if (line.cells.size() == layout.cells) {
+        line.cells[0] += " " + line.cells[1];
+        line.cells.erase(line.cells.begin() + 1);
+      }
+    --layout.cells;
+  }
+  if (rows_have_one_more(lines, layout.cells, layout.comment,
+                         [](const auto& cells) { return trimmed(cells.back()).empty(); }))
+    --layout.cells;
 }
 
 struct Found {
@@ -280,7 +320,7 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
   split(lines, layout.separator);
   layout.cells = usual_cells(lines, layout.comment);
   if (!options.names.empty() && layout.cells == 0) layout.cells = options.names.size();
-  // A blank last cell of all rows, behind a separator that ends them, is no column.
+  join_cells(lines, layout);
   const auto found = find_header(lines, dialect, options, name);
   if (const auto* error = std::get_if<Error>(&found)) return *error;
   const auto& [first_row, header, units] = std::get<Found>(found);

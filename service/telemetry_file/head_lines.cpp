@@ -51,7 +51,11 @@ HeadLines lines_of(const RowReader::Head& head, char line_end) {
 }
 
 bool is_blank(const HeadLine& line) {
-  return trimmed(line.text).empty();
+  const std::string_view text = trimmed(line.text);
+  // A ruled line below the header is none either.
+  return text.find_first_not_of("-+|=: \t") == std::string_view::npos &&
+         (text.empty() || text.find("--") != std::string_view::npos ||
+          text.find("==") != std::string_view::npos);
 }
 
 std::string find_comment(const HeadLines& lines) {

@@ -33,6 +33,12 @@ std::size_t plain_end(std::span<const char> line, std::size_t at, char separator
 
 }  // namespace
 
+void join_date(std::vector<std::string_view>& cells) {
+  const char* const first = cells[0].data();
+  cells[0] = {first, static_cast<std::size_t>(cells[1].data() + cells[1].size() - first)};
+  cells.erase(cells.begin() + 1);
+}
+
 std::string_view name(Damage damage) {
   constexpr std::array<std::string_view, 6> names = {"another number of cells",
                                                      "a quote that is not closed",
@@ -238,6 +244,7 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
     lines_ = text;  // cutting it into cells changes the text, which may be read again
   char* const from = spans_lines ? lines_.data() : buffer_.data() + begin_;
   const auto wrong = split_cells({from, row_end - begin_}, layout_.separator, cells_);
+  if (layout_.joins_date && cells_.size() > 1) join_date(cells_);
   if (layout_.cells != 0 && cells_.size() == layout_.cells + 1 && trimmed(cells_.back()).empty())
     cells_.pop_back();
   const bool fits = !wrong && (layout_.cells == 0 || cells_.size() == layout_.cells);

@@ -19,17 +19,21 @@ namespace reident::telemetry_file {
 
 /// How a text is cut into rows and cells.
 struct Layout {
-  char separator = ',';   // a blank: any number of blanks and tabs
-  char line_end = '\n';   // '\n' also ends lines with a CR before it; '\r' alone
-  std::string comment;    // what lines begin with that are no rows; empty: none do
-  std::string header;     // a line of this text is no row; empty: there is none
-  std::size_t cells = 0;  // of each row; 0: any number
+  char separator = ',';     // a blank: any number of blanks and tabs
+  char line_end = '\n';     // '\n' also ends lines with a CR before it; '\r' alone
+  std::string comment;      // what lines begin with that are no rows; empty: none do
+  std::string header;       // a line of this text is no row; empty: there is none
+  std::size_t cells = 0;    // of each row; 0: any number
+  bool joins_date = false;  // a date and a time of day, a blank between them, are the first cell
 };
 
 /// Cuts a line, without its end, into cells that point into it; doubled quotes in quoted cells are
 /// undoubled in place. An error text where a quoted cell is not closed or goes on behind its quote.
 std::optional<std::string_view> split_cells(std::span<char> line, char separator,
                                             std::vector<std::string_view>& cells);
+
+/// Makes one cell of the first two, which follow each other in one text. Requires two cells.
+void join_date(std::vector<std::string_view>& cells);
 
 /// What is wrong with a row, as counts of rows that were left out name it.
 enum class Damage { cell_count, open_quote, nul_bytes, time, value, none };

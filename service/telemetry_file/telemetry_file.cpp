@@ -255,7 +255,7 @@ TelemetryFile::Step TelemetryFile::Impl::read_time() {
         step->kind == ClockStep::Kind::hour
             ? "name the zone with --time-zone, as Europe/Berlin, or go on with --clock-back go-on"
             : "go on with --clock-back go-on, or import each part by itself with its own --epoch";
-    return fail(Damage::none, here(fmt::format("{}; {}", step->what, remedy)));
+    return fail(Damage::none, rows.error_here(fmt::format("{}; {}", step->what, remedy)));
   }
   return Step::row;
 }

@@ -103,7 +103,8 @@ std::variant<ImportReport, Error> Import::run(const std::function<storage::Time(
   }
   if (broken && at_.rows > 0)
     return Error{broken->message +
-                 "; the lines before it are imported, the same command goes on there"};
+                 "; the lines before it are imported, the same command goes on there, and --undo "
+                 "takes them back"};
   if (broken) return *std::move(broken);
   for (const std::string& remark : reader_.remarks()) report_.remarks.push_back(remark);
   if (steps_back_ > 0 && tells_steps_back_)

@@ -6,6 +6,7 @@
 
 #include "storage/archive/append.hpp"
 #include "storage/archive/archive_access.hpp"
+#include "storage/archive/series_ends.hpp"
 #include "storage/care/chunk_walk.hpp"
 #include "storage/database/connection.hpp"
 
@@ -37,25 +38,6 @@ bool holds_recent(const SeriesHead& series, const ChunkRow& row) {
                        const auto at = std::lower_bound(time.begin(), time.end(), row.first);
                        return at != time.end() && *at <= row.last;
                      });
-}
-
-/// First and last time of what is left.
-void find_ends(SeriesHead& series, ChunkStore& chunks) {
-  constexpr Time earliest = std::numeric_limits<Time>::min();
-  constexpr Time latest = std::numeric_limits<Time>::max();
-  series.first.reset();
-  series.last.reset();
-  const auto include = [&series](Time first, Time last) {
-    series.first = std::min(series.first.value_or(first), first);
-    series.last = std::max(series.last.value_or(last), last);
-  };
-  if (const auto newest = chunks.at_or_before(series.id, latest)) {
-    auto oldest = chunks.at_or_before(series.id, earliest);
-    if (!oldest) oldest = chunks.after(series.id, earliest);
-    include(oldest->first, newest->last);
-  }
-  for (const SeriesHead::Fragment& fragment : series.fragments)
-    include(fragment.samples.time.front(), fragment.samples.time.back());
 }
 
 /// One row for each range in which nothing was left; what was removed before and is next to it is

@@ -10,6 +10,7 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/history_access.hpp"
+#include "service/cli/output/far_telemetry.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/output/throughput.hpp"
@@ -55,8 +56,18 @@ struct Group {
 
   BinCounts sum(std::size_t bin) const {
     BinCounts all;
-    for (const auto& of_series : counts) all += of_series[bin];
+    std::uint64_t gaps = 0;
+    for (const auto& of_series : counts) {
+      all += of_series[bin];
+      gaps = std::max(gaps, of_series[bin].gaps);
+    }
+    all.gaps = gaps;  // one in many parameters is one: those of the parameter with the most
     return all;
+  }
+  std::vector<FarTelemetry> far(const TimeBins& bins) const {
+    std::vector<std::uint64_t> came;
+    for (std::size_t bin = 0; bin < bins.count(); ++bin) came.push_back(sum(bin).came);
+    return far_telemetry(bins, came);
   }
 };
 
@@ -233,6 +244,7 @@ void print_text(const Group& group, const TimeBins& bins, const Arguments& argum
   }
   add("all", all, frames);
   fmt::print("{}", table.text(0));
+  for (const FarTelemetry& far : group.far(bins)) fmt::print("{}\n", sentence(far));
   if (!arguments.detail) return;
   Table detail({{"parameter"},
                 {"came", right},
@@ -276,6 +288,11 @@ ordered_json json_of(const Group& group, const TimeBins& bins, bool detail) {
                             one["frames_missing"] = group.frames_missing[bin];
                             return one;
                           })}};
+  object["far_from_the_rest"] = ordered_json::array();
+  for (const FarTelemetry& far : group.far(bins))
+    object["far_from_the_rest"].push_back({{"begin", time_text(far.range.begin)},
+                                           {"end", time_text(far.range.end)},
+                                           {"samples", far.samples}});
   if (!detail) return object;
   object["parameters"] = ordered_json::array();
   for (std::size_t i = 0; i < group.series.size(); ++i)
@@ -338,7 +355,8 @@ std::function<int()> declare(CLI::App& command) {
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
       "Missing are the samples that would stand in the gaps of each parameter, by its own step.\n"
-      "A gap counts on the day on which it begins, what is missing on the days where it would\n"
+      "A gap counts on the day on which it begins, once where it is in many parameters; what is "
+      "missing on the days where it would\n"
       "stand; frames are missing by their sequence numbers. Works while reidentd writes.\n"
       "Example:\n"
       "  reident completeness reident.db --spacecraft SAT-1 --from 2026-03-01 --by hour");

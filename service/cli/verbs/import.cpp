@@ -13,6 +13,7 @@
 #include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
 #include "service/telemetry_file/reading_options.hpp"
+#include "service/transfer/undo.hpp"
 
 namespace reident::cli::import_verb {
 namespace {
@@ -28,6 +29,7 @@ struct Arguments {
   std::optional<std::string> origin;
   telemetry_file::ReadingArguments reading;
   bool json = false;
+  bool undo = false;
 };
 
 std::optional<Refusal> complete(Arguments& arguments) {
@@ -93,7 +95,24 @@ int show(const ImportOptions& options) {
   return exit_done;
 }
 
+int undo(const Arguments& arguments) {
+  return with_writable_database(arguments.database, [&](storage::Database& database) {
+    const auto undone = transfer::undo_import(database, arguments.import.file);
+    if (const auto* error = std::get_if<csv::Error>(&undone)) return refuse({error->message});
+    const auto& report = std::get<storage::SourceRemovalReport>(undone);
+    if (arguments.json)
+      fmt::print("{}\n", nlohmann::ordered_json(
+                             {{"removed", report.samples}, {"parameters", report.series}})
+                             .dump());
+    else
+      fmt::print("{} samples of {} parameters removed; the file can be imported again\n",
+                 report.samples, report.series);
+    return static_cast<int>(exit_done);
+  });
+}
+
 int run(Arguments& arguments) {
+  if (arguments.undo) return undo(arguments);
   if (const auto refusal = complete(arguments)) return refuse(*refusal);
   if (arguments.reading.dry_run) return show(arguments.import);
   // Before a database is made for nothing.
@@ -153,6 +172,8 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--origin", arguments->origin, "real or simulated (real)")
       ->check(CLI::IsMember({"real", "simulated"}));
   add_column_options(command, *arguments);
+  command.add_flag("--undo", arguments->undo,
+                   "take the samples that imports of this file brought out of the database again");
   add_reading_options(command, arguments->reading);
   command.add_flag("--json", arguments->json, "one JSON object with the counts");
   command.footer(

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "service/satcs/parameter_id.hpp"
+#include "service/transfer/undo.hpp"
+#include "storage/care/verify.hpp"
 #include "tests/service/transfer/transfer_fixture.hpp"
 
 namespace reident::transfer::import_test {
@@ -289,6 +291,48 @@ TEST_F(ImportTest, ColumnsAreLeftOut) {
   EXPECT_THAT(error_of(chosen), HasSubstr("there is no column 'notes'"));
   chosen.leave_out = {"note", "u"};
   EXPECT_THAT(error_of(chosen), HasSubstr("--leave-out leaves no column"));
+}
+
+TEST_F(ImportTest, AnImportIsTakenBackAndTheRestStays) {
+  storage::TelemetryFrame live =
+      storage::test::frame(1, t0 + second / 2, {{parameter_id("u"), Quality::good, 9}});
+  live.spacecraft = "SAT-1";
+  archive.append({{live}});
+  const ImportOptions wrong = options("t,u,v\n1700000000,1,2\n1700000001,3,4\n", "wrong.csv");
+  const ImportOptions right = options("t,u\n1700000009,5\n", "right.csv");
+  test::import(database, wrong);
+  test::import(database, right);
+  const auto undone = undo_import(database, wrong.file);
+  ASSERT_TRUE(std::holds_alternative<storage::SourceRemovalReport>(undone));
+  EXPECT_EQ(std::get<storage::SourceRemovalReport>(undone).samples, 4U);
+  EXPECT_THAT(held("u").value, ElementsAre(9, 5));
+  EXPECT_THAT(held("v").value, IsEmpty());
+  EXPECT_EQ(archive.sample_count(), 2U);
+  EXPECT_EQ(
+      storage::verify(database, {}, [](const storage::VerifyProgress&) { return true; }).found, 0U);
+  const auto again = test::import(database, wrong);
+  EXPECT_EQ(again.resumed_at, 0U);
+  EXPECT_EQ(again.total.stored, 4U);
+  EXPECT_THAT(held("u").value, ElementsAre(1, 9, 3, 5));
+}
+
+TEST_F(ImportTest, OnlyWhatTheLogKnowsIsTakenBack) {
+  const auto refusal = [&](const ImportOptions& chosen) {
+    const auto undone = undo_import(database, chosen.file);
+    const auto* error = std::get_if<csv::Error>(&undone);
+    return error ? error->message : "no error";
+  };
+  EXPECT_THAT(refusal(options("t,u\n1700000000,1\n")),
+              HasSubstr("holds no import of this file; it has none"));
+  const ImportOptions exported = options("parameter,time,value\nu,1700000000,1\n", "long.csv");
+  test::import(database, exported);
+  EXPECT_THAT(refusal(exported), HasSubstr("say themselves what they come from"));
+  ImportOptions one = options("t,u\n1700000000,1\n", "one.csv"),
+                other = options("t,u\n1700000001,1\n", "two.csv");
+  one.source = other.source = "station";
+  test::import(database, one);
+  test::import(database, other);
+  EXPECT_THAT(refusal(one), HasSubstr("have the same source 'station'"));
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ TEST_F(Transfer, CompletenessShowsEachDayWithItsBar) {
   EXPECT_THAT(ran.out, StartsWith("SAT-1 (real), 3 parameters, samples by day (UTC)\n"));
   EXPECT_THAT(ran.out,
               HasSubstr("2023-11-14  19200     19200  100.00  ####################     0"));
-  EXPECT_THAT(ran.out, HasSubstr("2023-11-15  31800     40800   77.94  ###############.....     3"
+  EXPECT_THAT(ran.out, HasSubstr("2023-11-15  31800     40800   77.94  ###############.....     1"
                                  "    50min"));
   EXPECT_THAT(ran.out, HasSubstr("\nmode       17000     20000  85.00  #################..."));
   const json object = json_of({"completeness", "a.db", "--by", "hour", "--parameter", "mode"});
@@ -182,6 +182,20 @@ TEST_F(Transfer, CompletenessShowsEachDayWithItsBar) {
   EXPECT_EQ(hours[2]["gaps"], 1);
   EXPECT_EQ(hours[2]["longest_gap_s"], 3001);
   EXPECT_EQ(hours[3]["percent"], 100);
+}
+
+TEST_F(Transfer, CompletenessSaysWhatLiesFarFromTheRest) {
+  write_telemetry(5000);
+  write("wrong.csv", "unix_s,u\n338418,1\n338419,2\n");
+  reident(import_of("t.csv", "a.db"));
+  auto wrong = import_of("wrong.csv", "a.db");
+  wrong.emplace_back("--force-times");
+  ASSERT_EQ(reident(wrong).status, 0);
+  const json far = json_of({"completeness", "a.db"})["telemetry"][0]["far_from_the_rest"];
+  ASSERT_THAT(far, SizeIs(1));
+  EXPECT_EQ(far[0]["samples"], 2);
+  EXPECT_EQ(far[0]["begin"], "1970-01-04T22:00:18Z");
+  EXPECT_THAT(reident({"completeness", "a.db"}).out, HasSubstr("2 samples from 1970-01-04"));
 }
 
 TEST_F(Transfer, CompletenessCountsFramesAndKnowsTheParametersOfAnEquipment) {

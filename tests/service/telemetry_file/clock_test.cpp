@@ -1,0 +1,150 @@
+// Times in every form that people have.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "service/support/time_text.hpp"
+#include "service/telemetry_file/telemetry_file.hpp"
+
+namespace reident::telemetry_file::clock_test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::int64_t in_2026 = 1'780'000'000'000'000'000;
+
+/// The time of the first row below a header with the column `name`, or the error.
+std::string first_time(const std::string& names, const std::vector<std::string>& cells,
+                       const TimeOptions& time = {}) {
+  ReadingOptions options;
+  options.time = time;
+  options.latest_ns = in_2026;
+  std::string text = names + ",x\n";
+  for (const std::string& cell : cells) text += cell + ",1.5\n";
+  auto opened = TelemetryFile::of_text(text, "t.csv", options);
+  if (const auto* error = std::get_if<Error>(&opened)) return error->message;
+  auto& file = std::get<TelemetryFile>(opened);
+  if (const auto error = file.find_time()) return error->message;
+  return file.next() == TelemetryFile::Step::row ? time_text(file.time_ns()) : file.error().message;
+}
+
+TEST(TelemetryClock, ReadsEveryForm) {
+  struct Case {
+    const char* names;
+    std::vector<std::string> cells;
+    const char* time;
+  };
+  for (const Case& c : {
+           Case{"time", {"2024-02-28T22:00:00.5Z"}, "2024-02-28T22:00:00.5Z"},
+           Case{"time", {"2024-02-28T23:00:00+01:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"2024-060T22:00:00Z"}, "2024-02-29T22:00:00Z"},
+           Case{"time", {"2024:060:22:00:00.000"}, "2024-02-29T22:00:00Z"},
+           Case{"time", {"2024.060.22.00.00.250"}, "2024-02-29T22:00:00.25Z"},
+           Case{"time", {"2024-W09-3T22:00:00Z"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"28.02.2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time",
+                {"02/28/2024 10:00:00 PM", "02/28/2024 10:00:10 PM"},
+                "2024-02-28T22:00:00Z"},
+           Case{"time", {"28-Feb-2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"20240228220000", "20240228220010"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"2016-12-31T23:59:60Z"}, "2017-01-01T00:00:00Z"},
+           Case{"time", {"1709157600"}, "2024-02-28T22:00:00Z"},
+           Case{"timeStamp", {"1709157600000"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"1709157600000000"}, "2024-02-28T22:00:00Z"},
+           Case{"time_ns", {"1709157600000000000"}, "2024-02-28T22:00:00Z"},
+           Case{"Timestamp", {"133536312000000000"}, "2024-02-28T22:00:00Z"},
+           Case{"Time", {"45350.9166666667", "45350.9167824074"}, "2024-02-28T22:00:00Z"},
+           Case{"MJD", {"60368.91666667"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"2460369.41666667"}, "2024-02-28T22:00:00Z"},
+           Case{"gps_s", {"1393192818"}, "2024-02-28T22:00:00Z"},
+           Case{"week,tow", {"2303,338418"}, "2024-02-28T22:00:00Z"},
+           Case{"year,doy,sec_of_day", {"2024,059,79200"}, "2024-02-28T22:00:00Z"},
+           Case{"Year,Month,Day,Hour,Minute,Second",
+                {"2024,2,28,22,0,0.5"},
+                "2024-02-28T22:00:00.5Z"},
+           Case{"Date,Time", {"2024-02-28,22:00:00"}, "2024-02-28T22:00:00Z"},
+       })
+    EXPECT_EQ(first_time(c.names, c.cells), c.time) << c.cells[0];
+}
+
+TEST(TelemetryClock, ReadsWhatIsSaidOfIt) {
+  TimeOptions epoch;
+  epoch.epoch_ns = parse_time("2024-02-01T00:00:00Z");
+  EXPECT_EQ(first_time("met_s", {"2412000.5"}, epoch), "2024-02-28T22:00:00.5Z");
+  EXPECT_EQ(first_time("met_ms", {"2412000500"}, epoch), "2024-02-28T22:00:00.5Z");
+  TimeOptions ms;
+  ms.unit_ns = 1'000'000;
+  EXPECT_EQ(first_time("time", {"1709157600000"}, ms), "2024-02-28T22:00:00Z");
+  TimeOptions order;
+  order.format = TimeFormat::text;
+  order.order = DateOrder::month_first;
+  EXPECT_EQ(first_time("time", {"03/04/2024 22:00"}, order), "2024-03-04T22:00:00Z");
+  TimeOptions columns;
+  columns.column = "a,b";
+  EXPECT_EQ(first_time("a,b", {"2024-02-28,22:00"}, columns), "2024-02-28T22:00:00Z");
+}
+
+TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
+  EXPECT_THAT(first_time("time", {"03/04/2024 22:00", "03/04/2024 22:10"}),
+              HasSubstr("--time-format dmy or mdy"));
+  EXPECT_THAT(first_time("time_s", {"1709157600000"}), HasSubstr("--time-unit"));
+  EXPECT_THAT(first_time("tow_ms", {"338418.0"}),
+              HasSubstr("t.csv:2: '338418.0' in column 'tow_ms' would be"));
+  EXPECT_THAT(first_time("time", {"2030-01-01T00:00:00Z"}), HasSubstr("later than tomorrow"));
+  TimeOptions named;
+  named.column = "time";
+  EXPECT_THAT(first_time("year,doy,sec_of_day", {"2024,059,79200"}, named),
+              HasSubstr("--time year,doy,sec_of_day"));
+  named.zone = "Mars/Olympus";
+  EXPECT_THAT(first_time("time", {"2024-02-28"}, named), HasSubstr("Europe/Berlin"));
+}
+
+TEST(TelemetryClock, KnowsTheHourThatComesTwice) {
+  auto zone = TimeZone::named("Europe/Berlin");
+  ASSERT_TRUE(zone);
+  const auto utc = [&](const char* local) {
+    return time_text(zone->to_utc(*parse_time(local)).value_or(0));
+  };
+  EXPECT_EQ(utc("2024-10-27T02:45:00"), "2024-10-27T00:45:00Z");
+  EXPECT_EQ(utc("2024-10-27T02:59:50"), "2024-10-27T00:59:50Z");
+  EXPECT_EQ(utc("2024-10-27T02:00:00"), "2024-10-27T01:00:00Z");
+  EXPECT_EQ(utc("2024-10-27T03:00:00"), "2024-10-27T02:00:00Z");
+  EXPECT_EQ(utc("2024-07-01T12:00:00"), "2024-07-01T10:00:00Z");
+  EXPECT_FALSE(zone->to_utc(*parse_time("2024-03-31T02:30:00"))) << "the hour that is left out";
+}
+
+TEST(TelemetryClock, SubtractsTheLeapSecondsOfGps) {
+  constexpr std::int64_t s = 1'000'000'000;
+  EXPECT_EQ(utc_of_gps(0), *parse_time("1980-01-06T00:00:00Z"));
+  // 2017-01-01 was 18 s behind GPS, the second before it 17.
+  EXPECT_EQ(utc_of_gps(1'167'264'018 * s), *parse_time("2017-01-01T00:00:00Z"));
+  EXPECT_EQ(utc_of_gps(1'167'264'016 * s), *parse_time("2016-12-31T23:59:59Z"));
+}
+
+TEST(TelemetryClockWatch, SaysWhatAStepBackLooksLike) {
+  constexpr std::int64_t s = 1'000'000'000;
+  struct Case {
+    bool is_absolute, may_be_local;
+    std::vector<std::int64_t> times_s;
+    ClockStep::Kind kind;
+  };
+  for (const Case& c : {
+           Case{true, true, {10'000, 10'010, 6'420}, ClockStep::Kind::hour},
+           Case{true, false, {10'000, 10'010, 6'420}, ClockStep::Kind::out_of_order},
+           Case{false, false, {65'520, 65'530, 4}, ClockStep::Kind::wrap},
+           Case{false, false, {604'780, 604'790, 0}, ClockStep::Kind::wrap},
+           Case{false, false, {5'000, 5'010, 0}, ClockStep::Kind::restart},
+           Case{true, true, {10'000, 10'010, 10'005}, ClockStep::Kind::out_of_order},
+       }) {
+    ClockWatch watch(s, c.is_absolute, c.may_be_local);
+    EXPECT_FALSE(watch.next(c.times_s[0] * s, 2));
+    EXPECT_FALSE(watch.next(c.times_s[1] * s, 3));
+    const auto step = watch.next(c.times_s[2] * s, 4);
+    ASSERT_TRUE(step);
+    EXPECT_EQ(step->kind, c.kind) << c.times_s[2];
+    EXPECT_EQ(step->line, 4U);
+    EXPECT_EQ(step->back_ns, (c.times_s[1] - c.times_s[2]) * s);
+  }
+}
+
+}  // namespace
+}  // namespace reident::telemetry_file::clock_test

@@ -1,0 +1,189 @@
+// What is found of files as people have them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "service/support/time_text.hpp"
+#include "service/telemetry_file/telemetry_file.hpp"
+
+namespace reident::telemetry_file::dialect_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A file of these lines: `above`, then eight rows of a time, u and v.
+std::string file_of(const std::string& above, const std::string& separator, bool decimal_commas) {
+  std::string text = above;
+  for (int row = 0; row < 8; ++row) {
+    std::string numbers =
+        separator + "6.00" + std::to_string(row) + separator + "28.01" + std::to_string(row);
+    if (decimal_commas)
+      for (char& c : numbers)
+        if (c == '.') c = ',';
+    text += "2024-02-28T22:00:" + std::to_string(row) + "0Z" + numbers + "\n";
+  }
+  // Only six rows have a second below 60.
+  return text.substr(0, text.find("2024-02-28T22:00:60Z"));
+}
+
+struct Found {
+  const char* above;
+  const char* separator;
+  bool decimal_commas;
+  std::uint64_t header, units, first;
+};
+
+TEST(TelemetryDialect, IsFoundFromTheFirstRows) {
+  for (const Found& c : {
+           Found{"time,u,v\n", ",", false, 1, 0, 2},
+           Found{"time;u;v\n", ";", true, 1, 0, 2},
+           Found{"time\tu\tv\n", "\t", false, 1, 0, 2},
+           Found{"time|u|v\n", "|", true, 1, 0, 2},
+           Found{"time u v\n", "  ", false, 1, 0, 2},
+           Found{"sep=;\ntime;u;v\n", ";", true, 2, 0, 3},
+           Found{"# a dump\n# columns: UTC, A, V\ntime,u,v\n", ",", false, 3, 0, 4},
+           Found{"# time,u,v\n", ",", false, 1, 0, 2},
+           Found{"Station: KRN\nPass: 17, good\n\ntime,u,v\nUTC,A,V\n", ",", false, 4, 5, 6},
+           Found{"time,u,v\n,[A],[V]\n", ",", false, 1, 2, 3},
+           Found{"time,u,v\nTime of the sample,Load current,Bus voltage\n", ",", false, 1, 0, 3},
+           Found{"Satellite,SAT-1,\nStart,2024-02-28,\ntime,u,v\n", ",", false, 3, 0, 4},
+           Found{"time  u     v\n----- ----- -----\n", " ", false, 1, 0, 3},
+           Found{"time,17,18\n", ",", false, 1, 0, 2},
+       }) {
+    RowReader rows(TextSource::of_text(file_of(c.above, c.separator, c.decimal_commas), "t.csv"));
+    const auto head = rows.head(1 << 20);
+    const auto found = find_dialect(std::get<RowReader::Head>(head), {}, "t.csv");
+    ASSERT_TRUE(std::holds_alternative<Dialect>(found))
+        << c.above << std::get<Error>(found).message;
+    const auto& dialect = std::get<Dialect>(found);
+    EXPECT_EQ(dialect.layout.separator, c.separator[0]) << c.above;
+    EXPECT_EQ(dialect.header_line, c.header) << c.above;
+    EXPECT_EQ(dialect.units_line, c.units) << c.above;
+    EXPECT_EQ(dialect.first_line, c.first) << c.above;
+    EXPECT_EQ(dialect.columns.size(), 3U) << c.above;
+  }
+}
+
+TEST(TelemetryDialect, GivesTheSameValuesInEach) {
+  for (const auto& [above, separator, commas] : {std::tuple("time,u,v\n", ",", false),
+                                                 {"time;u;v\n", ";", true},
+                                                 {"time u v\n", " ", false}}) {
+    auto opened = TelemetryFile::of_text(file_of(above, separator, commas), "t.csv", {});
+    auto& file = std::get<TelemetryFile>(opened);
+    ASSERT_FALSE(file.find_time());
+    ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+    EXPECT_EQ(time_text(file.time_ns()), "2024-02-28T22:00:00Z");
+    EXPECT_EQ(file.cell(1).value, 6.000);
+    EXPECT_EQ(file.cell(2).value, 28.010);
+  }
+}
+
+TEST(TelemetryDialect, IsTakenAsGiven) {
+  ReadingOptions options;
+  options.dialect.separator = ';';
+  options.dialect.header_line = 2;
+  auto opened = TelemetryFile::of_text("x;y\na;b\n1,5;2\n", "t.csv", options);
+  EXPECT_THAT(std::get<TelemetryFile>(opened).columns(), ElementsAre("a", "b"));
+  options = {};
+  options.dialect.names = {"time", "u"};
+  opened = TelemetryFile::of_text("2024-02-28,1\n2024-02-29,2\n", "t.csv", options);
+  EXPECT_THAT(std::get<TelemetryFile>(opened).columns(), ElementsAre("time", "u"));
+}
+
+struct Style {
+  std::vector<std::string_view> cells;
+  char separator;
+  const char* expected;  // decimal mark and thousands, or a part of the question
+};
+
+TEST(TelemetryNumbers, HaveTheStyleThatTheyShow) {
+  for (const Style& c : {
+           Style{{"1.5", "2"}, ',', ". "},
+           Style{{"6.007", "1.724"}, ',', ". "},
+           Style{{"1,5", "2,25"}, ';', ", "},
+           Style{{"6,007", "1,724"}, ';', ", "},
+           Style{{"1,501.8", "998.2"}, ',', ".,"},
+           Style{{"1.501,8", "998,2"}, ';', ",."},
+           Style{{"1 501,8", "998,2"}, ';', ",_"},
+           Style{{"1'501.8", "998.2"}, ',', ".'"},
+           Style{{"1,234,567", "1,234"}, ',', ".,"},
+           Style{{"0,125", "6,007"}, ',', ", "},
+           Style{{"1,501", "1,502"}, ',', "--thousands"},
+           Style{{"1,5", "1.25"}, ';', "--decimal"},
+       }) {
+    const std::vector<std::vector<std::string_view>> columns = {c.cells};
+    const auto found = find_style(columns, c.separator);
+    if (const auto* style = std::get_if<NumberStyle>(&found)) {
+      const std::string marks = {style->decimal, style->thousands == '\0'  ? ' '
+                                                 : style->thousands == ' ' ? '_'
+                                                                           : style->thousands};
+      EXPECT_EQ(marks, c.expected) << c.cells[0];
+    } else {
+      EXPECT_THAT(std::get<std::string>(found), HasSubstr(c.expected)) << c.cells[0];
+    }
+  }
+}
+
+CellFormat format_of(const std::vector<std::string_view>& cells) {
+  return find_format(cells, "x", {}, {});
+}
+
+TEST(TelemetryCells, AreReadWhereAColumnAgrees) {
+  struct Case {
+    std::vector<std::string_view> cells;
+    double first;
+    const char* unit;
+  };
+  for (const Case& c : {
+           Case{{"\xE2\x88\x92"
+                 "4.3",
+                 "5"},
+                -4.3,
+                ""},
+           Case{{"(4.2)", "4.1"}, -4.2, ""},
+           Case{{"0x1F", "0x20"}, 31, ""},
+           Case{{"1.5D+02", "1.6D+02"}, 150, ""},
+           Case{{"4.2 V", "4.3V"}, 4.2, "V"},
+           Case{{"ON", "OFF"}, 1, ""},
+           Case{{"False", "False"}, 0, ""},
+           Case{{"1 (ON)", "0 (OFF)"}, 1, ""},
+       }) {
+    const CellFormat format = format_of(c.cells);
+    const Cell cell = read_cell(c.cells[0], format);
+    EXPECT_EQ(cell.kind, Cell::Kind::number) << c.cells[0];
+    EXPECT_EQ(cell.value, c.first) << c.cells[0];
+    EXPECT_EQ(format.unit, c.unit) << c.cells[0];
+  }
+}
+
+TEST(TelemetryCells, ThatDoNotAgreeAreBad) {
+  std::vector<std::string_view> cells(20, "1.5");
+  cells[7] = "1.5 V";
+  EXPECT_EQ(read_cell(cells[7], format_of(cells)).kind, Cell::Kind::bad);
+  EXPECT_EQ(format_of({"SUN", "ECLIPSE"}).kind, CellFormat::Kind::text);
+  EXPECT_EQ(read_cell("", format_of(cells)).kind, Cell::Kind::blank);
+  EXPECT_EQ(read_cell("OFF", format_of({"ON", "ON"})).value, 0) << "the other state comes later";
+}
+
+TEST(TelemetryCells, WithAFlagOfLimitsAreFlagged) {
+  std::vector<std::string_view> cells(20, "27.9");
+  cells[3] = "28.4 H";
+  const CellFormat format = format_of(cells);
+  EXPECT_TRUE(read_cell("28.4 H", format).is_flagged);
+  EXPECT_FALSE(read_cell("27.9", format).is_flagged);
+}
+
+TEST(TelemetryCells, OfMissingValuesAndStatesAreAsGiven) {
+  CellOptions options;
+  options.missing = {"-999", "n/a"};
+  options.states = {{"mode", *parse_states("SUN=1,ECLIPSE=0")}};
+  const std::vector<std::string_view> numbers = {"1", "-999", "n/a"}, words = {"SUN", "ECLIPSE"};
+  const CellFormat format = find_format(numbers, "x", {}, options);
+  EXPECT_EQ(read_cell("-999.0", format).kind, Cell::Kind::missing);
+  EXPECT_EQ(read_cell(" n/a ", format).kind, Cell::Kind::missing);
+  EXPECT_EQ(read_cell("SUN", find_format(words, "mode", {}, options)).value, 1);
+  EXPECT_EQ(find_format(words, "other", {}, options).kind, CellFormat::Kind::text);
+}
+
+}  // namespace
+}  // namespace reident::telemetry_file::dialect_test

@@ -1,0 +1,56 @@
+#include "service/telemetry_file/encoding.hpp"
+
+#include <gtest/gtest.h>
+
+namespace reident::telemetry_file::encoding_test {
+namespace {
+
+using namespace std::string_literals;
+
+TEST(TelemetryEncoding, IsWhatTheBytesShow) {
+  EXPECT_EQ(find_encoding("time,u\n"), "UTF-8");
+  EXPECT_EQ(find_encoding("\xEF\xBB\xBFtime"), "UTF-8");
+  EXPECT_EQ(find_encoding("I\xC2\xB7sa"), "UTF-8");
+  EXPECT_EQ(find_encoding("cut off: \xC2"), "UTF-8");
+  EXPECT_EQ(find_encoding("I\xB7sa (\xB5"
+                          "A)"),
+            "ISO-8859-1");
+  EXPECT_EQ(find_encoding("T\x96"
+                          "bus (\x80)"),
+            "WINDOWS-1252");
+  EXPECT_EQ(find_encoding("\xFF\xFEt\0i\0"s), "UTF-16LE");
+  EXPECT_EQ(find_encoding("t\0i\0m\0e\0"s), "UTF-16LE");
+  EXPECT_EQ(find_encoding("\0t\0i\0m\0e"s), "UTF-16BE");
+}
+
+TEST(TelemetryEncoding, OfAStreamIsConvertedWhereverItIsCut) {
+  const std::string bytes =
+      "I\xB7sa (\xB5"
+      "A)";
+  const std::string wide = "\xE9\0t\0\xE9\0"s;
+  for (std::size_t cut = 0; cut <= wide.size(); ++cut) {
+    std::string text;
+    const auto decoder = Decoder::of("UTF-16LE");
+    decoder->decode(wide.substr(0, cut), false, text);
+    decoder->decode(wide.substr(cut), true, text);
+    EXPECT_EQ(text, "\xC3\xA9t\xC3\xA9") << cut;
+  }
+  std::string text;
+  Decoder::of("ISO-8859-1")->decode(bytes, true, text);
+  EXPECT_EQ(text,
+            "I\xC2\xB7sa (\xC2\xB5"
+            "A)");
+  text.clear();
+  Decoder::of("WINDOWS-1252")->decode("a\x81z", true, text);
+  EXPECT_EQ(text, "a\xEF\xBF\xBDz") << "a byte that the encoding does not know";
+  EXPECT_EQ(Decoder::of("KLINGON"), nullptr);
+}
+
+TEST(TelemetryEncoding, OfPackedFilesIsNone) {
+  EXPECT_TRUE(is_binary("\x1F\x8B\b"));
+  EXPECT_TRUE(is_binary("PK\x03\x04"));
+  EXPECT_FALSE(is_binary("a,b\n1,2\n\0\0\0,4\n5,6\n7,8\n9,10\n"s)) << "a few NUL bytes are damage";
+}
+
+}  // namespace
+}  // namespace reident::telemetry_file::encoding_test
