@@ -38,16 +38,18 @@ int serve(const Config& config, const Arguments& arguments, web::Accounts accoun
   web::LiveState live(endpoint, config.database);
   web::Access access(std::move(accounts));
   web::Audit audit(arguments.audit);
-  std::optional<web::HttpServer> server;  // ends behind the pool, whose threads answer through it
+  // Both end behind the threads of the pool and of the desk, which answer through them.
+  std::optional<web::HttpServer> server;
+  std::optional<web::Site> site;
   {
     web::QueryPool pool(config.database, query_threads, query_queue);
     web::OrderDesk orders(endpoint, config.service_name);
-    web::Site site(
-        {config, live, pool, access, orders, audit, [&server] { return server->counts(); }});
+    site.emplace(web::Site::Parts{config, live, pool, access, orders, audit,
+                                  [&server] { return server->counts(); }});
     server.emplace(
         arguments.server,
         [&site](web::HttpRequest&& request, web::Respond respond) {
-          site.handle(std::move(request), std::move(respond));
+          site->handle(std::move(request), std::move(respond));
         },
         live);
     bool is_deaf = false;

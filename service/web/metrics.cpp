@@ -214,6 +214,20 @@ void put_registry(MetricsText& text, const Stored& stored, const DecisionCounts&
        [](const Json& line) { return line["failure"].is_null() ? 0.0 : 1.0; });
   each("reident_versions_waiting", "Versions that wait for an operator.",
        [](const Json& line) { return static_cast<double>(line["waiting"].size()); });
+  text.begin("reident_simulators", "gauge", "Simulators that run a model, by state.");
+  for (const Json& line : overview["equipment"]) {
+    const double all = line["simulators"].get<double>(), current = line["current"].get<double>();
+    for (const auto& [state, number] :
+         {std::pair("current", current), std::pair("other", all - current)}) {
+      auto labels = labels_of(line);
+      labels.emplace_back("state", state);
+      text.add(number, labels);
+    }
+  }
+  text.begin("reident_alarms", "gauge", "Alarms that are raised, by code.");
+  std::map<std::string, double> raised;
+  for (const Json& alarm : overview["alarms"]) ++raised[alarm["code"].get<std::string>()];
+  for (const auto& [code, number] : raised) text.add(number, {{"code", code}});
   each("reident_held", "Whether an operator holds the champion.",
        [](const Json& line) { return line["hold"].is_null() ? 0.0 : 1.0; });
 }

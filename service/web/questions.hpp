@@ -27,9 +27,9 @@ std::int64_t number_of(const HttpRequest& request, std::string_view name, std::i
 /// The range in the bins that parameter `bins` asks for, each a whole number of milliseconds long.
 storage::TimeBins bins_of(const HttpRequest& request, storage::TimeRange range);
 
-/// Whether a champion or an event stands there on the axis of telemetry: when the newest telemetry
-/// was when it was decided. Decisions are by the clock of the service, which may run through years
-/// of telemetry in a day.
+/// Where decisions stand on the axis of telemetry: where the newest telemetry was when they were
+/// made. Their own times are by the clock of the service, which may run through years of telemetry
+/// in a day.
 class TelemetryClock {
  public:
   /// `extent`: of the spacecraft's telemetry.

@@ -32,6 +32,7 @@ constexpr std::array routes{Route{"/api/v1/overview", overview_view},
                             Route{"/api/v1/telemetry", telemetry_view},
                             Route{"/api/v1/run", run_view},
                             Route{"/api/v1/events", events_view},
+                            Route{"/api/v1/simulators", simulators_view},
                             Route{"/api/v1/series", series_view},
                             Route{"/api/v1/completeness", completeness_view}};
 

@@ -8,10 +8,12 @@ namespace reident::web {
 
 // Each throws BadRequest for a question that cannot be answered, and what readers throw.
 
-/// Each equipment: its champion, errors, what waits, who holds it.
+/// Each equipment, worst first: its champion, errors, what waits, who holds it; and alarms.
 Json overview_view(const Stored& stored, const HttpRequest& request);
 /// The versions that wait for an operator, with their verdicts.
 Json waiting_view(const Stored& stored, const HttpRequest& request);
+/// Who runs which version.
+Json simulators_view(const Stored& stored, const HttpRequest& request);
 /// One equipment: signals, versions with their errors, decisions.
 Json equipment_view(const Stored& stored, const HttpRequest& request);
 /// One version: verdict, conditions, model, its record against the champion.

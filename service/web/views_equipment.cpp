@@ -1,10 +1,7 @@
 #include <algorithm>
-#include <map>
 
-#include "service/judgement/scores.hpp"
 #include "service/model/derived_inputs.hpp"
 #include "service/review/evidence.hpp"
-#include "service/review/stored_league.hpp"
 #include "service/review/verdict.hpp"
 #include "service/web/questions.hpp"
 #include "service/web/views.hpp"
@@ -31,65 +28,49 @@ Json decision_value(const storage::Decision& decision, storage::Time place) {
           {"reason", decision.reason}};
 }
 
-/// Errors of the champion and of the simulator's own model on the champion's record.
-void put_errors(const Stored& stored, const EquipmentName& name, std::int64_t champion,
-                Json& line) {
-  const Member member{champion, {}, stored.history.scores(name, champion)};
-  Sums own, simulator;
-  for (const storage::Block& block : stored.history.blocks(name)) {
-    const storage::BlockScore* score = counts(block) ? find(member, block.range.begin) : nullptr;
-    if (!score) continue;
-    own.add(block, score->square);
-    if (!block.baseline_square.empty()) simulator.add(block, block.baseline_square);
-  }
-  if (own.rows > 0) line["error_percent"] = number_value(own.mrse_percent());
-  if (simulator.rows > 0) line["simulator_percent"] = number_value(simulator.mrse_percent());
+Json alarm_value(const storage::Alarm& alarm) {
+  Json value = name_value(alarm.about);
+  value["code"] = alarm.code;
+  value["text"] = alarm.text;
+  value["since"] = time_value(alarm.since);
+  value["acknowledged_by"] = alarm.acknowledged_by;
+  return value;
 }
 
-/// The last decisions about versions for which all conditions but an operator's hold. Others that
-/// wait are challengers: telemetry decides about them.
-std::vector<storage::Decision> waiting_for_operator(const Stored& stored,
-                                                    const EquipmentName& name) {
-  std::map<std::int64_t, storage::Decision> last;
-  for (storage::Decision& decision : stored.history.decisions(name))
-    last[decision.version] = std::move(decision);
-  std::vector<storage::Decision> waiting;
-  for (auto& [version, decision] : last)
-    if (decision.kind == storage::DecisionKind::wait && !decision.evidence_json.empty())
-      waiting.push_back(std::move(decision));
-  return waiting;
+Json alarm_values(const std::vector<storage::Alarm>& alarms) {
+  Json list = Json::array();
+  for (const storage::Alarm& alarm : alarms) list.push_back(alarm_value(alarm));
+  return list;
 }
 
-Json overview_line(const Stored& stored, const EquipmentName& name) {
-  Json line = name_value(name);
-  for (const char* key : {"champion", "since", "decided_by", "error_percent",
-                          "approved_error_percent", "simulator_percent", "failure"})
-    line[key] = nullptr;
-  line["hold"] = hold_value(stored.history.hold(name));
-  const auto versions = stored.history.summaries(name);
-  const auto waiting = waiting_for_operator(stored, name);
-  line["waiting"] = Json::array();
-  for (const storage::Decision& decision : waiting)
-    line["waiting"].push_back(id_value(decision.version));
-  line["challengers"] =
-      std::count_if(versions.begin(), versions.end(),
-                    [](const auto& version) { return version.status == "waiting"; }) -
-      static_cast<std::ptrdiff_t>(waiting.size());
-  line["versions"] = versions.size();
-  if (const auto last = stored.registry.last_window_end(name.spacecraft, name.equipment))
-    line["tried_until"] = time_value(*last);
-  const auto made = stored.history.champion_decision(name);
-  if (!made) return line;
-  line["champion"] = id_value(made->version);
-  line["since"] = time_value(made->time);
-  line["decided_by"] = made->actor;
-  if (const auto attempt = stored.history.attempt(name, made->version)) {
-    const auto evidence = evidence_of(*attempt);
-    line["approved_error_percent"] = evidence.value("mrse_percent", Json());
-    put_errors(stored, name, made->version, line);
-    if (const auto failure = failure_now(stored.history, *attempt, made->version))
-      line["failure"] = sentence(*failure);
-  }
+Json ids_value(const std::vector<std::int64_t>& ids) {
+  Json list = Json::array();
+  for (const std::int64_t id : ids) list.push_back(id_value(id));
+  return list;
+}
+
+Json overview_line(const Stored& stored, const history::OverviewRow& row,
+                   const std::vector<storage::Alarm>& alarms) {
+  Json line = name_value(row.name);
+  const auto made = stored.history.champion_decision(row.name);
+  const auto failure = std::find_if(alarms.begin(), alarms.end(), [&row](const auto& alarm) {
+    return alarm.about == row.name && alarm.code == "champion_failed";
+  });
+  line["champion"] = made ? id_value(made->version) : Json();
+  line["since"] = made ? time_value(made->time) : Json();
+  line["decided_by"] = made ? Json(made->actor) : Json();
+  line["error_percent"] = number_value(row.error_percent);
+  line["approved_error_percent"] = number_value(row.approved_error_percent);
+  line["simulator_percent"] = number_value(row.simulator_percent);
+  line["failure"] = failure != alarms.end() ? Json(failure->text) : Json();
+  line["change"] = row.change ? time_value(row.change->since) : Json();
+  line["hold"] = hold_value(row.hold);
+  line["waiting"] = ids_value(row.waiting);
+  line["telemetry"] = row.telemetry ? time_value(*row.telemetry) : Json();
+  line["simulators"] = row.simulators;
+  line["current"] = row.current;
+  line["attempts"] = row.attempts;
+  line["versions"] = row.versions;
   return line;
 }
 
@@ -126,37 +107,63 @@ Json version_line(const storage::Attempt& attempt, const std::string& status,
 }  // namespace
 
 Json overview_view(const Stored& stored, const HttpRequest&) {
+  const auto alarms = stored.history.alarms();
+  auto rows = stored.history.overview();
+  history::put_worst_first(rows, alarms);
   Json lines = Json::array();
-  for (const EquipmentName& name : stored.history.equipment()) {
-    lines.push_back(overview_line(stored, name));
-    stored.check_time();
-  }
-  return {{"equipment", std::move(lines)}};
+  for (const history::OverviewRow& row : rows) lines.push_back(overview_line(stored, row, alarms));
+  return {{"equipment", std::move(lines)}, {"alarms", alarm_values(alarms)}};
 }
 
 Json waiting_view(const Stored& stored, const HttpRequest&) {
   Json list = Json::array();
-  for (const EquipmentName& name : stored.history.equipment()) {
-    for (const storage::Decision& decision : waiting_for_operator(stored, name)) {
-      const auto story = stored_version(stored.history, name, decision.version);
-      if (!story) continue;
-      Json line = name_value(name);
-      line["version"] = id_value(decision.version);
-      line["since"] = time_value(decision.time);
-      line["window"] = range_value(story->version.window);
-      line["error_percent"] = evidence_of(story->attempt).value("mrse_percent", Json());
-      line["verdict"] = verdict_of(stored.history, *story).sentence;
-      list.push_back(std::move(line));
-      stored.check_time();
-    }
+  for (const history::WaitingRow& row : stored.history.waiting()) {
+    const EquipmentName name{row.decision.spacecraft, row.decision.equipment};
+    const auto story = stored_version(stored.history, name, row.decision.version);
+    if (!story) continue;
+    Json line = name_value(name);
+    line["version"] = id_value(row.decision.version);
+    line["since"] = time_value(row.decision.time);
+    line["window"] = range_value(row.window);
+    line["error_percent"] = evidence_of(story->attempt).value("mrse_percent", Json());
+    line["verdict"] = verdict_of(stored.history, *story).sentence;
+    line["supersedes"] = ids_value(row.supersedes);
+    list.push_back(std::move(line));
+    stored.check_time();
   }
   return {{"waiting", std::move(list)}};
+}
+
+Json simulators_view(const Stored& stored, const HttpRequest&) {
+  Json list = Json::array();
+  for (const storage::SimulatorState& state : stored.history.simulators()) {
+    const auto made = stored.history.champion_decision(state.equipment);
+    Json line = name_value(state.equipment);
+    line["simulator"] = state.simulator;
+    line["version"] = state.version > 0 ? id_value(state.version) : Json();
+    line["champion"] = made ? id_value(made->version) : Json();
+    line["offered"] = state.offered > 0 ? id_value(state.offered) : Json();
+    line["refused"] = state.refused > 0 ? id_value(state.refused) : Json();
+    line["reason"] = state.reason;
+    line["mode"] = state.mode;
+    line["from_cache"] = state.from_cache;
+    line["since"] = state.since > 0 ? time_value(state.since) : Json();
+    line["host"] = state.host;
+    line["process"] = state.process;
+    line["program_version"] = state.program_version;
+    list.push_back(std::move(line));
+  }
+  return {{"simulators", std::move(list)}};
 }
 
 Json equipment_view(const Stored& stored, const HttpRequest& request) {
   const EquipmentName name = equipment_of(stored, request);
   Json view = name_value(name);
-  view["line"] = overview_line(stored, name);
+  const auto rows = stored.history.overview();
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [&name](const auto& one) { return one.name == name; });
+  if (row == rows.end()) throw BadRequest("the equipment has no attempts any more", 404);
+  view["line"] = overview_line(stored, *row, stored.history.alarms());
   storage::HistoryFilter filter;
   filter.spacecraft = name.spacecraft;
   filter.equipment = name.equipment;

@@ -197,8 +197,9 @@ Json record_in(const Stored& stored, const EquipmentName& name, const Reign& rei
     }
     from.push_back(seconds(scored[i].first->range.begin, begin));
     to.push_back(seconds(scored[next - 1].first->range.end, begin));
-    error.push_back(number_value(own.mrse_percent()));
-    simulator.push_back(rival.rows > 0 ? number_value(rival.mrse_percent()) : Json());
+    error.push_back(next < cycle ? Json() : number_value(own.mrse_percent()));
+    simulator.push_back(next >= cycle && rival.rows > 0 ? number_value(rival.mrse_percent())
+                                                        : Json());
     i = next;
   }
   return {{"version", id_value(reign.version)},

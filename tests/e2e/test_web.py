@@ -498,8 +498,7 @@ class Web(WebCase):
                 "SELECT kind, actor = 'gate', count(*) FROM decision GROUP BY 1, 2"):
             by = "gate" if gate else "operator"
             self.assertEqual(values[f'reident_decisions_total{{kind="{kind}",by="{by}"}}'], count)
-        self.assertEqual(len([one for one in values if 'equipment="PLANT"' in one]),
-                         len({one.split("{")[0] for one in values if 'equipment="PLANT"' in one}))
+        self.assertLessEqual(len([one for one in values if 'equipment="PLANT"' in one]), 40)
         self.request("/nothing-that-exists")
         self.assertNotIn("nothing-that-exists", metrics())
 

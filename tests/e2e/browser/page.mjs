@@ -46,7 +46,7 @@ const addresses = {
   overview: "#/overview", waiting: "#/waiting", equipment: `#/equipment?${named}`,
   "equipment-table": `#/equipment?${named}&show=table`,
   version: `#/version?${named}&version=${line.champion ?? line.waiting[0]}`,
-  events: "#/events", telemetry: "#/telemetry?find=" + outputs[0].name, handover: "#/handover", service: "#/service",
+  events: "#/events", runs: "#/runs", telemetry: "#/telemetry?find=" + outputs[0].name, handover: "#/handover", service: "#/service",
 };
 
 async function everyView(theme, width) {

@@ -75,10 +75,22 @@ export interface EquipmentLine {
   simulator_percent: number | null;
   failure: string | null;
   hold: Hold | null;
-  waiting: string[];      // for an operator
-  challengers: number;    // telemetry decides about them
+  change: string | null;
+  waiting: string[];  // for an operator
+  telemetry: string | null;
+  simulators: number;
+  current: number;
+  attempts: number;
   versions: number;
-  tried_until?: string;
+}
+
+export interface Alarm {
+  spacecraft: string;
+  equipment: string;
+  code: string;
+  text: string;
+  since: string;
+  acknowledged_by: string;
 }
 
 export interface Decision {

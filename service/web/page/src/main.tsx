@@ -15,15 +15,16 @@ import { EventsView } from "./views/events";
 import { HandoverView } from "./views/handover";
 import { Overview } from "./views/overview";
 import { ServiceView } from "./views/service";
+import { SimulatorsView } from "./views/simulators";
 import { VersionView } from "./views/version";
 import { WaitingView } from "./views/waiting";
 
 const views: [string, string][] = [
-  ["overview", "Overview"], ["waiting", "Waiting"], ["events", "Events"], ["telemetry", "Telemetry"], ["handover", "Handover"], ["service", "Service"],
+  ["overview", "Overview"], ["waiting", "Waiting"], ["events", "Events"], ["runs", "Simulators"], ["telemetry", "Telemetry"], ["handover", "Handover"], ["service", "Service"],
 ];
 
 const keys: [string, string][] = [
-  ["j, k", "next, previous row"], ["Enter", "open the row"], ["g then o, w, e, t, h, s", "overview, waiting, events, telemetry, handover, service"],
+  ["j, k", "next, previous row"], ["Enter", "open the row"], ["g then o, w, e, r, t, h, s", "overview, waiting, events, simulators, telemetry, handover, service"],
   ["+, −", "closer, farther in time"], ["←, →", "earlier, later"], ["[, ]", "previous, next decision"], ["0", "the usual range"],
   ["t", "plot or table"], ["u", "UTC or the zone of this computer"], ["d", "light, dark, high contrast"], ["?", "these keys"], ["Esc", "close"],
 ];
@@ -45,6 +46,7 @@ function View({ view, parameters }: Place) {
     case "equipment": return <EquipmentView key={`${parameters.spacecraft}/${parameters.equipment}`} parameters={parameters} />;
     case "version": return <VersionView key={JSON.stringify([parameters.spacecraft, parameters.equipment, parameters.version])} parameters={parameters} />;
     case "events": return <EventsView parameters={parameters} />;
+    case "runs": return <SimulatorsView />;
     case "telemetry": return <CompletenessView parameters={parameters} />;
     case "handover": return <HandoverView parameters={parameters} />;
     case "service": return <ServiceView />;

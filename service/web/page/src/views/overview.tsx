@@ -1,15 +1,9 @@
 // How all models are now, worst first.
-import { isDecision, useAnswer, type EquipmentLine } from "../api";
+import { isDecision, useAnswer, type Alarm, type EquipmentLine } from "../api";
 import { figure, timeText } from "../format";
 import { Figure, Loaded, useZone } from "../parts";
 import { Table, type Column } from "../table";
 import { link } from "../url";
-
-/** What needs a person first: a failing champion, then what waits, then no champion, then growth of the error. */
-function urgency(line: EquipmentLine): number {
-  const growth = line.error_percent !== null && line.approved_error_percent ? line.error_percent / line.approved_error_percent : 0;
-  return (line.failure ? 1e9 : 0) + (line.waiting.length > 0 ? 1e6 : 0) + (line.champion ? 0 : 1e3) + growth;
-}
 
 function state(line: EquipmentLine): string {
   const texts = [];
@@ -20,9 +14,20 @@ function state(line: EquipmentLine): string {
   return texts.join("; ") || "well";
 }
 
+function Alarms({ alarms, zone }: { alarms: Alarm[]; zone: string }) {
+  return (
+    <Table name="alarms" caption="Alarms" rows={alarms} rowClass={(alarm) => (alarm.acknowledged_by ? "" : "failing")} columns={[
+      { title: "alarm", text: (alarm) => alarm.text },
+      { title: "about", text: (alarm) => [alarm.spacecraft, alarm.equipment].filter(Boolean).join("/") },
+      { title: `since (${zone})`, text: (alarm) => timeText(alarm.since) },
+      { title: "seen by", text: (alarm) => alarm.acknowledged_by || "nobody" },
+    ]} />
+  );
+}
+
 export function Overview() {
   const zone = useZone();
-  const answer = useAnswer<{ equipment: EquipmentLine[] }>("overview", {}, isDecision);
+  const answer = useAnswer<{ equipment: EquipmentLine[]; alarms: Alarm[] }>("overview", {}, isDecision);
   const columns: Column<EquipmentLine>[] = [
     { title: "equipment", text: (line) => `${line.spacecraft}/${line.equipment}` },
     {
@@ -43,17 +48,21 @@ export function Overview() {
     { title: "error %", text: (line) => figure(line.error_percent), cell: (line) => <Figure value={line.error_percent} />, isNumber: true },
     { title: "when approved %", text: (line) => figure(line.approved_error_percent), cell: (line) => <Figure value={line.approved_error_percent} />, isNumber: true },
     { title: "simulator %", text: (line) => figure(line.simulator_percent), cell: (line) => <Figure value={line.simulator_percent} />, isNumber: true },
-    { title: "challengers", text: (line) => String(line.challengers), isNumber: true },
-    { title: "versions", text: (line) => String(line.versions), isNumber: true },
+    { title: "simulators", text: (line) => (line.simulators === 0 ? "none" : `${line.current} of ${line.simulators}`),
+      cell: (line) => <span class={line.current < line.simulators ? "act" : ""}>{line.simulators === 0 ? "none" : `${line.current} of ${line.simulators} current`}</span>, isNumber: true },
+    { title: `telemetry to (${zone})`, text: (line) => timeText(line.telemetry) },
   ];
   return (
     <Loaded answer={answer}>
-      {({ equipment }) => (
+      {({ equipment, alarms }) => (
+        <>
+        {alarms.length > 0 && <Alarms alarms={alarms} zone={zone} />}
         <Table name="overview" caption="Equipment" columns={columns}
-          rows={[...equipment].sort((a, b) => urgency(b) - urgency(a))}
+          rows={equipment}
           href={(line) => link("equipment", { spacecraft: line.spacecraft, equipment: line.equipment })}
           rowClass={(line) => (line.failure ? "failing" : "")}
           empty="No window was tried yet: the service tries the first when telemetry has filled it." />
+        </>
       )}
     </Loaded>
   );

@@ -13,6 +13,7 @@ interface Waiting {
   window: Range;
   error_percent: number | null;
   verdict: string;
+  supersedes: string[];
 }
 
 export function WaitingView() {
@@ -28,6 +29,7 @@ export function WaitingView() {
             { title: `since (${zone})`, text: (row) => timeText(row.since) },
             { title: "error %", text: (row) => figure(row.error_percent), isNumber: true },
             { title: "verdict", text: (row) => row.verdict },
+            { title: "supersedes", text: (row) => row.supersedes.join(", ") || "none" },
             { title: `window ends (${zone})`, text: (row) => timeText(row.window.end) },
           ]} />
       )}
