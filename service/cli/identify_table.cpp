@@ -177,11 +177,10 @@ std::variant<IdentifyTable, Refusal> read_identify_table(TelemetryFile& file,
     if (step == TelemetryFile::Step::error) {
       error = file.error();
       damage = file.damage();
-    } else if (skip_bad_lines || file.has_nul_bytes()) {
+    } else if (skip_bad_lines) {
       for (std::size_t c = 0; c < positions.size() && !error; ++c)
         if (file.cell(positions[c]).kind == Cell::Kind::bad)
           error = file.cell_error(positions[c], "is no number");
-      if (error && file.has_nul_bytes()) damage = Damage::nul_bytes;
     }
     if (error && (!skip_bad_lines || damage == Damage::none)) return Refusal{error->message};
     if (error) {

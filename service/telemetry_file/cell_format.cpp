@@ -52,12 +52,13 @@ bool add_pair(const std::string& word, StateMap& states) {
   for (const auto& pair : known_pairs)
     for (std::size_t i = 0; i < 2; ++i) {
       if (pair[i] != capital) continue;
-      for (const auto& [name, value] :
-           {std::pair(word, static_cast<double>(i)),
-            std::pair(in_case_of(word, pair[1 - i]), static_cast<double>(1 - i))})
+      const std::pair<std::string, double> both[] = {
+          {word, static_cast<double>(i)},
+          {in_case_of(word, pair[1 - i]), static_cast<double>(1 - i)}};
+      for (const auto& one : both)
         if (std::none_of(states.begin(), states.end(),
-                         [&](const auto& state) { return state.first == name; }))
-          states.emplace_back(name, value);
+                         [&](const auto& state) { return state.first == one.first; }))
+          states.push_back(one);
       return true;
     }
   return false;

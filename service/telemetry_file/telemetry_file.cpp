@@ -219,6 +219,8 @@ TelemetryFile::Step TelemetryFile::next() {
   at.damage = Damage::none;
   const Step step = at.rows.next();
   if (step == Step::error) return at.fail(at.rows.damage(), at.rows.error());
+  if (step == Step::row && at.rows.has_nul_bytes())
+    return at.fail(Damage::nul_bytes, at.rows.error_here({}));
   return step == Step::end || !at.clock ? step : at.read_time();
 }
 
@@ -230,7 +232,6 @@ TelemetryFile::Step TelemetryFile::Impl::read_time() {
                                        dialect.columns[column], what));
   };
   if (!time) {
-    if (rows.has_nul_bytes()) return fail(Damage::nul_bytes, rows.error_here({}));
     return fail(
         Damage::time,
         here(clock->description().empty()
@@ -283,9 +284,6 @@ Damage TelemetryFile::damage() const {
 }
 Error TelemetryFile::error_here(std::string_view what) const {
   return impl_->rows.error_here(what);
-}
-bool TelemetryFile::has_nul_bytes() const {
-  return impl_->rows.has_nul_bytes();
 }
 Error TelemetryFile::cell_error(std::size_t column, std::string_view what) const {
   return error_here(

@@ -83,7 +83,6 @@ class TelemetryFile {
   /// After an error: what is wrong with the row alone, so that next() goes on behind it; else none.
   Damage damage() const;
   Error error_here(std::string_view what) const;  // "FILE:LINE: what"
-  bool has_nul_bytes() const;                     // after a row
   Error cell_error(std::size_t column, std::string_view what) const;
 
   std::uint64_t bytes_read() const;  // of the text, up to the end of the last row

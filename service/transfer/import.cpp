@@ -161,7 +161,6 @@ std::optional<Error> Import::fill(bool& at_end) {
       if (damage == Damage::none) return error;
     } else {
       error = rows_->add(reader_, batch_);
-      if (error && reader_.has_nul_bytes()) damage = Damage::nul_bytes;
       if (reader_.clock_step() && steps_back_++ == 0)
         first_step_ = reader_.error_here(reader_.clock_step()->what).message;
     }
