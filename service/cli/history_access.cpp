@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "service/cli/config_options.hpp"
+#include "service/cli/service_choice.hpp"
 #include "service/history/remote_readers.hpp"
 #include "service/history/stored_readers.hpp"
 #include "service/support/terminal.hpp"
@@ -17,7 +18,7 @@ constexpr double max_timeout_s = 1e6;
 
 struct Service {
   dds::Endpoint endpoint;
-  std::string name;  // empty: any
+  std::string name;  // as the configuration has it; empty: any
 };
 
 std::variant<Service, Refusal> service_of(const HistoryAccessOptions& options) {
@@ -41,12 +42,16 @@ std::variant<Service, Refusal> service_of(const HistoryAccessOptions& options) {
   return service;
 }
 
+std::chrono::milliseconds timeout_of(const HistoryAccessOptions& options) {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::duration<double>(options.timeout_s));
+}
+
 int with_service(const Service& service, const HistoryAccessOptions& options,
                  const std::function<int(const Readers&)>& work) {
   dds::Participant participant(service.endpoint);
   history::RemoteHistory remote(participant, service.name);
-  const history::RemoteRows rows(remote, std::chrono::duration_cast<std::chrono::milliseconds>(
-                                             std::chrono::duration<double>(options.timeout_s)));
+  const history::RemoteRows rows(remote, timeout_of(options));
   try {
     return work({history::RemoteHistoryReader(rows), history::RemoteTelemetryReader(rows)});
   } catch (const history::Error& error) {
@@ -68,6 +73,7 @@ void add_remote_options(CLI::App& command, HistoryAccessOptions& options) {
   command.add_option("--domain", options.domain, "DDS domain, with --remote")
       ->check(CLI::Range(0, 230));
   command.add_option("--partition", options.partition, "DDS partition, with --remote");
+  add_service_option(command, options.service);
   command.add_option("--timeout", options.timeout_s, "seconds for each answer, with --remote")
       ->check(CLI::Range(0.0, max_timeout_s))
       ->capture_default_str();
@@ -79,31 +85,34 @@ void add_access_options(CLI::App& command, HistoryAccessOptions& options) {
 }
 
 void add_archive_options(CLI::App& command, HistoryAccessOptions& options) {
-  command.add_option("archive", options.database.database,
-                     "database of the service; none with --remote");
+  command.add_option("archive,--database,--db", options.database.database,
+                     "database of the service");
   command.add_option("--config", options.database.config,
-                     fmt::format("configuration with the equipment, and the service's DDS domain "
-                                 "and partition ({})",
+                     fmt::format("configuration with the equipment, the database, and the "
+                                 "service's DDS domain and partition ({})",
                                  default_config_file));
   add_remote_options(command, options);
-}
-
-std::string no_archive(const std::string& command) {
-  return fmt::format("archive is required, or --remote; see reident {} --help", command);
 }
 
 int with_readers(const HistoryAccessOptions& options,
                  const std::function<int(const Readers&)>& work) {
   if (!options.is_remote()) {
-    if (options.domain || options.partition)
-      return refuse({"--domain and --partition say which service is asked; add --remote"});
+    if (options.domain || options.partition || options.service)
+      return refuse(
+          {"--domain, --partition and --service say which service is asked; add "
+           "--remote"});
     return with_database(options.database, [&work](storage::Database& database) {
       return work({history::StoredHistory(database), history::StoredTelemetry(database)});
     });
   }
-  const auto service = service_of(options);
-  if (const auto* refusal = std::get_if<Refusal>(&service)) return refuse(*refusal);
-  return with_service(std::get<Service>(service), options, work);
+  auto found = service_of(options);
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
+  Service& service = std::get<Service>(found);
+  auto chosen =
+      chosen_service(service.endpoint, options.service, service.name, timeout_of(options));
+  if (const auto* refusal = std::get_if<Refusal>(&chosen)) return refuse(*refusal);
+  service.name = std::get<std::string>(std::move(chosen));
+  return with_service(service, options, work);
 }
 
 }  // namespace reident::cli

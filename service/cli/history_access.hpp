@@ -17,6 +17,7 @@ struct HistoryAccessOptions {
   bool remote = false;
   std::optional<std::uint32_t> domain;
   std::optional<std::string> partition;
+  std::optional<std::string> service;
   double timeout_s = 10;
   /// The program's own option, for --remote before the command.
   const CLI::Option* remote_before = nullptr;
@@ -24,7 +25,7 @@ struct HistoryAccessOptions {
   bool is_remote() const { return remote || (remote_before && remote_before->count() > 0); }
 };
 
-/// --remote, --domain, --partition and --timeout.
+/// --remote, --domain, --partition, --service and --timeout.
 void add_remote_options(CLI::App& command, HistoryAccessOptions& options);
 /// Those, --database and --config.
 void add_access_options(CLI::App& command, HistoryAccessOptions& options);
@@ -32,9 +33,6 @@ void add_access_options(CLI::App& command, HistoryAccessOptions& options);
 /// Options of a command whose first argument is the database and that takes a configuration for the
 /// rest.
 void add_archive_options(CLI::App& command, HistoryAccessOptions& options);
-/// What to say where such a command is given neither a database nor --remote.
-std::string no_archive(const std::string& command);
-
 struct Readers {
   const history::HistoryReader& history;
   const history::TelemetryReader& telemetry;

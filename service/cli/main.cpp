@@ -1,5 +1,6 @@
 // reident: the command line.
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -24,9 +25,19 @@ constexpr std::string_view default_verb = "overview";  // in a folder with a con
 
 /// What is printed is read by a program: its lines are left as they are.
 bool is_for_programs(const std::vector<std::string>& words) {
+  const auto is_help = [](const std::string& word) { return word == "--help" || word == "-h"; };
+  if (std::any_of(words.begin(), words.end(), is_help)) return false;
   return std::any_of(words.begin(), words.end(), [](const std::string& word) {
     return word == "--json" || word == "--csv" || word == "export" || word == "--markdown" ||
            word == "--man" || word == "--completion";
+  });
+}
+
+/// What is printed may be longer than a screen.
+bool is_long(const std::vector<std::string>& words) {
+  constexpr std::array verbs_with_much = {"history", "show", "why", "compare", "completeness"};
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return std::find(verbs_with_much.begin(), verbs_with_much.end(), word) != verbs_with_much.end();
   });
 }
 
@@ -56,7 +67,7 @@ std::vector<std::string> words_of(int argc, char** argv) {
 int run(int argc, char** argv) {
   std::vector<std::string> words = words_of(argc, argv);
   std::optional<FoldedOutput> folded;
-  if (!is_for_programs(words)) folded.emplace();
+  if (!is_for_programs(words)) folded.emplace(is_long(words));
   CLI::App app("Keeps the equipment models of satellite simulators true to the satellite",
                "reident");
   app.require_subcommand(1);

@@ -13,6 +13,7 @@
 
 #include "service/cli/command_sender.hpp"
 #include "service/cli/config_options.hpp"
+#include "service/cli/service_choice.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/program_identity.hpp"
 #include "service/support/terminal.hpp"
@@ -27,6 +28,8 @@ using storage::CommandOutcome;
 
 /// How long a service is waited for until the database is tried again.
 constexpr auto turn = std::chrono::milliseconds(300);
+/// A service says once a second that it is there.
+constexpr auto heartbeat_wait = std::chrono::milliseconds(1500);
 
 struct Target {
   std::optional<std::filesystem::path> database;
@@ -113,12 +116,21 @@ void name_the_version(const Target& target, Command& command) {
 /// Absent when the time ran out; `why` says what kept the file.
 std::optional<Asked> ask(const Target& target, const OperatorOptions& options,
                          const Command& command, std::string& why) {
-  if (auto asked = execute_on_file(target, command, why)) return asked;
+  if (!options.service)
+    if (auto asked = execute_on_file(target, command, why)) return asked;
   const auto deadline = SteadyClock::now() + std::chrono::duration_cast<SteadyClock::duration>(
                                                  std::chrono::duration<double>(options.timeout_s));
-  CommandSender sender(target.endpoint, {command, target.service});
+  std::optional<CommandSender> sender;
   while (SteadyClock::now() < deadline) {
-    if (const auto outcome = sender.wait(turn)) return Answer{*outcome, true};
+    if (!sender) {
+      const auto service =
+          chosen_service(target.endpoint, options.service, target.service, heartbeat_wait);
+      if (const auto* refusal = std::get_if<Refusal>(&service)) return *refusal;
+      if (const std::string& name = std::get<std::string>(service); !name.empty())
+        sender.emplace(target.endpoint, CommandRequest{command, name});
+    }
+    if (sender)
+      if (const auto outcome = sender->wait(turn)) return Answer{*outcome, true};
     // The service may have ended; what it did already, the database knows by the request.
     if (auto asked = execute_on_file(target, command, why)) return asked;
   }

@@ -16,6 +16,7 @@ struct OperatorOptions {
   DatabaseOptions database;
   std::optional<std::uint32_t> domain;
   std::optional<std::string> partition;
+  std::optional<std::string> service;
   std::string actor;
   std::string reason;
   double timeout_s = 10;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident::cli {
 namespace {
@@ -13,7 +14,7 @@ constexpr storage::Time sane_time = (storage::Time{1} << 62) - 1;
 std::optional<Refusal> read_time(std::string_view flag, const std::optional<std::string>& text,
                                  storage::Time& time) {
   if (!text) return std::nullopt;
-  const auto parsed = parse_time(*text);
+  const auto parsed = parse_moment(*text, utc_now());
   if (!parsed || *parsed > sane_time || *parsed < -sane_time)
     return Refusal{
         fmt::format("{} {} is no time of the years 1823 to 2116; write it as "

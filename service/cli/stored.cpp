@@ -9,7 +9,6 @@
 #include "service/support/time_text.hpp"
 
 namespace reident::cli {
-namespace {
 
 using nlohmann::ordered_json;
 
@@ -24,7 +23,12 @@ std::variant<std::filesystem::path, Refusal> database_path(const DatabaseOptions
                   default_config_file)};
 }
 
-}  // namespace
+void add_file_argument(CLI::App& command, DatabaseOptions& options, const std::string& what) {
+  command.add_option("file,--database,--db", options.database, what);
+  command.add_option(
+      "--config", options.config,
+      fmt::format("configuration that names the database ({})", default_config_file));
+}
 
 void add_database_options(CLI::App& command, DatabaseOptions& options) {
   CLI::Option* database =

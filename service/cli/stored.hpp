@@ -1,6 +1,7 @@
 // What the commands that read a database share: which file, and what is in it.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -21,6 +22,12 @@ struct DatabaseOptions {
 };
 
 void add_database_options(CLI::App& command, DatabaseOptions& options);
+
+/// The database as the first argument, and the same two options.
+void add_file_argument(CLI::App& command, DatabaseOptions& options, const std::string& what);
+
+/// The database that the options name. Refused where they name none.
+std::variant<std::filesystem::path, Refusal> database_path(const DatabaseOptions& options);
 
 /// Calls `work` with a database opened for reading. A database that cannot be used is refused.
 int with_database(const DatabaseOptions& options,

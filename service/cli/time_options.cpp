@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident::cli {
 namespace {
@@ -10,9 +11,11 @@ namespace {
 std::optional<Refusal> read_time(const char* flag, const std::optional<std::string>& text,
                                  storage::Time& time) {
   if (!text) return std::nullopt;
-  const auto parsed = parse_time(*text);
+  const auto parsed = parse_moment(*text, utc_now());
   if (!parsed)
-    return Refusal{fmt::format("{} {} is no time; write it as 2026-03-01T12:00:00Z", flag, *text)};
+    return Refusal{
+        fmt::format("{} {} is no time; write it as 2026-03-01T12:00:00Z, now or -2h (before now)",
+                    flag, *text)};
   time = *parsed;
   return std::nullopt;
 }

@@ -33,12 +33,44 @@ void wait_a_second(const std::stop_token& stop) {
   never.wait_for(lock, stop, std::chrono::seconds(1), [] { return false; });
 }
 
-int serve(const reident::Config& config, const reident::StopSignal& signal) {
+/// SIGHUP asks to read the log level again. It is blocked before any thread begins, and looked for
+/// once a second.
+sigset_t reload_signal() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGHUP);
+  return signals;
+}
+
+bool is_asked_to_reload() {
+  const sigset_t signals = reload_signal();
+  constexpr timespec at_once{};
+  return sigtimedwait(&signals, nullptr, &at_once) == SIGHUP;
+}
+
+void reload(const std::string& path) {
+  const auto loaded = reident::load_config(path);
+  if (const auto* mistakes = std::get_if<std::vector<reident::ConfigMistake>>(&loaded)) {
+    reident::log::error(
+        "service", "the configuration has mistakes; everything stays as it is",
+        {{"file", path}, {"line", mistakes->front().line}, {"mistake", mistakes->front().message}});
+    return;
+  }
+  const auto& config = std::get<reident::Config>(loaded);
+  reident::log::set_level("info");
+  reident::log::info("service", "log level read again; other keys are read at a start",
+                     {{"log_level", config.log_level}});
+  reident::log::set_level(config.log_level);
+}
+
+int serve(const reident::Config& config, const std::string& path,
+          const reident::StopSignal& signal) {
   reident::Daemon daemon(config, reident::utc_now);
   daemon.start();
   reident::notify_service_manager("READY=1");
   while (!signal.token().stop_requested() && !daemon.failed()) {
     daemon.heartbeat();
+    if (is_asked_to_reload()) reload(path);
     reident::notify_service_manager("WATCHDOG=1");
     wait_a_second(signal.token());
   }
@@ -53,6 +85,8 @@ int serve(const reident::Config& config, const reident::StopSignal& signal) {
 
 int main(int argc, char** argv) {
   reident::keep_freed_memory();
+  const sigset_t reloading = reload_signal();
+  pthread_sigmask(SIG_BLOCK, &reloading, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);  // beyond a file size limit a write fails, as on a full disk
   const reident::StopSignal signal;
   CLI::App app(
@@ -79,7 +113,7 @@ int main(int argc, char** argv) {
   const auto& config = std::get<reident::Config>(loaded);
   reident::log::set_level(config.log_level);
   try {
-    return serve(config, signal);
+    return serve(config, path, signal);
   } catch (const std::exception& error) {
     reident::log::error("service", "cannot run", {{"error", error.what()}});
     return exit_failed;

@@ -112,7 +112,7 @@ std::string TelemetryWatch::unknown_text(const Equipment& equipment,
 void TelemetryWatch::log_unused(const std::string& name, const Spacecraft& spacecraft) const {
   constexpr std::size_t most_named = 10;
   std::vector<std::string> unused;
-  for (const auto& [id, parameter] : spacecraft.names)
+  for (const std::string& parameter : names_of(spacecraft.names))
     if (std::none_of(equipment_.begin(), equipment_.end(), [&](const Equipment& equipment) {
           return equipment.name.spacecraft == name && contains(equipment.parameters, parameter);
         }))

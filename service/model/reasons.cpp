@@ -95,12 +95,16 @@ nlohmann::ordered_json to_json(const std::vector<Reason>& reasons) {
   return list;
 }
 
+std::string last_code(const storage::Decision& decision) {
+  const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
+  if (!evidence.is_object() || !evidence.contains("reasons") || evidence["reasons"].empty())
+    return {};
+  return evidence["reasons"].back().value("code", "");
+}
+
 bool waits_for_operator(const storage::Decision& last) {
   if (last.kind != storage::DecisionKind::wait) return false;
-  const auto evidence = nlohmann::json::parse(last.evidence_json, nullptr, false);
-  if (!evidence.is_object() || !evidence.contains("reasons") || evidence["reasons"].empty())
-    return last.evidence_json.empty();
-  const std::string code = evidence["reasons"].back().value("code", "");
+  const std::string code = last_code(last);
   using enum ReasonCode;
   return code == name(waits_for_operator) || code == name(bias_unverified) || code == name(held);
 }

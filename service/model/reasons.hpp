@@ -114,9 +114,11 @@ std::string sentence(const Reason& reason);
 /// Returns all sentences, one after the other; empty without reasons.
 std::string sentences(const std::vector<Reason>& reasons);
 
-/// Whether a waiting version, about which this is the last decision, waits for an operator rather
-/// than for telemetry: for an approval or for the end of a hold. One that says nothing is of a
-/// program before version 0.2, and waits for an approval.
+/// The code of the last reason of a decision; empty where it holds none.
+std::string last_code(const storage::Decision& decision);
+
+/// Whether a version, about which this is the last decision, waits for an operator rather than for
+/// telemetry: for an approval or for the end of a hold.
 bool waits_for_operator(const storage::Decision& last);
 
 /// Returns an array of objects: `code`, and each figure under its name. Figures keep all their

@@ -327,7 +327,10 @@ CommandOutcome execute(const Command& command, Registry& registry, const Command
 
 std::vector<Decision> waiting_for_operator(const Registry& registry) {
   std::vector<Decision> waits = registry.waits();
-  std::erase_if(waits, [](const Decision& last) { return !waits_for_operator(last); });
+  // Without evidence it is of a program before version 0.2, which let it wait for an operator.
+  std::erase_if(waits, [](const Decision& last) {
+    return !last.evidence_json.empty() && !waits_for_operator(last);
+  });
   return waits;
 }
 

@@ -52,14 +52,6 @@ storage::TimeRange window_behind(const Change& change, const EquipmentConfig& eq
   return {std::max(begin, end - equipment.window), end};
 }
 
-/// The code of the last reason of a decision; empty where it has none.
-std::string last_code(const storage::Decision& decision) {
-  const ordered_json evidence = ordered_json::parse(decision.evidence_json, nullptr, false);
-  if (!evidence.is_object() || !evidence.contains("reasons") || evidence["reasons"].empty())
-    return {};
-  return evidence["reasons"].back().value("code", "");
-}
-
 }  // namespace
 
 void note_failure(storage::Registry& registry, const storage::EquipmentName& equipment,
@@ -178,6 +170,11 @@ bool LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
                         decision_of(kind, reasons, std::move(evidence))});
 }
 
+bool LeagueKeeper::asked_an_operator(const storage::Registry& registry,
+                                     std::int64_t version) const {
+  return waits_for_operator(registry.decisions(spacecraft_, equipment_.name, version).back());
+}
+
 void LeagueKeeper::let_wait(const storage::Registry& registry, const LeagueWriter& writer,
                             const Finding& finding, const Reason& reason, Time now) {
   const auto decisions = registry.decisions(spacecraft_, equipment_.name, finding.version);
@@ -220,9 +217,13 @@ void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
   }
   std::vector<Finding> waiting;
   std::copy_if(findings.begin(), findings.end(), std::back_inserter(waiting), is_waiting);
-  for (const Finding& finding : waiting)
-    if (finding.obstacle && finding.obstacle->code == ReasonCode::bias_unverified)
+  for (const Finding& finding : waiting) {
+    if (!finding.obstacle) continue;
+    // It waits for an operator, or does so no more: its record does not speak for it now.
+    const bool asks = finding.obstacle->code == ReasonCode::bias_unverified;
+    if (asks || asked_an_operator(registry, finding.version))
       let_wait(registry, writer, finding, *finding.obstacle, now);
+  }
   if (std::ssize(waiting) > equipment_.members) {
     const Finding last = weakest(waiting);
     std::vector<Reason> reasons{because<ReasonCode::league_full>(equipment_.members)};

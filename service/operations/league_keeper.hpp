@@ -69,6 +69,8 @@ class LeagueKeeper {
   void decide(const storage::Registry& registry, const LeagueWriter& writer, storage::Time now);
   bool decide(const storage::Registry& registry, const LeagueWriter& writer, const Finding& finding,
               storage::DecisionKind kind, const std::vector<Reason>& reasons, storage::Time now);
+  /// Whether the version waits for an operator, by the last decision about it.
+  bool asked_an_operator(const storage::Registry& registry, std::int64_t version) const;
   /// Records that a waiting version waits for this reason now, unless it does already.
   void let_wait(const storage::Registry& registry, const LeagueWriter& writer,
                 const Finding& finding, const Reason& reason, storage::Time now);

@@ -1,6 +1,7 @@
 #include "service/support/terminal.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <utility>
@@ -60,9 +61,20 @@ std::string_view fitting(std::string_view word, std::size_t width) {
   return word.substr(0, size);
 }
 
+/// Null where there is none.
+std::FILE* started_pager() {
+  const char* named = std::getenv("PAGER");
+  const std::string program = named ? named : "command -v less >/dev/null && exec less || cat";
+  if (program.empty() || program == "cat") return nullptr;
+  std::signal(SIGPIPE, SIG_IGN);  // whoever has seen enough leaves the pager
+  ::setenv("LESS", "FRX", 0);     // less: ends by itself where all fits, and shows colours
+  return ::popen(program.c_str(), "w");
+}
+
 struct Sink {
   std::FILE* out;
   std::size_t width;
+  bool is_pager;
   std::string line;
 
   bool write(std::string_view text) {
@@ -75,6 +87,11 @@ struct Sink {
   }
 };
 
+/// What to say of a write that failed: of a pager that was left, that it was done.
+ssize_t is_left(const Sink& sink, std::size_t size) {
+  return sink.is_pager ? static_cast<ssize_t>(size) : 0;
+}
+
 ssize_t write_folded(void* cookie, const char* bytes, std::size_t size) {
   Sink& sink = *static_cast<Sink*>(cookie);
   std::string_view text(bytes, size);
@@ -83,15 +100,17 @@ ssize_t write_folded(void* cookie, const char* bytes, std::size_t size) {
     sink.line += text.substr(0, end);
     if (end == std::string_view::npos) break;
     text.remove_prefix(end + 1);
-    if (!sink.end_line()) return 0;
+    if (!sink.end_line()) return is_left(sink, size);
   }
-  return std::fflush(sink.out) == 0 ? static_cast<ssize_t>(size) : 0;
+  return std::fflush(sink.out) == 0 ? static_cast<ssize_t>(size) : is_left(sink, size);
 }
 
 int close_folded(void* cookie) {
   const std::unique_ptr<Sink> sink(static_cast<Sink*>(cookie));
-  const bool done = sink->line.empty() || sink->write(folded(sink->line, sink->width));
-  return done && std::fflush(sink->out) == 0 ? 0 : -1;
+  bool done = sink->line.empty() || sink->write(folded(sink->line, sink->width));
+  done = std::fflush(sink->out) == 0 && done;
+  if (sink->is_pager) ::pclose(sink->out);
+  return done ? 0 : -1;
 }
 
 }  // namespace
@@ -173,10 +192,11 @@ void print_error(std::string_view text) {
   static_cast<void>(std::fwrite(line.data(), 1, line.size(), stderr));
 }
 
-FoldedOutput::FoldedOutput() {
+FoldedOutput::FoldedOutput(bool with_pager) {
   const std::size_t width = terminal_width();
   if (width == 0) return;
-  auto sink = std::make_unique<Sink>(Sink{stdout, width, {}});
+  std::FILE* pager = with_pager ? started_pager() : nullptr;
+  auto sink = std::make_unique<Sink>(Sink{pager ? pager : stdout, width, pager != nullptr, {}});
   std::FILE* folding = fopencookie(sink.get(), "w", {nullptr, write_folded, nullptr, close_folded});
   if (!folding) return;
   static_cast<void>(sink.release());  // close_folded() has it

@@ -45,7 +45,10 @@ void print_error(fmt::format_string<First, Rest...> format, First&& first, Rest&
 /// Does nothing where there is no terminal.
 class FoldedOutput {
  public:
-  FoldedOutput();
+  /// `with_pager`: what does not fit on the screen is shown by the program that PAGER names, or by
+  /// less where that is not set; where it is empty, or there is none, as it is. Its end waits for
+  /// the pager.
+  explicit FoldedOutput(bool with_pager);
   ~FoldedOutput();
   FoldedOutput(const FoldedOutput&) = delete;
   FoldedOutput& operator=(const FoldedOutput&) = delete;

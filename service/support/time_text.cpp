@@ -266,6 +266,16 @@ std::string time_text(std::int64_t time_ns) {
   return text += 'Z';
 }
 
+std::optional<std::int64_t> parse_moment(std::string_view text, std::int64_t now_ns) {
+  if (text == "now") return now_ns;
+  const bool has_unit = !text.empty() && text.back() >= 'a' && text.back() <= 'z';
+  if (!text.starts_with('-') || !has_unit) return parse_time(text);
+  const auto before = parse_duration(text);
+  std::int64_t moment = 0;
+  if (!before || __builtin_add_overflow(now_ns, *before, &moment)) return std::nullopt;
+  return moment;
+}
+
 std::string rough_duration_text(std::int64_t duration_ns) {
   constexpr std::int64_t year_ns = 365 * day_ns;
   if (duration_ns < 0)

@@ -23,6 +23,9 @@ std::optional<std::int64_t> parse_time(std::string_view text);
 std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t unit_ns,
                                         std::int64_t origin_s = 0);
 
+/// A time as parse_time() reads it, "now", or how long before `now`: "-2h", "-30min".
+std::optional<std::int64_t> parse_moment(std::string_view text, std::int64_t now_ns);
+
 /// Nanoseconds from "250ns", "10us", "500ms", "2.5s", "90min", "2h", "3d" or plain seconds. It may
 /// be negative. Empty when the text is none of these or 64 bits cannot hold it.
 std::optional<std::int64_t> parse_duration(std::string_view text);

@@ -134,7 +134,15 @@ void draw_line(Svg& svg, const PictureData& data, const std::string& id, const V
   svg.end_group();
 }
 
-std::string scores_text(const EquipmentModel& model, Index q) {
+/// The version's own scores, on its validation part; those of the run that is drawn where that part
+/// is not in the picture.
+std::string scores_text(const PictureData& data, Index q) {
+  const EquipmentModel& model = data.model;
+  const storage::TimeRange validated = model.validated_on;
+  const bool is_shown = validated.begin >= data.range.begin && validated.end <= data.range.end;
+  if (!is_shown && data.run.score.rows > 0)
+    return fmt::format("this run: MRSE {:.3g} %, fit {:.1f} %", data.run.score.mrse_percent(q),
+                       data.run.score.fit_percent(q));
   std::string text = fmt::format("validation: MRSE {:.3g} %, fit {:.1f} %",
                                  model.validation.mrse_percent(q), model.validation.fit_percent(q));
   if (model.tracking)
@@ -159,7 +167,7 @@ void draw_output(Svg& svg, const PictureData& data, Index q, double y) {
   draw_line(svg, data, id + "-real", real, scale, "real");
   draw_line(svg, data, id + "-simulated", simulated, scale, "simulated");
   svg.text({left, y - 7}, output.name + unit, "heading");
-  svg.text({right, y - 7}, scores_text(data.model, q), "small", "end");
+  svg.text({right, y - 7}, scores_text(data, q), "small", "end");
 
   const Box box{left, run.bottom() + panel_gap, right - left, error_height};
   draw_time_frame(svg, data, box, true);

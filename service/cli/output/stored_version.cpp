@@ -72,6 +72,11 @@ void add_version_argument(CLI::App& command, std::string& subject) {
   command
       .add_option("subject", subject, "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
       ->required();
+  command
+      .add_option_function<std::string>(
+          "version", [&subject](const std::string& number) { subject += "@" + number; },
+          "the version's number, where @VERSION does not say it")
+      ->check(above_zero());
 }
 
 std::variant<StoredVersion, Refusal> find_stored_version(const HistoryReader& history,

@@ -7,8 +7,10 @@
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
+#include "service/history/telemetry_champion.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident::cli::at_verb {
 namespace {
@@ -22,14 +24,37 @@ struct Arguments {
   HistoryAccessOptions access;
   std::string time;
   std::string subject;
+  bool by_telemetry = false;
   bool json = false;
 };
 
-/// An equipment and the decision that made its champion; none where it had no champion.
-using Reign = std::pair<EquipmentName, std::optional<Decision>>;
+/// An equipment and the decision that made its champion, with the time from which on it was; none
+/// where it had no champion.
+struct Line {
+  EquipmentName equipment;
+  std::optional<history::Reign> reign;
+  std::optional<history::Reign> first;  // of all, where it had none yet
+};
 
-std::variant<std::vector<Reign>, Refusal> reigns(const HistoryReader& history, storage::Time time,
-                                                 const std::string& text) {
+Line line_of(const HistoryReader& history, const EquipmentName& equipment, storage::Time time,
+             bool by_telemetry) {
+  Line line;
+  line.equipment = equipment;
+  if (by_telemetry) {
+    line.reign = history::champion_for_telemetry(history, equipment, time);
+  } else if (auto made = history.champion_decision(equipment, time)) {
+    const storage::Time since = made->time;
+    line.reign = {*std::move(made), since};
+  }
+  if (line.reign) return line;
+  line.first = history::first_champion(history, equipment);
+  if (line.first && !by_telemetry) line.first->from = line.first->decision.time;
+  if (line.first && line.first->from <= time) line.first.reset();  // it was withdrawn
+  return line;
+}
+
+std::variant<std::vector<Line>, Refusal> lines(const HistoryReader& history, storage::Time time,
+                                               const std::string& text, bool by_telemetry) {
   Subject wanted;
   if (!text.empty()) {
     const auto parsed = parse_subject(text);
@@ -37,74 +62,101 @@ std::variant<std::vector<Reign>, Refusal> reigns(const HistoryReader& history, s
     wanted = std::get<Subject>(parsed);
     if (wanted.version) return Refusal{text + " names a version; name the equipment alone"};
   }
-  std::vector<Reign> found;
+  std::vector<Line> found;
   for (const EquipmentName& one : history.equipment())
     if ((wanted.equipment.empty() || one.equipment == wanted.equipment) &&
         (wanted.spacecraft.empty() || one.spacecraft == wanted.spacecraft))
-      found.emplace_back(one, history.champion_decision(one, time));
+      found.push_back(line_of(history, one, time, by_telemetry));
   if (!found.empty()) return found;
   return Refusal{fmt::format("nothing is known about {}; the database has {}",
                              text.empty() ? "any equipment" : text, equipment_in(history))};
 }
 
-void print_table(const std::vector<Reign>& reigns) {
-  Table table(
-      {{"equipment"}, {"version", Table::Align::right}, {"since (UTC)"}, {"by"}, {"what and why"}});
-  for (const auto& [equipment, made] : reigns) {
-    const std::string name = full_name(equipment);
-    if (made)
-      table.add({name, fmt::format("{}", made->version), time_text(made->time), made->actor,
-                 fmt::format("{}: {}", storage::name(made->kind), made->reason)});
-    else
-      table.add({name, "-", "-", "-", "no champion"});
+/// To the second.
+std::string second_text(storage::Time time) {
+  constexpr storage::Time second = 1'000'000'000;
+  return time_text(time - (time % second + second) % second);
+}
+
+void print_table(const std::vector<Line>& lines, bool by_telemetry) {
+  Table table({{"equipment"},
+               {"version", Table::Align::right},
+               {by_telemetry ? "for telemetry since (UTC)" : "since (UTC)"},
+               {"by"},
+               {"what and why"}});
+  for (const Line& line : lines) {
+    const std::string name = full_name(line.equipment);
+    if (line.reign) {
+      const Decision& made = line.reign->decision;
+      table.add({name, fmt::format("{}", made.version), second_text(line.reign->from), made.actor,
+                 fmt::format("{}: {}", storage::name(made.kind), made.reason)});
+      continue;
+    }
+    table.add({name, "-", "-", "-",
+               line.first ? fmt::format("no champion yet: the first one, version {}, {} {}",
+                                        line.first->decision.version,
+                                        by_telemetry ? "is for telemetry since" : "was decided at",
+                                        second_text(line.first->from))
+                          : "no champion"});
   }
   fmt::print("{}", table.text(terminal_width()));
 }
 
-void print_json(storage::Time time, const std::vector<Reign>& reigns) {
+void print_json(storage::Time time, const std::vector<Line>& lines) {
   ordered_json list = ordered_json::array();
-  for (const auto& [equipment, made] : reigns) {
-    ordered_json champion;
-    if (made)
-      champion = {{"version", made->version},
-                  {"since", time_text(made->time)},
-                  {"kind", storage::name(made->kind)},
-                  {"actor", made->actor},
-                  {"reason", made->reason}};
-    list.push_back({{"spacecraft", equipment.spacecraft},
-                    {"equipment", equipment.equipment},
-                    {"champion", champion}});
+  for (const Line& line : lines) {
+    ordered_json champion, first;
+    if (line.reign) {
+      const Decision& made = line.reign->decision;
+      champion = {{"version", made.version},
+                  {"since", time_text(line.reign->from)},
+                  {"kind", storage::name(made.kind)},
+                  {"actor", made.actor},
+                  {"reason", made.reason}};
+    }
+    if (line.first)
+      first = {{"version", line.first->decision.version}, {"since", time_text(line.first->from)}};
+    list.push_back({{"spacecraft", line.equipment.spacecraft},
+                    {"equipment", line.equipment.equipment},
+                    {"champion", champion},
+                    {"first", first}});
   }
   fmt::print("{}\n", ordered_json{{"time", time_text(time)}, {"equipment", list}}.dump(
                          2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 int run(const Arguments& arguments) {
-  const auto time = parse_time(arguments.time);
+  const auto time = parse_moment(arguments.time, utc_now());
   if (!time)
     return refuse(
-        {fmt::format("{} is no time; write it as 2026-03-01T12:00:00Z or in seconds since "
-                     "1970",
+        {fmt::format("{} is no time; write it as 2026-03-01T12:00:00Z, in seconds since "
+                     "1970, now or -2h (before now)",
                      arguments.time)});
   return with_readers(arguments.access, [&](const Readers& readers) {
-    const auto found = reigns(readers.history, *time, arguments.subject);
+    const auto found = lines(readers.history, *time, arguments.subject, arguments.by_telemetry);
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
     if (arguments.json)
-      print_json(*time, std::get<std::vector<Reign>>(found));
+      print_json(*time, std::get<std::vector<Line>>(found));
     else
-      print_table(std::get<std::vector<Reign>>(found));
+      print_table(std::get<std::vector<Line>>(found), arguments.by_telemetry);
     return static_cast<int>(exit_done);
   });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command.add_option("time", arguments->time, "UTC, or seconds since 1970")->required();
+  command.add_option("time", arguments->time, "UTC, seconds since 1970, now, or -2h (before now)")
+      ->required();
   command.add_option("equipment", arguments->subject,
                      "EQUIPMENT or SPACECRAFT/EQUIPMENT (all of them)");
+  command.add_flag("--telemetry", arguments->by_telemetry,
+                   "which version belongs to telemetry of that time, also where it was imported or "
+                   "judged later");
   add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object");
-  command.footer("Example:\n  reident at 2026-03-01T12:00:00Z CBERS-4/BDR --config reident.toml");
+  command.footer(
+      "Without --telemetry: which version simulators ran then.\n"
+      "Example:\n  reident at 2026-03-01T12:00:00Z CBERS-4/BDR --telemetry --config reident.toml");
   return [arguments] { return run(*arguments); };
 }
 

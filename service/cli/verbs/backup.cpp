@@ -1,11 +1,13 @@
 #include "storage/care/backup.hpp"
 
 #include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "service/cli/file_errors.hpp"
+#include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
@@ -16,6 +18,7 @@ namespace reident::cli::backup_verb {
 namespace {
 
 struct Arguments {
+  DatabaseOptions database;
   std::string file, copy;
   storage::BackupOptions options;
   bool json = false;
@@ -38,7 +41,15 @@ void print(const storage::BackupReport& report, bool json) {
              report.bytes, report.samples, newest ? " up to " + *newest : "", report.versions);
 }
 
-int run(const Arguments& arguments) {
+int run(Arguments& arguments) {
+  // With a configuration one word is enough: the copy.
+  if (arguments.copy.empty() && arguments.database.database && arguments.database.config)
+    arguments.copy = *std::exchange(arguments.database.database, std::nullopt);
+  if (arguments.copy.empty())
+    return refuse({"copy is required: the file to make; see reident backup --help"});
+  const auto path = database_path(arguments.database);
+  if (const auto* refusal = std::get_if<Refusal>(&path)) return refuse(*refusal);
+  arguments.file = std::get<std::filesystem::path>(path).string();
   const StopSignal stop;
   return refusing_what_cannot_be([&] {
     storage::Database source(arguments.file, storage::Database::Mode::read_only);
@@ -61,8 +72,8 @@ int run(const Arguments& arguments) {
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command.add_option("file", arguments->file, "database of the service")->required();
-  command.add_option("copy", arguments->copy, "file to make")->required();
+  add_file_argument(command, arguments->database, "database of the service");
+  command.add_option("copy", arguments->copy, "file to make");
   command.add_flag("--replace", arguments->options.replace,
                    "put the copy in the place of a file that exists");
   command.add_flag("--json", arguments->json, "one JSON object with what was copied");

@@ -316,8 +316,6 @@ void print_json(const std::vector<Group>& groups, const TimeBins& bins,
 int run(const Arguments& arguments) {
   Wanted wanted{arguments.spacecraft, arguments.parameters};
   if (const auto refusal = add_equipment(arguments, wanted)) return refuse(*refusal);
-  if (!arguments.access.is_remote() && !arguments.access.database.database)
-    return refuse({no_archive("completeness")});
   return with_readers(arguments.access, [&](const Readers& readers) {
     auto found = groups_of(readers.telemetry, wanted);
     if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);

@@ -8,6 +8,7 @@
 
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/throughput.hpp"
+#include "service/cli/replace_option.hpp"
 #include "service/cli/time_options.hpp"
 #include "service/cli/verb.hpp"
 #include "service/support/output_file.hpp"
@@ -31,13 +32,17 @@ struct Arguments {
   std::optional<std::string> origin;
   TimeOptions time;
   std::string output = standard_output;
+  bool replace = false;
 };
 
 int write(const history::TelemetryReader& telemetry, const std::vector<storage::SeriesInfo>& series,
           const Arguments& arguments) {
   const StopSignal stop;
   const bool to_file = arguments.output != standard_output;
-  OutputFile file = to_file ? OutputFile(arguments.output) : OutputFile::standard_output();
+  OutputFile file =
+      to_file ? OutputFile(arguments.output, arguments.replace ? OutputFile::Existing::replaced
+                                                               : OutputFile::Existing::kept)
+              : OutputFile::standard_output();
   Progress bar(stderr, to_file && isatty(STDERR_FILENO) == 1);
   Throughput pace;
   const ExportReport report = transfer::export_series(
@@ -66,8 +71,8 @@ int run(Arguments& arguments) {
   if (const auto* refusal = std::get_if<Refusal>(&range)) return refuse(*refusal);
   arguments.options.range = std::get<storage::TimeRange>(range);
   if (arguments.origin) arguments.options.origin = transfer::parse_origin(*arguments.origin);
-  if (!arguments.access.is_remote() && !arguments.access.database.database)
-    return refuse({no_archive("export")});
+  if (const auto refusal = exists_already(arguments.output, arguments.replace))
+    return refuse(*refusal);
   return with_readers(arguments.access, [&](const Readers& readers) {
     const auto series = transfer::series_to_export(readers.telemetry, arguments.options);
     if (const auto* error = std::get_if<csv::Error>(&series)) return refuse({error->message});
@@ -88,6 +93,7 @@ std::function<int()> declare(CLI::App& command) {
                    "source");
   command.add_option("-o,--output", arguments->output, "file; - is standard output")
       ->capture_default_str();
+  add_replace_option(command, arguments->replace);
   command.footer(
       "One sample a row: spacecraft,parameter,origin,source,time,value,quality, each series in\n"
       "order of time. Values have all their digits: reident import brings the same samples back.\n"

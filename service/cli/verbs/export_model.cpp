@@ -6,6 +6,7 @@
 
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/stored_version.hpp"
+#include "service/cli/replace_option.hpp"
 #include "service/cli/verb.hpp"
 #include "service/model_export/model_export.hpp"
 #include "service/operations/commands.hpp"
@@ -22,7 +23,7 @@ struct Arguments {
   HistoryAccessOptions access;
   std::string subject;
   std::optional<std::string> fmu, mat, json;
-  bool force = false;
+  bool replace = false;
 };
 
 /// A file to be written.
@@ -44,7 +45,7 @@ std::vector<Target> targets_of(const Arguments& arguments) {
 }
 
 /// What is wrong with the files that are asked for.
-std::optional<Refusal> mistake_in(const std::vector<Target>& targets, bool force) {
+std::optional<Refusal> mistake_in(const std::vector<Target>& targets, bool replace) {
   if (targets.empty()) return Refusal{"nothing to write; name a file with --fmu, --mat or --json"};
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Target& target = targets[i];
@@ -55,10 +56,7 @@ std::optional<Refusal> mistake_in(const std::vector<Target>& targets, bool force
     for (std::size_t k = 0; k < i; ++k)
       if (targets[k].path == target.path)
         return Refusal{fmt::format("{} is named twice; each kind needs a file", target.path)};
-    std::error_code failed;
-    if (!force && std::filesystem::exists(target.path, failed))
-      return Refusal{
-          fmt::format("{} exists; name another file, or replace it with --force", target.path)};
+    if (auto refusal = exists_already(target.path, replace)) return refusal;
   }
   return std::nullopt;
 }
@@ -82,17 +80,17 @@ std::variant<ExportedVersion, Refusal> exported_version(StoredVersion story) {
   return exported;
 }
 
-OutputFile output_to(const std::string& path, bool force) {
+OutputFile output_to(const std::string& path, bool replace) {
   if (path == standard_output) return OutputFile::standard_output();
-  return OutputFile(path, force ? OutputFile::Existing::replaced : OutputFile::Existing::kept);
+  return OutputFile(path, replace ? OutputFile::Existing::replaced : OutputFile::Existing::kept);
 }
 
 /// No file takes its name before all of them are written.
-void write(const ExportedVersion& exported, const std::vector<Target>& targets, bool force) {
+void write(const ExportedVersion& exported, const std::vector<Target>& targets, bool replace) {
   std::vector<OutputFile> files;
   for (const Target& target : targets) {
     const std::string content = target.content(exported);
-    files.push_back(output_to(target.path, force));
+    files.push_back(output_to(target.path, replace));
     files.back().write(content);
   }
   for (OutputFile& file : files) file.finish();
@@ -101,13 +99,13 @@ void write(const ExportedVersion& exported, const std::vector<Target>& targets, 
 int run(const Arguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);
   const std::vector<Target> targets = targets_of(arguments);
-  if (const auto refusal = mistake_in(targets, arguments.force)) return refuse(*refusal);
+  if (const auto refusal = mistake_in(targets, arguments.replace)) return refuse(*refusal);
   return with_version(
       arguments.access, arguments.subject, [&](const Readers&, StoredVersion&& story) {
         const auto exported = exported_version(std::move(story));
         if (const auto* refusal = std::get_if<Refusal>(&exported)) return refuse(*refusal);
         const auto& version = std::get<ExportedVersion>(exported).version;
-        write(std::get<ExportedVersion>(exported), targets, arguments.force);
+        write(std::get<ExportedVersion>(exported), targets, arguments.replace);
         for (const Target& target : targets)
           if (arguments.json != standard_output)
             fmt::print("{}: {} of {} version {}\n", target.path, target.what,
@@ -123,7 +121,7 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--fmu", arguments->fmu, "FMU for co-simulation, FMI 2.0");
   command.add_option("--mat", arguments->mat, "MATLAB file, version 5");
   command.add_option("--json", arguments->json, "JSON; - is standard output");
-  command.add_flag("--force", arguments->force, "replace files that exist");
+  add_replace_option(command, arguments->replace);
   add_access_options(command, arguments->access);
   command.footer(
       "Of several no file takes its name before all of them are written.\n"

@@ -7,9 +7,13 @@
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
+#include "service/cli/time_options.hpp"
 #include "service/cli/verb.hpp"
+#include "service/model/glossary.hpp"
+#include "service/model/reasons.hpp"
 #include "service/operations/commands.hpp"
 #include "service/review/evidence.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::history_verb {
@@ -24,13 +28,22 @@ using storage::HistoryFilter;
 using storage::Hold;
 using storage::VersionSummary;
 
+constexpr std::size_t lines_for_people = 20;  // where nothing else is asked for
+
 struct Arguments {
   HistoryAccessOptions access;
   std::string spacecraft;
   std::string equipment;
+  std::string outcome;
+  TimeOptions time;
   std::optional<std::size_t> last;
+  bool all = false;
   bool versions_only = false;
+  bool long_lines = false;
+  bool csv = false;
   bool json = false;
+
+  bool is_for_programs() const { return csv || json; }
 };
 
 bool is_selected(const EquipmentName& equipment, const Arguments& arguments) {
@@ -78,6 +91,30 @@ std::string version_text(const Attempt& attempt, const Decided& decided) {
                                              : "");
 }
 
+/// A code in words, as it is where the glossary does not have it.
+std::string words_of(const std::string& code) {
+  const GlossaryEntry* entry = explanation_of(code);
+  return entry ? std::string(entry->words) : code;
+}
+
+/// What became of the window, in words: of a version what it is now, and by whom.
+std::string verdict_of(const Attempt& attempt, const Decided& decided) {
+  if (!attempt.version) return words_of(attempt.outcome);
+  const Decided::Version& version = decided.version(attempt);
+  const Decision& last = version.decisions.back();
+  const std::string by = last.actor == "gate" ? "" : " by " + last.actor;
+  if (version.summary.status == "approved") return "champion now" + by;
+  if (version.summary.status == "superseded") return "was champion";
+  if (version.summary.status == "withdrawn") return "withdrawn" + by;
+  if (version.summary.status == "waiting") {
+    if (waits_for_operator(last)) return words_of(last_code(last));
+    const bool is_judged = attempt.outcome == name(Outcome::challenger);
+    return is_judged ? "challenges the champion" : words_of(attempt.outcome);
+  }
+  const std::string code = last_code(last);
+  return "rejected" + (by.empty() ? ": " + words_of(code.empty() ? attempt.outcome : code) : by);
+}
+
 /// The outcome at first, and what was decided since.
 std::string outcome_text(const Attempt& attempt, const Decided& decided) {
   std::string text = fmt::format("{}: {}", attempt.outcome, attempt.reason);
@@ -89,7 +126,7 @@ std::string outcome_text(const Attempt& attempt, const Decided& decided) {
   return text;
 }
 
-void print_table(const std::vector<Attempt>& attempts, const Decided& decided) {
+void print_long(const std::vector<Attempt>& attempts, const Decided& decided) {
   Table table({{"equipment"},
                {"window (UTC)"},
                {"length"},
@@ -107,9 +144,60 @@ void print_table(const std::vector<Attempt>& attempts, const Decided& decided) {
                outcome_text(attempt, decided)});
   }
   fmt::print("{}", table.text(terminal_width()));
+}
+
+void print_short(const std::vector<Attempt>& attempts, const Decided& decided) {
+  constexpr std::size_t minutes = sizeof "2026-03-01T12:00" - 1;
+  Table table({{"equipment"},
+               {"window ends (UTC)"},
+               {"version", Table::Align::right},
+               {"MRSE %", Table::Align::right},
+               {"verdict"}});
+  for (const Attempt& attempt : attempts)
+    table.add({full_name({attempt.spacecraft, attempt.equipment}),
+               time_text(attempt.window.end).substr(0, minutes), version_text(attempt, decided),
+               evidence_number(evidence_of(attempt), "mrse_percent"),
+               verdict_of(attempt, decided)});
+  fmt::print("{}", table.text(terminal_width()));
+}
+
+void print_table(const std::vector<Attempt>& attempts, const Decided& decided,
+                 const Arguments& arguments, bool is_cut) {
+  if (arguments.long_lines)
+    print_long(attempts, decided);
+  else
+    print_short(attempts, decided);
   fmt::print("* champion: what simulators run now; x withdrawn\n");
+  if (is_cut) fmt::print("the last {}; --all shows every one, --long why\n", attempts.size());
   for (const auto& [equipment, hold] : decided.holds())
     fmt::print("{}\n", hold_text(equipment, hold));
+}
+
+std::string quoted(std::string text) {
+  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 2))
+    text.insert(at, 1, '"');
+  return "\"" + text + "\"";
+}
+
+void print_csv(const std::vector<Attempt>& attempts, const Decided& decided) {
+  fmt::print(
+      "attempt,spacecraft,equipment,window_begin,window_end,time,outcome,version,status,order,"
+      "mrse_percent,fit_percent,verdict,reason\n");
+  for (const Attempt& attempt : attempts) {
+    const ordered_json evidence = evidence_of(attempt);
+    const auto number = [&](const char* key) {
+      const auto found = evidence.find(key);
+      return found != evidence.end() && found->is_number() ? found->dump() : std::string();
+    };
+    fmt::print("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", attempt.id,
+               quoted(attempt.spacecraft), quoted(attempt.equipment),
+               time_text(attempt.window.begin), time_text(attempt.window.end),
+               time_text(attempt.time), attempt.outcome,
+               attempt.version ? std::to_string(*attempt.version) : "",
+               attempt.version ? decided.version(attempt).summary.status : "", number("order"),
+               number("mrse_percent"), number("fit_percent"), quoted(verdict_of(attempt, decided)),
+               quoted(attempt.reason));
+  }
 }
 
 ordered_json attempt_json(const Attempt& attempt, const Decided& decided) {
@@ -160,10 +248,33 @@ Refusal nothing_selected(const Arguments& arguments, const HistoryReader& histor
   if (history.attempts(newest).empty())
     return {"no window has been tried yet; reident status shows what the service does"};
   const auto or_any = [](const std::string& name) { return name.empty() ? "(any)" : name; };
-  return {fmt::format("no {} of {}; the database has {}",
+  return {fmt::format("no {} of {}{}; the database has {}",
                       arguments.versions_only ? "version" : "attempt",
                       full_name({or_any(arguments.spacecraft), or_any(arguments.equipment)}),
+                      arguments.outcome.empty() && !arguments.time.from && !arguments.time.to
+                          ? ""
+                          : " with this outcome and time",
                       equipment_in(history))};
+}
+
+/// The attempts that are asked for, and whether more were left out.
+std::pair<std::vector<Attempt>, bool> selected(const Arguments& arguments,
+                                               std::optional<storage::TimeRange> window,
+                                               const HistoryReader& history) {
+  std::optional<std::size_t> last = arguments.last;
+  if (!last && !arguments.all && !arguments.is_for_programs()) last = lines_for_people;
+  HistoryFilter filter;
+  filter.spacecraft = arguments.spacecraft;
+  filter.equipment = arguments.equipment;
+  filter.window = window;
+  filter.versions_only = arguments.versions_only;
+  if (last && arguments.outcome.empty()) filter.last = *last + 1;  // one more shows that there are
+  std::vector<Attempt> attempts = history.attempts(filter);
+  if (!arguments.outcome.empty())
+    std::erase_if(attempts, [&](const Attempt& one) { return one.outcome != arguments.outcome; });
+  const bool is_cut = last && attempts.size() > *last;
+  if (is_cut) attempts.erase(attempts.begin(), attempts.end() - static_cast<std::ptrdiff_t>(*last));
+  return {std::move(attempts), is_cut && !arguments.last};
 }
 
 int run(Arguments arguments) {
@@ -171,6 +282,18 @@ int run(Arguments arguments) {
       arguments.spacecraft.empty() && slash != std::string::npos) {
     arguments.spacecraft = arguments.equipment.substr(0, slash);
     arguments.equipment.erase(0, slash + 1);
+  }
+  if (!arguments.outcome.empty() && !explanation_of(arguments.outcome)) {
+    std::vector<std::string> codes;
+    for (const GlossaryEntry& one : glossary()) codes.emplace_back(one.code);
+    return refuse({fmt::format("there is no outcome {}{}; reident explain lists the codes",
+                               arguments.outcome, did_you_mean(arguments.outcome, codes))});
+  }
+  std::optional<storage::TimeRange> window;
+  if (arguments.time.from || arguments.time.to) {
+    const auto range = chosen_range(arguments.time, {INT64_MIN, INT64_MAX});
+    if (const auto* refusal = std::get_if<Refusal>(&range)) return refuse(*refusal);
+    window = std::get<storage::TimeRange>(range);
   }
   return with_readers(arguments.access, [&](const Readers& readers) {
     const HistoryReader& history = readers.history;
@@ -180,19 +303,16 @@ int run(Arguments arguments) {
           return is_selected(one, arguments);
         }))
       return refuse(nothing_selected(arguments, history));
-    HistoryFilter filter;
-    filter.spacecraft = arguments.spacecraft;
-    filter.equipment = arguments.equipment;
-    filter.versions_only = arguments.versions_only;
-    filter.last = arguments.last;
-    const std::vector<Attempt> attempts = history.attempts(filter);
-    if (attempts.empty() && (filtered || !arguments.json))
+    const auto [attempts, is_cut] = selected(arguments, window, history);
+    if (attempts.empty() && (filtered || !arguments.is_for_programs()))
       return refuse(nothing_selected(arguments, history));
     const Decided decided(history, arguments);
     if (arguments.json)
       print_json(attempts, decided);
+    else if (arguments.csv)
+      print_csv(attempts, decided);
     else
-      print_table(attempts, decided);
+      print_table(attempts, decided, arguments, is_cut);
     return static_cast<int>(exit_done);
   });
 }
@@ -203,16 +323,25 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--spacecraft", arguments->spacecraft, "of this spacecraft alone");
   command.add_option("--equipment", arguments->equipment,
                      "of this EQUIPMENT or SPACECRAFT/EQUIPMENT alone");
-  command.add_option("--last", arguments->last, "the newest so many")->check(above_zero());
+  command.add_option("--outcome", arguments->outcome,
+                     "of windows with this outcome alone; reident explain lists the codes");
+  add_time_options(command, arguments->time, "windows with telemetry");
+  CLI::Option* last =
+      command.add_option("--last", arguments->last, "the newest so many (20 for people)")
+          ->check(above_zero());
+  command.add_flag("--all", arguments->all, "every one")->excludes(last);
   command.add_flag("--versions-only", arguments->versions_only,
                    "leave out windows that gave no model");
-  command.add_flag("--json", arguments->json, "one JSON object with all evidence");
-  command.footer("Example:\n  reident history --config reident.toml --equipment BDR --last 20");
+  command.add_flag("--long", arguments->long_lines, "with the reasons, and what was decided since");
+  CLI::Option* csv = command.add_flag("--csv", arguments->csv, "as CSV, every one");
+  command.add_flag("--json", arguments->json, "one JSON object with all evidence, every one")
+      ->excludes(csv);
+  command.footer("Example:\n  reident history --config reident.toml --equipment BDR --from -7d");
   return [arguments] { return run(*arguments); };
 }
 
 const VerbRegistration registered(
-    {"history", "List every window that was tried, what came out and why, the latest last",
+    {"history", "List the windows that were tried and what came out, the latest last",
      WorksOn::history, declare});
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "service/cli/config_options.hpp"
 #include "service/cli/operate.hpp"
 #include "service/cli/output/stored_version.hpp"
+#include "service/cli/service_choice.hpp"
 #include "service/cli/verb.hpp"
 
 namespace reident::cli::operator_verbs {
@@ -10,7 +11,11 @@ namespace {
 
 constexpr double max_timeout_s = 1e6;
 
+/// What the words of an order name in addition to the equipment.
+enum class Names { no_version, a_version, maybe_a_version };
+
 struct Arguments {
+  Names names = Names::no_version;
   OperatorOptions options;
   std::string subject;
   std::int64_t version = 0;
@@ -20,13 +25,17 @@ int run(const Arguments& arguments, const std::string& action) {
   const auto parsed = parse_subject(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&parsed)) return refuse(*refusal);
   const Subject& subject = std::get<Subject>(parsed);
-  if (subject.version)
-    return refuse(
-        {fmt::format("{} names a version with the equipment; the version is a word or an "
-                     "option of its own",
-                     arguments.subject)});
-  return operate(arguments.options,
-                 {action, subject.spacecraft, subject.equipment, arguments.version});
+  if (subject.version && arguments.names == Names::no_version)
+    return refuse({fmt::format("{} names a version; {} is about the equipment alone",
+                               arguments.subject, action)});
+  if (subject.version && arguments.version != 0 && *subject.version != arguments.version)
+    return refuse({fmt::format("{} and {} are two versions; name one", arguments.subject,
+                               arguments.version)});
+  const std::int64_t version = subject.version.value_or(arguments.version);
+  if (version == 0 && arguments.names == Names::a_version)
+    return refuse({fmt::format("{} names no version; write {}@NUMBER", arguments.subject,
+                               arguments.subject)});
+  return operate(arguments.options, {action, subject.spacecraft, subject.equipment, version});
 }
 
 /// What all of them have; the caller adds its own. Returns what the verb does.
@@ -34,13 +43,16 @@ std::function<int()> declare_common(CLI::App& command, const std::shared_ptr<Arg
                                     const std::string& action) {
   OperatorOptions& options = arguments->options;
   options.actor = login_name();
-  command.add_option("equipment", arguments->subject, "EQUIPMENT or SPACECRAFT/EQUIPMENT")
+  command
+      .add_option("equipment", arguments->subject,
+                  "EQUIPMENT or SPACECRAFT/EQUIPMENT; with @VERSION where a version is named")
       ->required();
   command.add_option("--actor", options.actor, "the operator's name, kept with the decision")
       ->capture_default_str();
   add_database_options(command, options.database);
   command.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 230));
   command.add_option("--partition", options.partition, "DDS partition");
+  add_service_option(command, options.service);
   command.add_option("--timeout", options.timeout_s, "seconds to wait for the service")
       ->check(CLI::Range(0.0, max_timeout_s))
       ->capture_default_str();
@@ -59,9 +71,11 @@ void footer(CLI::App& command, const std::string& example) {
 Verb decision(std::string_view name, std::string_view purpose, std::string example_reason) {
   return {name, purpose, WorksOn::decision, [name, example_reason](CLI::App& command) {
             const auto arguments = std::make_shared<Arguments>();
+            arguments->names = Names::a_version;
             auto work = declare_common(command, arguments, std::string(name));
-            command.add_option("version", arguments->version, "number of the version")
-                ->required()
+            command
+                .add_option("version", arguments->version,
+                            "number of the version, where @VERSION does not say it")
                 ->check(above_zero());
             command
                 .add_option("--reason", arguments->options.reason, "why, kept with the decision")
@@ -85,6 +99,7 @@ Verb order(std::string_view name, std::string action, std::string_view purpose,
 
 std::function<int()> declare_rollback(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
+  arguments->names = Names::maybe_a_version;
   auto work = declare_common(command, arguments, "roll_back");
   command.add_option("--to", arguments->version, "to this version (the previous champion)")
       ->check(above_zero());

@@ -12,6 +12,7 @@
 #include "service/cli/output/record_picture.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/range_options.hpp"
+#include "service/cli/replace_option.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
@@ -30,6 +31,7 @@ struct Arguments {
   std::string subject;
   std::optional<std::string> output;
   bool record = false;
+  bool replace = false;
   RangeOptions range;
 };
 
@@ -98,7 +100,8 @@ std::variant<std::string, Refusal> picture_of_record(const history::HistoryReade
   return record_picture(data);
 }
 
-int write_picture(const std::string& picture, const std::string& path) {
+int write_picture(const std::string& picture, const std::string& path, bool replace) {
+  if (const auto refusal = exists_already(path, replace)) return refuse(*refusal);
   if (path == "-") {
     fmt::print("{}", picture);
     return exit_done;
@@ -124,7 +127,8 @@ int run(const Arguments& arguments) {
         if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
         return write_picture(std::get<std::string>(picture),
                              arguments.output.value_or(fmt::format(
-                                 "{}-v{}.svg", story.version.equipment, story.version.number)));
+                                 "{}-v{}.svg", story.version.equipment, story.version.number)),
+                             arguments.replace);
       });
 }
 
@@ -133,6 +137,7 @@ std::function<int()> declare(CLI::App& command) {
   add_version_argument(command, arguments->subject);
   command.add_option("-o,--output", arguments->output,
                      "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
+  add_replace_option(command, arguments->replace);
   command.add_flag(
       "--record", arguments->record,
       "draw its record beside the champion's instead: scores, mean, sure mean, change");

@@ -6,6 +6,7 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/file_errors.hpp"
+#include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/protected_telemetry.hpp"
 #include "service/support/progress.hpp"
@@ -24,8 +25,9 @@ using storage::RetentionReport;
 using storage::RetentionRule;
 
 struct Arguments {
+  DatabaseOptions database;
   std::string file;
-  std::optional<std::string> config, keep, max_size;
+  std::optional<std::string> keep, max_size;
   bool dry_run = false;
   bool including_versions = false;
   bool json = false;
@@ -38,8 +40,8 @@ struct Request {
 
 std::variant<Request, Refusal> request_of(const Arguments& arguments) {
   Request request;
-  if (arguments.config) {
-    auto chosen = chosen_config(arguments.config);
+  if (arguments.database.config) {
+    auto chosen = chosen_config(arguments.database.config);
     if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
     request.config = std::move(std::get<std::optional<Config>>(chosen));
     request.rule = {request.config->keep, request.config->max_size};
@@ -139,7 +141,10 @@ int remove(const Arguments& arguments, const Request& request) {
   return more ? exit_failed : exit_done;
 }
 
-int run(const Arguments& arguments) {
+int run(Arguments& arguments) {
+  const auto path = database_path(arguments.database);
+  if (const auto* refusal = std::get_if<Refusal>(&path)) return refuse(*refusal);
+  arguments.file = std::get<std::filesystem::path>(path).string();
   const auto request = request_of(arguments);
   if (const auto* refusal = std::get_if<Refusal>(&request)) return refuse(*refusal);
   return refusing_what_cannot_be([&] {
@@ -158,14 +163,12 @@ int run(const Arguments& arguments) {
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command.add_option("file", arguments->file, "database, which no service may hold")->required();
+  add_file_argument(command, arguments->database, "database, which no service may hold");
   command.add_option("--keep", arguments->keep,
                      "remove what is older than this before the spacecraft's newest telemetry, "
                      "as 400d");
   command.add_option("--max-size", arguments->max_size,
                      "remove the oldest until no more than this is in use, as 200GB");
-  command.add_option("--config", arguments->config,
-                     "configuration that says keep and max_size where the options do not");
   command.add_flag("--dry-run", arguments->dry_run,
                    "say what would be removed, and remove nothing");
   command.add_flag("--including-versions", arguments->including_versions,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/cli/file_errors.hpp"
+#include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
@@ -20,6 +21,7 @@ using storage::Finding;
 using storage::VerifyReport;
 
 struct Arguments {
+  DatabaseOptions database;
   std::string file;
   bool quick = false;
   bool json = false;
@@ -84,7 +86,10 @@ void print(const Arguments& arguments, const VerifyReport& report) {
              samples, report.versions, arguments.quick ? " quickly" : "");
 }
 
-int run(const Arguments& arguments) {
+int run(Arguments& arguments) {
+  const auto path = database_path(arguments.database);
+  if (const auto* refusal = std::get_if<Refusal>(&path)) return refuse(*refusal);
+  arguments.file = std::get<std::filesystem::path>(path).string();
   const StopSignal stop;
   return refusing_what_cannot_be([&] {
     storage::Database database(arguments.file, storage::Database::Mode::read_only);
@@ -106,7 +111,7 @@ int run(const Arguments& arguments) {
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
-  command.add_option("file", arguments->file, "database of the service, or a backup")->required();
+  add_file_argument(command, arguments->database, "database of the service, or a backup");
   command.add_flag("--quick", arguments->quick,
                    "look at the summaries of chunks, and do not decode them");
   command.add_flag("--json", arguments->json, "one JSON object with the findings");

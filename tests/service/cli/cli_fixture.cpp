@@ -1,9 +1,12 @@
 #include "tests/service/cli/cli_fixture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
+#include <pty.h>
+#include <regex>
 #include <sstream>
 #include <unistd.h>
 
@@ -24,6 +27,34 @@ void redirect(int descriptor, const std::string& path) {
 }
 
 }  // namespace
+
+std::vector<std::string> CliTest::lines_on_terminal(const std::vector<std::string>& arguments,
+                                                    unsigned short columns) const {
+  std::vector<std::string> words = {REIDENT_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv(words.size() + 1, nullptr);
+  std::transform(words.begin(), words.end(), argv.begin(),
+                 [](std::string& word) { return word.data(); });
+  const winsize size{.ws_row = 24, .ws_col = columns, .ws_xpixel = 0, .ws_ypixel = 0};
+  int master = -1;
+  const pid_t child = forkpty(&master, nullptr, nullptr, &size);
+  if (child == 0) {
+    setenv("PAGER", "", 1);
+    if (chdir(folder_.path().c_str()) == 0) execv(argv[0], argv.data());
+    _exit(127);
+  }
+  std::string text;
+  std::array<char, 4096> bytes{};
+  for (ssize_t got = 0; (got = read(master, bytes.data(), bytes.size())) > 0;)
+    text.append(bytes.data(), static_cast<std::size_t>(got));
+  close(master);
+  waitpid(child, nullptr, 0);
+  text = std::regex_replace(text, std::regex("\x1b\\[[0-9;]*[A-Za-z]|\r"), "");
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
 
 Ran CliTest::reident(const std::vector<std::string>& arguments) const {
   std::vector<std::string> words = {REIDENT_PROGRAM};

@@ -23,6 +23,10 @@ class CliTest : public ::testing::Test {
  protected:
   /// Runs reident with the folder as the current one.
   Ran reident(const std::vector<std::string>& arguments) const;
+  /// Runs it with a terminal of so many columns as its output and its standard error. The lines
+  /// that it shows there, without colours.
+  std::vector<std::string> lines_on_terminal(const std::vector<std::string>& arguments,
+                                             unsigned short columns) const;
   /// Runs it and expects exit status 0; its output as JSON.
   nlohmann::json json_of(std::vector<std::string> arguments) const;
   /// Runs it and expects exit status 2 with one line on standard error; the line.

@@ -1,4 +1,5 @@
 // What concerns the program as a whole, and the commands that need no database.
+#include <array>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "service/dds/dds.hpp"
+#include "service/support/terminal.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
 namespace reident::cli::program_test {
@@ -42,6 +44,51 @@ TEST_F(Program, EveryVerbHasHelpWithAnExampleAndAPlaceInTheManual) {
     const test::Ran ran = reident({verb, "--help"});
     EXPECT_EQ(ran.status, 0) << verb;
     EXPECT_THAT(ran.out, HasSubstr("Example:\n  reident " + verb)) << verb;
+  }
+}
+
+TEST_F(Program, HelpOfEveryVerbFitsIntoTheTerminal) {
+  std::vector<std::vector<std::string>> commands = {{"--help"}, {"help"}, {"histroy"}};
+  for (const std::string& line : lines_of(reident({"help"}).out))
+    commands.push_back({line.substr(0, line.find(' ')), "--help"});
+  for (const unsigned short columns : std::array<unsigned short, 3>{60, 80, 120})
+    for (const auto& command : commands) {
+      const auto lines = lines_on_terminal(command, columns);
+      EXPECT_THAT(lines, Not(IsEmpty())) << command[0];
+      for (const std::string& line : lines)
+        EXPECT_LE(display_width(line), columns) << command[0] << ": " << line;
+    }
+}
+
+TEST_F(Program, ShellsCompleteVerbsAndOptions) {
+  write("reident.bash", reident({"help", "--completion", "bash"}).out);
+  const auto completions = [&](const std::string& words) {
+    const std::string command = "cd " + folder().string() +
+                                " && bash -c 'source ./reident.bash; COMP_WORDS=(" + words +
+                                "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _reident; "
+                                "echo \"${COMPREPLY[@]}\"' > out";
+    EXPECT_EQ(system(command.c_str()), 0);
+    std::ifstream out(folder() / "out");
+    return std::string{std::istreambuf_iterator<char>(out), {}};
+  };
+  EXPECT_EQ(completions("reident over"), "overview\n");
+  EXPECT_EQ(completions("reident history --equ"), "--equipment\n");
+  EXPECT_EQ(completions("reident --remote history --outc"), "--outcome\n");
+  EXPECT_THAT(reident({"help", "--completion", "fish"}).out,
+              HasSubstr("'__fish_seen_subcommand_from overview' -l watch -d "));
+  EXPECT_THAT(reident({"help", "--completion", "zsh"}).out, HasSubstr("#compdef reident\n"));
+  EXPECT_THAT(refusal_of({"help", "--completion", "tcsh"}), HasSubstr("bash, zsh and fish"));
+  EXPECT_THAT(reident({"help", "--man"}).out,
+              AllOf(HasSubstr(".SS overview\n"), HasSubstr("\\-\\-watch")));
+}
+
+TEST_F(Program, NoCommandOfTheReadmeWritesIntoTheSources) {
+  std::ifstream file(REIDENT_README);
+  std::string before;
+  for (std::string line; std::getline(file, line); before = line) {
+    EXPECT_THAT(line, Not(AllOf(HasSubstr("reidentd"), HasSubstr("--config deploy/"))))
+        << "the database is made next to the configuration";
+    EXPECT_THAT(line, Not(ContainsRegex("(-o|--fmu|--mat) [a-z0-9]+\\.(svg|fmu|mat)")));
   }
 }
 

@@ -146,6 +146,18 @@ TEST(TimeText, GivesTheExtremesBack) {
   }
 }
 
+TEST(ParseMoment, KnowsNowAndHowLongBefore) {
+  constexpr std::int64_t s = 1'000'000'000, now = 1'700'000'000 * s;
+  EXPECT_EQ(parse_moment("now", now), now);
+  EXPECT_EQ(parse_moment("-2h", now), now - 7200 * s);
+  EXPECT_EQ(parse_moment("-90min", now), now - 5400 * s);
+  EXPECT_EQ(parse_moment("-5", now), -5 * s) << "seconds since 1970, as ever";
+  EXPECT_EQ(parse_moment("2023-11-14T22:13:20Z", now), now);
+  EXPECT_EQ(parse_moment("-2 weeks", now), std::nullopt);
+  EXPECT_EQ(parse_moment("2h", now), std::nullopt);
+  EXPECT_EQ(parse_moment("-99999d", INT64_MIN), std::nullopt);
+}
+
 TEST(RoughDurationText, IsTheLargestUnit) {
   constexpr std::int64_t s = 1'000'000'000;
   EXPECT_EQ(rough_duration_text(0), "0s");

@@ -77,7 +77,7 @@ TEST_F(ExportModel, RefusesWhatCannotBeWritten) {
   write("old.mat", "kept");
   EXPECT_THAT(refusal_of(command("BDR@1", {})), HasSubstr("nothing to write; name a file with"));
   EXPECT_THAT(refusal_of(command("BDR@1", {"--mat", "old.mat", "--fmu", "new.fmu"})),
-              HasSubstr("old.mat exists; name another file, or replace it with --force"));
+              HasSubstr("old.mat exists; name another file, or replace it with --replace"));
   EXPECT_FALSE(exists("new.fmu"));
   EXPECT_THAT(refusal_of(command("BDR@1", {"--mat", "x", "--json", "x"})),
               HasSubstr("x is named twice"));

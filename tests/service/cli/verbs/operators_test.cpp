@@ -74,7 +74,11 @@ TEST_F(OperatorCommands, ThatAreRefusedExitWithTheReason) {
               HasSubstr("version 2 of CBERS-4/BDR is not waiting: it is the champion, approved by "
                         "gate at 2023-11-14T22:13:30Z"));
   EXPECT_THAT(refusal_of(on_file({"hold", "MEA"})), HasSubstr("known: CBERS-4/BDR"));
-  EXPECT_THAT(refusal_of(on_file({"rollback", "BDR@1"})), HasSubstr("names a version with the"));
+  EXPECT_THAT(refusal_of(on_file({"hold", "BDR@1"})), HasSubstr("about the equipment alone"));
+  EXPECT_THAT(refusal_of(on_file({"approve", "BDR", "--reason", "x"})),
+              HasSubstr("write BDR@NUMBER"));
+  EXPECT_THAT(refusal_of(on_file({"approve", "BDR@3", "4", "--reason", "x"})),
+              HasSubstr("two versions"));
   EXPECT_THAT(refusal_of({"hold", "BDR", "--database", "reident.db", "--actor", ""}),
               HasSubstr("the operator's name is empty"));
   for (const char* command : {"approve", "reject", "withdraw"}) {
@@ -84,6 +88,12 @@ TEST_F(OperatorCommands, ThatAreRefusedExitWithTheReason) {
   const test::Ran ran = reident(on_file({"release", "BDR", "--json"}));
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(json::parse(ran.out)["reply"], "CBERS-4/BDR is not held");
+}
+
+TEST_F(OperatorCommands, NameAVersionAsEveryCommandDoes) {
+  EXPECT_EQ(json_of(on_file({"approve", "CBERS-4/BDR@3", "--reason", "seen"}))["version"], 3);
+  EXPECT_EQ(json_of(on_file({"rollback", "BDR@2"}))["version"], 2);
+  EXPECT_EQ(status_of(2), "approved");
 }
 
 TEST_F(OperatorCommands, TheActorIsTheLoginNameUnlessNamed) {
@@ -118,7 +128,7 @@ TEST_F(OperatorCommands, NeedAPlaceToGo) {
 TEST_F(OperatorCommands, HistoryAndShowTellWhatWasDecided) {
   reident(on_file({"withdraw", "BDR", "2", "--reason", "wrong sensor"}));
   reident(on_file({"hold", "BDR", "--reason", "training"}));
-  const test::Ran history = reident({"history", "--database", "reident.db"});
+  const test::Ran history = reident({"history", "--long", "--database", "reident.db"});
   EXPECT_THAT(history.out, HasSubstr("  2x  "));
   EXPECT_THAT(history.out, HasSubstr("approved: Good. Then withdraw by Ana at 2"));
   EXPECT_THAT(history.out, HasSubstr("roll_back by Ana at 2"));
@@ -139,6 +149,10 @@ TEST_F(OperatorCommands, AtTellsTheChampionOfATimeAndWhoDecidedSo) {
   };
   EXPECT_TRUE(at("2023-11-14T22:13:19.999999999Z").is_null());
   EXPECT_EQ(at("2023-11-14T22:13:20Z")["version"], 1);
+  const json before =
+      json_of({"at", "2020-01-01", "--database", "reident.db"})["equipment"][0]["first"];
+  EXPECT_EQ(before["version"], 1);
+  EXPECT_EQ(before["since"], "2023-11-14T22:13:20Z") << "when the first was decided";
   EXPECT_EQ(at("1700000010")["version"], 2);
   EXPECT_EQ(at("1700000010")["since"], "2023-11-14T22:13:30Z");
   EXPECT_EQ(at("1700000010")["actor"], "gate");
@@ -148,6 +162,8 @@ TEST_F(OperatorCommands, AtTellsTheChampionOfATimeAndWhoDecidedSo) {
   const test::Ran table = reident({"at", "1700000010", "--database", "reident.db"});
   EXPECT_THAT(table.out, HasSubstr("CBERS-4/BDR        2  2023-11-14T22:13:30Z  gate  approve: "
                                    "Good.\n"));
+  EXPECT_EQ(at("now")["version"], 1);
+  EXPECT_EQ(at("-2h")["version"], 2) << "before the rollback";
   EXPECT_THAT(refusal_of({"at", "yesterday", "--database", "reident.db"}),
               HasSubstr("yesterday is no time"));
   EXPECT_THAT(refusal_of({"at", "0", "MEA", "--database", "reident.db"}),

@@ -1,7 +1,10 @@
 // history and show on a database that the registry filled.
+#include <array>
+
 #include <fmt/format.h>
 
 #include "service/model/model_json.hpp"
+#include "service/support/terminal.hpp"
 #include "storage/registry/registry.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
 
@@ -89,9 +92,60 @@ class Stored : public test::CliTest {
   }
 };
 
-TEST_F(Stored, HistoryListsEveryAttemptWithItsOutcomeAndTheChampion) {
+TEST_F(Stored, HistoryHasALineForEachWindowWithTheVerdictInWords) {
   fill();
   const test::Ran ran = reident(command({"history"}));
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_THAT(ran.out, AllOf(HasSubstr("CBERS-4/BDR  2023-11-14T23:53         -       -  too few "
+                                       "samples\n"),
+                             HasSubstr("        1     2.5  was champion\n"),
+                             HasSubstr("        2     2.5  rejected: error above the limit\n"),
+                             HasSubstr("       3*     2.5  champion now\n"),
+                             HasSubstr("CBERS-4/MEA  2023-11-15T00:23         1     2.5  ")));
+}
+
+TEST_F(Stored, HistoryShowsTheLastTwentyUnlessAllAreAskedFor) {
+  for (int slide = 0; slide < 25; ++slide)
+    registry_.record(attempt_of("BDR", slide, "unstable", "{}"));
+  const auto lines = [&](std::vector<std::string> words) {
+    const std::string out = reident(command(std::move(words))).out;
+    return std::count(out.begin(), out.end(), '\n');
+  };
+  EXPECT_EQ(lines({"history"}), 1 + 20 + 2);
+  EXPECT_EQ(lines({"history", "--all"}), 1 + 25 + 1);
+  EXPECT_EQ(lines({"history", "--last", "3"}), 1 + 3 + 1);
+  EXPECT_EQ(lines({"history", "--csv"}), 1 + 25);
+  EXPECT_THAT(json_of(command({"history"}))["attempts"], SizeIs(25));
+}
+
+TEST_F(Stored, HistoryCanBeAskedForAnOutcomeAndATime) {
+  fill();
+  const auto attempts = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "history");
+    return json_of(command(std::move(words)))["attempts"].size();
+  };
+  EXPECT_EQ(attempts({"--outcome", "error_above_limit"}), 1U);
+  EXPECT_EQ(attempts({"--from", "2023-11-15T01:00"}), 1U);
+  EXPECT_EQ(attempts({"--to", "2023-11-14T22:30"}), 1U);
+  EXPECT_THAT(refusal_of(command({"history", "--outcome", "unstabel"})),
+              HasSubstr("(did you mean unstable?)"));
+  EXPECT_THAT(refusal_of(command({"history", "--outcome", "unstable", "--equipment", "BDR"})),
+              HasSubstr("with this outcome"));
+}
+
+TEST_F(Stored, HistoryAsCsvHasARowForEachWindow) {
+  auto odd = attempt_of("BDR", 0, "too_few_samples", "{}");
+  odd.reason = "He said \"no\", twice.";
+  registry_.record(odd);
+  EXPECT_THAT(reident(command({"history", "--csv"})).out,
+              HasSubstr("\n1,\"CBERS-4\",\"BDR\",2023-11-14T22:13:20Z,2023-11-14T23:53:20Z,"
+                        "2023-11-14T23:54:20Z,too_few_samples,,,,,,\"too few samples\",\"He said "
+                        "\"\"no\"\", twice.\"\n"));
+}
+
+TEST_F(Stored, HistoryTellsTheReasonsWhereTheyAreAskedFor) {
+  fill();
+  const test::Ran ran = reident(command({"history", "--long"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_THAT(ran.out, HasSubstr("CBERS-4/BDR  2023-11-14T22:13:20Z  100min        -      -       "
                                  "-      -  too_few_samples: The reason of too_few_samples.\n"));
@@ -173,6 +227,7 @@ TEST_F(Stored, ShowInJsonHasTheModelAndTheDecisions) {
   const json shown = json_of(command({"show", "BDR@2"}));
   EXPECT_EQ(shown["spacecraft"], "CBERS-4");
   EXPECT_EQ(shown["version"], 2);
+  EXPECT_EQ(json_of(command({"show", "BDR", "2"})), shown);
   EXPECT_EQ(shown["status"], "rejected");
   EXPECT_EQ(shown["digest_matches"], true);
   EXPECT_EQ(shown["decisions"][0]["kind"], "reject");
@@ -277,6 +332,34 @@ TEST_F(Stored, AVersionFromBeforeProvenanceCannotBeReproduced) {
                         "schema 2 and does not say where it comes from"));
 }
 
+TEST_F(Stored, WhatIsShownFitsIntoTheTerminal) {
+  fill();
+  registry_.decide("CBERS-4", "MEA", 1,
+                   {DecisionKind::wait, "gate", std::string(300, 'x') + " and blanks behind it",
+                    R"({"reasons":[{"code":"bias_unverified"}]})"},
+                   start + 300 * minute);
+  registry_.raise({"disk", {}, "The disk of " + std::string(90, '/') + " is full.", start});
+  const std::vector<std::vector<std::string>> commands = {{"history"},
+                                                          {"history", "--versions-only"},
+                                                          {"show", "BDR"},
+                                                          {"why", "BDR"},
+                                                          {"why", "MEA@1"},
+                                                          {"at", "now"},
+                                                          {"waiting"},
+                                                          {"overview"},
+                                                          {"compare", "BDR", "2", "3"},
+                                                          {"show", "BDR@9"},
+                                                          {"reproduce", "BDR@1"},
+                                                          {"completeness"}};
+  for (const unsigned short columns : std::array<unsigned short, 3>{60, 80, 120})
+    for (const auto& words : commands) {
+      const auto lines = lines_on_terminal(command(words), columns);
+      EXPECT_THAT(lines, Not(IsEmpty())) << words[0];
+      for (const std::string& line : lines)
+        EXPECT_LE(display_width(line), columns) << words[0] << ": " << line;
+    }
+}
+
 class WithoutDatabase : public test::CliTest {};
 
 TEST_F(WithoutDatabase, TheRemedyIsNamed) {
@@ -309,6 +392,19 @@ window = "1h"
   storage::Database database(folder() / "kept.db", storage::Database::Mode::read_write);
   EXPECT_THAT(json_of({"history"})["attempts"], IsEmpty());
   EXPECT_THAT(json_of({"history", "--config", "reident.toml"})["attempts"], IsEmpty());
+  for (const auto& where : std::vector<std::vector<std::string>>{
+           {"--config", "reident.toml"}, {"--db", "kept.db"}, {"kept.db"}, {}}) {
+    std::vector<std::string> verify = {"verify"}, completeness = {"completeness"};
+    verify.insert(verify.end(), where.begin(), where.end());
+    completeness.insert(completeness.end(), where.begin(), where.end());
+    EXPECT_EQ(json_of(verify)["sound"], true);
+    EXPECT_THAT(refusal_of(completeness), HasSubstr("there is no telemetry"));
+  }
+  EXPECT_EQ(reident({"backup", "a.db", "--config", "reident.toml"}).status, 0);
+  EXPECT_EQ(reident({"backup", "kept.db", "b.db"}).status, 0);
+  EXPECT_EQ(reident({"backup", "--db", "kept.db", "c.db"}).status, 0);
+  for (const char* copy : {"a.db", "b.db", "c.db"})
+    EXPECT_TRUE(std::filesystem::exists(folder() / copy)) << copy;
 }
 
 }  // namespace

@@ -86,6 +86,9 @@ TEST_F(Transfer, AFileIsImportedAndExportedAsItWas) {
   EXPECT_EQ(exported.out, "long.csv: 15000 samples of 3 series in 15000 rows\n");
   EXPECT_EQ(reident({"import", "long.csv", "--db", "b.db"}).status, 0);
   EXPECT_EQ(reident({"export", "b.db"}).out, text_of("long.csv"));
+  EXPECT_THAT(refusal_of({"export", "a.db", "-o", "long.csv"}),
+              HasSubstr("long.csv exists; name another file, or replace it with --replace"));
+  EXPECT_EQ(reident({"export", "a.db", "-o", "long.csv", "--replace"}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder() / "long.csv.part"));
   const test::Ran wide = reident({"export", "a.db", "--wide", "--parameter", "mode", "bus_u",
                                   "--from", "1700000003", "--to", "1700000005"});

@@ -1,0 +1,26 @@
+// Which of the services of a partition is asked, or gets an order.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "service/cli/command.hpp"
+#include "service/dds/dds.hpp"
+
+namespace reident::cli {
+
+/// Adds --service.
+void add_service_option(CLI::App& command, std::optional<std::string>& service);
+
+/// The name of the service that is meant: `named` by an option; or the only one that is heard, or
+/// of several the one that the configuration names, if it shares neither name nor equipment with
+/// another. Refused where that is not clear, with the names. Empty where none was heard within
+/// `timeout`: then whoever hears the question may answer.
+std::variant<std::string, Refusal> chosen_service(const dds::Endpoint& endpoint,
+                                                  const std::optional<std::string>& named,
+                                                  const std::string& configured,
+                                                  std::chrono::milliseconds timeout);
+
+}  // namespace reident::cli

@@ -1,0 +1,70 @@
+#include "service/history/telemetry_champion.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+namespace reident::history {
+namespace {
+
+using storage::Decision;
+using storage::DecisionKind;
+using storage::EquipmentName;
+using storage::Time;
+
+/// The end of the telemetry that a decision of the league looked at.
+std::optional<Time> judged_until(const Decision& decision) {
+  const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
+  if (!evidence.is_object() || !evidence.contains("until_ns")) return std::nullopt;
+  return evidence["until_ns"].get<Time>();
+}
+
+/// All decisions with the generation times from which on they count, in the order of recording.
+std::vector<Reign> decisions_by_telemetry(const HistoryReader& history,
+                                          const EquipmentName& equipment) {
+  std::map<std::int64_t, Time> window_ends;
+  storage::HistoryFilter versions;
+  versions.spacecraft = equipment.spacecraft;
+  versions.equipment = equipment.equipment;
+  versions.versions_only = true;
+  for (const storage::Attempt& attempt : history.attempts(versions))
+    window_ends[*attempt.version] = attempt.window.end;
+  std::vector<Reign> all;
+  Time reached = INT64_MIN;  // by the decisions so far
+  for (Decision& decision : history.decisions(equipment)) {
+    const Time own =
+        judged_until(decision).value_or(std::max(reached, window_ends[decision.version]));
+    reached = std::max(reached, own);
+    all.push_back({std::move(decision), own});
+  }
+  return all;
+}
+
+bool makes_champion(DecisionKind kind) {
+  return kind == DecisionKind::approve || kind == DecisionKind::roll_back;
+}
+
+}  // namespace
+
+std::optional<Reign> champion_for_telemetry(const HistoryReader& history,
+                                            const EquipmentName& equipment, Time time) {
+  std::optional<Reign> champion;
+  for (Reign& one : decisions_by_telemetry(history, equipment)) {
+    if (one.from > time) continue;
+    if (makes_champion(one.decision.kind))
+      champion = std::move(one);
+    else if (champion && one.decision.kind == DecisionKind::withdraw &&
+             one.decision.version == champion->decision.version)
+      champion.reset();
+  }
+  return champion;
+}
+
+std::optional<Reign> first_champion(const HistoryReader& history, const EquipmentName& equipment) {
+  for (Reign& one : decisions_by_telemetry(history, equipment))
+    if (makes_champion(one.decision.kind)) return std::move(one);
+  return std::nullopt;
+}
+
+}  // namespace reident::history
