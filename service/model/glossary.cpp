@@ -37,6 +37,11 @@ struct Glossary {
        "Telemetry is ahead of this machine's clock by more than max_clock_lead. No window follows "
        "it.",
        "Correct the clock of this machine or of the source."},
+      {"closed_loop", "the inputs follow the outputs",
+       "A controller makes the inputs from the outputs, so that the model would be the "
+       "controller's, "
+       "or the equipment by itself is unstable.",
+       "Take what drives the loop, such as its reference, as the input."},
       {"constant_inputs", "the inputs did not move",
        "No input changed in the window, so that nothing shows how outputs follow inputs.",
        "Wait for operation that moves them, or choose other inputs."},

@@ -89,7 +89,7 @@ class Judgement(EndToEnd):
         drawing = self.folder / "record.svg"
         for where in (("--database", self.database), ("--remote", *self.endpoint())):
             status, text = self.reident("plot", f"SAT/PLANT@{better}", "--record", "-o", drawing,
-                                        *where)
+                                        "--replace", *where)
             self.assertEqual(status, 0, text)
             groups = {group.get("id"): group
                       for group in ElementTree.parse(drawing).getroot().iter(f"{SVG}g")}
@@ -136,7 +136,7 @@ class Judgement(EndToEnd):
                 "stretches": 0, "ticks": 0,
                 "not_applied": ["misspelt: telemetry has not described out_c"]})
 
-        status, text = self.reident("history", "--database", self.database)
+        status, text = self.reident("history", "--long", "--database", self.database)
         self.assertEqual(status, 0, text)
         self.assertIn("relation two sensors (out - out_b) does not hold from", text)
         # The lie begins in the last third of this window, which is identified without it.

@@ -185,8 +185,8 @@ class Loop(EndToEnd):
         shaded = {rect.get("class") for rect in root.iter(f"{SVG}rect")}
         self.assertLessEqual({"identify", "tune", "validate"}, shaded)
         self.assertEqual(len(list(groups["poles"])), new["order"])
-        status, text = self.reident("plot", f"SAT/PLANT@{first}", "-o", drawing, "--database",
-                                    self.database)
+        status, text = self.reident("plot", f"SAT/PLANT@{first}", "-o", drawing,
+                                    "--replace", "--database", self.database)
         self.assertEqual(status, 0, text)
         drawn = {group.get("id") for group in ElementTree.parse(drawing).getroot().iter(f"{SVG}g")}
         self.assertIn("singular-values", drawn, "of a version that is identified, not adapted")
