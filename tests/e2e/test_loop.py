@@ -131,13 +131,19 @@ class Loop(EndToEnd):
         self.assertEqual(status, 0, text)
         self.assertIn("both = 0.3 * drive + load / 2", text)
 
-        simulator = self.start_simulator("derived")
+        simulator = self.start_simulator("derived", "--report", "0.2")
         wait_until(lambda: self.runs(simulator) == [champion], "the simulator runs the champion")
         self.replay_rows("second", readers=2, count=1900, first=1900)
+
+        def events(kind):
+            lines = simulator.out.read_text().splitlines()
+            return [event for event in map(json.loads, filter(None, lines))
+                    if event.get("event") == kind]
+
+        wait_until(lambda: any(event["ticks"] > 1000 for event in events("running")),
+                   "the simulator has run over the telemetry")
         self.assertEqual(simulator.terminate()[0], 0, simulator.text())
-        events = [json.loads(line) for line in simulator.out.read_text().splitlines() if line]
-        last = [event for event in events if event.get("event") == "finished"][-1]
-        self.assertGreater(last["ticks"], 1000, last)
+        last = events("finished")[-1]
         self.assertLess(last["mrse_percent"][0], 5, "the simulator computes what the service did")
 
     def test_two_versions_are_compared_and_drawn(self):
