@@ -55,8 +55,7 @@ std::vector<Fold> folds_of(Index rows, double tune_share) {
 }
 
 HeldOutErrors held_out_errors(const Response& response, const Record& record, const Fold& fold) {
-  // Forwards the state is carried on; backwards the run starts again from its
-  // first outputs.
+  // Forwards the state is carried on; backwards the run starts again from its first outputs.
   const bool forwards = fold.is_forwards();
   const RowRange run{fold.fit.begin, forwards ? fold.tune.end : fold.fit.end};
   const Matrix y_hat = free_run(response.model, record, run, response.x0);

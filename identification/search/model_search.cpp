@@ -18,8 +18,7 @@ namespace reident::identification {
 namespace {
 
 constexpr double equal_errors = 1.002;
-constexpr double no_error = 1e-6;   // of an output's deviation
-constexpr double certain_loss = 2;  // standard errors
+constexpr double no_error = 1e-6;  // of an output's deviation
 constexpr double worthwhile_recency = 0.95;
 constexpr double worthwhile_refinement = 0.99;
 constexpr int refinement_steps = 25;
@@ -41,8 +40,7 @@ struct Candidate {
   std::vector<HeldOutError> fold_errors{};  // with the operating point that was taken
 };
 
-/// Takes the operating point that the folds speak for. False where a fold had
-/// no stable model.
+/// Takes the operating point that the folds speak for. False where a fold had no stable model.
 bool take_errors(Candidate& candidate, const std::vector<HeldOutErrors>& errors) {
   double whole = 0, recent = 0;
   for (const HeldOutErrors& of_fold : errors) {
@@ -57,31 +55,6 @@ bool take_errors(Candidate& candidate, const std::vector<HeldOutErrors>& errors)
   for (const HeldOutErrors& of_fold : errors)
     candidate.fold_errors.push_back(is_recent ? of_fold.recent : of_fold.whole);
   return true;
-}
-
-/// The error of a candidate over that of another, median over the folds.
-double median_ratio(const Candidate& candidate, const Candidate& other) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < candidate.fold_errors.size(); ++i)
-    ratios.push_back((candidate.fold_errors[i].rms + no_error) /
-                     (other.fold_errors[i].rms + no_error));
-  std::sort(ratios.begin(), ratios.end());
-  return (ratios[(ratios.size() - 1) / 2] + ratios[ratios.size() / 2]) / 2;
-}
-
-/// By how many standard errors a candidate errs more than another, over the
-/// parts of all folds.
-double loss_in_deviations(const Candidate& candidate, const Candidate& other) {
-  double sum = 0, squares = 0, count = 0;
-  for (std::size_t i = 0; i < candidate.fold_errors.size(); ++i)
-    for (std::size_t k = 0; k < error_blocks; ++k) {
-      const double more = candidate.fold_errors[i].squares[k] - other.fold_errors[i].squares[k];
-      sum += more;
-      squares += more * more;
-      ++count;
-    }
-  const double mean = sum / count, variance = squares / count - mean * mean;
-  return mean > 0 ? mean / std::sqrt(variance / (count - 1)) : 0;
 }
 
 /// Best first by the rule of the header.
@@ -110,8 +83,7 @@ class Search {
   std::vector<ScoredRecipe> run();
 
  private:
-  /// Scores every order, horizon and weighting with B and D from the
-  /// compression.
+  /// Scores every order, horizon and weighting with B and D from the compression.
   std::vector<Candidate> compressed_stage();
   void score_compressed(std::size_t fold, std::size_t horizon, std::vector<HeldOutErrors>& errors);
   /// Order, horizon and weighting of a place in the table of the first stage.
@@ -120,8 +92,7 @@ class Search {
 
   std::vector<Candidate> simulated_stage(std::vector<Candidate> compressed);
   std::vector<Candidate> refined_stage(const std::vector<Candidate>& simulated);
-  /// The candidate of the lowest order that nothing speaks against beside the
-  /// winner.
+  /// The candidate of the lowest order that nothing speaks against beside the winner.
   std::optional<Candidate> simplest(const Candidate& winner,
                                     const std::vector<Candidate>& compressed);
   Response fit_of(const Candidate& candidate, std::size_t fold, RowRange rows) const;
@@ -129,8 +100,7 @@ class Search {
     return space_.min_order == 0 && m_ > 0 && space_.direct.front() &&
            space_.fits.front() == ResponseFit::simulation;
   }
-  /// Fits and scores the candidates on the folds with no more than so many
-  /// fitted rows.
+  /// Fits and scores the candidates on the folds with no more than so many fitted rows.
   std::vector<Candidate> scored(std::vector<Candidate> candidates, Index rows_of_fold);
   HeldOutErrors errors_on(const Candidate& candidate, std::size_t fold, Index rows_of_fold) const;
   /// The first candidates for which a third of the budget lasts, at least one.
@@ -140,7 +110,7 @@ class Search {
   Index affordable_rows_of_fold(const Recipe& recipe, double recipes) const;
 
   std::size_t folds() const { return data_.folds.size(); }
-  /// Of the first stage, which has no order 0.
+  /// Orders of the first stage, which has no order 0.
   int least_order() const { return std::max(1, space_.min_order); }
   std::size_t orders() const {
     return static_cast<std::size_t>(space_.max_order - least_order() + 1);
@@ -364,10 +334,8 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
     if (is_refuted(fit(simple), *rich_fit, extra, data_.normalised, fitted)) return std::nullopt;
     std::vector<Candidate> result = scored({simple}, rows);
     if (result.empty()) return std::nullopt;
-    const double by_chance =
-        loss_by_chance(extra, largest.with_fit_of(rows).fit.size(), largest.tune.size());
-    if (median_ratio(result.front(), winner) > 1 + by_chance &&
-        loss_in_deviations(result.front(), winner) > certain_loss)
+    if (errs_more(result.front().fold_errors, winner.fold_errors, extra,
+                  largest.with_fit_of(rows).fit.size(), largest.tune.size()))
       return std::nullopt;
     return std::move(result.front());
   };

@@ -1,7 +1,7 @@
-// The search over order, horizon, weighting and the way of B and D, scored on
-// rows that no candidate was fitted to (METHOD.md, section 7). Records are
-// normalised; m and p are the inputs and outputs that take part. Private to the
-// library. Nothing here throws but what `for_each` throws.
+// The search over order, horizon, weighting and the way of B and D, scored on rows that no
+// candidate was fitted to (METHOD.md, section 7). Records are normalised; m and p are the inputs
+// and outputs that take part. Private to the library. Nothing here throws but what `for_each`
+// throws.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ struct ScoredRecipe {
   double error = 0;  // in deviations of the outputs, mean over the folds
 };
 
-/// What may be chosen, with one entry where there is no choice. Nothing is
-/// empty. The orders are those from min_order to max_order.
+/// What may be chosen, with one entry where there is no choice. Nothing is empty. The orders are
+/// those from min_order to max_order.
 struct SearchSpace {
   std::vector<int> horizons;  // ascending
   std::vector<Weighting> weightings;
@@ -34,8 +34,8 @@ struct SearchSpace {
   Stability stability = Stability::as_found;
 };
 
-/// What the search works on: a record of normalised channels, and for each fold
-/// the sums, in units, of the rows that it fits.
+/// What the search works on: a record of normalised channels, and for each fold the sums, in units,
+/// of the rows that it fits.
 struct SearchData {
   const Record& normalised;
   const Normalisation& normalisation;
@@ -43,29 +43,29 @@ struct SearchData {
   const std::vector<RangeSums>& sums;
 };
 
-/// How far the search goes, in multiply-adds of free runs and regressions. Each
-/// stage has a third of the budget. A search adds to `spent`.
+/// How far the search goes, in multiply-adds of free runs and regressions. Each stage has a third
+/// of the budget. A search adds to `spent`.
 struct SearchEffort {
   double budget = 0;
   double spent = 0;
 };
 
-/// Returns the multiply-adds that one row takes in the regression on the
-/// simulated output, refinement included, with m inputs and p outputs.
+/// Returns the multiply-adds that one row takes in the regression on the simulated output,
+/// refinement included, with m inputs and p outputs.
 double work_of_regression(const Recipe& recipe, Index m, Index p);
 
-/// Returns the rows that `work` multiply-adds of the regression last for; never
-/// fewer than 2000, however small the budget.
+/// Returns the rows that `work` multiply-adds of the regression last for; never fewer than 2000,
+/// however small the budget.
 Index affordable_rows(const Recipe& recipe, Index m, Index p, double work);
 
-/// Fits recipes on each fold and scores their free runs on the rows held out,
-/// in three stages: every order, horizon and weighting with B and D from the
-/// compression; the best of these with B and D either way; the best of these
-/// with A and C refined. Where the budget does not last for all, fewer rows are
-/// fitted and scored, those next to the folds' edges, and then fewer recipes.
-/// Requires sums of at least 2 s block rows for every horizon s. Returns the
-/// recipes that are stable on every fold, best first by the rules of METHOD.md;
-/// empty where there is none. The result does not depend on `for_each`.
+/// Fits recipes on each fold and scores their free runs on the rows held out, in three stages:
+/// every order, horizon and weighting with B and D from the compression; the best of these with B
+/// and D either way; the best of these with A and C refined. A lower order against which nothing
+/// speaks (parsimony.hpp) takes the winner's place. Where the budget does not last for
+/// all, fewer rows are fitted and scored, those next to the folds' edges, and then fewer recipes.
+/// Requires sums of at least 2 s block rows for every horizon s. Returns the recipes that are
+/// stable on every fold, best first by the rules of METHOD.md; empty where there is none. The
+/// result does not depend on `for_each`.
 std::vector<ScoredRecipe> ranked_recipes(const SearchData& data, const SearchSpace& space,
                                          const ForEach& for_each, SearchEffort& effort);
 

@@ -12,9 +12,11 @@ namespace reident::identification {
 namespace {
 
 constexpr double least_deviation = 1e-6;  // of an output's: below it errors are rounding
+constexpr double chance_deviations = 4;
+constexpr double certain_loss = 2;  // standard errors
 
-/// Coefficients of the autoregression that makes a series white, by Levinson's
-/// recursion, with the number of them that has the least BIC.
+/// Coefficients of the autoregression that makes a series white, by Levinson's recursion, with the
+/// number of them that has the least BIC.
 Vector whitening(Series& series) {
   const Index rows = series.rows();
   const Index most = std::min<Index>({20, rows / 20, series.longest_segment() - 1});
@@ -55,6 +57,30 @@ Matrix errors_of(const Response& fit, const Record& record, RowRange rows) {
   return record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
 }
 
+/// The error of one model over that of another, median over the folds.
+double median_ratio(const std::vector<HeldOutError>& one, const std::vector<HeldOutError>& other) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < one.size(); ++i)
+    ratios.push_back((one[i].rms + least_deviation) / (other[i].rms + least_deviation));
+  std::sort(ratios.begin(), ratios.end());
+  return (ratios[(ratios.size() - 1) / 2] + ratios[ratios.size() / 2]) / 2;
+}
+
+/// By how many standard errors one model errs more than another, over the parts of all folds.
+double loss_in_deviations(const std::vector<HeldOutError>& one,
+                          const std::vector<HeldOutError>& other) {
+  double sum = 0, squares = 0, count = 0;
+  for (std::size_t i = 0; i < one.size(); ++i)
+    for (std::size_t k = 0; k < error_blocks; ++k) {
+      const double more = one[i].squares[k] - other[i].squares[k];
+      sum += more;
+      squares += more * more;
+      ++count;
+    }
+  const double mean = sum / count, variance = squares / count - mean * mean;
+  return mean > 0 ? mean / std::sqrt(variance / (count - 1)) : 0;
+}
+
 }  // namespace
 
 Index parameters_of(Index n, Index m, Index p, bool direct, Index segments) {
@@ -81,8 +107,12 @@ bool is_refuted(const Response& simple, const Response& rich, Index extra, const
   return !(ratio <= chi_squared_quantile(0.9999, double(extra)));
 }
 
-double loss_by_chance(Index extra, Index fitted, Index held_out) {
-  return 4 * std::sqrt(double(extra) / (double(fitted) * double(held_out)));
+bool errs_more(const std::vector<HeldOutError>& simple, const std::vector<HeldOutError>& rich,
+               Index extra, Index fitted, Index held_out) {
+  const double by_chance =
+      chance_deviations * std::sqrt(double(extra) / (double(fitted) * double(held_out)));
+  return median_ratio(simple, rich) > 1 + by_chance &&
+         loss_in_deviations(simple, rich) > certain_loss;
 }
 
 }  // namespace reident::identification

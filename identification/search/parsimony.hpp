@@ -1,31 +1,31 @@
-// Whether rows need the states that a model has more than a simpler one
-// (METHOD.md, section 7, "Parsimony"). Private to the library. Nothing here
-// throws.
+// Whether rows need the states that a model has more than a simpler one (METHOD.md, section 7,
+// "Parsimony"). Private to the library. Nothing here throws.
 #pragma once
 
 #include <vector>
 
 #include "identification/fit/output_error_fit.hpp"
 #include "identification/samples/record.hpp"
+#include "identification/search/folds.hpp"
 
 namespace reident::identification {
 
-/// Returns the parameters that a fit of order n, with m inputs and p outputs,
-/// has in so many segments: those of the model up to a change of basis, and the
-/// initial states.
+/// Returns the parameters that a fit of order n, with m inputs and p outputs, has in so many
+/// segments: those of the model up to a change of basis, and the initial states.
 Index parameters_of(Index n, Index m, Index p, bool direct, Index segments);
 
-/// Whether the likelihood ratio refutes, at 99.99 %, that the simpler of two
-/// fits to the same rows has all that is in the outputs. Errors may be
-/// correlated in time: those of both fits are made white, for each output, by
-/// the autoregression of the richer one's. `extra` are the parameters, at least
-/// 1, that the richer one has more.
+/// Whether the likelihood ratio refutes, at 99.99 %, that the simpler of two fits to the same rows
+/// has all that is in the outputs. Errors may be correlated in time: those of both fits are made
+/// white, for each output, by the autoregression of the richer one's. `extra` are the parameters,
+/// at least 1, that the richer one has more.
 bool is_refuted(const Response& simple, const Response& rich, Index extra, const Record& record,
                 RowRange rows);
 
-/// Returns by what share the error on rows held out may rise, at four standard
-/// deviations, where a model gives up `extra` parameters that mean nothing,
-/// with white errors on so many rows fitted and held out.
-double loss_by_chance(Index extra, Index fitted, Index held_out);
+/// Whether the rows held out speak against the simpler of two models, by their errors on each fold:
+/// the median of its errors over the other's is above what chance gives `extra` parameters that
+/// mean nothing, with white errors on so many rows fitted and held out; and its sum of squares is
+/// larger by two standard errors.
+bool errs_more(const std::vector<HeldOutError>& simple, const std::vector<HeldOutError>& rich,
+               Index extra, Index fitted, Index held_out);
 
 }  // namespace reident::identification

@@ -20,7 +20,7 @@ class ReaderCore {
   /// `wire` is the topic's C type, lent until the visit returns. `sent`: by the writer's clock; 0
   /// where it did not say. A visit must not throw.
   using Visit = std::function<void(const void* wire, storage::Time sent)>;
-  /// Of `wire` the key alone is there.
+  /// `wire` has its key alone.
   using Ended = std::function<void(const void* wire)>;
 
   ReaderCore(Participant& participant, const Profile& profile,

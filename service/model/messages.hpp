@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "storage/types/registry_rows.hpp"
@@ -147,5 +148,22 @@ struct ServiceStatus {
   std::string alarms;             // one a line: "code SPACECRAFT/EQUIPMENT: text"
   std::string equipment;          // that it keeps true, separated by commas
 };
+
+/// Returns the counts with the names that people and programs see.
+inline std::vector<std::pair<const char*, std::uint64_t>> counts(const ServiceStatus& status) {
+  return {{"frames_received", status.frames_received},
+          {"frames_rejected", status.frames_rejected},
+          {"samples_stored", status.samples_stored},
+          {"duplicates", status.duplicates},
+          {"conflicts", status.conflicts},
+          {"late", status.late},
+          {"sequence_missing", status.sequence_missing},
+          {"clock_jumps", status.clock_jumps},
+          {"queue_length", status.queue_length},
+          {"queue_waits", status.queue_waits},
+          {"windows_pending", status.windows_pending},
+          {"attempts", status.attempts},
+          {"approvals", status.approvals}};
+}
 
 }  // namespace reident

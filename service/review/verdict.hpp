@@ -14,8 +14,8 @@ struct Verdict {
   std::vector<Condition> conditions;  // empty where it was never compared with a champion
 };
 
-/// Of a version that waits, what its record says now; else its last decision, with the conditions
-/// as they were found then.
+/// Returns what the record of a version that waits says now; else its last decision, with the
+/// conditions as they were found then.
 Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& story);
 
 }  // namespace reident

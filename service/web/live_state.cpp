@@ -30,28 +30,17 @@ Json registry_value(const storage::Registry& registry, const storage::EquipmentN
 Json status_value(const HeardStatus& heard) {
   const ServiceStatus& status = heard.status;
   const std::chrono::duration<double> age = SteadyClock::now() - heard.heard;
-  return {{"service", status.service},
-          {"program_version", status.program_version},
-          {"started", time_value(status.started)},
-          {"time", time_value(status.time)},
-          {"age_s", std::round(age.count() * 10) / 10},
-          {"frames_received", status.frames_received},
-          {"frames_rejected", status.frames_rejected},
-          {"samples_stored", status.samples_stored},
-          {"duplicates", status.duplicates},
-          {"conflicts", status.conflicts},
-          {"late", status.late},
-          {"sequence_missing", status.sequence_missing},
-          {"clock_jumps", status.clock_jumps},
-          {"queue_length", status.queue_length},
-          {"queue_waits", status.queue_waits},
-          {"windows_pending", status.windows_pending},
-          {"attempts", status.attempts},
-          {"approvals", status.approvals},
-          {"newest_telemetry",
-           status.newest_telemetry == 0 ? Json() : time_value(status.newest_telemetry)},
-          {"last_error", status.last_error},
-          {"failing_champions", status.failing_champions}};
+  Json value = {{"service", status.service},
+                {"program_version", status.program_version},
+                {"started", time_value(status.started)},
+                {"time", time_value(status.time)},
+                {"age_s", std::round(age.count() * 10) / 10}};
+  for (const auto& [name, count] : counts(status)) value[name] = count;
+  value["newest_telemetry"] =
+      status.newest_telemetry == 0 ? Json() : time_value(status.newest_telemetry);
+  value["last_error"] = status.last_error;
+  value["failing_champions"] = status.failing_champions;
+  return value;
 }
 
 LiveState::LiveState(const dds::Endpoint& endpoint, std::filesystem::path database)

@@ -85,17 +85,14 @@ OrderDesk::OrderDesk(const dds::Endpoint& endpoint, std::string service)
       participant_(endpoint),
       commands_(participant_),
       replies_(participant_),
-      ready_(participant_) {
+      ready_(participant_),
+      waiting_(most_waiting) {
   ready_.attach(replies_);
   thread_ = std::thread([this] { run(); });
 }
 
 OrderDesk::~OrderDesk() {
-  {
-    const MutexLock lock(mutex_);
-    stopping_ = true;
-  }
-  more_.notify_all();
+  waiting_.close();
   thread_.join();
 }
 
@@ -104,33 +101,17 @@ void OrderDesk::send(const storage::Command& command, const Respond& respond) {
 }
 
 void OrderDesk::later(std::function<HttpResponse()> work, const Respond& respond) {
-  {
-    const MutexLock lock(mutex_);
-    if (waiting_.size() < most_waiting) {
-      waiting_.push_back({std::move(work), respond});
-      more_.notify_one();
-      return;
-    }
-  }
-  respond(problem(503, "busy", "too many orders wait; send this one again"));
+  if (!waiting_.offer({std::move(work), respond}))
+    respond(problem(503, "busy", "too many orders wait; send this one again"));
 }
 
 void OrderDesk::run() {
-  for (;;) {
-    mutex_.lock();
-    while (!stopping_ && waiting_.empty()) more_.wait(mutex_);
-    if (stopping_) {
-      mutex_.unlock();
-      return;
-    }
-    const Waiting next = std::move(waiting_.front());
-    waiting_.pop_front();
-    mutex_.unlock();
+  while (const auto next = waiting_.next()) {
     try {
-      next.respond(next.work());
+      next->respond(next->work());
     } catch (const std::exception& error) {
       log::error("web", "an order failed", {{"error", error.what()}});
-      next.respond(problem(503, "failed", error.what()));
+      next->respond(problem(503, "failed", error.what()));
     }
   }
 }
@@ -159,8 +140,7 @@ std::optional<storage::CommandOutcome> OrderDesk::ask(const storage::Command& co
       if (reply.requester == command.requester && reply.request == command.request)
         outcome = std::move(reply.outcome);
     });
-    const MutexLock lock(mutex_);
-    if (stopping_) return std::nullopt;
+    if (waiting_.is_closed()) return std::nullopt;
   }
   return outcome;
 }

@@ -1,17 +1,16 @@
 // Orders of operators on their way from the page to the service, and what became of them.
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "service/dds/dds.hpp"
-#include "service/support/mutex.hpp"
 #include "service/web/access.hpp"
 #include "service/web/json.hpp"
 #include "service/web/query_pool.hpp"
+#include "service/web/work_queue.hpp"
 
 namespace reident::web {
 
@@ -58,10 +57,7 @@ class OrderDesk {
   dds::Writer<CommandRequest> commands_;
   dds::Reader<CommandReply> replies_;
   dds::WaitSet ready_;
-  Mutex mutex_;
-  CondVar more_;
-  bool stopping_ REIDENT_GUARDED_BY(mutex_) = false;
-  std::deque<Waiting> waiting_ REIDENT_GUARDED_BY(mutex_);
+  WorkQueue<Waiting> waiting_;
   std::thread thread_;
 };
 

@@ -22,48 +22,29 @@ void Stored::check_time() const {
 }
 
 QueryPool::QueryPool(std::filesystem::path database, unsigned threads, std::size_t queue)
-    : database_(std::move(database)), most_(queue) {
+    : database_(std::move(database)), waiting_(queue) {
   for (unsigned i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
 }
 
 QueryPool::~QueryPool() {
-  {
-    const MutexLock lock(mutex_);
-    stopping_ = true;
-  }
-  more_.notify_all();
+  waiting_.close();
   for (std::thread& thread : threads_) thread.join();
 }
 
 void QueryPool::ask(Question question, bool compressed, Respond respond) {
-  {
-    const MutexLock lock(mutex_);
-    if (waiting_.size() < most_) {
-      waiting_.push_back({std::move(question), compressed, std::move(respond)});
-      more_.notify_one();
-      return;
-    }
-  }
+  Waiting waiting{std::move(question), compressed, std::move(respond)};
+  if (waiting_.offer(std::move(waiting))) return;
   HttpResponse busy = problem(503, "busy", "too many questions wait; ask again in a second");
   busy.headers.emplace_back("Retry-After", "1");
-  respond(std::move(busy));
+  waiting.respond(std::move(busy));
 }
 
 void QueryPool::run() {
   ::setpriority(PRIO_PROCESS, 0, niceness);  // of this thread
-  for (;;) {
-    mutex_.lock();
-    while (!stopping_ && waiting_.empty()) more_.wait(mutex_);
-    if (stopping_) {
-      mutex_.unlock();
-      return;
-    }
-    const Waiting next = std::move(waiting_.front());
-    waiting_.pop_front();
-    mutex_.unlock();
-    HttpResponse response = answer(next.question);
-    if (next.compressed) compress(response);
-    next.respond(std::move(response));
+  while (const auto next = waiting_.next()) {
+    HttpResponse response = answer(next->question);
+    if (next->compressed) compress(response);
+    next->respond(std::move(response));
   }
 }
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -12,8 +10,8 @@
 #include <vector>
 
 #include "service/history/stored_readers.hpp"
-#include "service/support/mutex.hpp"
 #include "service/web/http.hpp"
+#include "service/web/work_queue.hpp"
 
 namespace reident::web {
 
@@ -91,11 +89,7 @@ class QueryPool {
   HttpResponse answer(const Question& question) const;
 
   const std::filesystem::path database_;
-  const std::size_t most_;
-  Mutex mutex_;
-  CondVar more_;
-  bool stopping_ REIDENT_GUARDED_BY(mutex_) = false;
-  std::deque<Waiting> waiting_ REIDENT_GUARDED_BY(mutex_);
+  WorkQueue<Waiting> waiting_;
   std::vector<std::thread> threads_;
 };
 

@@ -48,7 +48,7 @@ struct Channel {
 
 /// A range of time that is excluded.
 struct Implausible {
-  std::string check;                    // "relation", "shift", "stuck", "spike" or "noise"
+  std::string check;                    // "relation", "shift", "fill", "stuck", "spike" or "noise"
   Relation relation;                    // of the first two
   std::vector<std::string> parameters;  // one of which is wrong
   identification::TickRange ticks;

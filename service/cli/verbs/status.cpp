@@ -76,22 +76,6 @@ std::optional<ServiceStatus> listen(const dds::Endpoint& endpoint, const Argumen
   return met;
 }
 
-std::vector<std::pair<const char*, std::uint64_t>> counts(const ServiceStatus& status) {
-  return {{"frames_received", status.frames_received},
-          {"frames_rejected", status.frames_rejected},
-          {"samples_stored", status.samples_stored},
-          {"duplicates", status.duplicates},
-          {"conflicts", status.conflicts},
-          {"late", status.late},
-          {"sequence_missing", status.sequence_missing},
-          {"clock_jumps", status.clock_jumps},
-          {"queue_length", status.queue_length},
-          {"queue_waits", status.queue_waits},
-          {"windows_pending", status.windows_pending},
-          {"attempts", status.attempts},
-          {"approvals", status.approvals}};
-}
-
 std::string newest_text(const ServiceStatus& status) {
   return status.newest_telemetry == 0 ? "none" : time_text(status.newest_telemetry);
 }
