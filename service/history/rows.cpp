@@ -123,7 +123,8 @@ Json row_of(const storage::BlockScore& score) {
           {"rows", score.rows},
           {"error_mean", numbers_value(score.mean)},
           {"error_square", numbers_value(score.square)},
-          {"noise_square", numbers_value(score.noise)}};
+          {"noise_square", numbers_value(score.noise)},
+          {"bias_effects", numbers_value(score.bias_effects)}};
 }
 
 void read_row(const Json& row, storage::BlockScore& score) {
@@ -133,6 +134,8 @@ void read_row(const Json& row, storage::BlockScore& score) {
   score.mean = read_numbers(row.at("error_mean"));
   score.square = read_numbers(row.at("error_square"));
   score.noise = read_numbers(row.at("noise_square"));
+  if (const auto effects = row.find("bias_effects"); effects != row.end())
+    score.bias_effects = read_numbers(*effects);
 }
 
 Json row_of(const ChampionRow& row) {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "identification/statistics/betting.hpp"
+#include "service/judgement/offset.hpp"
 #include "service/judgement/regimes.hpp"
 
 namespace reident {
@@ -52,21 +53,6 @@ double log_threshold(const League& league, const Member& member, Time since,
                   (is_behind ? share_behind : 1 - share_behind));
 }
 
-/// Mean error of a run over the last cycle, by output, with the block at `index` the last.
-std::vector<double> cycle_mean(const League& league, const Member& member, std::size_t index) {
-  std::vector<double> mean(league.blocks[index].output_mean.size(), 0);
-  double rows = 0;
-  for (std::size_t i = index + 1; i-- > 0 && index - i < blocks_of_cycle;) {
-    const BlockScore* score = find(member, league.blocks[i].range.begin);
-    if (!score || !counts(league.blocks[i])) continue;
-    const auto weight = static_cast<double>(score->rows);
-    for (std::size_t q = 0; q < mean.size(); ++q) mean[q] += weight * score->mean[q];
-    rows += weight;
-  }
-  for (double& value : mean) value /= rows;
-  return mean;
-}
-
 /// Calls `use` with each block from `since` on that counts and that the member has a score of, from
 /// the one at place `first` on: its place, itself, the score.
 template <typename Use>
@@ -90,14 +76,20 @@ void extend(Comparison& comparison, const League& league, const Member& one, con
                  });
 }
 
-/// Scores with the champion's mean error over each last cycle taken from its error.
+/// Scores without what a sensor's offset explains of the champion's error in each last cycle.
 std::vector<double> scores_without_offset(const League& league, const Member& member,
-                                          const Comparison& compared) {
+                                          const Comparison& compared, std::size_t effect) {
   Scores scores;
   for (const std::size_t i : compared.blocks) {
+    OffsetFit fit(effect);
+    for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
+      if (const BlockScore* score = find(*league.champion, league.blocks[k].range.begin);
+          score && counts(league.blocks[k]))
+        fit.add(*score);
     const Time begin = league.blocks[i].range.begin;
-    const std::vector<double> offset = cycle_mean(league, *league.champion, i);
-    scores.add(squares_of(*find(member, begin), *find(*league.champion, begin), &offset));
+    BlockScore champion = *find(*league.champion, begin);
+    champion.square = fit.rest(champion);
+    scores.add(squares_of(*find(member, begin), champion));
   }
   return scores.values();
 }
@@ -209,15 +201,20 @@ std::optional<Reason> unproved_somewhere(Standard& standard, const Member& membe
   return std::nullopt;
 }
 
-/// R3.
+/// R3. Whichever sensor's offset explains the most decides.
 std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
                                   const Comparison& compared, Finding& finding) {
   const std::vector<std::string>& unbound = standard.league.unbound;
   if (standard.limits.bias == BiasPolicy::approve || unbound.empty()) return std::nullopt;
-  const std::vector<double> scores = scores_without_offset(standard.league, member, compared);
-  const ScoreSeries without = series(scores, standard.assumed);
-  finding.mean_without_offset = without.scores.mean();
-  finding.wealth_without_offset = log_wealth(without, dependence(without), 0);
+  for (std::size_t effect = 0; effect <= offset_effects(*standard.league.champion); ++effect) {
+    const std::vector<double> scores =
+        scores_without_offset(standard.league, member, compared, effect);
+    const ScoreSeries without = series(scores, standard.assumed);
+    const double wealth = log_wealth(without, dependence(without), 0);
+    if (effect > 0 && wealth >= finding.wealth_without_offset) continue;
+    finding.mean_without_offset = without.scores.mean();
+    finding.wealth_without_offset = wealth;
+  }
   if (finding.wealth_without_offset > finding.log_threshold &&
       finding.mean_without_offset > margin_of(standard.limits))
     return std::nullopt;

@@ -42,7 +42,7 @@ struct Finding {
   double mean_score = 0;             // 1: it errs nothing beside the champion; -1: the reverse
   double lower_score = 0;            // lower end of the confidence sequence
   double uncovered_share = 0;        // of the champion's blocks, in regimes that it has not met
-  double mean_without_offset = 0;    // without the champion's mean error of each cycle
+  double mean_without_offset = 0;    // without what a sensor's offset explains
   double wealth_without_offset = 0;  // log of the wealth, likewise
   double mrse_percent = 0;           // on the compared blocks
   double fit_percent = 0;            // the worst output's

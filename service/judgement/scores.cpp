@@ -19,15 +19,12 @@ const BlockScore* find(const Member& member, storage::Time begin) {
   return is_there ? &*found : nullptr;
 }
 
-Squares squares_of(const BlockScore& one, const BlockScore& other,
-                   const std::vector<double>* offset) {
+Squares squares_of(const BlockScore& one, const BlockScore& other) {
   Squares squares;
   for (std::size_t q = 0; q < one.square.size(); ++q) {
     const double noise = std::max(std::min(one.noise[q], other.noise[q]), least_square);
-    double theirs = other.square[q];
-    if (offset) theirs += (*offset)[q] * ((*offset)[q] - 2 * other.mean[q]);
     squares.one.push_back(std::max(one.square[q], noise));
-    squares.other.push_back(std::max(theirs, noise));
+    squares.other.push_back(std::max(other.square[q], noise));
   }
   return squares;
 }

@@ -35,9 +35,7 @@ struct Squares {
   std::vector<double> one, other;
 };
 
-/// `offset`, where there is one, is taken from the other's error.
-Squares squares_of(const storage::BlockScore& one, const storage::BlockScore& other,
-                   const std::vector<double>* offset = nullptr);
+Squares squares_of(const storage::BlockScore& one, const storage::BlockScore& other);
 
 /// Scores of one run against another, from -1 to 1: by how much its mean square is below the
 /// other's, over that of both in the last cycle, and the mean over the outputs. A block in which

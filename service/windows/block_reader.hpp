@@ -32,6 +32,9 @@ struct BlockSamples {
   storage::Block block;
   identification::Record record;
   identification::Index first_row = 0;  // of the block
+  /// WindowData::bias_effects of the sensors that no relation binds and that derived inputs are
+  /// computed from, at the record's rows. In other inputs biases act like constants in the outputs.
+  std::vector<identification::Record> bias_effects;
 };
 
 /// For one equipment and one thread at a time.
@@ -55,6 +58,7 @@ class BlockReader {
                                storage::TimeRange range) const;
 
   Duration length_;
+  std::vector<std::string> biasable_;  // sensors of BlockSamples::bias_effects
   WindowCache telemetry_;
 };
 

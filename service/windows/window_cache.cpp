@@ -1,6 +1,7 @@
 #include "service/windows/window_cache.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -9,9 +10,34 @@
 
 namespace reident {
 
+using identification::Index;
 using identification::Record;
 using identification::TickRange;
 using identification::TickSet;
+
+namespace {
+
+/// The change of the inputs by a bias of a hundredth of the sensor's values, over the bias. No
+/// change where the bias makes inputs that are not finite.
+Record bias_effect(InputExpressions& expressions, const Record& samples, const Record& inputs,
+                   const std::string& sensor) {
+  const auto& names = expressions.parameters();
+  const auto place = std::ranges::find(names, sensor) - names.begin();
+  const double values = std::sqrt(samples.u.col(place).squaredNorm() /
+                                  static_cast<double>(std::max<Index>(1, samples.rows())));
+  const double bias = values > 0 ? values / 100 : 1;
+  Record biased = samples;
+  biased.u.col(place).array() += bias;
+  biased = expressions.evaluate(std::move(biased));
+  Record effect = inputs;
+  if (biased.segments == inputs.segments)
+    effect.u = (biased.u - inputs.u) / bias;
+  else
+    effect.u.setZero();
+  return effect;
+}
+
+}  // namespace
 
 WindowCache::WindowCache(const WindowRequest& request, identification::Index block_rows,
                          const Checks& checks)
@@ -27,8 +53,9 @@ void WindowCache::make_holes(const TickSet& holes, TickRange ticks) {
   holes_ = identification::united(std::move(all));
 }
 
-std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Archive& archive,
-                                                             storage::TimeRange window) {
+std::variant<WindowData, UnknownParameter> WindowCache::load(
+    const storage::Archive& archive, storage::TimeRange window,
+    const std::vector<std::string>& sensors) {
   const CachingReader reader(archive);
   auto described = describe_window(reader, request_);
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
@@ -54,7 +81,11 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Arch
   });
   data.plausibility = checks_.look(reader, data, samples, ticks);
   make_holes(inside(data.plausibility.holes, ticks), ticks);
-  Record read = InputExpressions(request_.inputs, request_.derived).evaluate(std::move(samples));
+  InputExpressions expressions(request_.inputs, request_.derived);
+  Record read = expressions.evaluate(sensors.empty() ? std::move(samples) : samples);
+  for (const std::string& sensor : sensors)
+    data.bias_effects.push_back(
+        without(bias_effect(expressions, samples, read, sensor), data.plausibility.holes));
   data.read_coverage = coverage_of(read, window, request_.period);
   data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);

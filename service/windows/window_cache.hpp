@@ -30,9 +30,11 @@ class WindowCache {
   const WindowRequest& request() const { return request_; }
 
   /// Returns load_window() without what the checks exclude. What lies before the window is
-  /// forgotten: windows that go forward are the cheap ones. Throws storage::Error.
+  /// forgotten: windows that go forward are the cheap ones. `sensors` are parameters of derived
+  /// inputs of which WindowData::bias_effects is wanted. Throws storage::Error.
   std::variant<WindowData, UnknownParameter> load(const storage::Archive& archive,
-                                                  storage::TimeRange window);
+                                                  storage::TimeRange window,
+                                                  const std::vector<std::string>& sensors = {});
 
   /// Forgets the ticks that samples in `range` serve, since samples were stored there after the
   /// window was loaded.

@@ -72,6 +72,9 @@ struct WindowData {
   Plausibility plausibility;  // of a WindowCache with checks: its holes are not in the record
   double coverage = 0;        // share of the window's ticks that have a row
   double read_coverage = 0;   // before holes were made of what is excluded
+  /// Of each sensor that was asked for: as `record`, with u the change of the inputs that a small
+  /// bias of the sensor brings, over the bias.
+  std::vector<identification::Record> bias_effects;
 };
 
 /// A parameter that telemetry has not described yet, so that nobody knows its samples.

@@ -155,7 +155,7 @@ CREATE TABLE score (
   spacecraft TEXT NOT NULL, equipment TEXT NOT NULL, version INTEGER NOT NULL,
   begin_time INTEGER NOT NULL, rows INTEGER NOT NULL,
   error_mean BLOB NOT NULL, error_square BLOB NOT NULL, noise_square BLOB NOT NULL,
-  state BLOB NOT NULL, state_tick INTEGER, run_square BLOB NOT NULL, run_rows INTEGER NOT NULL,
+  state BLOB NOT NULL, state_tick INTEGER, run_square BLOB NOT NULL, run_rows INTEGER NOT NULL, bias_effects BLOB NOT NULL DEFAULT x'',
   PRIMARY KEY (spacecraft, equipment, version, begin_time),
   FOREIGN KEY (spacecraft, equipment, version) REFERENCES version (spacecraft, equipment, number))
   WITHOUT ROWID;
@@ -490,6 +490,10 @@ std::string from_5_to_6() {
 
 std::string from_6_to_7() {
   return joined({notice_tables, notice_views}) + append_only_notices();
+}
+
+std::string from_7_to_8() {
+  return "ALTER TABLE score ADD COLUMN bias_effects BLOB NOT NULL DEFAULT x'';";
 }
 
 std::string user_version() {

@@ -7,7 +7,7 @@
 namespace reident::storage::schema {
 
 inline constexpr std::int64_t application_id = 0x72656964;  // "reid"
-inline constexpr std::int64_t version = 7;                  // kept in SQLite's user_version
+inline constexpr std::int64_t version = 8;                  // kept in SQLite's user_version
 
 /// Statements that make everything in an empty file, application_id and user_version included.
 std::string creation();
@@ -21,6 +21,7 @@ std::string without_samples_of_2();
 std::string from_3_to_4();
 std::string from_5_to_6();
 std::string from_6_to_7();
+std::string from_7_to_8();  // from_5_to_6() makes what it adds
 
 /// Says that the file is of this version.
 std::string user_version();

@@ -57,10 +57,10 @@ void Registry::record_scores(const std::string& spacecraft, const std::string& e
              block->believed, blob(block->output_mean), blob(block->output_square),
              blob(block->input_low), blob(block->input_high), blob(block->baseline_square));
   for (const BlockScore& score : scores)
-    db.query("INSERT INTO score VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+    db.query("INSERT INTO score VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
         .run(spacecraft, equipment, score.version, score.begin, score.rows, blob(score.mean),
              blob(score.square), blob(score.noise), blob(score.state.x), score.state.tick,
-             blob(score.state.square_errors), score.state.rows);
+             blob(score.state.square_errors), score.state.rows, blob(score.bias_effects));
   transaction.commit();
 }
 
@@ -99,7 +99,7 @@ std::vector<BlockScore> Registry::scores(const std::string& spacecraft,
   std::vector<BlockScore> scores;
   sqlite::Query row = connection(database_).query(
       "SELECT begin_time, rows, error_mean, error_square, noise_square, state, state_tick, "
-      "run_square, run_rows "
+      "run_square, run_rows, bias_effects "
       "FROM score WHERE spacecraft = ? AND equipment = ? AND version = ? AND begin_time >= ? "
       "ORDER BY begin_time",
       spacecraft, equipment, version, since);
@@ -112,7 +112,8 @@ std::vector<BlockScore> Registry::scores(const std::string& spacecraft,
                       numbers(row, 4),
                       {numbers(row, 5),
                        row.is_null(6) ? std::nullopt : std::optional<std::int64_t>(row.integer(6)),
-                       numbers(row, 7), row.integer(8)}});
+                       numbers(row, 7), row.integer(8)},
+                      numbers(row, 9)});
   return scores;
 }
 

@@ -31,7 +31,7 @@ class Errors {
       sum += error;
       squares += error * error;
     }
-    return {version, begin, rows, {sum / rows}, {squares / rows}, {1e-12}, {}};
+    return {version, begin, rows, {sum / rows}, {squares / rows}, {1e-12}, {}, {}};
   }
 
  private:

@@ -195,13 +195,15 @@ RC_GTEST_PROP(HistoryRows, BlocksAndScoresComeBack, ()) {
                                   any_numbers(),
                                   any_numbers(),
                                   any_numbers(),
-                                  {}};
+                                  {},
+                                  any_numbers()};
   const auto back = there_and_back<storage::BlockScore>(row_of(score));
   RC_ASSERT(std::tie(back.version, back.begin, back.rows) ==
             std::tie(score.version, score.begin, score.rows));
   RC_ASSERT(same(back.mean, score.mean));
   RC_ASSERT(same(back.square, score.square));
   RC_ASSERT(same(back.noise, score.noise));
+  RC_ASSERT(same(back.bias_effects, score.bias_effects));
 }
 
 RC_GTEST_PROP(HistoryRows, SamplesComeBack, ()) {

@@ -80,6 +80,7 @@ class Records {
                                {error.mean},
                                {error.square + error.mean * error.mean},
                                {1e-6},
+                               {},
                                {}});
     }
     return member;
@@ -189,6 +190,24 @@ TEST(League, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
   records.limits().bias = BiasPolicy::wait;
   records.league().unbound.clear();
   EXPECT_EQ(records.obstacle(), std::nullopt);
+}
+
+/// A sensor of a derived input is off from block 100 on: the error follows its effect, which
+/// changes its sign within each block and has no mean.
+TEST(League, VersionThatIsBetterByASensorsEffectAloneWaits) {
+  Records records(200);
+  records.champion([](int block) {
+           return Error{0, block < 100 ? 0.01 : 0.26};
+         })
+      .challenger(varying(0.01), 100)
+      .unbound();
+  EXPECT_EQ(records.obstacle(), std::nullopt);
+  for (BlockScore& score : records.league().champion->scores)
+    score.bias_effects = {0, 1, score.square[0] > 0.1 ? 0.5 : 0};
+  EXPECT_EQ(records.obstacle(), Code::bias_unverified);
+  for (BlockScore& score : records.league().champion->scores)
+    score.bias_effects = {0, 1, score.square[0] > 0.1 ? 0.1 : 0};
+  EXPECT_EQ(records.obstacle(), std::nullopt) << "it explains the least part";
 }
 
 TEST(League, VersionThatIsBetterWithoutTheConstantTooIsNoBias) {

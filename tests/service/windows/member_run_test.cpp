@@ -75,6 +75,23 @@ TEST(MemberRun, GoesOnWithoutABreakFromItsState) {
   EXPECT_EQ(score.state.rows, 4 * block_rows);
 }
 
+TEST(MemberRun, SaysWhatABiasOfASensorDoesToIt) {
+  // The sensor drives the input with a gain of 3, and its effect is to be seen without an error.
+  BlockSamples samples = samples_of(1, 0);
+  samples.bias_effects = {samples.record};
+  samples.bias_effects[0].u.setConstant(3);
+  storage::RunState state = score_block(model(), 1, samples_of(0, 0), {}).state;
+  storage::BlockScore score = score_block(model(), 1, samples, state);
+  const double gain = 0.1 / (1 - 0.95);
+  ASSERT_EQ(score.bias_effects.size(), 3U);
+  EXPECT_NEAR(score.bias_effects[0], 3 * gain, 1e-9);
+  EXPECT_NEAR(score.bias_effects[1], 9 * gain * gain, 1e-9);
+  EXPECT_NEAR(score.bias_effects[2], 0, 1e-9);
+  samples.record.y.array() += 0.5;
+  score = score_block(model(), 1, samples, state);
+  EXPECT_NEAR(score.bias_effects[2], 3 * gain * 0.5, 1e-9);
+}
+
 TEST(MemberRun, OfABlockWithoutSamplesHasNoRowsAndKeepsItsState) {
   const storage::RunState state = score_block(model(), 1, samples_of(0, 0), {}).state;
   const storage::BlockScore score = score_block(model(), 1, {}, state);

@@ -96,6 +96,25 @@ TEST_F(WindowCaches, ComputeDerivedInputsWithTheBitsOfAFreshRead) {
   EXPECT_EQ(data.inputs[0].expression, "");
 }
 
+TEST_F(WindowCaches, SayWhatABiasOfASensorDoesToDerivedInputs) {
+  EquipmentConfig equipment = plant();
+  equipment.inputs = {"v", "q"};
+  equipment.derived = {{"q", "u * v", "V"}};
+  kept = window_cache_of("SAT", equipment);
+  archive.append(telemetry(day, 1000));
+  const auto result = kept.load(archive, {day, day + 1000 * second}, {"u", "v"});
+  const WindowData& data = std::get<WindowData>(result);
+  ASSERT_EQ(data.bias_effects.size(), 2U);
+  for (const identification::Record& effect : data.bias_effects)
+    EXPECT_EQ(effect.segments, data.record.segments);
+  const auto v = data.record.u.col(0), q = data.record.u.col(1);
+  EXPECT_TRUE(data.bias_effects[0].u.col(0).isZero());
+  EXPECT_TRUE(data.bias_effects[0].u.col(1).isApprox(v, 1e-9)) << "of u: v";
+  EXPECT_TRUE(data.bias_effects[1].u.col(0).isApprox(identification::Vector::Ones(v.size())));
+  EXPECT_TRUE((data.bias_effects[1].u.col(1).array() * v.array()).isApprox(q.array(), 1e-9))
+      << "of v: u";
+}
+
 TEST_F(WindowCaches, NameAParameterOfAnExpressionThatNobodyDescribed) {
   EquipmentConfig equipment = plant();
   equipment.inputs = {"q"};

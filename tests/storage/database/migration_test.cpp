@@ -150,7 +150,7 @@ INSERT INTO decision VALUES
 
 // Version 5 differs from 4 in the qualities that a file may hold, 6 has the records of versions,
 // and 7 what the service noticed.
-TEST(MigrationFrom4To6, AddsTheRecordsAndChangesNothingElse) {
+TEST(MigrationFrom4To7, AddsTheRecordsAndChangesNothingElse) {
   const TemporaryFolder folder;
   const auto path = folder / "old.db";
   const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
@@ -171,8 +171,11 @@ TEST(MigrationFrom4To6, AddsTheRecordsAndChangesNothingElse) {
       "DROP VIEW alarm_now; DROP VIEW simulator_now; DROP TABLE alarm; DROP TABLE change; "
       "DROP TABLE simulator; DROP INDEX decision_with_why; DROP INDEX attempt_left_waiting; "
       "PRAGMA user_version = ";
-  for (const std::string old : {"4", "5", "6"}) {
-    rows(path, (old == "6" ? "" : without_records) + without_notices + old);
+  const std::string without_effects = "ALTER TABLE score DROP COLUMN bias_effects; ";
+  for (const std::string old : {"4", "5", "6", "7"}) {
+    const bool has_records = old == "6" || old == "7";
+    rows(path, (has_records ? without_effects : without_records) +
+                   (old == "7" ? "PRAGMA user_version = " : without_notices) + old);
     Database migrated(path, Mode::read_write);
     EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
     EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre(std::to_string(schema::version)));
@@ -181,7 +184,7 @@ TEST(MigrationFrom4To6, AddsTheRecordsAndChangesNothingElse) {
     Registry registry(migrated);
     Block block;
     block.range = {0, 60};
-    if (old != "6") registry.record_scores("CB4", "BDR", block, {});
+    if (!has_records) registry.record_scores("CB4", "BDR", block, {});
     EXPECT_EQ(registry.blocks("CB4", "BDR", INT64_MIN).size(), 1);
     EXPECT_TRUE(registry.alarms().empty());
   }

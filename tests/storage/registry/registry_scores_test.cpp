@@ -18,8 +18,14 @@ Block block(Time begin) {
 }
 
 BlockScore score(std::int64_t version, Time begin) {
-  return {
-      version, begin, 7, {0.1, -0.0}, {0.01, inf}, {1e-9, 5e-324}, {{1, 2, 3}, 42, {0.07, 1}, 7}};
+  return {version,
+          begin,
+          7,
+          {0.1, -0.0},
+          {0.01, inf},
+          {1e-9, 5e-324},
+          {{1, 2, 3}, 42, {0.07, 1}, 7},
+          {1, 2, 3, -4, 5, -0.0}};
 }
 
 TEST_F(RegistryTest, GivesBlocksAndScoresBackToTheLastBit) {
@@ -53,6 +59,7 @@ TEST_F(RegistryTest, GivesBlocksAndScoresBackToTheLastBit) {
   EXPECT_EQ(scores[0].state.tick, 42);
   EXPECT_THAT(scores[0].state.square_errors, ElementsAre(0.07, 1));
   EXPECT_EQ(scores[0].state.rows, 7);
+  EXPECT_THAT(scores[0].bias_effects, ElementsAre(1, 2, 3, -4, 5, 0.0));
   EXPECT_EQ(scores[1].state.tick, std::nullopt);
 }
 

@@ -62,7 +62,7 @@ class Overview : public test::CliTest {
       block.baseline_square = {4};
       const double of_block = i < blocks - 8 ? 1 : square;  // the last two cycles alone count
       registry_.record_scores("SAT", equipment, block,
-                              {{1, block.range.begin, 900, {0}, {of_block}, {1e-6}, {}}});
+                              {{1, block.range.begin, 900, {0}, {of_block}, {1e-6}, {}, {}}});
     }
   }
   void ask(const std::string& equipment, std::int64_t version) {

@@ -285,7 +285,7 @@ TEST_F(Stored, WhyNamesAChampionThatFails) {
     block.input_high = {1, 1};
     const double square = i % 3 == 0 ? 4.5 : 3;
     registry_.record_scores("CBERS-4", "BDR", block,
-                            {{1, block.range.begin, 900, {0}, {square}, {1e-6}, {}}});
+                            {{1, block.range.begin, 900, {0}, {square}, {1e-6}, {}, {}}});
   }
   const std::string why = json::parse(reident(command({"why", "BDR@1", "--json"})).out)["verdict"];
   EXPECT_THAT(why, HasSubstr(" 60 blocks"));
