@@ -19,4 +19,5 @@ cmake --preset "$preset" -DBUILD_TESTING=ON >/dev/null
 cmake --build --preset "$preset"
 exclude=()
 case $preset in asan | tsan) exclude=(-LE lint) ;; esac
-ctest --preset "$preset" -j "$(nproc)" "${exclude[@]}" "$@"
+# Tests with processes of their own mostly wait for them: two tests for each processor.
+ctest --preset "$preset" -j "$((2 * $(nproc)))" "${exclude[@]}" "$@"
