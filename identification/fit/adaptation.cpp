@@ -31,6 +31,14 @@ std::vector<Index> places_above_zero(const Vector& values) {
   return places;
 }
 
+/// With 0 for the inputs that have no effect in the model: those of operating regimes that were not
+/// worth it.
+Vector without_unused(const Vector& deviations, const StateSpaceModel& model) {
+  const Vector effects =
+      (model.B.colwise().squaredNorm() + model.D.colwise().squaredNorm()).transpose();
+  return (effects.array() > 0).select(deviations, 0.0);
+}
+
 /// Rows after which inputs of such weights have samples of their own: those between are held.
 Index rows_held(const Matrix& u, const Vector& weights) {
   constexpr double takes_part = 0.1;
@@ -89,7 +97,8 @@ StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowR
   const auto y = record.y.middleRows(rows.begin, rows.size());
   const Vector of_u = deviations(u), of_y = deviations(y);
   const Vector per_y = (of_y.array() > 0).select(of_y.cwiseInverse(), 1.0);
-  const std::vector<Index> inputs = places_above_zero(of_u);
+  const std::vector<Index> inputs =
+      places_above_zero(from == KnownFrom::these_rows ? without_unused(of_u, known) : of_u);
   const Vector mean = u.colwise().mean();
   const Vector deviation = of_u(inputs);
   const Matrix per_u = deviation.cwiseInverse().asDiagonal();

@@ -7,8 +7,9 @@
 namespace reident::identification {
 
 /// What the model was identified from. From these rows, it moves to the least squares solution and
-/// loses its gains for inputs' components that are noise. From others, it keeps these gains and
-/// moves as far as the rows show with confidence (fit_change() of output_error_fit.hpp).
+/// loses its gains for inputs' components that are noise; an input without effect stays so. From
+/// others, it keeps these gains and moves as far as the rows show with confidence (fit_change() of
+/// output_error_fit.hpp).
 enum class KnownFrom { these_rows, other_rows };
 
 /// Returns `known` with other B, D and y0. Requires a stable, well-formed model of the record's

@@ -11,6 +11,7 @@
 #include "identification/search/finite_check.hpp"
 #include "identification/search/horizons.hpp"
 #include "identification/search/pipeline.hpp"
+#include "identification/search/regimes.hpp"
 #include "identification/simulation/initial_state.hpp"
 
 namespace reident::identification {
@@ -26,6 +27,8 @@ std::vector<std::string> mistakes(const IdentifyOptions& options) {
     found.push_back("the tuning share must be above 0 and at most 0.9");
   for (const int delay : options.input_delays)
     if (delay < 0) found.push_back("an input delay must not be negative");
+  if (options.regime_inputs < 0)
+    found.push_back("the number of inputs of regimes must not be negative");
   if (options.max_input_delay < 0) found.push_back("the largest input delay must not be negative");
   if (options.max_input_delay > 0 && !options.input_delays.empty())
     found.push_back("the input delays are either given or chosen, not both");
@@ -164,6 +167,12 @@ IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptio
                         LagSums* kept) {
   assert(mistakes(options).empty() && record.y.cols() >= 1);
   assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
+  if (options.regime_inputs > 0)
+    return identify_with_regimes(
+        record, rows, options, kept,
+        [rows](const Record& own, const IdentifyOptions& own_options, LagSums* own_kept) {
+          return identify(own, rows, own_options, own_kept);
+        });
   const bool may_delay = options.max_input_delay > 0 || !options.input_delays.empty();
   if (may_delay && record.u.cols() > 0) return identify_delayed(record, rows, options);
   return run_pipeline(record, rows, options, kept);

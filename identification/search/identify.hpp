@@ -42,6 +42,9 @@ struct IdentifyOptions {
   std::vector<int> input_delays;
   /// Above 0: the delays are estimated, each at most so many samples.
   int max_input_delay = 0;
+  /// The last so many inputs are those of operating regimes: they have an effect only where the
+  /// model with them errs at least 1 % less on held-out rows. Fewer than the inputs.
+  int regime_inputs = 0;
   /// Share of the identification rows that choices are scored on, in (0, 0.9]: the last ones and
   /// the first ones are held out in turn, a half of the share at a time.
   double tune_share = 0.4;
@@ -66,6 +69,13 @@ std::vector<std::string> mistakes(const IdentifyOptions& options);
 /// most. Requires options without mistakes.
 Index block_rows_needed(const IdentifyOptions& options);
 
+/// Whether the inputs of operating regimes have an effect, and the errors of the choice. An error
+/// is absent where there is no such model, or nothing was to be chosen.
+struct RegimeChoice {
+  bool are_used = false;
+  std::optional<double> error_with, error_without;  // as Identified::held_out_error
+};
+
 /// A model with what is known of it.
 struct Identified {
   StateSpaceModel model;
@@ -81,6 +91,8 @@ struct Identified {
   /// Error of the choice: root mean square in deviations of the outputs, over all folds. Absent
   /// where nothing was to be chosen.
   std::optional<double> held_out_error;
+  /// Where IdentifyOptions::regime_inputs asked for one.
+  std::optional<RegimeChoice> regimes;
   double search_work = 0;  // spent of the budget
   /// Sentences for an operator: what was left out, or could not be done.
   std::vector<std::string> warnings;
@@ -91,13 +103,12 @@ using IdentifyResult = std::variant<Identified, Verdict>;
 
 /// Identifies a model from the rows `rows` of the record alone. Its x0 depends on the others too
 /// where holes follow the first row: on their number, and on how much their inputs change.
-/// Requires m >= 0 inputs, p >= 1 outputs, rows within the record and options without mistakes.
-/// With `kept`, sums kept there stand for the samples that they were made of, and new ones are
-/// added; not with input delays. Its shape has m + p channels and at least
-/// block_rows_needed(options) block rows.
-/// Returns a verdict where the rows give no model; whatever values they hold, one of the two comes.
-/// The result is the same to the last bit for any `for_each`, and whatever sums of its shape `kept`
-/// holds.
+/// Requires m >= 0 inputs, more than those of regimes where there are such, p >= 1 outputs, rows
+/// within the record and options without mistakes. With `kept`, sums kept there stand for the
+/// samples that they were made of, and new ones are added; not with input delays. Its shape has m +
+/// p channels and at least block_rows_needed(options) block rows. Returns a verdict where the rows
+/// give no model; whatever values they hold, one of the two comes. The result is the same to the
+/// last bit for any `for_each`, and whatever sums of its shape `kept` holds.
 IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
                         LagSums* kept = nullptr);
 

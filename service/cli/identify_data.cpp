@@ -9,8 +9,10 @@
 
 #include "identification/screening/sample_hold.hpp"
 #include "service/cli/identify_record.hpp"
+#include "service/cli/identify_regimes.hpp"
 #include "service/cli/identify_screening.hpp"
 #include "service/cli/identify_table.hpp"
+#include "service/model/regime_inputs.hpp"
 #include "service/support/text.hpp"
 
 namespace reident::cli {
@@ -232,6 +234,34 @@ void warn_of_late_start(IdentifyData& data, Index asked) {
                     asked, parts.front().first_tick));
 }
 
+/// Adds the inputs of the regimes to those of the request.
+std::optional<Refusal> add_regimes(DataRequest& request, const TelemetryFile& file,
+                                   IdentifyData& data) {
+  if (request.regimes.empty()) return std::nullopt;
+  auto again = open_file(request);  // the values of columns have to be known before rows are read
+  if (const auto* refusal = std::get_if<Refusal>(&again)) return *refusal;
+  auto regimes = regimes_of(std::get<TelemetryFile>(again), request.regimes);
+  if (const auto* refusal = std::get_if<Refusal>(&regimes)) return *refusal;
+  data.regimes = std::get<std::vector<std::string>>(std::move(regimes));
+  const std::size_t before = request.inputs.size();
+  add_regime_inputs(data.regimes, request.inputs, data.derived);
+  data.regime_inputs = static_cast<int>(request.inputs.size() - before);
+  const std::set<std::string> names(request.inputs.begin(), request.inputs.end());
+  if (names.size() < request.inputs.size())
+    return Refusal{"--regime names a regime twice; name each once"};
+  const auto mistakes = mistakes_in(data.derived, request.inputs, request.outputs);
+  if (!mistakes.empty())
+    return Refusal{fmt::format("--regime: {} {}", data.derived[mistakes.front().index].name,
+                               mistakes.front().message)};
+  const InputExpressions expressions(request.inputs, data.derived);
+  for (const std::string& operand : expressions.parameters()) {
+    const auto found = file.find(operand);
+    if (const auto* error = std::get_if<csv::Error>(&found))
+      return Refusal{fmt::format("--regime: {}", error->message)};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
@@ -244,6 +274,7 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   if (const auto* refusal = std::get_if<Refusal>(&opened)) return *refusal;
   auto& file = std::get<TelemetryFile>(opened);
   if (auto refusal = resolve_columns(data.derived, request, file)) return *refusal;
+  if (auto refusal = add_regimes(request, file, data)) return *refusal;
   InputExpressions expressions(request.inputs, data.derived);
   std::vector<std::string> columns = expressions.parameters();
   const std::size_t inputs = columns.size();

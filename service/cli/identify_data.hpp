@@ -20,7 +20,8 @@ struct DataRequest {
   std::filesystem::path file;
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
-  std::vector<std::string> derive;  // "NAME=EXPRESSION", inputs that follow from columns
+  std::vector<std::string> derive;   // "NAME=EXPRESSION", inputs that follow from columns
+  std::vector<std::string> regimes;  // columns or conditions (identify_regimes.hpp)
   /// How the file is read. Without a time column rows are one period apart.
   telemetry_file::ReadingOptions reading;
   bool skip_bad_lines = false;
@@ -44,6 +45,8 @@ struct IdentifyData {
   identification::RowRange validate;         // at least one row
   std::vector<std::string> inputs, outputs;  // columns of u and y
   std::vector<DerivedInput> derived;         // of the inputs; units are not known
+  std::vector<std::string> regimes;          // conditions
+  int regime_inputs = 0;                     // the last so many inputs are those of the regimes
   std::vector<std::int64_t> file_ticks;      // of the rows of the file
   std::vector<LeftOut> left_out;
   std::vector<std::string> warnings;

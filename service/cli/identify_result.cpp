@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "identification/search/delays.hpp"
 #include "service/cli/output/diagnostics_text.hpp"
@@ -82,14 +83,37 @@ std::string gains_text(const IdentifyOutcome& outcome) {
   const auto gain = static_gain(outcome.identified.model);
   if (!gain || outcome.inputs.empty()) return "";
   std::string text;
+  const auto& regimes = outcome.identified.regimes;
+  const std::size_t inputs =
+      outcome.inputs.size() - (regimes && !regimes->are_used ? outcome.regime_inputs : 0);
   for (std::size_t q = 0; q < outcome.outputs.size(); ++q) {
     text += fmt::format("gains at rest to {}:", outcome.outputs[q]);
-    for (std::size_t i = 0; i < outcome.inputs.size(); ++i)
+    for (std::size_t i = 0; i < inputs; ++i)
       text += fmt::format("{} {} {:.4g}", i == 0 ? "" : ",", outcome.inputs[i],
                           (*gain)(static_cast<Eigen::Index>(q), static_cast<Eigen::Index>(i)));
     text += "\n";
   }
   return text;
+}
+
+std::string regimes_text(const IdentifyOutcome& outcome) {
+  const auto& regimes = outcome.identified.regimes;
+  if (!regimes) return "";
+  std::string text = fmt::format("regimes {}: {}", fmt::join(outcome.regimes, ", "),
+                                 regimes->are_used ? "used" : "not used");
+  if (regimes->error_with && regimes->error_without)
+    text += fmt::format(" (held-out error {:.4g} with, {:.4g} without)", *regimes->error_with,
+                        *regimes->error_without);
+  else if (!regimes->are_used)
+    text += " (the rows do not meet them, or give no model with them)";
+  return text + "\n";
+}
+
+ordered_json regimes_json(const IdentifyOutcome& outcome) {
+  if (!outcome.identified.regimes) return nullptr;
+  ordered_json json = to_json(*outcome.identified.regimes);
+  json["conditions"] = outcome.regimes;
+  return json;
 }
 
 ordered_json gains_json(const StateSpaceModel& model) {
@@ -124,6 +148,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"inputs", outcome.inputs},
       {"outputs", outcome.outputs},
       {"derived", derived_json(outcome.derived)},
+      {"regimes", regimes_json(outcome)},
       {"A", to_json(model.A)},
       {"B", to_json(model.B)},
       {"C", to_json(model.C)},
@@ -162,12 +187,12 @@ std::string to_report(const IdentifyOutcome& outcome) {
   std::string text = fmt::format(
       "order {}{}, horizon {}, weighting {}, sample period {:g} s\n"
       "poles {} (spectral radius {:.6g}, {})\n"
-      "{}free run over {} identification and {} validation rows:\n{}",
+      "{}{}free run over {} identification and {} validation rows:\n{}",
       model.order(), delays_text(outcome), identified.recipe.horizon,
       name(identified.recipe.weighting), model.period_s, poles_text(model),
       identified.spectral_radius, identified.spectral_radius < 1 ? "stable" : "unstable",
-      gains_text(outcome), outcome.identify.rows, outcome.diagnostics.free_run.rows,
-      error_table(outcome).text(0));
+      regimes_text(outcome), gains_text(outcome), outcome.identify.rows,
+      outcome.diagnostics.free_run.rows, error_table(outcome).text(0));
   text += diagnostics_text(outcome.diagnostics, outcome.inputs, outcome.outputs);
   text += continuous_text(outcome.continuous);
   for (const std::string& warning : outcome.warnings) text += fmt::format("warning: {}\n", warning);

@@ -22,7 +22,9 @@ struct IdentifyOutcome {
   std::variant<identification::ContinuousModel, identification::Verdict> continuous;
   std::vector<std::string> inputs, outputs;  // column names, or those of derived inputs
   std::vector<DerivedInput> derived;
-  nlohmann::ordered_json left_out;  // left_out_json()
+  std::vector<std::string> regimes;  // conditions
+  std::size_t regime_inputs = 0;     // the last so many inputs are those of the regimes
+  nlohmann::ordered_json left_out;   // left_out_json()
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::string> warnings;
   std::string found;  // how the file is read

@@ -9,6 +9,7 @@
 
 #include "identification/search/identify.hpp"
 #include "service/config/config_document.hpp"
+#include "service/model/regime_inputs.hpp"
 #include "service/support/sha256.hpp"
 #include "service/support/time_text.hpp"
 
@@ -188,6 +189,29 @@ void read_derived(TableReader& reader, ConfigDocument& document, EquipmentConfig
     readers[mistake.index].mistake(mistake.key, fmt::format("{} {}", mistake.key, mistake.message));
 }
 
+/// Adds the inputs of the equipment's operating regimes, once the others are whole.
+void read_regimes(TableReader& reader, EquipmentConfig& equipment) {
+  const auto regimes = reader.texts("regimes");
+  if (!regimes || equipment.inputs.empty()) return;
+  const std::size_t before = equipment.inputs.size();
+  for (const std::string& regime : *regimes) {
+    const auto mistakes =
+        mistakes_in({{regime_name(regime), regime, ""}}, {regime_name(regime)}, equipment.outputs);
+    for (const DerivedInputMistake& mistake : mistakes)
+      reader.mistake("regimes", fmt::format("regime \"{}\" {}", regime, mistake.message));
+    if (!mistakes.empty()) return;
+    if (std::count(regimes->begin(), regimes->end(), regime) > 1)
+      return reader.mistake("regimes", fmt::format("regimes names \"{}\" twice", regime));
+  }
+  add_regime_inputs(*regimes, equipment.inputs, equipment.derived);
+  equipment.regime_inputs = static_cast<int>(equipment.inputs.size() - before);
+  // Inputs that an expression can name, within the regimes.
+  for (const DerivedInputMistake& mistake :
+       mistakes_in(equipment.derived, equipment.inputs, equipment.outputs))
+    reader.mistake("regimes", fmt::format("regimes: {} {}", equipment.derived[mistake.index].name,
+                                          mistake.message));
+}
+
 void read_order(TableReader& reader, EquipmentConfig& equipment) {
   const toml::array* range = reader.array("order");
   if (range != nullptr) {
@@ -292,6 +316,7 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
   const std::size_t before = document.mistakes.size();
   read_signals(reader, equipment);
   read_derived(reader, document, equipment);
+  if (document.mistakes.size() == before) read_regimes(reader, equipment);
   read_order(reader, equipment);
   assign(equipment.horizon, reader.integer_or_auto("horizon", 2, max_horizon));
   if (equipment.horizon && *equipment.horizon < least_horizon(equipment))

@@ -43,6 +43,7 @@ struct EquipmentConfig {
   std::string name;
   std::vector<std::string> inputs;  // SATCS parameters, or names of derived inputs
   std::vector<DerivedInput> derived;
+  int regime_inputs = 0;  // the last so many inputs are those of operating regimes
   std::vector<std::string> outputs;
   Duration sample_period = 0;
   Duration sample_hold = 0;  // default: three sample periods

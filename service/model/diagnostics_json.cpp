@@ -89,6 +89,15 @@ Json to_json(const Diagnostics& diagnostics, const Names& inputs, const Names& o
             {"largest", to_json(spread.largest)}}}};
 }
 
+Json to_json(const identification::RegimeChoice& regimes) {
+  const auto number = [](const std::optional<double>& error) {
+    return error ? Json(*error) : Json(nullptr);
+  };
+  return {{"used", regimes.are_used},
+          {"held_out_error", number(regimes.error_with)},
+          {"held_out_error_without", number(regimes.error_without)}};
+}
+
 Json to_json(
     const std::variant<identification::ContinuousModel, identification::Verdict>& continuous) {
   if (const auto* verdict = std::get_if<identification::Verdict>(&continuous))

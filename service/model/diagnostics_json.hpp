@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "identification/search/identify.hpp"
 #include "identification/simulation/continuous.hpp"
 #include "identification/statistics/diagnostics.hpp"
 
@@ -21,6 +22,9 @@ namespace reident {
 nlohmann::ordered_json to_json(const identification::Diagnostics& diagnostics,
                                const std::vector<std::string>& inputs,
                                const std::vector<std::string>& outputs);
+
+/// Returns {"used", "held_out_error", "held_out_error_without"}; an error that is absent is null.
+nlohmann::ordered_json to_json(const identification::RegimeChoice& regimes);
 
 /// Returns {"A", "B"} of dx/dt = A x + B (u - u0), time in seconds, or {"rejected": code, "reason":
 /// sentence} for a model that has no continuous form.

@@ -107,6 +107,7 @@ void describe_search(const Identified& identified, ordered_json& json) {
   json["tune_error"] = identified.held_out_error.value_or(0);
   json["hankel_condition"] = identified.hankel_condition;
   json["singular_values"] = to_json(identified.singular_values);
+  if (identified.regimes) json["regimes"] = to_json(*identified.regimes);
   json["search_work"] = identified.search_work;
   json["warnings"] = identified.warnings;
 }
@@ -257,6 +258,7 @@ identification::IdentifyOptions options_of(const EquipmentConfig& equipment) {
   identification::IdentifyOptions options;
   options.input_names = equipment.inputs;
   options.output_names = equipment.outputs;
+  options.regime_inputs = equipment.regime_inputs;
   options.min_order = equipment.min_order;
   options.max_order = equipment.max_order;
   options.horizon = equipment.horizon;

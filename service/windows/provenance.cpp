@@ -40,6 +40,7 @@ ordered_json to_json(const EquipmentConfig& equipment) {
                        {"min_coverage", equipment.min_coverage},
                        {"min_order", equipment.min_order},
                        {"max_order", equipment.max_order}};
+  if (equipment.regime_inputs > 0) json["regime_inputs"] = equipment.regime_inputs;
   if (equipment.screening) json["screening"] = true;
   for (const Relation& relation : equipment.relations)
     json["relations"].push_back({{"name", relation.name},
@@ -76,6 +77,7 @@ EquipmentConfig equipment_from(const ordered_json& json) {
   json.at("max_order").get_to(equipment.max_order);
   if (const auto& horizon = json.at("horizon"); !horizon.is_null())
     equipment.horizon = horizon.get<int>();
+  equipment.regime_inputs = json.value("regime_inputs", 0);
   equipment.screening = json.value("screening", false);  // older versions were not screened
   equipment.relations = relations_from(json);
   if (const auto derived = json.find("derived"); derived != json.end())

@@ -201,6 +201,7 @@ int run(const Arguments& arguments) {
   };
   options.on_phase = [&timer](std::string_view phase) { timer.begin(phase); };
   options.input_names = data.inputs;
+  options.regime_inputs = data.regime_inputs;
   options.output_names = data.outputs;
   auto result = identification::identify(data.record, data.identify, options);
   if (const auto* verdict = std::get_if<Verdict>(&result))
@@ -212,6 +213,8 @@ int run(const Arguments& arguments) {
   outcome.inputs = data.inputs;
   outcome.outputs = data.outputs;
   outcome.derived = data.derived;
+  outcome.regimes = data.regimes;
+  outcome.regime_inputs = static_cast<std::size_t>(data.regime_inputs);
   outcome.left_out = left_out_json(data);
   outcome.warnings = left_out_sentences(data);
   outcome.warnings.insert(outcome.warnings.end(), data.warnings.begin(), data.warnings.end());
@@ -240,6 +243,13 @@ std::function<int()> declare(CLI::App& command) {
       .add_option("--derive", arguments->data.derive,
                   "NAME=EXPRESSION: an input for --input that follows from columns, such as "
                   "\"P=u*i\"; + - * / ^ ( ), comparisons, a ? b : c, abs, min, max")
+      ->allow_extra_args(false);
+  command
+      .add_option("--regime", arguments->data.regimes,
+                  "COLUMN or CONDITION, such as S_ECL or \"I_SA < 0.1\", that is 0 outside of an "
+                  "operating regime: within it the inputs have gains and an offset of their own, "
+                  "where held-out rows show that this helps; a column of few values has a regime "
+                  "for each")
       ->allow_extra_args(false);
   command.add_option(
       "--period", arguments->data.period_s,

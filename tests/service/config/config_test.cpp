@@ -314,6 +314,16 @@ const Mistake rule[] = {
      "9: equipment BDR: approval must be one of \"automatic\", \"by_hand\", not \"by hand\""},
 };
 
+const Mistake regimes[] = {
+    {"no_expression", minimal + "regimes = [\"ECL >\"]",
+     "9: equipment BDR: regime \"ECL >\" at byte 6: a number"},
+    {"output", minimal + "regimes = [\"I_BDROUT > 1\"]",
+     "9: equipment BDR: regime \"I_BDROUT > 1\" uses the output I_BDROUT"},
+    {"twice", minimal + "regimes = [\"ECL\", \"ECL\"]",
+     "9: equipment BDR: regimes names \"ECL\" twice"},
+    {"no_list", minimal + "regimes = \"ECL\"", "9: equipment BDR: regimes"},
+};
+
 const Mistake syntax[] = {
     {"no_quotes", with(4, "name = BDR"),
      "4: mistake in value: a text or a duration needs double quotes"},
@@ -365,6 +375,7 @@ INSTANTIATE_TEST_SUITE_P(Structure, ConfigMistakes, ::testing::ValuesIn(structur
 INSTANTIATE_TEST_SUITE_P(Values, ConfigMistakes, ::testing::ValuesIn(values), name_of);
 INSTANTIATE_TEST_SUITE_P(Rule, ConfigMistakes, ::testing::ValuesIn(rule), name_of);
 INSTANTIATE_TEST_SUITE_P(Derived, ConfigMistakes, ::testing::ValuesIn(derived), name_of);
+INSTANTIATE_TEST_SUITE_P(Regimes, ConfigMistakes, ::testing::ValuesIn(regimes), name_of);
 INSTANTIATE_TEST_SUITE_P(Syntax, ConfigMistakes, ::testing::ValuesIn(syntax), name_of);
 
 TEST(Config, AllMistakesAreReportedAtOnceByLine) {
@@ -393,6 +404,17 @@ TEST(Config, AnInputMayFollowFromParameters) {
   const EquipmentConfig bdr = config_of(with_derived(0, "")).spacecraft.at(0).equipment.at(0);
   EXPECT_THAT(bdr.inputs, ElementsAre("I_BDRIN1", "P"));
   EXPECT_THAT(bdr.derived, ElementsAre(DerivedInput{"P", "U * I_BDRIN1", "W"}));
+}
+
+TEST(Config, RegimesAreFurtherInputs) {
+  const EquipmentConfig equipment =
+      config_of(with(5, "inputs = [\"I_BDRIN1\"]\nregimes = [\"ECL\", \"U < 2\"]"))
+          .spacecraft.at(0)
+          .equipment.at(0);
+  EXPECT_THAT(equipment.inputs, ElementsAre("I_BDRIN1", "in ECL", "I_BDRIN1 in ECL", "in U < 2",
+                                            "I_BDRIN1 in U < 2"));
+  EXPECT_EQ(equipment.derived.size(), 4U);
+  EXPECT_EQ(equipment.regime_inputs, 4);
 }
 
 TEST(Config, VersionsAreAQuarterOfTheSlideApart) {

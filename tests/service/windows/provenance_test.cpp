@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "service/model/regime_inputs.hpp"
 #include "service/operations/refresh.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
@@ -93,6 +94,24 @@ TEST_F(Provenance, ReadsTheWindowAsItWasWhenTelemetryCameLate) {
   archive.compact();
   const Reproduction again = reproduce(archive, registry, version, {});
   EXPECT_EQ(again.revisions, 3U);
+  EXPECT_TRUE(again.same_samples);
+  EXPECT_TRUE(again.same_model);
+}
+
+TEST_F(Provenance, OfAVersionWithRegimesIsEnoughToo) {
+  archive.append(late);
+  EquipmentConfig equipment = plant();
+  add_regime_inputs({"v > 0.5"}, equipment.inputs, equipment.derived);
+  equipment.regime_inputs = 3;
+  WindowCache kept = window_cache_of("SAT", equipment);
+  const storage::Time end = day + 10 * minute;
+  const RefreshResult result = refresh(
+      archive, registry, {"SAT", equipment, {end - equipment.window, end}, "slide", "digest"}, kept,
+      {}, [] { return false; });
+  registry.record(result.attempt, result.version, *result.decision);
+  const storage::Version version = *registry.version("SAT", "PLANT", 1);
+  EXPECT_THAT(result.attempt.evidence_json, testing::HasSubstr("held_out_error_without"));
+  const Reproduction again = reproduce(archive, registry, version, {});
   EXPECT_TRUE(again.same_samples);
   EXPECT_TRUE(again.same_model);
 }

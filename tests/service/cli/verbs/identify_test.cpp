@@ -190,6 +190,31 @@ TEST_F(Identify, TakesNamesInCommasAndInRepeatedFlags) {
   EXPECT_EQ(commas, words);
 }
 
+/// Its gain is 2 in mode 3 and 1 in mode 1, which is there more often.
+TEST_F(Identify, GivesEachValueOfAColumnARegime) {
+  std::string text = "u,mode,y\n";
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  double u = 0, x = 0;
+  for (int row = 0; row < 900; ++row) {
+    if (row % 13 == 0) u = normal(random);
+    const bool is_in = row % 200 < 80;
+    text += fmt::format("{},{},{}\n", u, is_in ? 3 : 1, x + 0.01 * normal(random));
+    x = 0.8 * x + 0.2 * (is_in ? 2 : 1) * u;
+  }
+  write("switching.csv", text);
+  const Strings words = {"identify", "switching.csv", "--input", "u", "--output", "y"};
+  Strings with = words;
+  with.insert(with.end(), {"--regime", "mode"});
+  const json printed = json_of(with);
+  EXPECT_EQ(printed["inputs"], json({"u", "in mode == 3", "u in mode == 3"}));
+  EXPECT_EQ(printed["regimes"]["used"], true);
+  EXPECT_EQ(printed["regimes"]["conditions"], json({"mode == 3"}));
+  EXPECT_NEAR(printed["static_gain"][0][2], 1, 0.05);
+  EXPECT_GT(printed["fit_percent"]["validate"][0], 95);
+  EXPECT_LT(json_of(words)["fit_percent"]["validate"][0], 90);
+}
+
 TEST_F(Identify, WarnsWhenTheRangesOverlap) {
   write("plant.csv", csv_of(plant(600)));
   const json printed = json_of(command({"--identify", "0:400", "--validate", "300:600"}));
@@ -408,6 +433,10 @@ const Impossible requests[] = {
     {"output_is_input", "plant.csv --input u1 --output u1", "named already"},
     {"time_is_input", "plant.csv --input row --output y1 --time row", "leave it out"},
     {"column_of_words", "plant.csv --input mode --output y1", "mode holds no number"},
+    {"regime_of_many_values", "plant.csv --input u1 --output y1 --regime u2", "more than 8 values"},
+    {"regime_of_no_column", "plant.csv --input u1 --output y1 --regime u9>1", "u1, u2, y1, y2"},
+    {"regime_of_an_output", "plant.csv --input u1 --output y1 --regime y1>1", "uses the output y1"},
+    {"regime_of_no_expression", "plant.csv --input u1 --output y1 --regime u2>", "a number"},
     {"range_without_colon", "plant.csv --input u1 --output y1 --identify 50", "write it as A:B"},
     {"range_of_words", "plant.csv --input u1 --output y1 --identify a:b", "write it as A:B"},
     {"negative_range", "plant.csv --input u1 --output y1 --identify=-5:50", "write it as A:B"},
