@@ -43,7 +43,7 @@ struct IdentifyOptions {
   /// Above 0: the delays are estimated, each at most so many samples.
   int max_input_delay = 0;
   /// The last so many inputs are those of operating regimes: they have an effect only where the
-  /// model with them errs at least 1 % less on held-out rows. Fewer than the inputs.
+  /// model with them errs at least 5 % less on held-out rows. Fewer than the inputs.
   int regime_inputs = 0;
   /// Share of the identification rows that choices are scored on, in (0, 0.9]: the last ones and
   /// the first ones are held out in turn, a half of the share at a time.

@@ -85,33 +85,40 @@ void widen(Identified& identified, const Places& places, const Record& record, R
 IdentifyResult identify_with_regimes(const Record& record, RowRange rows,
                                      const IdentifyOptions& options, LagSums* kept,
                                      const Identification& identify_from) {
-  constexpr double worthwhile = 0.99;
+  constexpr double worthwhile = 0.95;
   const Index m = record.u.cols() - options.regime_inputs;
   assert(m > 0);
   const Places plain = first_places(m), wide = independent_inputs(record, rows, m);
-  IdentifyResult without = identify_from_inputs(record, options, plain, nullptr, identify_from);
-  auto* base = std::get_if<Identified>(&without);
   RegimeChoice choice;
-  if (base) choice.error_without = base->held_out_error;
+  double work = 0;
+  const auto with = [&](const Places& places, const IdentifyOptions& own) {
+    return identify_from_inputs(record, own, places, kept, identify_from);
+  };
+  const auto error_of = [&work](const IdentifyResult& result) -> std::optional<double> {
+    const auto* found = std::get_if<Identified>(&result);
+    if (found) work += found->search_work;
+    return found ? found->held_out_error : std::nullopt;
+  };
+  // Rows for choices alone may all be of one regime: folds are of all rows.
+  IdentifyOptions in_folds = options;
+  in_folds.tune_rows = 0;
   if (wide.size() > plain.size()) {
-    IdentifyResult with = identify_from_inputs(record, options, wide, kept, identify_from);
-    auto* rich = std::get_if<Identified>(&with);
-    if (rich) choice.error_with = rich->held_out_error;
-    const bool is_better = rich && (!base || !choice.error_with || !choice.error_without ||
-                                    *choice.error_with < worthwhile * *choice.error_without);
-    if (rich && base) rich->search_work += base->search_work;
-    if (is_better) {
-      choice.are_used = true;
-      rich->regimes = choice;
-      widen(*rich, wide, record, rows);
-      return with;
-    }
-    if (rich) base->search_work = rich->search_work;
+    const IdentifyResult rich = with(wide, in_folds), poor = with(plain, in_folds);
+    choice.error_with = error_of(rich);
+    choice.error_without = error_of(poor);
+    choice.are_used =
+        std::holds_alternative<Identified>(rich) &&
+        (std::holds_alternative<Verdict>(poor) || !choice.error_with || !choice.error_without ||
+         *choice.error_with < worthwhile * *choice.error_without);
   }
-  if (!base) return without;
-  base->regimes = choice;
-  widen(*base, plain, record, rows);
-  return without;
+  const Places& places = choice.are_used ? wide : plain;
+  IdentifyResult result = with(places, options);
+  if (auto* found = std::get_if<Identified>(&result)) {
+    found->regimes = choice;
+    found->search_work += work;
+    widen(*found, places, record, rows);
+  }
+  return result;
 }
 
 }  // namespace reident::identification

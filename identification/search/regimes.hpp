@@ -13,7 +13,7 @@ namespace reident::identification {
 using Identification =
     std::function<IdentifyResult(const Record&, const IdentifyOptions& options, LagSums* kept)>;
 
-/// Returns the model of all inputs where it errs at least 1 % less on held-out rows than the one
+/// Returns the model of all inputs where it errs at least 5 % less on held-out rows than the one
 /// without the last `options.regime_inputs`, and else that one, in which these have no effect.
 /// Requires more inputs than these. `kept` as identify() has it.
 IdentifyResult identify_with_regimes(const Record& record, RowRange rows,

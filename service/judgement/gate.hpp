@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "service/config/config.hpp"
 #include "service/model/reasons.hpp"
@@ -17,7 +18,8 @@ struct Evidence {
   double spectral_radius = 0;
   double slowest_over_window = 0;  // the longest time constant over the window's length
   double mrse_percent = 0;
-  double fit_percent = 0;  // the worst output's; not a number where an output does not move
+  double fit_percent = 0;    // the worst output's
+  std::string still_output;  // one that keeps its value on the validation part; empty: none
 };
 
 /// Returns the evidence of the window's candidate; requires one.

@@ -134,6 +134,13 @@ struct Glossary {
        "an "
        "integrator.",
        "A longer window."},
+      {"still_validation", "nothing to judge it by",
+       "An output keeps one value in the part of the window that judges, as a solar array's "
+       "current "
+       "does in eclipse.",
+       "The next window has another part. Where this happens often, make validation_share larger "
+       "or "
+       "the window longer."},
       {"telemetry_damaged", "telemetry is damaged",
        "Samples that the attempt needs cannot be decoded any more.",
        "Restore them ('reident verify' lists the damage), then 'reident identify-now'."},

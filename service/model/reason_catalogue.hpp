@@ -27,6 +27,7 @@ enum class Outcome {
   low_coverage,
   implausible,  // sensors contradict each other, or themselves, on too much of the window
   not_finite,
+  still_validation,
   unstable,
   slower_than_window,  // a time constant that looks like an integrator's over the window
   error_above_limit,
@@ -51,6 +52,7 @@ enum class ReasonCode {
   no_model,
   // R4, of a candidate on its validation part and of a member on its record.
   not_finite,
+  still_validation,
   unstable,
   slower_than_window,
   error_above_limit,
@@ -101,6 +103,7 @@ struct Catalogue {
       {O::low_coverage, "low_coverage", none},
       {O::implausible, "implausible", none},
       {O::not_finite, "not_finite", reject},
+      {O::still_validation, "still_validation", reject},
       {O::unstable, "unstable", reject},
       {O::slower_than_window, "slower_than_window", reject},
       {O::error_above_limit, "error_above_limit", reject},
@@ -126,6 +129,8 @@ struct Catalogue {
 
       {not_finite, "not_finite", O::not_finite,
        "The model or its run holds numbers that are not finite."},
+      {still_validation, "still_validation", O::still_validation,
+       "{output} does not move in the validation part, which says nothing about the model then."},
       {unstable, "unstable", O::unstable,
        "The model is unstable: its spectral radius is {spectral_radius:.6f}."},
       {slower_than_window, "slower_than_window", O::slower_than_window,

@@ -27,14 +27,18 @@ const Case cases[] = {
     {"as_slow_as_the_window", [](Evidence& e) { e.slowest_over_window = 1; }, std::nullopt},
     {"above_the_limit", [](Evidence& e) { e.mrse_percent = 20.01; }, Code::error_above_limit},
     {"the_mean", [](Evidence& e) { e.fit_percent = 0; }, Code::not_better_than_mean},
-    {"outputs_that_stand_still", [](Evidence& e) { e.fit_percent = not_a_number; },
-     Code::not_better_than_mean},
+    {"an_output_that_stands_still",
+     [](Evidence& e) {
+       e.still_output = "y";
+       e.mrse_percent = std::numeric_limits<double>::infinity();
+     },
+     Code::still_validation},
 };
 
 class Candidate : public testing::TestWithParam<Case> {};
 
 TEST_P(Candidate, IsAdmissibleOrNot) {
-  Evidence evidence{true, 0.99, 0.5, 5, 60};
+  Evidence evidence{true, 0.99, 0.5, 5, 60, {}};
   GetParam().change(evidence);
   const auto reason = inadmissible(evidence, {});
   EXPECT_EQ(reason ? std::optional(reason->code) : std::nullopt, GetParam().reason);

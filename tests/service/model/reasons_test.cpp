@@ -38,6 +38,8 @@ const Example without_candidate[] = {
 
 const Example of_admissibility[] = {
     {because<Code::not_finite>(), "The model or its run holds numbers that are not finite."},
+    {because<Code::still_validation>(std::string("I_SA")),
+     "I_SA does not move in the validation part, which says nothing about the model then."},
     {because<Code::unstable>(1.25), "The model is unstable: its spectral radius is 1.250000."},
     {because<Code::slower_than_window>(12.345),
      "Its slowest time constant is 12.3 times the window's length, which cannot tell it: a long "
