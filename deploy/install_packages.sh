@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and running reident needs, where they are
 # missing. Needs root (or sudo) only when something is missing.
-#   deploy/install_packages.sh [--with-tests] [--with-bench]
+#   deploy/install_packages.sh [--with-tests] [--with-bench] [--with-packages]
 set -euo pipefail
 
 packages=(
@@ -14,17 +14,20 @@ packages=(
 for option in "$@"; do
   case $option in
     --with-tests)
-      packages+=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
+      packages+=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev systemd
                  clang clang-format clang-tidy python3 sqlite3 git octave valgrind
                  chromium)
       # Node from elsewhere brings npm along, and does not go together with Debian's.
       command -v npm >/dev/null || packages+=(nodejs npm)
       ;;
+    --with-packages)  # what makes Debian packages, and tries them
+      packages+=(dpkg-dev file help2man lintian debootstrap systemd-container nftables iproute2)
+      ;;
     --with-bench)  # what identification is compared with
       packages+=(libslicot-dev libopenblas0 octave-control)
       ;;
     *)
-      echo "usage: deploy/install_packages.sh [--with-tests] [--with-bench]" >&2
+      echo "usage: deploy/install_packages.sh [--with-tests] [--with-bench] [--with-packages]" >&2
       exit 2
       ;;
   esac

@@ -10,6 +10,7 @@
 #include "identification/search/identify.hpp"
 #include "service/config/config_document.hpp"
 #include "service/model/regime_inputs.hpp"
+#include "service/support/rate_text.hpp"
 #include "service/support/sha256.hpp"
 #include "service/support/time_text.hpp"
 
@@ -27,6 +28,7 @@ constexpr std::size_t max_name_bytes = 128;
 constexpr std::int64_t max_window_ticks = 50'000'000;  // 8 bytes for each channel of each
 constexpr std::uint64_t least_max_size = 1'000'000;
 constexpr double least_tolerance = 1e-12;
+constexpr double max_rate = 10'000;  // frames a second
 constexpr int max_order = 100;
 constexpr int max_members = 100;
 constexpr int max_horizon = 500;
@@ -116,6 +118,21 @@ void read_archive(const toml::table& table, ConfigDocument& document, Config& co
   reader.refuse_unknown_keys();
 }
 
+void read_cut(TableReader& reader, Config& config) {
+  assign(config.cut, reader.duration("cut", second, day));
+  if (const auto text = reader.text("rate")) {
+    config.rate = parse_rate(*text).value_or(0);
+    if (config.rate <= 0 || config.rate > max_rate)
+      reader.mistake("rate", fmt::format("rate must be the frames that a source sends, such as "
+                                         "\"100/s\" or \"6/min\", at most \"{:g}/s\", not \"{}\"",
+                                         max_rate, *text));
+  }
+  if (reader.has("cut") != reader.has("rate"))
+    reader.mistake(reader.has("cut") ? "cut" : "rate",
+                   "cut and rate belong together: what is kept for a cut of the network is its "
+                   "length times the rate of frames");
+}
+
 void read_dds(const toml::table& table, ConfigDocument& document, Config& config) {
   TableReader reader(table, "[dds]", document);
   assign(config.domain, reader.integer("domain", 0, 230));
@@ -129,6 +146,7 @@ void read_dds(const toml::table& table, ConfigDocument& document, Config& config
     }
     config.partition = *partition;
   }
+  read_cut(reader, config);
   reader.refuse_unknown_keys();
 }
 

@@ -86,6 +86,8 @@ struct Config {
   storage::Durability durability = storage::Durability::power_cut;
   std::uint32_t domain = 0;
   std::string partition = "operations";
+  Duration cut = 0;  // the longest cut of the network that loses no telemetry; 0: as DDS has it
+  double rate = 0;   // frames a second of a source; known where a cut is
   std::size_t queue_frames = 8192;         // bound of the queue between DDS and the archive
   std::size_t queue_mib = 64;              // its bound in memory
   std::size_t batch_frames = 4096;         // frames of one transaction, at most; no more than 5 MiB

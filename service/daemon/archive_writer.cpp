@@ -103,6 +103,7 @@ void ArchiveWriter::store(std::vector<TelemetryEvent>&& batch, const std::atomic
       descriptors.push_back(std::get<storage::ParameterDescriptor>(std::move(event)));
   }
   while (true) {
+    came_round_ = true;
     try {
       commit(frames, descriptors);
       MutexLock lock(mutex_);
@@ -136,6 +137,7 @@ void ArchiveWriter::run(const std::atomic<bool>& give_up) {
     }
   } end{*this};
   while (!queue_.drained()) {
+    came_round_ = true;
     run_tasks();
     auto batch = next_batch();
     if (!batch.empty()) store(std::move(batch), give_up);

@@ -65,6 +65,9 @@ class ArchiveWriter {
   Counts counts() const;
   /// Events queued or taken from the queue and not yet committed.
   std::size_t backlog() const { return queue_.size() + in_hand_; }
+  /// Whether the thread came round since the last call: to the next batch, or to one that the disk
+  /// refused. One that hangs does not.
+  bool goes_on() { return came_round_.exchange(false); }
 
  private:
   using Task = std::packaged_task<void(storage::Registry&, storage::Archive&)>;
@@ -85,6 +88,7 @@ class ArchiveWriter {
   const Duration batch_delay_;
   ArchiveListener& listener_;
   std::atomic<std::size_t> in_hand_ = 0;
+  std::atomic<bool> came_round_ = false;
 
   mutable Mutex mutex_;
   CondVar tasks_changed_;

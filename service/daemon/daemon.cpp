@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "service/dds/network_cut.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/log.hpp"
 #include "service/support/text.hpp"
@@ -32,6 +33,14 @@ storage::Database open_for_writing(const Config& config) {
     }
     std::this_thread::sleep_for(20ms);
   }
+}
+
+dds::Endpoint endpoint_of(const Config& config) {
+  dds::Endpoint endpoint{config.domain, config.partition};
+  if (config.cut > 0)
+    endpoint.lease =
+        dds::settings_for({std::chrono::nanoseconds(config.cut), config.rate}, 0).lease;
+  return endpoint;
 }
 
 std::vector<storage::SimulatorState> known_simulators(const Config& config) {
@@ -100,7 +109,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       writer_(open_for_writing(config), {.recent_samples = config.recent_samples}, queue_,
               config.batch_frames, config.batch_delay, telemetry_),
       keeper_(config, writer_, clock_),
-      participant_(dds::Endpoint{config.domain, config.partition}),
+      participant_(endpoint_of(config)),
       publisher_(participant_),
       desk_(participant_, config.service_name),
       history_desk_(participant_, config.service_name),
@@ -297,6 +306,11 @@ void Daemon::heartbeat() {
   status.alarms = watch_->text();
   status.equipment = equipment_text(config_);
   publisher_.status(status);
+}
+
+bool Daemon::goes_on() {
+  const bool stores = writer_.goes_on(), takes = ingest_->goes_on();
+  return stores && takes;
 }
 
 bool Daemon::stop() {

@@ -49,6 +49,9 @@ class Daemon {
   /// Publishes the state of the service, and sees to what is due now and then; call about once a
   /// second.
   void heartbeat();
+  /// Whether the threads that take and store telemetry went on since the last call. One that waits
+  /// for a disk, or for the room that the disk makes, goes on.
+  bool goes_on();
   /// A thread ended by an error, which is logged: the service must be stopped.
   bool failed() const { return failed_; }
   /// Ends all threads: what was taken from the middleware is committed first, identification that

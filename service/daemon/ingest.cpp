@@ -66,7 +66,10 @@ void Ingest::queue(TelemetryEvent&& event) {
 }
 
 void Ingest::push_taken() {
-  if (!taken_.empty()) queue_.push(taken_);
+  if (taken_.empty()) return;
+  waits_for_room_ = true;
+  queue_.push(taken_);
+  waits_for_room_ = false;
 }
 
 void Ingest::count_rejected() {
@@ -81,6 +84,7 @@ void Ingest::hear(const ModelAcknowledgement& acknowledgement) {
 }
 
 std::size_t Ingest::take() {
+  came_round_ = true;
   std::size_t taken = descriptors_.take(
       messages_at_most, [this](storage::ParameterDescriptor&& one) { queue(std::move(one)); });
   taken += frames_.take(messages_at_most,

@@ -30,6 +30,8 @@ class Ingest {
   std::uint64_t frames_received() const { return frames_received_; }
   /// Frames that broke the contract of the topic and were refused.
   std::uint64_t frames_rejected() const { return frames_rejected_; }
+  /// Whether the thread came round since the last call, or the queue holds it back.
+  bool goes_on() { return came_round_.exchange(false) || waits_for_room_; }
 
  private:
   /// Returns how many messages there were.
@@ -60,6 +62,7 @@ class Ingest {
   std::atomic<bool> stopping_ = false;
   std::atomic<std::uint64_t> frames_received_ = 0;
   std::atomic<std::uint64_t> frames_rejected_ = 0;
+  std::atomic<bool> came_round_ = false, waits_for_room_ = false;
 };
 
 }  // namespace reident

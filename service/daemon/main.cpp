@@ -71,7 +71,7 @@ int serve(const reident::Config& config, const std::string& path,
   while (!signal.token().stop_requested() && !daemon.failed()) {
     daemon.heartbeat();
     if (is_asked_to_reload()) reload(path);
-    reident::notify_service_manager("WATCHDOG=1");
+    if (daemon.goes_on()) reident::notify_service_manager("WATCHDOG=1");
     wait_a_second(signal.token());
   }
   reident::notify_service_manager("STOPPING=1");

@@ -32,6 +32,10 @@ struct Endpoint {
   /// One of many that look for services, sources and consoles and not for each other: on loopback
   /// it takes a port of its own range. A domain's first participant in a process decides for all.
   bool simulator = false;
+  /// For a network that may be cut (network_cut.hpp): how long others count on this participant
+  /// without hearing it, and bytes that may wait for acknowledgement; 0: as the middleware has it.
+  std::chrono::nanoseconds lease{0};
+  std::uint64_t unacknowledged_bytes = 0;
 };
 
 /// Joins a domain. Without CYCLONEDDS_URI in the environment all traffic stays on 127.0.0.1. Must
@@ -65,8 +69,8 @@ struct WriterOptions {
   std::int32_t history = 1;  // used for TelemetryFrame alone; 0 keeps nothing for late joiners
 };
 
-/// Writes one topic. One thread at a time: a writer keeps the buffers of its last message. Its end
-/// disposes of what it wrote where the topic's profile says so.
+/// Writes one topic. One thread at a time, but for the last two calls: it keeps the buffers of its
+/// last message. Its end disposes of what it wrote where the topic's profile says so.
 template <class M>
 class Writer {
  public:

@@ -1,5 +1,6 @@
 #include "service/dds/domain.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 
@@ -22,9 +23,10 @@ std::map<std::uint32_t, SharedDomain>& domains() REIDENT_REQUIRES(domains_mutex)
   return instance;
 }
 
-bool configured_by_environment() {
+/// CYCLONEDDS_URI; empty where it is not set.
+std::string configuration_of_environment() {
   const char* uri = std::getenv("CYCLONEDDS_URI");
-  return uri != nullptr && *uri != '\0';
+  return uri == nullptr ? std::string() : uri;
 }
 
 // Discovery by unicast is all to all: 100 simulators that find each other spend half a minute of
@@ -32,6 +34,8 @@ bool configured_by_environment() {
 // themselves to every port; simulators take the last ones, and announce themselves to the first.
 constexpr int ports = 120;             // of participants of a domain on a machine (DDSI standard)
 constexpr int ports_of_services = 16;  // before those of simulators
+
+constexpr std::uint64_t least_unacknowledged = 500'000;  // the middleware's own
 
 std::string simulator_discovery(std::uint32_t domain) {
   constexpr int first_offset = 10, gain = 2;  // the ports of the standard: 250 a domain
@@ -59,9 +63,31 @@ dds_entity_t joined(dds_entity_t result, const char* call, std::uint32_t domain)
       "it names");
 }
 
-Entity create_loopback_domain(std::uint32_t domain, bool simulator) {
-  const std::string configuration =
-      simulator ? loopback_traffic + ("," + simulator_discovery(domain)) : loopback_configuration;
+/// Empty where the endpoint has nothing that differs from the middleware's own settings.
+std::string cut_configuration(const Endpoint& endpoint) {
+  // The default would be half a minute with a long lease: participants that connect again after a
+  // longer cut would find each other that late.
+  constexpr const char* announcements = "<SPDPInterval>8s</SPDPInterval>";
+  if (endpoint.lease.count() == 0) return {};
+  return ",<Domain Id=\"any\"><Discovery><LeaseDuration>" + std::to_string(endpoint.lease.count()) +
+         "ns</LeaseDuration>" + announcements + "</Discovery><Internal><Watermarks><WhcHigh>" +
+         std::to_string(std::max(endpoint.unacknowledged_bytes, least_unacknowledged)) +
+         "B</WhcHigh></Watermarks></Internal></Domain>";
+}
+
+/// What the domain is made with; empty where that is the middleware's.
+std::string configuration_of(const Endpoint& endpoint) {
+  const std::string cut = cut_configuration(endpoint);
+  if (const std::string given = configuration_of_environment(); !given.empty())
+    return cut.empty() ? std::string() : given + cut;
+  if (!endpoint.simulator) return loopback_configuration + cut;
+  return loopback_traffic + ("," + simulator_discovery(endpoint.domain)) + cut;
+}
+
+Entity create_domain(const Endpoint& endpoint) {
+  const std::uint32_t domain = endpoint.domain;
+  const std::string configuration = configuration_of(endpoint);
+  if (configuration.empty()) return {};
   const dds_entity_t result = dds_create_domain(domain, configuration.c_str());
   // Another library of this process was first; its configuration holds.
   if (result == DDS_RETCODE_PRECONDITION_NOT_MET) return {};
@@ -75,14 +101,11 @@ Entity create_participant(std::uint32_t domain) {
 
 }  // namespace
 
-DomainUse::DomainUse(std::uint32_t domain, bool simulator) : domain_(domain) {
+DomainUse::DomainUse(const Endpoint& endpoint) : domain_(endpoint.domain) {
   const MutexLock lock(domains_mutex);
-  auto found = domains().find(domain);
-  if (found == domains().end()) {
-    Entity entity =
-        configured_by_environment() ? Entity() : create_loopback_domain(domain, simulator);
-    found = domains().emplace(domain, SharedDomain{std::move(entity), 0}).first;
-  }
+  auto found = domains().find(domain_);
+  if (found == domains().end())
+    found = domains().emplace(domain_, SharedDomain{create_domain(endpoint), 0}).first;
   ++found->second.users;
 }
 
@@ -93,7 +116,7 @@ DomainUse::~DomainUse() {
 }
 
 Participant::Impl::Impl(const Endpoint& endpoint)
-    : domain(endpoint.domain, endpoint.simulator),
+    : domain(endpoint),
       partition(endpoint.partition),
       participant(create_participant(endpoint.domain)) {
   const std::string about = "partition \"" + partition + "\"";

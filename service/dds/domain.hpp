@@ -19,10 +19,10 @@ extern const char* const loopback_traffic;
 /// the domain is the loopback one; with it the middleware reads the configuration itself.
 class DomainUse {
  public:
-  /// Makes the domain where it has none in this process. `simulator` (Endpoint) counts then alone.
-  /// Where another library of the process made the domain before, its configuration holds. Throws
-  /// Error.
-  DomainUse(std::uint32_t domain, bool simulator);
+  /// Makes the domain where it has none in this process. All of the endpoint but the partition
+  /// counts then alone. Where another library of the process made the domain before, its
+  /// configuration holds. Throws Error.
+  explicit DomainUse(const Endpoint& endpoint);
   ~DomainUse();
   DomainUse(const DomainUse&) = delete;
   DomainUse& operator=(const DomainUse&) = delete;

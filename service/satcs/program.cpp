@@ -8,6 +8,7 @@
 
 #include "service/support/csv.hpp"
 #include "service/support/log.hpp"
+#include "service/support/rate_text.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
@@ -116,7 +117,16 @@ void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& opti
   app.add_option("--history", options.history, "Frames kept for readers that join late")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N")
-      ->default_str("2 MB of them");
+      ->default_str("what --cut needs, or 2 MB of them");
+  add_parsed(app, "--cut", options.cut.length, parse_wait,
+             "Lose nothing while the network is cut for so long; needs --rate",
+             "a duration such as 60s")
+      ->type_name("DURATION");
+  add_parsed(app, "--rate", options.cut.frames_per_s, parse_rate,
+             "Frames that are sent meanwhile, for --cut", "a rate such as 100/s")
+      ->type_name("N/s")
+      ->needs("--cut");
+  app.get_option("--cut")->needs("--rate");
   add_parsed(app, "--linger", options.linger, parse_wait,
              "Stay for readers that join late, so long after the last frame",
              "a duration such as 30s")
@@ -142,6 +152,11 @@ std::string to_json(const PublisherSummary& summary, const Sender& sender,
   json["first_time"] = any ? nlohmann::ordered_json(time_text(summary.first_time)) : nullptr;
   json["last_time"] = any ? nlohmann::ordered_json(time_text(summary.last_time)) : nullptr;
   json["wall_s"] = summary.wall_s;
+  json["lost"] = nlohmann::ordered_json::array();
+  for (const LostFrames& lost : summary.lost)
+    json["lost"].push_back({{"frames", lost.frames},
+                            {"first_time", time_text(lost.first_time)},
+                            {"last_time", time_text(lost.last_time)}});
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -1,9 +1,11 @@
 #include "service/satcs/publisher.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -38,22 +40,40 @@ std::int32_t history_of_restarts(std::size_t parameters) {
          1;
 }
 
+/// With what the cut of the network needs.
+PublisherOptions settled(PublisherOptions options, std::size_t parameters) {
+  if (options.cut.length.count() == 0) {
+    if (!options.history) options.history = history_of_restarts(parameters);
+    return options;
+  }
+  const dds::CutSettings settings = dds::settings_for(options.cut, parameters);
+  options.endpoint.lease = settings.lease;
+  options.endpoint.unacknowledged_bytes = settings.unacknowledged_bytes;
+  if (!options.history) options.history = settings.history;
+  return options;
+}
+
 /// One call of publish().
 class Publication {
  public:
   Publication(FrameStream& stream, const PublisherOptions& options, const std::stop_token& stop)
       : stream_(stream),
-        options_(options),
+        options_(settled(options, stream.parameters().size())),
         stop_(stop),
-        participant_(options.endpoint),
+        participant_(options_.endpoint),
         descriptors_(participant_),
-        frames_(participant_, {.history = options.history.value_or(
-                                   history_of_restarts(stream.parameters().size()))}) {}
+        frames_(participant_, {.history = *options_.history}),
+        unheard_(static_cast<std::size_t>(*options_.history),
+                 static_cast<std::size_t>(history_of_restarts(stream.parameters().size()))) {}
 
   PublisherSummary operator()() {
     const auto began = Clock::now();
+    hearing_ = std::jthread([this](const std::stop_token& end) { hear_acknowledgments(end); });
     summary_.outcome = all();
+    if (!readers_are_there()) unheard_.ended();
+    summary_.lost = unheard_.lost();
     progress_.clear();
+    warn_of_lost();
     summary_.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
     return summary_;
   }
@@ -63,18 +83,28 @@ class Publication {
   Outcome write_frames();
   Outcome wait_for_readers();
   Outcome wait_for_acknowledgments();
+  bool readers_are_there() const;
+  /// A thread's body: keeps `acknowledged_` true.
+  void hear_acknowledgments(const std::stop_token& stop);
+  void follow(const storage::TelemetryFrame& frame);
+  /// Logs each hole once, when it has ended.
+  void warn_of_lost();
   void count(const storage::TelemetryFrame& frame);
   void show_progress(const storage::TelemetryFrame& frame);
 
   FrameStream& stream_;
-  const PublisherOptions& options_;
+  const PublisherOptions options_;
   const std::stop_token& stop_;
   dds::Participant participant_;
   dds::Writer<storage::ParameterDescriptor> descriptors_;
   dds::Writer<storage::TelemetryFrame> frames_;
-  std::map<std::string, Pacer, std::less<>> pacers_;  // by sender: their clocks may differ
+  UnheardFrames unheard_;
+  std::atomic<std::uint64_t> written_ = 0, acknowledged_ = 0;  // frames
+  std::size_t warned_ = 0;                                     // holes that the log has
+  std::map<std::string, Pacer, std::less<>> pacers_;           // by sender: their clocks may differ
   Progress progress_;
   PublisherSummary summary_;
+  std::jthread hearing_;  // ends first
 };
 
 Outcome Publication::all() {
@@ -105,6 +135,7 @@ Outcome Publication::write_frames() {
     if (const Outcome outcome = wait_for_readers(); outcome != Outcome::complete) return outcome;
     if (!frames_.write(frame, [this] { return stop_.stop_requested(); })) return Outcome::stopped;
     count(frame);
+    follow(frame);
     show_progress(frame);
   }
   return Outcome::complete;
@@ -144,7 +175,50 @@ Outcome Publication::wait_for_acknowledgments() {
       return Outcome::not_acknowledged;
     }
   }
+  if (readers_are_there()) unheard_.acknowledged(written_);
   return Outcome::complete;
+}
+
+// A reader that goes has acknowledged everything a moment before the middleware knows that it has
+// gone: who is still there a little later was there.
+void Publication::hear_acknowledgments(const std::stop_token& stop) {
+  constexpr auto slice = std::chrono::milliseconds(100);
+  constexpr auto farewell = std::chrono::milliseconds(50);
+  try {
+    while (!stop.stop_requested()) {
+      const std::uint64_t frames = written_;
+      const bool are_heard = readers_are_there() && frames_.wait_for_acknowledgments(slice);
+      if (!sleep_until(Clock::now() + farewell, stop)) return;
+      if (are_heard && readers_are_there()) acknowledged_ = frames;
+    }
+  } catch (const dds::Error&) {  // which the thread that writes meets too
+  }
+}
+
+bool Publication::readers_are_there() const {
+  return frames_.matched_readers() >= std::max(options_.wait_readers, 1U);
+}
+
+void Publication::follow(const storage::TelemetryFrame& frame) {
+  const bool are_there = readers_are_there();
+  unheard_.written(frame.generation_time, are_there);
+  ++written_;
+  if (!are_there) return;
+  unheard_.acknowledged(acknowledged_);
+  warn_of_lost();
+}
+
+void Publication::warn_of_lost() {
+  const std::vector<LostFrames>& lost = unheard_.lost();
+  for (; warned_ < lost.size(); ++warned_)
+    log::warning("satcs",
+                 "frames are lost: no reader was there, and the history was too short; a longer "
+                 "--cut or --history keeps more",
+                 {{"spacecraft", options_.spacecraft},
+                  {"frames", lost[warned_].frames},
+                  {"first_time", time_text(lost[warned_].first_time)},
+                  {"last_time", time_text(lost[warned_].last_time)},
+                  {"history", *options_.history}});
 }
 
 void Publication::count(const storage::TelemetryFrame& frame) {

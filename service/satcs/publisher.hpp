@@ -10,7 +10,9 @@
 #include <string_view>
 
 #include "service/dds/dds.hpp"
+#include "service/dds/network_cut.hpp"
 #include "service/satcs/frame_stream.hpp"
+#include "service/satcs/unheard_frames.hpp"
 #include "storage/types/telemetry.hpp"
 
 namespace reident::satcs {
@@ -23,9 +25,11 @@ struct PublisherOptions {
   std::uint32_t wait_readers = 1;  // no frame is written while fewer readers are there
   /// How long to wait for the readers, and for their last acknowledgments; absent: for ever.
   std::optional<std::chrono::nanoseconds> wait_timeout;
-  /// Frames kept for readers that join late; absent: more than the middleware ever has on the way,
-  /// so that a reader that is stopped and started again misses nothing.
+  /// Frames kept for readers that join late; absent: what the cut needs, or else more than the
+  /// middleware ever has on the way, so that a reader that is stopped and started again misses
+  /// nothing.
   std::optional<std::int32_t> history;
+  dds::NetworkCut cut;  // that loses no frame
   /// How long the frames that are kept stay available after the last one.
   std::chrono::nanoseconds linger{0};
 };
@@ -53,6 +57,8 @@ struct PublisherSummary {
   storage::Time first_time = 0;
   storage::Time last_time = 0;
   double wall_s = 0;  // time that it took, waiting included
+  /// Frames that no reader heard and that cannot be sent again.
+  std::vector<LostFrames> lost;
 };
 
 /// Publishes all frames of `stream` in its order. Each sender's frames are paced by its own

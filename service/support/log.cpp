@@ -1,7 +1,11 @@
 #include "service/support/log.hpp"
 
+#include <syslog.h>
+
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+
+#include "service/support/journal.hpp"
 
 namespace reident::log {
 namespace {
@@ -29,6 +33,30 @@ spdlog::level::level_enum to_spdlog(Level level) {
       break;
   }
   return spdlog::level::err;
+}
+
+int to_priority(Level level) {
+  switch (level) {
+    case Level::debug:
+      return LOG_DEBUG;
+    case Level::info:
+      return LOG_INFO;
+    case Level::warning:
+      return LOG_WARNING;
+    case Level::error:
+      break;
+  }
+  return LOG_ERR;
+}
+
+/// False where standard error is not the journal, or the journal did not take the line.
+bool to_journal(Level level, std::string_view component, std::string_view line,
+                std::initializer_list<Field> fields) {
+  static const bool is_journal = is_stderr_journal();
+  if (!is_journal) return false;
+  JournalFields named;
+  for (const Field& field : fields) named.emplace_back(field.key, field.value);
+  return send_to_journal(journal_entry(to_priority(level), component, line, named));
 }
 
 /// Plain where it reads back as one word, otherwise in double quotes with escapes.
@@ -68,7 +96,8 @@ void write(Level level, std::string_view component, std::string_view message,
     line += '=';
     append_value(line, field.value);
   }
-  logger().log(to_spdlog(level), spdlog::string_view_t(line));
+  if (!to_journal(level, component, line, fields))
+    logger().log(to_spdlog(level), spdlog::string_view_t(line));
 }
 
 }  // namespace reident::log

@@ -2,7 +2,8 @@
 //   2026-03-01T12:00:00.123Z warning archive: disk full path=/var/lib/reident.db retry_s=1
 // Values with blanks, quotes or '=' are quoted; line ends in them become blanks. Any thread may
 // log; lines do not mix. Each line is written before the call returns. A line below the level costs
-// no more than the formatting of its fields.
+// no more than the formatting of its fields. Under systemd the lines and their fields go to the
+// journal (journal.hpp).
 #pragma once
 
 #include <initializer_list>

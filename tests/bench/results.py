@@ -401,6 +401,39 @@ def build(figures):
                    for key, label in names.items() if key in figures])]
 
 
+@section("operations", "Operation in a failing world",
+         "Packages were installed on a bare Debian 12 under its own systemd. The network between a "
+         "source, which does not wait, and the service was cut for 60 s at 100 frames a second, and "
+         "lost packets in both directions.")
+def operations(figures):
+    names = {"exposure": "worst exposure of a unit (`systemd-analyze security`)",
+             "lintian_errors": "errors that lintian finds in the packages",
+             "lintian_warnings": "warnings that it finds",
+             "restart_after_kill_s": "from SIGKILL until the service runs again",
+             "restart_after_hang_s": "from a hang until it runs again",
+             "restart_after_upgrade_s": "from the end of an upgrade until it runs again",
+             "cut_missing": 'frames missing behind the cut, `cut = "60s"`, `rate = "100/s"`',
+             "cut_delay_s": "time that the source lost by it",
+             "plain_cut_missing": "the same without the two keys: frames missing",
+             "plain_cut_counted_at_source": "of these, counted as lost by the source",
+             "plain_cut_counted_at_service": "of these, counted as missing by the service",
+             "loss_5_missing": "frames missing, 5 % of packets lost",
+             "loss_5_frames_per_s": "frames a second then",
+             "loss_20_missing": "frames missing, 20 % of packets lost",
+             "loss_20_frames_per_s": "frames a second then"}
+    rows = [[label, figure(figures[key]) + (" s" if key.endswith("_s") and "frames" not in key else "")]
+            for key, label in names.items() if key in figures]
+    steps = [[name.replace("_", " "), "passed" if passed else "failed"]
+             for name, passed in figures.get("package_steps", {}).items()]
+    tables = [table(["what", "figure"], rows)]
+    if steps:
+        tables.append(table(["step of a package's life", "its test"], steps))
+    if figures["left_out"]:
+        tables.append("\n".join(fill(f"Left out: {what}: {why}.", "- ")
+                                for what, why in figures["left_out"].items()))
+    return tables
+
+
 def parse(text):
     return json.loads(text, parse_float=Decimal)
 

@@ -40,6 +40,10 @@
 #                                         Chromium, a year of telemetry, viewers, slow clients, what
 #                                         ingest loses by them.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh operations [PART...]
+#                                         operation in a failing world: packages under a real
+#                                         systemd, networks that are cut. Needs root; says what it
+#                                         leaves out. The last line is one JSON object
 #   tests/bench/run.sh build [--suite]    processor and wall time of a build from nothing, without
 #                                         and with the tests; with --suite also of the tests.
 #                                         The last line is one JSON object
@@ -103,6 +107,11 @@ case $what in
   web)
     arguments=(build/release "$@")
     targets=(reident_web_archive reidentd reident reident-web satcs-replay satcs-reference)
+    ;;
+  operations)
+    arguments=(build/release "$@")
+    targets=(reidentd reident satcs-reference)
+    deploy/install_packages.sh --with-packages || echo "going on without the tools that are missing"
     ;;
   *)
     usage

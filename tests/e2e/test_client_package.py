@@ -18,7 +18,7 @@ class ClientPackage(EndToEnd):
     def setUp(self):
         super().setUp()
         self.prefix = self.folder / "prefix"
-        for component in ("reident_client", "reident_python"):
+        for component in ("reident_client", "reident_client_dev", "reident_python"):
             self.output("cmake", "--install", BUILD, "--prefix", self.prefix, "--component",
                         component)
         self.library = next(self.prefix.rglob("libreident-client.so.0"))

@@ -1,15 +1,11 @@
 """What people expect of the programs: several services, signals, an installation that works."""
 
 import json
-import os
 import signal
-import subprocess
 import unittest
 
 import plant
 from harness import BIN, DEADLINE_S, EndToEnd, wait_until
-
-BUILD = os.environ["REIDENT_BUILD"]
 
 
 class Console(EndToEnd):
@@ -65,16 +61,6 @@ class Console(EndToEnd):
         daemon.signal(signal.SIGHUP)
         wait_until(lambda: "the configuration has mistakes" in daemon.text(), "a mistake is named")
         self.assertEqual(daemon.terminate()[0], 0)
-
-    def test_the_installed_unit_names_the_installed_program(self):
-        prefix = self.folder / "opt"
-        for component in ("reident_unit", "reident_python"):
-            done = subprocess.run(["cmake", "--install", BUILD, "--prefix", prefix, "--component",
-                                   component], capture_output=True, text=True, check=False)
-            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        unit = (prefix / "share/reident/reidentd.service").read_text()
-        self.assertIn(f"ExecStart={prefix}/bin/reidentd --config ", unit)
-        self.assertTrue((prefix / "lib/python3/dist-packages/reident/__init__.py").exists())
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 """Telemetry that is sent over DDS arrives complete in SQLite, whatever happens on the way."""
 
 import json
+import signal
 import sys
+import time
 import unittest
 
 import plant
@@ -192,6 +194,28 @@ class Faults(EndToEnd):
         self.assertIn("challenger", [outcome for _, outcome in outcomes])
         self.assertLess(max(end for end, _ in outcomes), 1_700_000_000 * NS,
                         "no window follows a clock that ran away")
+
+    def test_frames_that_cannot_be_sent_again_are_counted_on_both_sides(self):
+        self.configure([plant.equipment()])
+        daemon = self.start_daemon()
+        source = self.start("satcs-reference", "--spacecraft", "SAT", "--speed", 100, "--duration",
+                            "10d", "--wait-readers", 0, "--history", 20, "--json", *self.endpoint())
+        wait_until(lambda: self.stored() > 0, "telemetry comes")
+        daemon.terminate()
+        before, since = self.stored(), time.monotonic()
+        wait_until(lambda: time.monotonic() - since > 4, "400 frames are sent meanwhile")
+        self.start_daemon()
+        wait_until(lambda: self.stored() > before, "telemetry comes again")
+        self.assertEqual(source.terminate()[0], 128 + signal.SIGTERM, source.text())
+        self.wait_idle()
+        lost = json.loads(source.out.read_text())["lost"][-1]  # before, some may have come too early
+        holes = self.query("SELECT first, last, time_before, time_after FROM telemetry_gap")
+        self.assertEqual(len(holes), 1, holes)
+        first, last, before, after = holes[0]
+        self.assertEqual(after - before, (last - first + 2) * NS, "a frame each second")
+        # The source learns a moment later who hears it, and who does not.
+        self.assertAlmostEqual(lost["frames"], last - first + 1, delta=100)
+        self.assertIn(f"first_time={lost['first_time']}", source.log.read_text())
 
 
 if __name__ == "__main__":

@@ -7,6 +7,8 @@
 #include "service/cli/config_options.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/verb.hpp"
+#include "service/dds/network_cut.hpp"
+#include "service/support/size_text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::check_config_verb {
@@ -78,9 +80,28 @@ void print_relations(const Config& config) {
   if (!table.empty()) fmt::print("\n{}", table.text(terminal_width()));
 }
 
+/// Parameters of the frames that the bound in bytes is shown for.
+constexpr std::size_t shown_parameters = 1000;
+
+dds::CutSettings cut_settings(const Config& config) {
+  return dds::settings_for({std::chrono::nanoseconds(config.cut), config.rate}, shown_parameters);
+}
+
+void print_cut(const Config& config) {
+  const dds::CutSettings settings = cut_settings(config);
+  fmt::print(
+      "network cut of {} at {:g} frames a second: lease {}; a source (--cut {} --rate {:g}/s) "
+      "keeps "
+      "{} frames, with {} parameters at most {}\n",
+      duration_text(config.cut), config.rate, duration_text(settings.lease.count()),
+      duration_text(config.cut), config.rate, settings.history, shown_parameters,
+      size_text(settings.unacknowledged_bytes));
+}
+
 void print_summary(const Config& config) {
   fmt::print("service {} on domain {}, partition {}; database {}\n", config.service_name,
              config.domain, config.partition, config.database.string());
+  if (config.cut > 0) print_cut(config);
   Table table(
       {{"equipment"}, {"every"}, {"window"}, {"slide"}, {"order"}, {"approval"}, {"signals"}});
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
@@ -125,11 +146,22 @@ void print_summary_json(const Config& config) {
                       {"sample_period", duration_text(equipment.sample_period)},
                       {"window", duration_text(equipment.window)},
                       {"slide", duration_text(equipment.slide)}});
+  ordered_json cut;
+  if (config.cut > 0) {
+    const dds::CutSettings settings = cut_settings(config);
+    cut = {{"cut", duration_text(config.cut)},
+           {"rate_per_s", config.rate},
+           {"lease", duration_text(settings.lease.count())},
+           {"source_history_frames", settings.history},
+           {"parameters", shown_parameters},
+           {"source_unacknowledged_bytes", settings.unacknowledged_bytes}};
+  }
   print_json({{"valid", true},
               {"mistakes", ordered_json::array()},
               {"service", config.service_name},
               {"domain", config.domain},
               {"partition", config.partition},
+              {"network_cut", cut},
               {"database", config.database.string()},
               {"digest", config.digest},
               {"equipment", list},

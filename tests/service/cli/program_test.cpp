@@ -191,6 +191,17 @@ TEST_F(CheckConfig, SumsUpAGoodFile) {
   EXPECT_EQ(printed["equipment"][0]["window"], "1h");
 }
 
+TEST_F(CheckConfig, ShowsWhatACutOfTheNetworkNeeds) {
+  write("good.toml",
+        "[dds]\ncut = \"60s\"\nrate = \"100/s\"\n"
+        "[[spacecraft]]\nname = \"A\"\n[[spacecraft.equipment]]\nname = \"X\"\n"
+        "inputs = [\"u\"]\noutputs = [\"y\"]\nsample_period = \"1s\"\nwindow = \"1h\"\n");
+  EXPECT_THAT(reident({"check-config", "good.toml"}).out, HasSubstr("7500 frames"));
+  const json cut = json_of({"check-config", "good.toml"})["network_cut"];
+  EXPECT_EQ(cut["lease"], "70s");
+  EXPECT_EQ(cut["source_history_frames"], 7500);
+}
+
 TEST_F(CheckConfig, SaysWhichEquipmentARelationChecksAndWhereItIsNone) {
   const std::string relation = "[[spacecraft.relation]]\ntolerance = 0.5\n";
   write("good.toml",

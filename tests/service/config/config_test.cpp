@@ -51,6 +51,13 @@ TEST(Config, AMinimalFileHasGoodDefaults) {
   EXPECT_EQ(bdr.approval, ApprovalPolicy::automatic);
 }
 
+TEST(Config, CutOfTheNetworkIsALengthAndARate) {
+  const Config config = config_of("[dds]\ncut = \"60s\"\nrate = \"6/min\"\n" + minimal);
+  EXPECT_EQ(config.cut, 60'000'000'000);
+  EXPECT_EQ(config.rate, 0.1);
+  EXPECT_EQ(config_of(minimal).cut, 0);
+}
+
 TEST(Config, EveryKeyIsRead) {
   const Config config = config_of(R"(
 [service]
@@ -179,7 +186,7 @@ const Mistake structure[] = {
     {"unknown_key", "[archive]\ndatabse = \"x.db\"\n" + minimal,
      "2: [archive] databse is not known; did you mean database?"},
     {"strange_key", "[dds]\nqqqqqqq = 1\n" + minimal,
-     "2: [dds] qqqqqqq is not known; known here: domain, partition"},
+     "2: [dds] qqqqqqq is not known; known here: cut, domain, partition, rate"},
     {"section_is_no_table", "service = 3\n" + minimal, "1: the file: service must be a table"},
     {"spacecraft_in_single_brackets", "[spacecraft]\nname = \"A\"\n",
      "1: the file: spacecraft must be tables in double brackets"},
@@ -291,6 +298,14 @@ const Mistake values[] = {
      "2: [archive] database must be a text in double quotes, not the number 1"},
     {"wild_partition", "[dds]\npartition = \"*\"\n" + minimal,
      "2: [dds] partition must be one name"},
+    {"cut_without_rate", "[dds]\ncut = \"60s\"\n" + minimal,
+     "2: [dds] cut and rate belong together"},
+    {"rate_without_cut", "[dds]\nrate = \"100/s\"\n" + minimal,
+     "2: [dds] cut and rate belong together"},
+    {"rate_without_unit", "[dds]\ncut = \"60s\"\nrate = \"100\"\n" + minimal,
+     "3: [dds] rate must be the frames that a source sends"},
+    {"endless_cut", "[dds]\ncut = \"2d\"\nrate = \"100/s\"\n" + minimal,
+     "2: [dds] cut must be a duration in quotes with its unit"},
     {"empty_partition", "[dds]\npartition = \"\"\n" + minimal,
      "2: [dds] partition must not be empty"},
     {"large_domain", "[dds]\ndomain = 231\n" + minimal,

@@ -100,6 +100,8 @@ TEST_F(Writer, KeepsABatchThatTheDiskRefusesAndStoresItWhenThereIsRoom) {
   EXPECT_TRUE(eventually([&] { return !writer.counts().last_error.empty(); }));
   EXPECT_LT(listener.committed, 8000U);
   EXPECT_TRUE(eventually([&] { return queue.waits() > 0; })) << "the source is held back";
+  writer.goes_on();
+  EXPECT_TRUE(eventually([&] { return writer.goes_on(); })) << "it tries again";
   full.reset();
   source.join();
   end();

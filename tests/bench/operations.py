@@ -1,0 +1,45 @@
+"""Operation in a failing world, measured: packages under a real systemd, networks that are cut.
+
+    operations.py BUILD [PART...]
+
+Runs the parts (the programs in the folder operations, all of them by default) one after the other.
+Each prints one JSON object as its last line. What a part cannot measure on this machine it names in
+`left_out`, with the reason. The last line here is the union of all.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().with_suffix("")
+
+
+def run(part, build):
+    """The object of its last line."""
+    last = ""
+    with subprocess.Popen([sys.executable, str(FOLDER / f"{part}.py"), build],
+                          stdout=subprocess.PIPE, text=True) as running:
+        for last in running.stdout:
+            print(last, end="", flush=True)
+    if running.returncode != 0:
+        sys.exit(f"{part} failed")
+    return json.loads(last)
+
+
+def main():
+    build, *wanted = sys.argv[1:]
+    parts = sorted(path.stem for path in FOLDER.glob("[a-z]*.py"))
+    if unknown := set(wanted) - set(parts):
+        sys.exit(f"no such part: {', '.join(unknown)}; there are {', '.join(parts)}")
+    figures, left_out = {}, {}
+    for part in wanted or parts:
+        of_part = run(part, build)
+        left_out.update(of_part.pop("left_out", {}))
+        figures.update(of_part)
+    left_out.update({part: "not asked for" for part in parts if wanted and part not in wanted})
+    print(json.dumps({**figures, "left_out": left_out}))
+
+
+if __name__ == "__main__":
+    main()
