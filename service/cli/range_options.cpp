@@ -11,8 +11,11 @@ namespace {
 // Years 1823 to 2116: differences of two such times fit in 64 bits.
 constexpr storage::Time sane_time = (storage::Time{1} << 62) - 1;
 
-std::optional<Refusal> read_time(std::string_view flag, const std::optional<std::string>& text,
-                                 storage::Time& time) {
+}  // namespace
+
+std::optional<Refusal> read_telemetry_time(std::string_view flag,
+                                           const std::optional<std::string>& text,
+                                           storage::Time& time) {
   if (!text) return std::nullopt;
   const auto parsed = parse_moment(*text, utc_now());
   if (!parsed || *parsed > sane_time || *parsed < -sane_time)
@@ -24,8 +27,6 @@ std::optional<Refusal> read_time(std::string_view flag, const std::optional<std:
   return std::nullopt;
 }
 
-}  // namespace
-
 void add_range_options(CLI::App& command, RangeOptions& options, const std::string& otherwise) {
   command.add_option("--begin", options.begin,
                      fmt::format("beginning of the telemetry ({})", otherwise));
@@ -35,8 +36,8 @@ void add_range_options(CLI::App& command, RangeOptions& options, const std::stri
 std::variant<storage::TimeRange, Refusal> range_of(const RangeOptions& options,
                                                    storage::TimeRange otherwise) {
   storage::TimeRange range = otherwise;
-  if (auto refusal = read_time("--begin", options.begin, range.begin)) return *refusal;
-  if (auto refusal = read_time("--end", options.end, range.end)) return *refusal;
+  if (auto refusal = read_telemetry_time("--begin", options.begin, range.begin)) return *refusal;
+  if (auto refusal = read_telemetry_time("--end", options.end, range.end)) return *refusal;
   if (range.begin >= range.end)
     return Refusal{
         fmt::format("the telemetry would begin at {} and end at {}; give --begin and "

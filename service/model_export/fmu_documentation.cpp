@@ -23,21 +23,24 @@ constexpr const char* about_expressions =
 
 constexpr const char* behaviour = R"(<h2>What a step does</h2>
 <p>The model is sampled: x[k+1] = A x[k] + B (u[k] - u0), y[k] = C x[k] + D (u[k] - u0) + y0, with a
-tick every {0} s, the first at the start time, where x = 0: the operating point. A step over [t, t + h)
-runs the ticks in it, each with the inputs that are set; after a step of one period the outputs are
-those of its tick. A step of several periods runs several ticks with inputs held; a step without a tick
-in it changes nothing but the time. Between ticks the outputs hold. Before the first tick they are those
-that it would give for the inputs that are set. Ticks are counted in whole periods: rounding of the
+tick every {0} s, the first at the start time. There x is state[1], state[2] and so on, which can be set
+before the first step; x = 0 is the operating point. A step over [t, t + h) runs the ticks in it, each
+with the inputs that are set. At a tick the outputs are those of that time, with the inputs that are set;
+between ticks those of the last tick hold. So a step of one period gives the outputs of its end. A step
+of several periods runs several ticks with inputs held, or changing by their derivatives where those
+are set. An output that follows its inputs at once (D is not 0) needs the inputs of the end of a step:
+by FMI 3.0 set them in event mode, by FMI 2.0 set their derivatives, or take steps of a tenth of a
+period. Ticks are counted in whole periods: rounding of the
 times that are handed in neither adds nor loses one, and what lies within a millionth of a period of a
 tick is on it. Inputs outside of the range that they were identified in are used as they are.</p>
 <h2>What it is not</h2>
 <p>This is the free run: outputs follow from inputs alone. A tracking gain or a Kalman gain that the
 version has, which correct a model by live telemetry, are in model.json and not in the binary.</p>
 <p>Where an expression has no finite value (a division by zero), its input keeps its last one, at first
-the operating point, and the step gives fmi2Warning. An input that is set to what is not finite keeps its
-value (fmi2Discard), as does the whole model where a step would leave what a double can hold. A call
-that the standard does not allow gives fmi2Error and changes nothing. All say why by the logger. Inputs
-are not interpolated, and there are no directional derivatives.</p>
+the operating point, and the step gives a warning. An input that is set to what is not finite keeps its
+value (discarded), as does the whole model where a step would leave what a double can hold. A call
+that the standard does not allow gives an error and changes nothing. All say why by the logger. There
+are no directional derivatives.</p>
 <h2>Compile it elsewhere</h2>
 <pre>cc -std=c11 -O2 -ffp-contract=off -fPIC -fvisibility=hidden -shared sources/reident_fmu.c -lm -o {1}.so</pre>
 <p>in the folder binaries/PLATFORM of that machine. sources/{1}.c is the same with the prefix {1}_ to the

@@ -39,11 +39,13 @@ std::vector<fs::path> sources_in(const fs::path& folder) {
 /// What tools compile that link FMUs statically.
 std::string prefixed_source(const std::string& identifier) {
   return fmt::format(
-      "/* The FMU with the prefix that FMI 2.0 asks of sources; FMI2_OVERRIDE_FUNCTION_PREFIX "
-      "takes\n"
-      " * it away. It includes all other files. */\n"
+      "/* The FMU with the prefix that FMI asks of sources; FMI2_OVERRIDE_FUNCTION_PREFIX and\n"
+      " * FMI3_OVERRIDE_FUNCTION_PREFIX take it away. It includes all other files. */\n"
       "#ifndef FMI2_FUNCTION_PREFIX\n"
-      "#define FMI2_FUNCTION_PREFIX {}_\n"
+      "#define FMI2_FUNCTION_PREFIX {0}_\n"
+      "#endif\n"
+      "#ifndef FMI3_FUNCTION_PREFIX\n"
+      "#define FMI3_FUNCTION_PREFIX {0}_\n"
       "#endif\n"
       "#include \"reident_fmu.c\"\n",
       identifier);
@@ -65,19 +67,23 @@ fs::path fmu_parts() {
                   (program / places[1]).lexically_normal().string()));
 }
 
-std::string fmu_file(const ExportedVersion& exported, const fs::path& parts) {
+std::string fmu_file(const ExportedVersion& exported, FmiVersion fmi, const fs::path& parts) {
   const ModelVersion& version = exported.version;
-  const FmuVariables variables = fmu_variables(version.model);
+  const FmuVariables variables =
+      fmu_variables(version.model, exported.start ? exported.start->x : identification::Vector());
   const std::string identifier = model_identifier(version);
+  const bool is_two = fmi == FmiVersion::two;
   ZipArchive archive;
-  archive.add("modelDescription.xml", model_description(exported, variables));
+  archive.add("modelDescription.xml", is_two ? model_description_2(exported, variables)
+                                             : model_description_3(exported, variables));
   archive.add("resources/model.txt", fmu_resources(version, variables));
   archive.add("documentation/index.html", fmu_documentation(exported, variables));
   archive.add("documentation/model.json", json_file(exported));
+  if (!is_two) archive.add("sources/buildDescription.xml", build_description(version));
   archive.add("sources/" + identifier + ".c", prefixed_source(identifier));
   for (const fs::path& source : sources_in(parts / "sources"))
     archive.add("sources/" + source.filename().string(), content_of(source));
-  archive.add("binaries/linux64/" + identifier + ".so",
+  archive.add(fmt::format("binaries/{}/{}.so", is_two ? "linux64" : "x86_64-linux", identifier),
               content_of(parts / "linux64" / "reident_fmu.so"));
   return archive.finish();
 }

@@ -30,6 +30,12 @@ std::string row_by_row(std::string_view name, const Matrix& matrix) {
   return text + '\n';
 }
 
+std::string start_values(std::string_view name, const std::vector<FmuVariable>& variables) {
+  std::string text(name);
+  for (const FmuVariable& variable : variables) text += ' ' + exact(variable.start);
+  return text + '\n';
+}
+
 /// "input COUNT STEP..."
 std::string input_text(const Signal& input, const std::vector<FmuVariable>& parameters) {
   if (input.expression.empty())
@@ -62,12 +68,10 @@ std::string fmu_resources(const ModelVersion& version, const FmuVariables& varia
   const EquipmentModel& model = version.model;
   const identification::StateSpaceModel& dynamics = model.dynamics;
   std::string text = fmt::format(
-      "reident-fmu-model 1\ndigest {}\nperiod {}\norder {}\ninputs {}\noutputs {}\nparameters {}\n",
+      "reident-fmu-model 2\ndigest {}\nperiod {}\norder {}\ninputs {}\noutputs {}\nparameters {}\n",
       version.digest, exact(dynamics.period_s), dynamics.order(), dynamics.inputs(),
       dynamics.outputs(), variables.inputs.size());
-  text += "start";
-  for (const FmuVariable& input : variables.inputs) text += ' ' + exact(input.start);
-  text += '\n';
+  text += start_values("start", variables.inputs) + start_values("state", variables.states);
   text += row_by_row("A", dynamics.A) + row_by_row("B", dynamics.B) + row_by_row("C", dynamics.C) +
           row_by_row("D", dynamics.D) + row_by_row("u0", dynamics.u0) +
           row_by_row("y0", dynamics.y0);

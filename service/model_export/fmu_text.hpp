@@ -18,8 +18,13 @@ std::string model_identifier(const ModelVersion& version);
 /// blanks.
 std::string xml_text(std::string_view text);
 
-/// Returns modelDescription.xml. The guid is the model's digest.
-std::string model_description(const ExportedVersion& exported, const FmuVariables& variables);
+/// Returns modelDescription.xml of FMI 2.0 and of FMI 3.0. The guid, or instantiation token, is the
+/// model's digest.
+std::string model_description_2(const ExportedVersion& exported, const FmuVariables& variables);
+std::string model_description_3(const ExportedVersion& exported, const FmuVariables& variables);
+
+/// Returns sources/buildDescription.xml of FMI 3.0.
+std::string build_description(const ModelVersion& version);
 
 /// Returns resources/model.txt (fmu/model_file.h), with its checksum.
 std::string fmu_resources(const ModelVersion& version, const FmuVariables& variables);

@@ -43,6 +43,30 @@ FmuVariable variable_of(const EquipmentModel& model, const std::string& paramete
   return variable;
 }
 
+/// A name that no parameter has.
+std::string own_name(std::string name, const FmuVariables& variables) {
+  const auto is_taken = [&name](const FmuVariable& variable) { return variable.name == name; };
+  while (std::any_of(variables.inputs.begin(), variables.inputs.end(), is_taken) ||
+         std::any_of(variables.outputs.begin(), variables.outputs.end(), is_taken))
+    name += '_';
+  return name;
+}
+
+void add_states(FmuVariables& variables, const identification::StateSpaceModel& dynamics,
+                const identification::Vector& x0) {
+  for (Index i = 0; i < dynamics.order(); ++i)
+    variables.states.push_back(
+        {own_name(fmt::format("state[{}]", i + 1), variables),
+         {},
+         "of the model, where the next tick begins; 0 is the operating point",
+         x0.size() == 0 ? 0 : x0(i)});
+  for (Index q = 0; q < dynamics.outputs(); ++q) {
+    std::vector<std::size_t>& shown = variables.shown.emplace_back();
+    for (Index i = 0; i < dynamics.order(); ++i)
+      if (dynamics.C(q, i) != 0) shown.push_back(static_cast<std::size_t>(i));
+  }
+}
+
 }  // namespace
 
 std::size_t place_of(const std::vector<FmuVariable>& inputs, const std::string& parameter) {
@@ -53,7 +77,7 @@ std::size_t place_of(const std::vector<FmuVariable>& inputs, const std::string& 
   return static_cast<std::size_t>(found - inputs.begin());
 }
 
-FmuVariables fmu_variables(const EquipmentModel& model) {
+FmuVariables fmu_variables(const EquipmentModel& model, const identification::Vector& x0) {
   FmuVariables variables;
   const InputExpressions inputs(signal_names(model.inputs), derived_inputs(model.inputs));
   for (const std::string& parameter : inputs.parameters())
@@ -69,6 +93,8 @@ FmuVariables fmu_variables(const EquipmentModel& model) {
     }
     variables.direct.emplace_back(direct.begin(), direct.end());
   }
+  add_states(variables, model.dynamics, x0);
+  variables.time = own_name("time", variables);
   return variables;
 }
 

@@ -1,4 +1,5 @@
-// The variables of a model's FMU, in the order of their value references, from 0: inputs, outputs.
+// The variables of a model's FMU, in the order of their value references, from 0: inputs, outputs,
+// states, and the time.
 #pragma once
 
 #include <string>
@@ -13,7 +14,7 @@ struct FmuVariable {
   std::string name;
   std::string unit;  // empty where a version does not say it
   std::string description;
-  double start = 0;  // of an input, before any was set
+  double start = 0;  // of an input or a state, before it was set
 };
 
 /// All variables of one FMU.
@@ -23,12 +24,17 @@ struct FmuVariables {
   /// are computed from.
   std::vector<FmuVariable> inputs;
   std::vector<FmuVariable> outputs;
+  std::vector<FmuVariable> states;  // x, in its order
+  std::string time;                 // its name
   /// For each output, places in `inputs` of those that it follows at once (by D), ascending.
   std::vector<std::vector<std::size_t>> direct;
+  /// For each output, places in `states` of those that it shows (by C), ascending.
+  std::vector<std::vector<std::size_t>> shown;
 };
 
 /// Returns the variables of a model without obstacle(). Parameters come in the order of first use.
-FmuVariables fmu_variables(const EquipmentModel& model);
+/// `x0` (n) is where the states start; empty: at 0.
+FmuVariables fmu_variables(const EquipmentModel& model, const identification::Vector& x0 = {});
 
 /// Returns the place of a parameter in `inputs`. Throws std::logic_error where it is not one of
 /// them.

@@ -124,6 +124,10 @@ Variables variables_of(const ExportedVersion& exported) {
   visit_head(exported, [&variables](const char* name, const auto& value) {
     variables.emplace(Rank::head, variable(name, value));
   });
+  const identification::Index order = exported.version.model.dynamics.order();
+  variables.emplace(Rank::vector,
+                    variable("x0", Matrix(exported.start ? exported.start->x
+                                                         : identification::Vector::Zero(order))));
   return variables;
 }
 

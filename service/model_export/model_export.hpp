@@ -13,7 +13,15 @@ namespace reident::model_export {
 struct ExportedVersion {
   ModelVersion version;
   std::string status;  // "approved", "superseded", "rejected", "waiting" or "withdrawn"
+  /// Where a simulation begins, unless its user says otherwise.
+  struct Start {
+    storage::Time time = 0;
+    identification::Vector x;  // n
+  };
+  std::optional<Start> start = {};  // absent: at rest at the operating point
 };
+
+enum class FmiVersion { two, three };  // 2.0, 3.0
 
 /// Returns why the model cannot be exported: its content is damaged, or two of its signals have one
 /// name. Empty when it can. What follows requires a model that can be.
@@ -26,10 +34,11 @@ std::string json_file(const ExportedVersion& exported);
 /// fails.
 std::string mat_file(const ExportedVersion& exported);
 
-/// Returns an FMU for co-simulation (FMI 2.0), from the parts in `parts`: linux64/reident_fmu.so
-/// and sources/. The same version, of the same status, gives the same bytes. Throws
-/// std::runtime_error where a part is missing.
-std::string fmu_file(const ExportedVersion& exported, const std::filesystem::path& parts);
+/// Returns an FMU for co-simulation, from the parts in `parts`: linux64/reident_fmu.so and
+/// sources/. The same version, of the same status, gives the same bytes. Throws std::runtime_error
+/// where a part is missing.
+std::string fmu_file(const ExportedVersion& exported, FmiVersion fmi,
+                     const std::filesystem::path& parts);
 
 /// Returns the folder of these parts: by the place of the running program, as it was built or
 /// installed. Throws std::runtime_error where there is none.

@@ -3,6 +3,7 @@
 import ctypes
 import json
 import sys
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 import zipfile
@@ -49,24 +50,25 @@ class Fmu:
             raise AssertionError(f"{function} gives {status}: {self.messages}")
 
     def step(self, inputs):
+        """The outputs for the inputs of now; then a step of one period."""
         count = len(self.inputs)
         self.call("fmi2SetReal", (ctypes.c_uint * count)(*self.inputs), ctypes.c_size_t(count),
                   (ctypes.c_double * count)(*inputs))
-        self.call("fmi2DoStep", ctypes.c_double(self.ticks * self.period),
-                  ctypes.c_double(self.period), 0)
-        self.ticks += 1
         count = len(self.outputs)
         values = (ctypes.c_double * count)()
         self.call("fmi2GetReal", (ctypes.c_uint * count)(*self.outputs), ctypes.c_size_t(count),
                   values)
+        self.call("fmi2DoStep", ctypes.c_double(self.ticks * self.period),
+                  ctypes.c_double(self.period), 0)
+        self.ticks += 1
         return list(values)
 
 
-def simulate(model, rows):
+def simulate(model, rows, start=None):
     def times(matrix, vector):
         return [sum(a * b for a, b in zip(row, vector)) for row in matrix]
 
-    state = [0.0] * model["order"]
+    state = start or [0.0] * model["order"]
     for row in rows:
         change = [u - u0 for u, u0 in zip(row, model["input_offset"])]
         yield [a + b + c for a, b, c in zip(times(model["C"], state), times(model["D"], change),
@@ -95,8 +97,36 @@ class ExportsEndToEnd(EndToEnd):
         for row, expected in zip(rows, simulate(model, rows)):
             for ours, theirs in zip(running.step(row), expected, strict=True):
                 self.assertLessEqual(abs(ours - theirs), 1e-12 * max(1, abs(theirs)))
+        self.begins_where_telemetry_is(model)
         self.assertTrue(all(process.running() for process in self.processes
                             if process.log.stem.startswith("reidentd")))
+
+    def begins_where_telemetry_is(self, model):
+        """The state of a row in the middle of the telemetry, where the plant is far from rest."""
+        first = 1000
+        text = self.folder / "at.json"
+        status, said = self.reident(
+            "export-model", "SAT/PLANT", "--json", text, "--fmu3", self.folder / "at.fmu",
+            "--at", "2019-01-01T00:00:00Z", "--database", self.database)
+        self.assertEqual(status, 2, said)  # there is no telemetry before it
+        self.assertFalse(text.exists())
+        at = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(plant.START_S + first))
+        status, said = self.reident(
+            "export-model", "SAT/PLANT", "--json", text, "--fmu3", self.folder / "at.fmu",
+            "--at", at, "--database", self.database)
+        self.assertEqual(status, 0, said)
+        self.assertIn(at, said)
+        start = json.loads(text.read_text())["start"]
+        self.assertEqual((start["time"], len(start["state"])), (at, model["order"]))
+        rows = list(plant.rows(1900))[first:first + 20]
+        inputs, measured = [row[1:3] for row in rows], [row[3] for row in rows]
+
+        def worst(state):
+            return max(abs(y[0] - expected)
+                       for y, expected in zip(simulate(model, inputs, state), measured))
+
+        self.assertLess(worst(start["state"]), 0.1)  # the noise is 0.01
+        self.assertGreater(worst([0.0] * model["order"]), 0.3)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ static void run_model(const uint8_t* data, size_t size) {
     Run run = {.values = calloc(run_values(&model) + 1, sizeof(double))};
     double* const room = calloc(model.inputs + model.order + 1, sizeof(double));
     run_reset(&model, &run);
-    inputs_of(&model, &run, room);
+    inputs_of(&model, &run, run.values, room);
     tick(&model, room, run_state(&model, &run), run_outputs(&model, &run), room + model.inputs);
     free(room);
     free(run.values);

@@ -1,10 +1,11 @@
 /* The model, and the file resources/model.txt that holds it:
  *
- *   reident-fmu-model 1
- *   digest D              SHA-256 of the published model; the FMU's guid
+ *   reident-fmu-model 2
+ *   digest D              SHA-256 of the published model; the FMU's guid or token
  *   period T              seconds between two ticks
  *   order n  inputs m  outputs p  parameters q
  *   start                 q numbers: the parameters before any was set
+ *   state                 n numbers: x before it was set
  *   A B C D u0 y0         n n, n m, p n, p m, m, p numbers, matrices row by row
  *   input COUNT           m times: the steps of its program (postfix.h), over the q parameters
  *   checksum S            16 hexadecimal digits: FNV-1a of all bytes before this line
@@ -42,7 +43,7 @@ typedef struct {
   char digest[model_digest_length + 1];
   double period_s;
   size_t order, inputs, outputs, parameters;
-  const double *start, *A, *B, *C, *D, *u0, *y0; /* in `numbers` */
+  const double *start, *state, *A, *B, *C, *D, *u0, *y0; /* in `numbers` */
   double* numbers;
   Program* programs; /* one for each input */
 } Model;
@@ -206,6 +207,7 @@ static void read_matrices(Words* words, Model* model) {
   const size_t n = model->order, m = model->inputs, p = model->outputs, q = model->parameters;
   double* at = model->numbers;
   at = next_reals(words, "start", at, q, &model->start);
+  at = next_reals(words, "state", at, n, &model->state);
   at = next_reals(words, "A", at, n * n, &model->A);
   at = next_reals(words, "B", at, n * m, &model->B);
   at = next_reals(words, "C", at, p * n, &model->C);
@@ -216,9 +218,9 @@ static void read_matrices(Words* words, Model* model) {
 
 static void read_head(Words* words, Model* model) {
   expect_word(words, "reident-fmu-model");
-  if (!word_is(next_word(words), "1"))
+  if (!word_is(next_word(words), "2"))
     words_refuse(words,
-                 "its format is not 1: the FMU's binary and resources do not belong together");
+                 "its format is not 2: the FMU's binary and resources do not belong together");
   expect_word(words, "digest");
   const Word digest = next_word(words);
   if (digest.length != model_digest_length) {
@@ -258,7 +260,7 @@ static const char* model_parse(const char* text, size_t length, Model* model) {
   read_head(&words, model);
   if (words.mistake != NULL) return words.mistake;
   const size_t n = model->order, m = model->inputs, p = model->outputs;
-  const size_t numbers = (n + p) * (n + m) + m + p + model->parameters;
+  const size_t numbers = (n + p) * (n + m) + n + m + p + model->parameters;
   /* No number takes less than a blank and 0x0p+0. */
   if (numbers > checked / 7) return "it holds fewer numbers than its sizes say";
   model->numbers = calloc(numbers + 1, sizeof *model->numbers);

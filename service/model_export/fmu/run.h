@@ -1,7 +1,7 @@
 /* A free run of the model, and all of it that changes:
  *
  *   y[k]   = C x[k] + D (u[k] - u0) + y0
- *   x[k+1] = A x[k] + B (u[k] - u0),    x[0] = 0: the operating point
+ *   x[k+1] = A x[k] + B (u[k] - u0),    x[0] = 0 at the operating point
  *
  * where u follows from the parameters by the inputs' programs. Where one has no finite value, the
  * last that it had stays, at first the operating point.
@@ -13,7 +13,13 @@
 #include "model_file.h"
 
 /* Between which calls of the standard an instance is. */
-typedef enum { phase_instantiated, phase_initialisation, phase_stepping, phase_terminated } Phase;
+typedef enum {
+  phase_instantiated,
+  phase_initialisation,
+  phase_stepping,
+  phase_terminated,
+  phase_event /* of FMI 3.0 */
+} Phase;
 
 /* All that a saved state has to hold (saved_state.h). It owns `values`. */
 typedef struct {
@@ -23,16 +29,21 @@ typedef struct {
   double point_s; /* the communication point, in the words of who steps */
   Clock clock;
   int64_t ticks;  /* that have run */
-  double* values; /* parameters, u - u0 of the last tick, x, y; run_values() of them */
+  double* values; /* parameters, their slopes, u - u0 of the last tick, x, y: run_values() */
 } Run;
 
 /* How many values a run of the model has, and where its parts begin. */
 static size_t run_values(const Model* model) {
-  return model->parameters + model->inputs + model->order + model->outputs;
+  return 2 * model->parameters + model->inputs + model->order + model->outputs;
+}
+
+/* How fast each parameter changes over the step that follows [1/s]; 0 after it. */
+static double* run_slopes(const Model* model, const Run* run) {
+  return run->values + model->parameters;
 }
 
 static double* run_inputs(const Model* model, const Run* run) {
-  return run->values + model->parameters;
+  return run_slopes(model, run) + model->parameters;
 }
 
 static double* run_state(const Model* model, const Run* run) {
@@ -50,6 +61,7 @@ static void run_reset(const Model* model, Run* run) {
   run->values = values;
   memset(values, 0, run_values(model) * sizeof *values);
   memcpy(values, model->start, model->parameters * sizeof *values);
+  memcpy(run_state(model, run), model->state, model->order * sizeof *values);
 }
 
 /* Copies a run of the same model; each keeps its own memory. */
@@ -60,13 +72,13 @@ static void run_copy(const Model* model, const Run* from, Run* to) {
   memcpy(values, from->values, run_values(model) * sizeof *values);
 }
 
-/* Sets `du` (m) to u - u0 of the parameters that are set. An input without a finite value keeps
+/* Sets `du` (m) to u - u0 of `parameters` (q). An input without a finite value keeps
  * that of the last tick. Returns the first such input, or m. */
-static size_t inputs_of(const Model* model, const Run* run, double* du) {
+static size_t inputs_of(const Model* model, const Run* run, const double* parameters, double* du) {
   size_t first = model->inputs;
   for (size_t i = 0; i < model->inputs; ++i) {
     const Program* const program = &model->programs[i];
-    const double value = postfix_value(program->steps, program->count, run->values);
+    const double value = postfix_value(program->steps, program->count, parameters);
     du[i] = isfinite(value) ? value - model->u0[i] : run_inputs(model, run)[i];
     if (!isfinite(value) && first == model->inputs) first = i;
   }

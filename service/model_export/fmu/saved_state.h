@@ -1,7 +1,7 @@
 /* The state of a run, kept in memory or as bytes:
  *
  *   bytes            content
- *   8                "RIDFMU01": what it is, and the version of this form
+ *   8                "RIDFMU02": what it is, and the version of this form
  *   64               digest of the model, hexadecimal
  *   8                phase
  *   8                1 where a stop time is defined, else 0
@@ -9,7 +9,7 @@
  *   8                communication point [s]
  *   8, 8             the clock: whole periods; rest [s]
  *   8                ticks that have run
- *   8 (q+m+n+p)      parameters (q), u - u0 of the last tick (m), x (n), y (p)
+ *   8 (2q+m+n+p)     parameters (q), their slopes (q), u - u0 of the last tick (m), x (n), y (p)
  *   8                FNV-1a of all bytes before
  *
  * Numbers have their lowest byte first; a double is kept by its bits. The bytes fit any instance of
@@ -20,7 +20,7 @@
 
 #include "run.h"
 
-static const char saved_mark[] = "RIDFMU01";
+static const char saved_mark[] = "RIDFMU02";
 
 enum { saved_head = 8 + model_digest_length, saved_fields = 7 };
 
@@ -102,7 +102,7 @@ static const char* saved_read(const Model* model, const unsigned char* bytes, si
   if (get_whole(bytes + size - 8) != bytes_checksum(bytes, size - 8)) return "they are damaged";
   const unsigned char* at = bytes + saved_head;
   const uint64_t phase = get_whole(at), stop = get_whole(at + 8);
-  if (phase > phase_terminated || stop > 1) return "they are damaged";
+  if (phase > phase_event || stop > 1) return "they are damaged";
   run->phase = (Phase)phase;
   run->stop_defined = (int)stop;
   run->stop_s = get_real(at + 16);

@@ -71,25 +71,29 @@ class Exports(unittest.TestCase):
             self.assertEqual(version["model"]["inputs"][0]["unit"], "A" if name == "plain" else "W")
             self.assert_close(simulate(version["model"], run["inputs"]), run["outputs"])
 
-    def description(self, name):
-        with zipfile.ZipFile(self.folder / f"{name}.fmu") as fmu:
+    def description(self, name, suffix="fmu"):
+        with zipfile.ZipFile(self.folder / f"{name}.{suffix}") as fmu:
             self.assertIsNone(fmu.testzip())
             return fmu.namelist(), ElementTree.fromstring(fmu.read("modelDescription.xml"))
 
-    def test_the_fmu_has_every_file_in_its_place(self):
-        files, root = self.description("plain")
-        identifier = root.find("CoSimulation").get("modelIdentifier")
-        self.assertRegex(identifier, "^[A-Za-z_][A-Za-z0-9_]*$")
-        for file in ("modelDescription.xml", "resources/model.txt", "documentation/index.html",
-                     "documentation/model.json", f"binaries/linux64/{identifier}.so",
-                     "sources/reident_fmu.c", "sources/fmi2.h"):
-            self.assertIn(file, files)
-        for source in root.findall("CoSimulation/SourceFiles/File"):
-            self.assertIn(f"sources/{source.get('name')}", files)
-        with zipfile.ZipFile(self.folder / "plain.fmu") as fmu:
-            ElementTree.fromstring(fmu.read("documentation/index.html").split(b"\n", 1)[1])
-            self.assertEqual(json.loads(fmu.read("documentation/model.json")),
-                             self.version("plain"))
+    def test_the_fmus_have_every_file_in_its_place(self):
+        for suffix, platform in (("fmu", "linux64"), ("fmu3", "x86_64-linux")):
+            files, root = self.description("plain", suffix)
+            identifier = root.find("CoSimulation").get("modelIdentifier")
+            self.assertRegex(identifier, "^[A-Za-z_][A-Za-z0-9_]*$")
+            for file in ("modelDescription.xml", "resources/model.txt", "documentation/index.html",
+                         "documentation/model.json", f"binaries/{platform}/{identifier}.so",
+                         "sources/reident_fmu.c", "sources/fmi2.h", "sources/fmi3.h"):
+                self.assertIn(file, files)
+            with zipfile.ZipFile(self.folder / f"plain.{suffix}") as fmu:
+                ElementTree.fromstring(fmu.read("documentation/index.html").split(b"\n", 1)[1])
+                self.assertEqual(json.loads(fmu.read("documentation/model.json")),
+                                 self.version("plain"))
+                if suffix == "fmu3":
+                    root = ElementTree.fromstring(fmu.read("sources/buildDescription.xml"))
+            sources = root.findall(".//SourceFile") + root.findall(".//SourceFiles/File")
+            self.assertEqual([one.get("name") for one in sources], [f"{identifier}.c"])
+            self.assertIn(f"sources/{identifier}.c", files)
 
     def test_the_model_description_keeps_the_rules_of_fmi_2(self):
         for name in NAMES:
@@ -127,10 +131,13 @@ class Exports(unittest.TestCase):
             if variable.get("causality") == "input":
                 self.assertIsNone(variable.get("initial"))
                 self.assertEqual(float(real.get("start")), offsets.get(name, 1))
+            elif variable.get("causality") == "local":
+                self.assertEqual((variable.get("initial"), real.get("start")), ("exact", "0"))
             else:
                 self.assertEqual(variable.get("causality"), "output")
                 self.assertEqual(variable.get("initial"), "calculated")
                 self.assertIsNone(real.get("start"))
+        self.assertEqual(sum(one.get("causality") == "local" for one in variables), model["order"])
 
     def check_structure(self, model, root):
         variables = root.findall("ModelVariables/ScalarVariable")
@@ -139,9 +146,37 @@ class Exports(unittest.TestCase):
         for element in ("Outputs", "InitialUnknowns"):
             unknowns = root.findall(f"ModelStructure/{element}/Unknown")
             self.assertEqual([int(unknown.get("index")) for unknown in unknowns], places)
+            kinds = {"input"} if element == "Outputs" else {"input", "local"}
             for unknown in unknowns:
-                for place in unknown.get("dependencies").split():
-                    self.assertEqual(variables[int(place) - 1].get("causality"), "input")
+                self.assertEqual({variables[int(place) - 1].get("causality")
+                                  for place in unknown.get("dependencies").split()}, kinds)
+
+    def test_the_model_description_of_fmi_3_says_the_same(self):
+        for name in NAMES:
+            _, two = self.description(name)
+            _, three = self.description(name, "fmu3")
+            self.assertEqual(three.get("fmiVersion"), "3.0")
+            self.assertEqual(three.get("instantiationToken"), two.get("guid"))
+            self.assertEqual(three.find("CoSimulation").get("hasEventMode"), "true")
+            order = ["CoSimulation", "UnitDefinitions", "LogCategories", "DefaultExperiment",
+                     "ModelVariables", "ModelStructure", "Annotations"]
+            self.assertEqual([child.tag for child in three], order)
+            theirs = [(one.get("name"), one.get("valueReference"), one.get("causality"),
+                       one.find("Real").get("unit"), one.find("Real").get("start"))
+                      for one in two.findall("ModelVariables/ScalarVariable")]
+            ours = [(one.get("name"), one.get("valueReference"), one.get("causality"),
+                     one.get("unit"), one.get("start"))
+                    for one in three.findall("ModelVariables/Float64")]
+            self.assertEqual(ours[:-1], theirs)
+            self.assertEqual(ours[-1][2], "independent")
+            for ours, theirs in (("Output", "Outputs"), ("InitialUnknown", "InitialUnknowns")):
+                self.assertEqual(
+                    [(int(one.get("valueReference")) + 1,
+                      [int(place) + 1 for place in one.get("dependencies").split()])
+                     for one in three.findall(f"ModelStructure/{ours}")],
+                    [(int(one.get("index")), [int(place) for place
+                                              in one.get("dependencies").split()])
+                     for one in two.findall(f"ModelStructure/{theirs}/Unknown")])
 
     def octave(self, name):
         """What Octave found: {variable: words}, and the outputs of its run."""
@@ -170,6 +205,7 @@ class Exports(unittest.TestCase):
             expected = {key: model[key] for key in "ABCDK"}
             expected |= {"u0": [[value] for value in model["input_offset"]],
                          "y0": [[value] for value in model["output_offset"]],
+                         "x0": [[0]] * model["order"],
                          "Ts": [[model["sample_period_s"]]], "version": [[7]]}
             if "tracking" in model:
                 expected |= {"tracking_state": model["tracking"]["state"],

@@ -63,6 +63,7 @@ K 2x1 0.3 0.2
 Ts 1x1 1
 u0 2x1 2.5 1.5
 y0 1x1 4.25
+x0 2x1 0 0
 input_names 2x1 1x8 'I_BDRIN1' 1x4 'P_IN'
 input_units 2x1 1x1 'A' 1x1 'W'
 input_expressions 2x1 0x0 '' 1x16 'V_BUS * I_BDRIN2'

@@ -13,7 +13,7 @@ for [value, name] = file
            strjoin(cellstr(num2hex(value'(:)))', " "));
   end
 end
-x = zeros(rows(file.A), 1);
+x = file.x0;
 for k = 1:rows(run)
   du = run(k, :)' - file.u0;
   y = file.C * x + file.D * du + file.y0;

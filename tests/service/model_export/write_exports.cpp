@@ -1,7 +1,7 @@
 // Writes example versions in every form, with a run of each, for programs that are not ours:
 //   write_exports FOLDER
-// leaves NAME.fmu, NAME.mat, NAME.json and NAME.run.json (parameters, model inputs and outputs of
-// 300 ticks) for NAME plain and derived.
+// leaves NAME.fmu, NAME.fmu3, NAME.mat, NAME.json and NAME.run.json (parameters, model inputs and
+// outputs of 300 ticks) for NAME plain and derived.
 #include <fstream>
 
 #include "tests/service/model_export/export_fixture.hpp"
@@ -60,7 +60,9 @@ int main(int argc, char** argv) {
   derived.version.digest = model_digest(derived.version.model);
   for (const auto& [name, exported] : {std::pair("plain", plain), std::pair("derived", derived)}) {
     const std::string path = std::string(argv[1]) + "/" + name;
-    write(path + ".fmu", model_export::fmu_file(exported, REIDENT_FMU_PARTS));
+    using model_export::FmiVersion;
+    write(path + ".fmu", model_export::fmu_file(exported, FmiVersion::two, REIDENT_FMU_PARTS));
+    write(path + ".fmu3", model_export::fmu_file(exported, FmiVersion::three, REIDENT_FMU_PARTS));
     write(path + ".mat", model_export::mat_file(exported));
     write(path + ".json", model_export::json_file(exported));
     write(path + ".run.json", run_of(exported.version).dump());

@@ -56,7 +56,7 @@ TEST_F(ExportModel, WritesAllFilesAtOnceAndSaysWhat) {
       reident(command("BDR@1", {"--fmu", "a.fmu", "--mat", "a.mat", "--json", "a.json"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.out,
-            "a.fmu: FMU of CBERS4/BDR version 1\na.mat: MATLAB file of CBERS4/BDR version 1\n"
+            "a.fmu: FMU (FMI 2.0) of CBERS4/BDR version 1\na.mat: MATLAB file of CBERS4/BDR version 1\n"
             "a.json: JSON of CBERS4/BDR version 1\n");
   for (const char* name : {"a.fmu", "a.mat", "a.json"}) EXPECT_TRUE(exists(name)) << name;
   const test::Ran again = reident(command("CBERS4/BDR@1", {"--json", "a.json", "--force"}));
@@ -82,7 +82,7 @@ TEST_F(ExportModel, RefusesWhatCannotBeWritten) {
   EXPECT_THAT(refusal_of(command("BDR@1", {"--mat", "x", "--json", "x"})),
               HasSubstr("x is named twice"));
   EXPECT_THAT(refusal_of(command("BDR@1", {"--fmu", "-"})),
-              HasSubstr("the FMU cannot go to standard output"));
+              HasSubstr("the FMU (FMI 2.0) cannot go to standard output"));
   EXPECT_THAT(refusal_of(command("BDR@9", {"--fmu", "a.fmu"})),
               HasSubstr("CBERS4/BDR has no version 9; versions: 1 (superseded), 2 (approved)"));
   EXPECT_THAT(refusal_of(command("BDR", {"--fmu", "a.fmu"})),
