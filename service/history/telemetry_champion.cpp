@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -45,20 +46,44 @@ bool makes_champion(DecisionKind kind) {
   return kind == DecisionKind::approve || kind == DecisionKind::roll_back;
 }
 
+/// The last that is for telemetry until `time`; null where there is none.
+const Reign* champion_at(const std::vector<Reign>& decisions, Time time) {
+  const Reign* champion = nullptr;
+  for (const Reign& one : decisions) {
+    if (one.from > time) continue;
+    if (makes_champion(one.decision.kind))
+      champion = &one;
+    else if (champion && one.decision.kind == DecisionKind::withdraw &&
+             one.decision.version == champion->decision.version)
+      champion = nullptr;
+  }
+  return champion;
+}
+
 }  // namespace
 
 std::optional<Reign> champion_for_telemetry(const HistoryReader& history,
                                             const EquipmentName& equipment, Time time) {
-  std::optional<Reign> champion;
-  for (Reign& one : decisions_by_telemetry(history, equipment)) {
-    if (one.from > time) continue;
-    if (makes_champion(one.decision.kind))
-      champion = std::move(one);
-    else if (champion && one.decision.kind == DecisionKind::withdraw &&
-             one.decision.version == champion->decision.version)
-      champion.reset();
+  const std::vector<Reign> decisions = decisions_by_telemetry(history, equipment);
+  const Reign* champion = champion_at(decisions, time);
+  return champion ? std::optional(*champion) : std::nullopt;
+}
+
+std::vector<Tenure> tenures(const HistoryReader& history, const EquipmentName& equipment) {
+  std::vector<Reign> decisions = decisions_by_telemetry(history, equipment);
+  // All others leave the champion as it is.
+  std::erase_if(decisions, [](const Reign& one) {
+    return !makes_champion(one.decision.kind) && one.decision.kind != DecisionKind::withdraw;
+  });
+  std::set<Time> times;
+  for (const Reign& one : decisions) times.insert(one.from);
+  std::vector<Tenure> all;
+  for (const Time time : times) {
+    const Reign* champion = champion_at(decisions, time);
+    const std::int64_t version = champion ? champion->decision.version : 0;
+    if (version != (all.empty() ? 0 : all.back().version)) all.push_back({time, version});
   }
-  return champion;
+  return all;
 }
 
 std::optional<Reign> first_champion(const HistoryReader& history, const EquipmentName& equipment) {

@@ -24,4 +24,14 @@ std::optional<Reign> champion_for_telemetry(const HistoryReader& history,
 std::optional<Reign> first_champion(const HistoryReader& history,
                                     const storage::EquipmentName& equipment);
 
+/// Who was champion for telemetry from a generation time on.
+struct Tenure {
+  storage::Time from = 0;
+  std::int64_t version = 0;  // 0: none
+};
+
+/// Every change of the champion, ascending by generation time. champion_for_telemetry() gives the
+/// same version at each time.
+std::vector<Tenure> tenures(const HistoryReader& history, const storage::EquipmentName& equipment);
+
 }  // namespace reident::history

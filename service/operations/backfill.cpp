@@ -1,6 +1,7 @@
 #include "service/operations/backfill.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -25,45 +26,40 @@ struct Plan {
   std::vector<storage::Time> ends;  // ascending
 };
 
-/// Ends of the windows whose last slide holds a sample of the equipment and which were not tried.
+/// The window's ends without those that were tried.
 std::vector<storage::Time> untried(const storage::Archive& archive,
                                    const storage::Registry& registry, const std::string& spacecraft,
                                    const EquipmentConfig& equipment, storage::TimeRange range) {
-  std::set<storage::Time> ends;
-  for (const std::string& name : parameters_of(equipment)) {
-    const auto descriptor = archive.parameter(spacecraft, name);
-    if (!descriptor) continue;
-    const auto sample_at_or_after = [&](storage::Time time) {
-      return archive.first_at_or_after(spacecraft, storage::Origin::real, descriptor->id, time);
-    };
-    const auto last =
-        archive.last_at_or_before(spacecraft, storage::Origin::real, descriptor->id, range.end);
-    for (auto sample = sample_at_or_after(range.begin - equipment.slide); sample && last;) {
-      const storage::Time end = (floor_divide(*sample, equipment.slide) + 1) * equipment.slide;
-      // Telemetry has to reach the end, as it does for the daemon.
-      if (end > range.end || end > *last) break;
-      if (end >= range.begin) ends.insert(end);
-      sample = sample_at_or_after(end);
-    }
-  }
+  std::vector<storage::Time> ends = window_ends(archive, spacecraft, equipment, range);
   storage::HistoryFilter filter;
   filter.spacecraft = spacecraft;
   filter.equipment = equipment.name;
-  for (const storage::Attempt& attempt : registry.attempts(filter)) ends.erase(attempt.window.end);
-  return {ends.begin(), ends.end()};
+  std::set<storage::Time> tried;
+  for (const storage::Attempt& attempt : registry.attempts(filter))
+    tried.insert(attempt.window.end);
+  std::erase_if(ends, [&](storage::Time end) { return tried.contains(end); });
+  return ends;
+}
+
+/// The file, open for reading, where it is not that of the database.
+std::optional<storage::Database> other_than(const storage::Database& database,
+                                            const std::filesystem::path& file) {
+  if (std::filesystem::equivalent(database.path(), file)) return std::nullopt;
+  return storage::Database(file, storage::Database::Mode::read_only);
 }
 
 /// Of the equipment of one database, one after the other.
 class Backfill {
  public:
   Backfill(storage::Database& database, const Config& config, WorkerPool& workers,
-           const std::function<storage::Time()>& clock,
+           const std::function<storage::Time(storage::Time)>& clock,
            const std::function<bool(const BackfillProgress&)>& report)
       : config_(config),
         workers_(workers),
         clock_(clock),
         report_(report),
-        archive_(database),
+        other_(other_than(database, config.database)),
+        archive_(other_ ? *other_ : database),
         registry_(database) {}
 
   BackfillProgress run(const BackfillRequest& request);
@@ -81,13 +77,17 @@ class Backfill {
   RefreshRequest request_of_window(const Plan& plan, storage::Time end) const;
   void prepare(const Plan& plan, std::size_t begin, std::size_t first,
                std::vector<std::optional<PreparedWindow>>& prepared);
+  PreparedWindow prepare(const storage::Archive& archive, const RefreshRequest& request,
+                         WindowCache& kept);
   PreparedWindow prepare(const RefreshRequest& request);
   identification::ForEach on_all_cores();
 
   const Config& config_;
   WorkerPool& workers_;
-  const std::function<storage::Time()>& clock_;
+  const std::function<storage::Time(storage::Time)>& clock_;
   const std::function<bool(const BackfillProgress&)>& report_;
+  std::function<std::optional<FoundWindow>(const RefreshRequest&)> found_;
+  std::optional<storage::Database> other_;  // that telemetry is in
   storage::Archive archive_;
   storage::Registry registry_;
   /// Windows behind changes, by their ends, with their begins.
@@ -96,6 +96,7 @@ class Backfill {
 };
 
 BackfillProgress Backfill::run(const BackfillRequest& request) {
+  found_ = request.found;
   std::vector<Plan> plans;
   for (const SpacecraftConfig& spacecraft : config_.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment) {
@@ -117,7 +118,7 @@ bool Backfill::run(const Plan& plan) {
   const std::size_t batch = windows_per_task * usable_cores();
   for (std::size_t begin = 0; begin < plan.ends.size(); begin += batch) {
     const std::size_t end = std::min(plan.ends.size(), begin + batch);
-    archive_.seal(*plan.spacecraft, plan.ends[end - 1]);
+    if (!other_) archive_.seal(*plan.spacecraft, plan.ends[end - 1]);
     std::vector<std::optional<PreparedWindow>> prepared(end - begin);
     workers_.for_each(
         (end - begin + windows_per_task - 1) / windows_per_task,
@@ -149,13 +150,20 @@ void Backfill::prepare(const Plan& plan, std::size_t begin, std::size_t first,
   const storage::Archive archive(database);
   WindowCache kept = window_cache_of(*plan.spacecraft, *plan.equipment);
   for (std::size_t i = first; i < std::min(first + windows_per_task, prepared.size()); ++i)
-    prepared[i] = prepare_window(archive, request_of_window(plan, plan.ends[begin + i]), kept,
-                                 on_all_cores(), [] { return false; });
+    prepared[i] = prepare(archive, request_of_window(plan, plan.ends[begin + i]), kept);
+}
+
+PreparedWindow Backfill::prepare(const storage::Archive& archive, const RefreshRequest& request,
+                                 WindowCache& kept) {
+  if (const auto found = found_ ? found_(request) : std::nullopt)
+    if (auto restored = restored_window(archive, request, kept, *found))
+      return *std::move(restored);
+  return prepare_window(archive, request, kept, on_all_cores(), [] { return false; });
 }
 
 PreparedWindow Backfill::prepare(const RefreshRequest& request) {
   WindowCache kept = window_cache_of(request.spacecraft, request.equipment);
-  return prepare_window(archive_, request, kept, on_all_cores(), [] { return false; });
+  return prepare(archive_, request, kept);
 }
 
 bool Backfill::record(const RefreshRequest& request, PreparedWindow&& prepared,
@@ -191,7 +199,7 @@ bool Backfill::attempt(RefreshRequest request, PreparedWindow&& prepared) {
     prepared = prepare(request);
   }
   RefreshResult result = judge(registry_, request, std::move(prepared));
-  result.attempt.time = clock_();
+  result.attempt.time = clock_(request.window.end);
   if (result.candidate)
     registry_.record(result.attempt, result.version, *result.decision);
   else
@@ -211,26 +219,49 @@ std::optional<storage::TimeRange> Backfill::advance(LeagueKeeper& league,
   writer.decide = [&](const storage::DecisionState& standing, const LeagueDecision& found) {
     const bool recorded = registry_
                               .decide_if(standing, request.spacecraft, request.equipment.name,
-                                         found.version.number, found.decision, clock_())
+                                         found.version.number, found.decision, clock_(found.until))
                               .has_value();
     if (recorded && found.decision.kind == storage::DecisionKind::approve) ++progress_.approved;
     return recorded;
   };
   const storage::EquipmentName equipment{request.spacecraft, request.equipment.name};
   writer.failure = [&](const std::optional<Reason>& failure) {
-    note_failure(registry_, equipment, failure, clock_());
+    note_failure(registry_, equipment, failure, clock_(reached));
   };
   writer.change = [&](const storage::FoundChange& change) {
-    registry_.record_change(equipment, change, clock_());
+    registry_.record_change(equipment, change, clock_(change.found));
   };
   return league.advance(archive_, registry_, reached, writer);
 }
 
 }  // namespace
 
+std::vector<storage::Time> window_ends(const storage::Archive& archive,
+                                       const std::string& spacecraft,
+                                       const EquipmentConfig& equipment, storage::TimeRange range) {
+  std::set<storage::Time> ends;
+  for (const std::string& name : parameters_of(equipment)) {
+    const auto descriptor = archive.parameter(spacecraft, name);
+    if (!descriptor) continue;
+    const auto sample_at_or_after = [&](storage::Time time) {
+      return archive.first_at_or_after(spacecraft, storage::Origin::real, descriptor->id, time);
+    };
+    const auto last =
+        archive.last_at_or_before(spacecraft, storage::Origin::real, descriptor->id, range.end);
+    for (auto sample = sample_at_or_after(range.begin - equipment.slide); sample && last;) {
+      const storage::Time end = (floor_divide(*sample, equipment.slide) + 1) * equipment.slide;
+      // Telemetry has to reach the end, as it does for the daemon.
+      if (end > range.end || end > *last) break;
+      if (end >= range.begin) ends.insert(end);
+      sample = sample_at_or_after(end);
+    }
+  }
+  return {ends.begin(), ends.end()};
+}
+
 BackfillProgress backfill(storage::Database& database, const Config& config,
                           const BackfillRequest& request, WorkerPool& workers,
-                          const std::function<storage::Time()>& clock,
+                          const std::function<storage::Time(storage::Time)>& clock,
                           const std::function<bool(const BackfillProgress&)>& report) {
   return Backfill(database, config, workers, clock, report).run(request);
 }

@@ -7,10 +7,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "service/config/config.hpp"
 #include "service/support/parallel.hpp"
+#include "service/windows/found_window.hpp"
+#include "storage/archive/archive.hpp"
 #include "storage/database/database.hpp"
 #include "storage/types/telemetry.hpp"
 
@@ -21,6 +25,8 @@ struct BackfillRequest {
   std::string spacecraft;    // empty: every one of the configuration
   std::string equipment;     // empty: every one
   storage::TimeRange range;  // of the windows' ends
+  /// What was found in a window already; may be empty. Several threads call it at the same time.
+  std::function<std::optional<FoundWindow>(const RefreshRequest&)> found{};
 };
 
 /// How far it is.
@@ -32,14 +38,21 @@ struct BackfillProgress {
   storage::Time window_end = 0;
 };
 
-/// Tries every window that holds new telemetry in its last slide and was never tried, and records
-/// each. `database` is open for writing, and is the file of the configuration: threads open it
-/// again for reading. `clock` gives the time of each record. After each window `report` is called;
-/// false stops, and the next call goes on from there. Returns the progress at the end. Throws
-/// storage::Error.
+/// Returns the ends in `range`, ascending, of the equipment's windows whose last slide holds a new
+/// sample and whose end telemetry has reached.
+std::vector<storage::Time> window_ends(const storage::Archive& archive,
+                                       const std::string& spacecraft,
+                                       const EquipmentConfig& equipment, storage::TimeRange range);
+
+/// Tries every window of window_ends() that was never tried, and records each in `database`, which
+/// is open for writing. Telemetry is that of the configuration's file, which threads open again for
+/// reading; where `database` is another one, that file is only read. `clock` gives the time of each
+/// record; its argument is the time that telemetry had reached. After each window `report` is
+/// called; false stops, and the next call goes on from there. Returns the progress at the end.
+/// Throws storage::Error, and what `found` throws.
 BackfillProgress backfill(storage::Database& database, const Config& config,
                           const BackfillRequest& request, WorkerPool& workers,
-                          const std::function<storage::Time()>& clock,
+                          const std::function<storage::Time(storage::Time)>& clock,
                           const std::function<bool(const BackfillProgress&)>& report);
 
 }  // namespace reident

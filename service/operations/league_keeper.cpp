@@ -167,7 +167,7 @@ bool LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
   if (league_.champion) evidence["champion"] = league_.champion->version;
   return writer.decide(*standing_,
                        {*registry.version(spacecraft_, equipment_.name, finding.version),
-                        decision_of(kind, reasons, std::move(evidence))});
+                        decision_of(kind, reasons, std::move(evidence)), now});
 }
 
 bool LeagueKeeper::asked_an_operator(const storage::Registry& registry,

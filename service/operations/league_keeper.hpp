@@ -23,6 +23,7 @@ namespace reident {
 struct LeagueDecision {
   storage::Version version;
   storage::NewDecision decision;
+  storage::Time until = 0;  // the telemetry that it is based on
 };
 
 /// How what was found gets into the registry, by whoever may write.

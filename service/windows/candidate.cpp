@@ -68,39 +68,6 @@ ChosenModel corrected(const identification::Record& record, const Identified& id
   return chosen;
 }
 
-Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
-                       const ChosenModel& chosen, const WindowParts& parts) {
-  const Duration period = request.equipment.sample_period;
-  Candidate candidate{
-      .model = {},
-      .parts = parts,
-      .x0 = estimate_initial_state(chosen.dynamics, data.record, data.record.segments,
-                                   identification::state_rows),
-      .y_hat = {},
-      .tuned_on = {},
-      .adapted_from = {}};
-  EquipmentModel& model = candidate.model;
-  model.spacecraft = request.spacecraft;
-  model.equipment = request.equipment.name;
-  const auto fitted = [&](const Matrix& samples) {
-    return samples.middleRows(parts.fitted().begin, parts.fitted().size());
-  };
-  model.inputs = with_ranges(data.inputs, fitted(data.record.u));
-  model.outputs = with_ranges(data.outputs, fitted(data.record.y));
-  model.dynamics = chosen.dynamics;
-  model.sample_hold_ns = request.equipment.sample_hold;
-  model.identified_from = time_range(data.record, parts.identify, period);
-  model.validated_on = time_range(data.record, parts.validate, period);
-  model.method = chosen.method;
-  candidate.tuned_on = time_range(data.record, parts.tune, period);
-  candidate.y_hat = free_run(chosen.dynamics, data.record, data.record.all(), candidate.x0);
-  const auto validation = [&](const Matrix& samples) -> Matrix {
-    return samples.middleRows(parts.validate.begin, parts.validate.size());
-  };
-  model.validation = identification::score(validation(data.record.y), validation(candidate.y_hat));
-  return candidate;
-}
-
 void describe_search(const Identified& identified, ordered_json& json) {
   json["horizon"] = identified.recipe.horizon;
   json["weighting"] = name(identified.recipe.weighting);
@@ -167,10 +134,43 @@ void identify_window(const RefreshRequest& request, WindowCache& kept,
       corrected(data.record, identified, parts, options.longest_time_constant_s, for_each,
                 prepared.search["pole_placement"]);
   prepared.timer.begin("score");
-  prepared.candidate = candidate_of(request, data, chosen, parts);
+  prepared.candidate = candidate_of(request, data, chosen.dynamics, chosen.method);
 }
 
 }  // namespace
+
+Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
+                       const identification::StateSpaceModel& dynamics, const std::string& method) {
+  const Duration period = request.equipment.sample_period;
+  const WindowParts parts = parts_of(data.record.rows(), request.equipment);
+  Candidate candidate{.model = {},
+                      .parts = parts,
+                      .x0 = estimate_initial_state(dynamics, data.record, data.record.segments,
+                                                   identification::state_rows),
+                      .y_hat = {},
+                      .tuned_on = {},
+                      .adapted_from = {}};
+  EquipmentModel& model = candidate.model;
+  model.spacecraft = request.spacecraft;
+  model.equipment = request.equipment.name;
+  const auto fitted = [&](const Matrix& samples) {
+    return samples.middleRows(parts.fitted().begin, parts.fitted().size());
+  };
+  model.inputs = with_ranges(data.inputs, fitted(data.record.u));
+  model.outputs = with_ranges(data.outputs, fitted(data.record.y));
+  model.dynamics = dynamics;
+  model.sample_hold_ns = request.equipment.sample_hold;
+  model.identified_from = time_range(data.record, parts.identify, period);
+  model.validated_on = time_range(data.record, parts.validate, period);
+  model.method = method;
+  candidate.tuned_on = time_range(data.record, parts.tune, period);
+  candidate.y_hat = free_run(dynamics, data.record, data.record.all(), candidate.x0);
+  const auto validation = [&](const Matrix& samples) -> Matrix {
+    return samples.middleRows(parts.validate.begin, parts.validate.size());
+  };
+  model.validation = identification::score(validation(data.record.y), validation(candidate.y_hat));
+  return candidate;
+}
 
 std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
                                            const EquipmentModel& known, std::int64_t number,
@@ -185,19 +185,17 @@ std::optional<Candidate> adapted_candidate(const RefreshRequest& request,
     return std::nullopt;
   const WindowParts& parts = prepared.candidate->parts;
   Candidate candidate = candidate_of(request, prepared.data,
-                                     {adapted(known.dynamics, prepared.data.record, parts.fitted(),
-                                              identification::KnownFrom::other_rows),
-                                      fmt::format("A and C of version {}", number)},
-                                     parts);
+                                     adapted(known.dynamics, prepared.data.record, parts.fitted(),
+                                             identification::KnownFrom::other_rows),
+                                     fmt::format("A and C of version {}", number));
   candidate.adapted_from = number;
   return candidate;
 }
 
 Candidate static_candidate(const RefreshRequest& request, const PreparedWindow& prepared) {
   const WindowParts& parts = prepared.candidate->parts;
-  return candidate_of(
-      request, prepared.data,
-      {static_regression(prepared.data.record, parts.fitted()), "static regression"}, parts);
+  return candidate_of(request, prepared.data,
+                      static_regression(prepared.data.record, parts.fitted()), "static regression");
 }
 
 void describe_candidate(PreparedWindow& prepared) {
@@ -275,9 +273,8 @@ void refuse_damaged(PreparedWindow& prepared, const storage::Error& error) {
   refuse(prepared, because<ReasonCode::telemetry_damaged>(error.what()));
 }
 
-PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
-                              WindowCache& kept, const identification::ForEach& for_each,
-                              const std::function<bool()>& stop) {
+PreparedWindow loaded_window(const storage::Archive& archive, const RefreshRequest& request,
+                             WindowCache& kept) {
   PreparedWindow prepared;
   prepared.attempt.spacecraft = request.spacecraft;
   prepared.attempt.equipment = request.equipment.name;
@@ -288,21 +285,24 @@ PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequ
   prepared.loaded = kept.request();
   prepared.checks = checks_of(request.equipment);
   prepared.timer.begin("load");
-  std::variant<WindowData, UnknownParameter> outcome = UnknownParameter{};
   try {
-    outcome = kept.load(archive, request.window);
+    auto outcome = kept.load(archive, request.window);
+    if (const auto* unknown = std::get_if<UnknownParameter>(&outcome))
+      refuse(prepared, because<ReasonCode::unknown_parameter>(unknown->name));
+    else
+      prepared.data = std::get<WindowData>(std::move(outcome));
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::corrupt) throw;
     refuse_damaged(prepared, error);
-    prepared.timer.end();
-    return prepared;
   }
-  if (const auto* unknown = std::get_if<UnknownParameter>(&outcome)) {
-    refuse(prepared, because<ReasonCode::unknown_parameter>(unknown->name));
-  } else {
-    prepared.data = std::get<WindowData>(std::move(outcome));
-    identify_window(request, kept, for_each, stop, prepared);
-  }
+  return prepared;
+}
+
+PreparedWindow prepare_window(const storage::Archive& archive, const RefreshRequest& request,
+                              WindowCache& kept, const identification::ForEach& for_each,
+                              const std::function<bool()>& stop) {
+  PreparedWindow prepared = loaded_window(archive, request, kept);
+  if (prepared.attempt.outcome.empty()) identify_window(request, kept, for_each, stop, prepared);
   prepared.timer.end();
   return prepared;
 }

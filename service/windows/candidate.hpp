@@ -69,6 +69,16 @@ void refuse_damaged(PreparedWindow& prepared, const storage::Error& error);
 /// Thrown when `stop` answered true; nothing was decided.
 class Stopped : public std::exception {};
 
+/// Loads the window and looks for no model yet. Where it cannot be loaded the attempt has the
+/// outcome and the reason, `data` no rows. Throws storage::Error but for damage.
+PreparedWindow loaded_window(const storage::Archive& archive, const RefreshRequest& request,
+                             WindowCache& kept);
+
+/// What the dynamics are as the candidate of a window that was loaded. `method` says how they were
+/// found.
+Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
+                       const identification::StateSpaceModel& dynamics, const std::string& method);
+
 /// `known`, version `number` of the equipment, made to fit the window
 /// (identification/fit/adaptation.hpp): A and C stay. Absent where the window gave no candidate,
 /// and where `known` looks at other telemetry, is not stable, or has an order that the

@@ -44,6 +44,11 @@
 #                                         operation in a failing world: packages under a real
 #                                         systemd, networks that are cut. Needs root; says what it
 #                                         leaves out. The last line is one JSON object
+#   tests/bench/run.sh scale [--spacecraft N] [--days N] [--folder FOLDER]
+#                                         a sweep of six spacecraft over 30 days on one core, on two
+#                                         and as a Slurm array on two emulated nodes, which needs
+#                                         root: whether the bits are equal, and the speed-up.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh build [--suite]    processor and wall time of a build from nothing, without
 #                                         and with the tests; with --suite also of the tests.
 #                                         The last line is one JSON object
@@ -103,6 +108,10 @@ case $what in
     arguments=(build/release)
     targets=(reident_step_bench reident_swap_bench reident_jump_bench reidentd reident
              reident-simulator satcs-replay)
+    ;;
+  scale)
+    arguments=(build/release deploy "$@")
+    targets=(reident satcs-reference)
     ;;
   web)
     arguments=(build/release "$@")

@@ -43,6 +43,7 @@ FORBIDDEN_INCLUDES = [  # folder, pattern of what it must not include, why
      "no decision depends on threads and queues"),
     ("service/(config|windows|judgement)/", r"service/dds/", "no decision depends on the middleware"),
     ("service/review/", r"service/(operations|daemon|dds|cli)/", "it reads and decides nothing"),
+    ("service/(sweep|fleet)/", r"service/(daemon|cli|web)/", "they work without a service"),
     ("service/cli/", r"service/daemon/", "the command line works without the daemon"),
     ("service/web/", r"service/(daemon|operations|cli)/", "the page writes nothing"),
     ("service/(?!web/)", r"service/web/|boost/(asio|beast)/", "HTTP appears under service/web alone"),

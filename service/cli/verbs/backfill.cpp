@@ -76,14 +76,15 @@ int run(const Arguments& arguments) {
     storage::Database database(config->database, storage::Database::Mode::read_write);
     WorkerPool workers(usable_cores());
     Progress bar;
-    const BackfillProgress progress =
-        backfill(database, *config, std::get<BackfillRequest>(request), workers, utc_now,
-                 [&](const BackfillProgress& at) {
-                   bar.update(static_cast<double>(at.done) / static_cast<double>(at.windows),
-                              fmt::format("{}/{} {} {} approved {}", at.done, at.windows,
-                                          at.equipment, time_text(at.window_end), at.approved));
-                   return !stop.token().stop_requested();
-                 });
+    const BackfillProgress progress = backfill(
+        database, *config, std::get<BackfillRequest>(request), workers,
+        [](storage::Time) { return utc_now(); },
+        [&](const BackfillProgress& at) {
+          bar.update(static_cast<double>(at.done) / static_cast<double>(at.windows),
+                     fmt::format("{}/{} {} {} approved {}", at.done, at.windows, at.equipment,
+                                 time_text(at.window_end), at.approved));
+          return !stop.token().stop_requested();
+        });
     bar.clear();
     print(progress, arguments.json);
     return progress.done == progress.windows ? exit_done : exit_failed;

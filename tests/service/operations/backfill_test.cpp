@@ -27,8 +27,8 @@ TEST_F(DaemonTest, BackfillReachesBackOverNoChampionsBegin) {
   all.database = path();
   WorkerPool workers(2);
   const BackfillProgress progress = backfill(
-      database, all, {{}, {}, {day + 10 * minute, day + 30 * minute}}, workers, [] { return day; },
-      [](const BackfillProgress&) { return true; });
+      database, all, {{}, {}, {day + 10 * minute, day + 30 * minute}}, workers,
+      [](storage::Time) { return day; }, [](const BackfillProgress&) { return true; });
   EXPECT_EQ(progress.done, 5U);
   std::map<storage::Time, storage::Time> windows;  // begin by end
   for (const storage::Attempt& attempt : registry.attempts({}))

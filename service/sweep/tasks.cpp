@@ -1,0 +1,209 @@
+#include "service/sweep/tasks.hpp"
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "service/operations/backfill.hpp"
+#include "service/support/mutex.hpp"
+#include "service/support/program_identity.hpp"
+#include "service/sweep/comparison.hpp"
+#include "service/sweep/task_file.hpp"
+#include "storage/archive/archive.hpp"
+
+namespace reident::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+using storage::Database;
+using storage::Time;
+
+fs::path result_file(const Plan& plan, TaskId task) {
+  return task.kind == TaskKind::candidates ? plan.file_of_candidates(task.number)
+                                           : plan.file_of_judgement(task.number);
+}
+
+fs::path failure_file(const Plan& plan, TaskId task) {
+  return plan.folder / "failed" / fmt::format("{}-{}.json", name(task.kind), task.number);
+}
+
+/// The result, where it is one of this plan.
+std::optional<ordered_json> result_of(const Plan& plan, TaskId task) {
+  auto result = read_task_file(result_file(plan, task));
+  if (!result || result->value("plan", "") != plan.digest) return std::nullopt;
+  return result;
+}
+
+const EquipmentConfig& equipment_of(const Plan& plan, const CandidateTask& task) {
+  const PlannedSpacecraft& spacecraft = plan.spacecraft[task.spacecraft];
+  for (const SpacecraftConfig& one : plan.configurations[spacecraft.configuration].spacecraft)
+    if (one.name == spacecraft.name)
+      for (const EquipmentConfig& equipment : one.equipment)
+        if (equipment.name == task.equipment) return equipment;
+  throw std::runtime_error(
+      fmt::format("the plan names {}/{}, which its configuration does not have", spacecraft.name,
+                  task.equipment));
+}
+
+std::optional<ordered_json> find_candidates(const Plan& plan, std::size_t number,
+                                            const std::function<bool()>& stop) {
+  const CandidateTask& task = plan.candidates[number];
+  const PlannedSpacecraft& spacecraft = plan.spacecraft[task.spacecraft];
+  const EquipmentConfig& equipment = equipment_of(plan, task);
+  const Config& config = plan.configurations[spacecraft.configuration];
+  Database database(config.database, Database::Mode::read_only);
+  const storage::Archive archive(database);
+  WindowCache kept = window_cache_of(spacecraft.name, equipment);
+  ordered_json windows = ordered_json::array();
+  for (const Time end : window_ends(archive, spacecraft.name, equipment, task.range)) {
+    if (stop()) return std::nullopt;
+    const RefreshRequest request{
+        spacecraft.name, equipment, {end - equipment.window, end}, "backfill", config.digest};
+    const PreparedWindow prepared =
+        prepare_window(archive, request, kept, {}, [] { return false; });
+    windows.push_back({{"begin_ns", request.window.begin},
+                       {"end_ns", end},
+                       {"found", to_json(found_window(prepared))}});
+  }
+  return ordered_json{{"plan", plan.digest}, {"task", number}, {"windows", std::move(windows)}};
+}
+
+/// What the tasks of a spacecraft found, of which only those that are asked for now are in memory.
+class FoundWindows {
+ public:
+  FoundWindows(const Plan& plan, std::size_t spacecraft) : plan_(plan) {
+    for (std::size_t i = 0; i < plan.candidates.size(); ++i)
+      if (const CandidateTask& task = plan.candidates[i]; task.spacecraft == spacecraft)
+        tasks_[{task.equipment, task.range.end}] = i;
+  }
+
+  std::optional<FoundWindow> find(const RefreshRequest& request) {
+    const auto found = tasks_.lower_bound({request.equipment.name, request.window.end});
+    if (found == tasks_.end() || found->first.first != request.equipment.name) return std::nullopt;
+    const std::shared_ptr<const ordered_json> result = result_of_task(found->second);
+    for (const ordered_json& window : result->at("windows"))
+      if (window.at("begin_ns") == request.window.begin &&
+          window.at("end_ns") == request.window.end)
+        return found_window_from_json(window.at("found"));
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::size_t most_loaded = 8;
+
+  std::shared_ptr<const ordered_json> result_of_task(std::size_t task) {
+    const MutexLock lock(mutex_);
+    if (const auto known = loaded_.find(task); known != loaded_.end()) return known->second;
+    auto result = result_of(plan_, {TaskKind::candidates, task});
+    if (!result)
+      throw std::runtime_error(fmt::format(
+          "the result of candidates task {} is not there, or is damaged: run that task again",
+          task));
+    if (loaded_.size() >= most_loaded) loaded_.erase(loaded_.begin());
+    return loaded_[task] = std::make_shared<const ordered_json>(*std::move(result));
+  }
+
+  const Plan& plan_;
+  std::map<std::pair<std::string, Time>, std::size_t> tasks_;  // by the end of their last window
+  Mutex mutex_;
+  std::map<std::size_t, std::shared_ptr<const ordered_json>> loaded_ REIDENT_GUARDED_BY(mutex_);
+};
+
+/// A folder of this process alone, which goes with the object.
+class OwnFolder {
+ public:
+  explicit OwnFolder(const fs::path& beside)
+      : path_(beside.string() + "." + unique_program_name("reident")) {
+    fs::create_directory(path_);
+  }
+  ~OwnFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  OwnFolder(const OwnFolder&) = delete;
+  OwnFolder& operator=(const OwnFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::optional<ordered_json> judge_spacecraft(const Plan& plan, std::size_t number,
+                                             WorkerPool& workers,
+                                             const std::function<bool()>& stop) {
+  const PlannedSpacecraft& spacecraft = plan.spacecraft[number];
+  const Config& config = plan.configurations[spacecraft.configuration];
+  FoundWindows found(plan, number);
+  const OwnFolder folder(plan.registry_of(number));
+  const fs::path file = folder.path() / "registry.db";
+  ordered_json result = {{"plan", plan.digest}, {"name", spacecraft.name}};
+  {
+    Database registry(file, Database::Mode::read_write, storage::Durability::kill);
+    BackfillRequest request;
+    request.spacecraft = spacecraft.name;
+    request.range = spacecraft.range;
+    request.found = [&](const RefreshRequest& window) { return found.find(window); };
+    // What is decided is decided when telemetry has reached it, whenever this runs.
+    const BackfillProgress progress = backfill(
+        registry, config, request, workers, [](Time reached) { return reached; },
+        [&](const BackfillProgress&) { return !stop(); });
+    if (progress.done < progress.windows) return std::nullopt;
+    result["windows"] = progress.windows;
+    result["approved"] = progress.approved;
+    result["registry_sha256"] = registry_digest(registry);
+    result["equipment"] = compare(registry, config, spacecraft.name, spacecraft.range);
+  }
+  fs::rename(file, plan.registry_of(number));
+  return result;
+}
+
+}  // namespace
+
+std::string_view name(TaskKind kind) {
+  return kind == TaskKind::candidates ? "candidates" : "judgement";
+}
+
+bool run_task(const Plan& plan, TaskId task, WorkerPool& workers,
+              const std::function<bool()>& stop) {
+  const std::size_t tasks =
+      task.kind == TaskKind::candidates ? plan.candidates.size() : plan.spacecraft.size();
+  if (task.number >= tasks)
+    throw std::invalid_argument(fmt::format("there is no {} task {}: the sweep has 0 to {}",
+                                            name(task.kind), task.number, tasks - 1));
+  if (result_of(plan, task)) return true;
+  try {
+    const auto result = task.kind == TaskKind::candidates
+                            ? find_candidates(plan, task.number, stop)
+                            : judge_spacecraft(plan, task.number, workers, stop);
+    if (!result) return false;
+    write_task_file(result_file(plan, task), *result);
+  } catch (const std::exception& error) {
+    write_task_file(failure_file(plan, task), {{"reason", error.what()}, {"host", host_name()}});
+    throw;
+  }
+  std::error_code ignored;
+  fs::remove(failure_file(plan, task), ignored);
+  return true;
+}
+
+TaskStates states(const Plan& plan, TaskKind kind) {
+  TaskStates states;
+  const std::size_t tasks =
+      kind == TaskKind::candidates ? plan.candidates.size() : plan.spacecraft.size();
+  for (std::size_t i = 0; i < tasks; ++i) {
+    if (result_of(plan, {kind, i})) {
+      ++states.done;
+      continue;
+    }
+    states.left.push_back(i);
+    if (const auto failure = read_task_file(failure_file(plan, {kind, i})))
+      states.failures.push_back({i, failure->value("reason", "")});
+  }
+  return states;
+}
+
+}  // namespace reident::sweep
