@@ -149,7 +149,7 @@ INSERT INTO decision VALUES
 }
 
 // Version 5 differs from 4 in the qualities that a file may hold, 6 has the records of versions,
-// and 7 what the service noticed.
+// 7 what the service noticed, and 8 what two services of a pair share and the effects of biases.
 TEST(MigrationFrom4To7, AddsTheRecordsAndChangesNothingElse) {
   const TemporaryFolder folder;
   const auto path = folder / "old.db";
@@ -169,13 +169,16 @@ TEST(MigrationFrom4To7, AddsTheRecordsAndChangesNothingElse) {
   const std::string without_records = "DROP TABLE block; DROP TABLE score; DROP VIEW gate_reason; ";
   const std::string without_notices =
       "DROP VIEW alarm_now; DROP VIEW simulator_now; DROP TABLE alarm; DROP TABLE change; "
-      "DROP TABLE simulator; DROP INDEX decision_with_why; DROP INDEX attempt_left_waiting; "
-      "PRAGMA user_version = ";
+      "DROP TABLE simulator; DROP INDEX decision_with_why; DROP INDEX attempt_left_waiting; ";
+  std::string without_pairs =
+      "DROP VIEW overruled_decision; DROP TABLE term; DROP TABLE journal; DROP TABLE overruled; ";
+  for (const char* table : {"attempt", "version", "decision", "hold", "command", "alarm", "change",
+                            "simulator", "block", "score"})
+    without_pairs += "DROP TRIGGER " + std::string(table) + "_journal; ";
   const std::string without_effects = "ALTER TABLE score DROP COLUMN bias_effects; ";
   for (const std::string old : {"4", "5", "6", "7"}) {
-    const bool has_records = old == "6" || old == "7";
-    rows(path, (has_records ? without_effects : without_records) +
-                   (old == "7" ? "PRAGMA user_version = " : without_notices) + old);
+    rows(path, without_pairs + (old >= "6" ? without_effects : without_records) +
+                   (old == "7" ? "" : without_notices) + "PRAGMA user_version = " + old);
     Database migrated(path, Mode::read_write);
     EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
     EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre(std::to_string(schema::version)));
@@ -184,7 +187,7 @@ TEST(MigrationFrom4To7, AddsTheRecordsAndChangesNothingElse) {
     Registry registry(migrated);
     Block block;
     block.range = {0, 60};
-    if (!has_records) registry.record_scores("CB4", "BDR", block, {});
+    if (old < "6") registry.record_scores("CB4", "BDR", block, {});
     EXPECT_EQ(registry.blocks("CB4", "BDR", INT64_MIN).size(), 1);
     EXPECT_TRUE(registry.alarms().empty());
   }
