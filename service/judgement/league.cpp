@@ -76,22 +76,38 @@ void extend(Comparison& comparison, const League& league, const Member& one, con
                  });
 }
 
-/// Scores without what a sensor's offset explains of the champion's error in each last cycle.
+/// Scores without what an offset explains of the champion's error in each last cycle: a constant,
+/// or with `effect` above 0 that sensor's.
 std::vector<double> scores_without_offset(const League& league, const Member& member,
-                                          const Comparison& compared, std::size_t effect) {
+                                          const Comparison& compared, std::size_t effect,
+                                          const SensorPast& past) {
   Scores scores;
   for (const std::size_t i : compared.blocks) {
-    OffsetFit fit(effect);
+    OffsetFit fit(effect, past);
     for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
       if (const BlockScore* score = find(*league.champion, league.blocks[k].range.begin);
           score && counts(league.blocks[k]))
-        fit.add(*score);
+        fit.add(phase_of(league.blocks[k]), *score);
     const Time begin = league.blocks[i].range.begin;
     BlockScore champion = *find(*league.champion, begin);
     champion.square = fit.rest(champion);
     scores.add(squares_of(*find(member, begin), champion));
   }
   return scores.values();
+}
+
+/// The past of the sensor `effect` is the champion's record before `since`; where that is short,
+/// its first cycles.
+SensorPast past_of(const League& league, std::size_t effect, Time since) {
+  std::vector<std::size_t> phases;
+  std::vector<const BlockScore*> scores;
+  for_each_score(league, *league.champion, INT64_MIN, 0,
+                 [&](std::size_t, const Block& block, const BlockScore& score) {
+                   if (block.range.begin >= since && scores.size() >= blocks_of_past) return;
+                   phases.push_back(phase_of(block));
+                   scores.push_back(&score);
+                 });
+  return {effect, phases, scores};
 }
 
 /// Share of the champion's blocks from `since` on that are in regimes which the member has not met.
@@ -207,8 +223,9 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
   const std::vector<std::string>& unbound = standard.league.unbound;
   if (standard.limits.bias == BiasPolicy::approve || unbound.empty()) return std::nullopt;
   for (std::size_t effect = 0; effect <= offset_effects(*standard.league.champion); ++effect) {
-    const std::vector<double> scores =
-        scores_without_offset(standard.league, member, compared, effect);
+    const std::vector<double> scores = scores_without_offset(
+        standard.league, member, compared, effect,
+        effect > 0 ? past_of(standard.league, effect, standard.since) : SensorPast());
     const ScoreSeries without = series(scores, standard.assumed);
     const double wealth = log_wealth(without, dependence(without), 0);
     if (effect > 0 && wealth >= finding.wealth_without_offset) continue;

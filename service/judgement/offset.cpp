@@ -9,59 +9,90 @@ using storage::BlockScore;
 
 namespace {
 
-constexpr std::size_t numbers_of_effect = 3;  // for each output
-/// Variance of an effect over its square, below which it is a constant.
-constexpr double constant = 1e-9;
+constexpr double spreads = 3;
+
+/// Numbers of BlockScore::bias_effects for each sensor.
+std::size_t stride(const BlockScore& score) {
+  return 1 + 2 * score.square.size();
+}
+
+/// The sensor's first number; null where the record has none.
+const double* effect_in(const BlockScore& score, std::size_t effect) {
+  const std::size_t place = (effect - 1) * stride(score);
+  return place + stride(score) <= score.bias_effects.size() ? &score.bias_effects[place] : nullptr;
+}
 
 }  // namespace
 
 std::size_t offset_effects(const Member& member) {
   std::size_t most = 0;
   for (const BlockScore& score : member.scores)
-    if (!score.square.empty())
-      most = std::max(most, score.bias_effects.size() / numbers_of_effect / score.square.size());
+    most = std::max(most, score.bias_effects.size() / stride(score));
   return most;
 }
 
-OffsetFit::Means OffsetFit::means_of(const BlockScore& score, std::size_t output) const {
-  Means means{score.mean[output]};
-  if (effect_ == 0) return means;
-  const std::size_t place = numbers_of_effect * ((effect_ - 1) * score.square.size() + output);
-  if (place + numbers_of_effect > score.bias_effects.size()) return means;
-  means.effect = score.bias_effects[place];
-  means.effect_square = score.bias_effects[place + 1];
-  means.product = score.bias_effects[place + 2];
-  return means;
+std::size_t phase_of(const storage::Block& block) {
+  const storage::Time length = std::max<storage::Time>(1, block.range.end - block.range.begin);
+  const storage::Time phase = block.range.begin / length % blocks_of_cycle;
+  return static_cast<std::size_t>(phase < 0 ? phase + blocks_of_cycle : phase);
 }
 
-void OffsetFit::add(const BlockScore& score) {
+SensorPast::SensorPast(std::size_t effect, const std::vector<std::size_t>& phases,
+                       const std::vector<const BlockScore*>& scores)
+    : effect_(effect) {
+  if (scores.size() < blocks_of_past) return;
+  std::array<double, blocks_of_cycle> counts{};
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    if (const double* mean = effect_in(*scores[i], effect)) {
+      means_[phases[i]] += *mean;
+      ++counts[phases[i]];
+    }
+  for (std::size_t phase = 0; phase < counts.size(); ++phase) {
+    if (counts[phase] == 0) return;
+    means_[phase] /= counts[phase];
+  }
+  double square = 0;
+  std::size_t cycles = 0;
+  for (std::size_t i = blocks_of_cycle; i <= scores.size(); i += blocks_of_cycle, ++cycles) {
+    double sum = 0;
+    for (std::size_t k = i - blocks_of_cycle; k < i; ++k) sum += departure(phases[k], *scores[k]);
+    square += sum * sum / (blocks_of_cycle * blocks_of_cycle);
+  }
+  spread_ = std::sqrt(square / static_cast<double>(cycles - 1));
+}
+
+double SensorPast::departure(std::size_t phase, const BlockScore& score) const {
+  const double* mean = effect_in(score, effect_);
+  return mean ? *mean - means_[phase] : 0;
+}
+
+void OffsetFit::add(std::size_t phase, const BlockScore& score) {
   sums_.resize(score.mean.size());
   const auto rows = static_cast<double>(score.rows);
-  for (std::size_t q = 0; q < sums_.size(); ++q) {
-    const Means means = means_of(score, q);
-    sums_[q].error += rows * means.error;
-    sums_[q].effect += rows * means.effect;
-    sums_[q].effect_square += rows * means.effect_square;
-    sums_[q].product += rows * means.product;
-  }
   rows_ += rows;
+  for (std::size_t q = 0; q < sums_.size(); ++q) sums_[q].error += rows * score.mean[q];
+  const double* effect = effect_ > 0 ? effect_in(score, effect_) : nullptr;
+  if (!effect) return;
+  departure_ += rows * past_->departure(phase, score);
+  for (std::size_t q = 0; q < sums_.size(); ++q) {
+    sums_[q].effect_square += rows * effect[1 + 2 * q];
+    sums_[q].product += rows * effect[2 + 2 * q];
+  }
 }
 
 std::vector<double> OffsetFit::rest(const BlockScore& score) const {
   std::vector<double> squares = score.square;
+  const double* effect = effect_ > 0 ? effect_in(score, effect_) : nullptr;
   for (std::size_t q = 0; q < squares.size(); ++q) {
-    const Means& all = sums_[q];
-    const double mean = all.effect / rows_, square = all.effect_square / rows_;
-    const double variance = square - mean * mean;
-    const double gain = variance > constant * square
-                            ? (all.product / rows_ - mean * all.error / rows_) / variance
-                            : 0;
-    const double offset = all.error / rows_ - gain * mean;
-    const Means here = means_of(score, q);
-    squares[q] += offset * (offset - 2 * here.error);
-    if (gain != 0)
-      squares[q] +=
-          gain * (gain * here.effect_square - 2 * here.product + 2 * offset * here.effect);
+    if (effect_ == 0) {
+      const double offset = sums_[q].error / rows_;
+      squares[q] += offset * (offset - 2 * score.mean[q]);
+    } else if (effect && sums_[q].effect_square > 0) {
+      const double reach = spreads * past_->spread(), moved = departure_ / rows_;
+      const double offset =
+          std::clamp(sums_[q].product / sums_[q].effect_square, moved - reach, moved + reach);
+      squares[q] += offset * (offset * effect[1 + 2 * q] - 2 * effect[2 + 2 * q]);
+    }
   }
   return squares;
 }

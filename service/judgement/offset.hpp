@@ -2,10 +2,13 @@
 //
 // An offset of an output's sensor is a constant in that output's error; so is one of an input's
 // sensor, through the model's static gain. Where a derived input is computed from the sensor, its
-// effect varies with the other values, as BlockScore::bias_effects says.
+// effect varies with the other values, as BlockScore::bias_effects says; and such a sensor shows in
+// its own values how large the offset may be.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "service/judgement/scores.hpp"
@@ -15,27 +18,56 @@ namespace reident {
 /// Sensors of which the record has effects of their own.
 std::size_t offset_effects(const Member& member);
 
-/// Fit of the errors of a run on some blocks by a constant and an effect, for each output.
+/// Place of the block in its cycle.
+std::size_t phase_of(const storage::Block& block);
+
+/// Blocks from which a sensor's past is known: eight cycles.
+inline constexpr std::size_t blocks_of_past = 8 * blocks_of_cycle;
+
+/// The means of such a sensor's values in the cycles of which nobody doubts it.
+class SensorPast {
+ public:
+  /// Nothing is known.
+  SensorPast() = default;
+  /// Of the sensor `effect`, from 1, in these blocks of a record; fewer than blocks_of_past say
+  /// nothing.
+  SensorPast(std::size_t effect, const std::vector<std::size_t>& phases,
+             const std::vector<const storage::BlockScore*>& scores);
+
+  /// How far its mean on the block is from that of its phase.
+  double departure(std::size_t phase, const storage::BlockScore& score) const;
+  /// Of the departures of whole cycles; infinite where nothing is known.
+  double spread() const { return spread_; }
+
+ private:
+  std::size_t effect_ = 1;
+  std::array<double, blocks_of_cycle> means_{};
+  double spread_ = std::numeric_limits<double>::infinity();
+};
+
+/// Fit of the errors of a run on the blocks of a cycle by an offset: by a constant for each output,
+/// or by the effect of a sensor's offset that its past allows, within three of its spreads.
 class OffsetFit {
  public:
-  /// `effect` is 0 for the constant alone, k for it and the effect of the k-th sensor.
-  explicit OffsetFit(std::size_t effect) : effect_(effect) {}
+  OffsetFit() = default;
+  /// `past` must outlive it.
+  OffsetFit(std::size_t effect, const SensorPast& past) : effect_(effect), past_(&past) {}
 
-  /// Takes in a block; one with other effects counts for the constant.
-  void add(const storage::BlockScore& score);
+  /// Takes in a block.
+  void add(std::size_t phase, const storage::BlockScore& score);
   /// The mean squares of a block's errors without what is explained.
   std::vector<double> rest(const storage::BlockScore& score) const;
 
  private:
-  /// Of an output: means, or their sums over rows.
-  struct Means {
-    double error = 0, effect = 0, effect_square = 0, product = 0;
+  struct Sums {
+    double error = 0, effect_square = 0, product = 0;
   };
-  Means means_of(const storage::BlockScore& score, std::size_t output) const;
 
-  std::size_t effect_;
-  std::vector<Means> sums_;
+  std::size_t effect_ = 0;
+  const SensorPast* past_ = nullptr;
+  std::vector<Sums> sums_;  // by output
   double rows_ = 0;
+  double departure_ = 0;  // times rows
 };
 
 }  // namespace reident

@@ -79,16 +79,18 @@ class Run {
 
 /// What the change of the inputs does to the run's outputs, a row a row. Before the first row, and
 /// in holes, the change is what it is on the average.
-Matrix response(identification::StateSpaceModel model, const identification::Record& change) {
+Matrix response(identification::StateSpaceModel model, identification::Record record,
+                const Matrix& change) {
   model.u0.setZero();
   model.y0.setZero();
+  record.u = change;
   const Index n = model.order();
-  const Vector driven = model.B * change.u.colwise().mean().transpose();
+  const Vector driven = model.B * change.colwise().mean().transpose();
   const Vector steady = identification::solve_full_lu(Matrix::Identity(n, n) - model.A, driven);
-  Matrix outputs(change.rows(), model.outputs());
-  for (const Segment& segment : change.segments)
+  Matrix outputs(record.rows(), model.outputs());
+  for (const Segment& segment : record.segments)
     outputs.middleRows(segment.begin, segment.size()) =
-        free_run(model, change, {segment.begin, segment.end}, steady);
+        free_run(model, record, {segment.begin, segment.end}, steady);
   return outputs;
 }
 
@@ -115,11 +117,11 @@ storage::BlockScore score_block(const EquipmentModel& model, std::int64_t number
   score.mean = list(errors.colwise().mean().transpose());
   score.square = list(errors.cwiseAbs2().colwise().mean().transpose());
   score.noise = list(identification::noise_squares(y, outputs, segments));
-  for (const identification::Record& change : samples.bias_effects) {
-    const Matrix effect = response(model.dynamics, change).bottomRows(rows);
+  for (const identification::Record& bias : samples.bias_effects) {
+    const Matrix effect = response(model.dynamics, record, bias.u).bottomRows(rows);
+    score.bias_effects.push_back(bias.y.bottomRows(rows).mean());
     for (Index q = 0; q < effect.cols(); ++q)
-      for (const double sum :
-           {effect.col(q).sum(), effect.col(q).squaredNorm(), effect.col(q).dot(errors.col(q))})
+      for (const double sum : {effect.col(q).squaredNorm(), effect.col(q).dot(errors.col(q))})
         score.bias_effects.push_back(sum / static_cast<double>(rows));
   }
   score.state = run.state();

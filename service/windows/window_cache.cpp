@@ -11,29 +11,34 @@
 namespace reident {
 
 using identification::Index;
+using identification::Matrix;
 using identification::Record;
 using identification::TickRange;
 using identification::TickSet;
 
 namespace {
 
-/// The change of the inputs by a bias of a hundredth of the sensor's values, over the bias. No
-/// change where the bias makes inputs that are not finite.
-Record bias_effect(InputExpressions& expressions, const Record& samples, const Record& inputs,
-                   const std::string& sensor) {
+/// WindowData::bias_effects of the sensor, with a bias of a tenth of its values. No change where
+/// that makes inputs that are not finite.
+Record bias_effect(const WindowRequest& request, const Record& samples, const std::string& sensor) {
+  std::vector<std::string> inputs = request.inputs;
+  inputs.push_back(sensor);
+  InputExpressions expressions(inputs, request.derived);
   const auto& names = expressions.parameters();
   const auto place = std::ranges::find(names, sensor) - names.begin();
   const double values = std::sqrt(samples.u.col(place).squaredNorm() /
                                   static_cast<double>(std::max<Index>(1, samples.rows())));
-  const double bias = values > 0 ? values / 100 : 1;
-  Record biased = samples;
-  biased.u.col(place).array() += bias;
-  biased = expressions.evaluate(std::move(biased));
-  Record effect = inputs;
-  if (biased.segments == inputs.segments)
-    effect.u = (biased.u - inputs.u) / bias;
+  const double bias = values > 0 ? values / 10 : 1;
+  Record shifted = samples;
+  shifted.u.col(place).array() += bias;
+  const Record biased = expressions.evaluate(std::move(shifted));
+  Record effect = expressions.evaluate(samples);
+  const Index m = effect.u.cols() - 1;
+  effect.y = effect.u.col(m);
+  if (biased.segments == effect.segments)
+    effect.u = ((biased.u - effect.u).leftCols(m) / bias).eval();
   else
-    effect.u.setZero();
+    effect.u = Matrix::Zero(effect.rows(), m);
   return effect;
 }
 
@@ -85,7 +90,7 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
   Record read = expressions.evaluate(sensors.empty() ? std::move(samples) : samples);
   for (const std::string& sensor : sensors)
     data.bias_effects.push_back(
-        without(bias_effect(expressions, samples, read, sensor), data.plausibility.holes));
+        without(bias_effect(request_, samples, sensor), data.plausibility.holes));
   data.read_coverage = coverage_of(read, window, request_.period);
   data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);

@@ -142,7 +142,7 @@ constexpr Rule rules[] = {
      "' is no list of numbers' FROM score WHERE length(error_mean) % 8 <> 0 "
      "OR length(error_square) <> length(error_mean) OR length(noise_square) <> length(error_mean) "
      "OR length(state) % 8 <> 0 OR length(run_square) % 8 <> 0 "
-     "OR length(bias_effects) % 24 <> 0",
+     "OR length(bias_effects) % 8 <> 0",
      as_backup},
     {"attempts",
      "SELECT spacecraft, equipment, NULL, window_begin, window_end, 'attempt ' || id || ' has a "

@@ -80,11 +80,12 @@ TEST(MemberRun, SaysWhatABiasOfASensorDoesToIt) {
   BlockSamples samples = samples_of(1, 0);
   samples.bias_effects = {samples.record};
   samples.bias_effects[0].u.setConstant(3);
+  samples.bias_effects[0].y.setConstant(7);
   storage::RunState state = score_block(model(), 1, samples_of(0, 0), {}).state;
   storage::BlockScore score = score_block(model(), 1, samples, state);
   const double gain = 0.1 / (1 - 0.95);
   ASSERT_EQ(score.bias_effects.size(), 3U);
-  EXPECT_NEAR(score.bias_effects[0], 3 * gain, 1e-9);
+  EXPECT_EQ(score.bias_effects[0], 7);
   EXPECT_NEAR(score.bias_effects[1], 9 * gain * gain, 1e-9);
   EXPECT_NEAR(score.bias_effects[2], 0, 1e-9);
   samples.record.y.array() += 0.5;

@@ -109,6 +109,7 @@ TEST_F(WindowCaches, SayWhatABiasOfASensorDoesToDerivedInputs) {
     EXPECT_EQ(effect.segments, data.record.segments);
   const auto v = data.record.u.col(0), q = data.record.u.col(1);
   EXPECT_TRUE(data.bias_effects[0].u.col(0).isZero());
+  EXPECT_EQ(data.bias_effects[1].y, v);
   EXPECT_TRUE(data.bias_effects[0].u.col(1).isApprox(v, 1e-9)) << "of u: v";
   EXPECT_TRUE(data.bias_effects[1].u.col(0).isApprox(identification::Vector::Ones(v.size())));
   EXPECT_TRUE((data.bias_effects[1].u.col(1).array() * v.array()).isApprox(q.array(), 1e-9))
