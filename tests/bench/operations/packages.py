@@ -327,7 +327,10 @@ def main():
         figures = {"exposure": max(units.values()), "exposure_of_units": units,
                    "lintian_errors": len(re.findall(r"(?m)^E: ", said)),
                    "lintian_warnings": len(re.findall(r"(?m)^W: ", said)),
-                   **life(packages, folder)}
+                   **life(packages, folder),
+                   "left_out": {"upgrade from a release": "no release has packages. The older ones "
+                                "hold the same programs under a lower number, next to a database "
+                                "of schema 3"}}
     print(json.dumps(figures))
 
 
