@@ -415,8 +415,8 @@ def operations(figures):
              "cut_missing": 'frames missing behind the cut, `cut = "60s"`, `rate = "100/s"`',
              "cut_delay_s": "time that the source lost by it",
              "plain_cut_missing": "the same without the two keys: frames missing",
-             "plain_cut_counted_at_source": "of these, counted as lost by the source",
-             "plain_cut_counted_at_service": "of these, counted as missing by the service",
+             "plain_cut_counted_at_source": "the same, as the source counts them",
+             "plain_cut_counted_at_service": "the same, as the service counts them",
              "loss_5_missing": "frames missing, 5 % of packets lost",
              "loss_5_frames_per_s": "frames a second then",
              "loss_20_missing": "frames missing, 20 % of packets lost",
@@ -424,10 +424,13 @@ def operations(figures):
     rows = [[label, figure(figures[key]) + (" s" if key.endswith("_s") and "frames" not in key else "")]
             for key, label in names.items() if key in figures]
     steps = [[name.replace("_", " "), "passed" if passed else "failed"]
-             for name, passed in figures.get("package_steps", {}).items()]
+             for name, passed in [*figures.get("package_steps", {}).items(),
+                                  *((name, figures[name]) for name in ("manifest_valid",
+                                                                       "container_serves")
+                                    if name in figures)]]
     tables = [table(["what", "figure"], rows)]
     if steps:
-        tables.append(table(["step of a package's life", "its test"], steps))
+        tables.append(table(["step of a package's life, and of the image's", "its test"], steps))
     if figures["left_out"]:
         tables.append("\n".join(fill(f"Left out: {what}: {why}.", "- ")
                                 for what, why in figures["left_out"].items()))

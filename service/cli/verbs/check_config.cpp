@@ -91,8 +91,7 @@ void print_cut(const Config& config) {
   const dds::CutSettings settings = cut_settings(config);
   fmt::print(
       "network cut of {} at {:g} frames a second: lease {}; a source (--cut {} --rate {:g}/s) "
-      "keeps "
-      "{} frames, with {} parameters at most {}\n",
+      "keeps {} frames, with {} parameters at most {}\n",
       duration_text(config.cut), config.rate, duration_text(settings.lease.count()),
       duration_text(config.cut), config.rate, settings.history, shown_parameters,
       size_text(settings.unacknowledged_bytes));
