@@ -16,6 +16,7 @@
 #include "service/cli/service_choice.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/program_identity.hpp"
+#include "service/support/progress.hpp"
 #include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
 
@@ -28,6 +29,8 @@ using storage::CommandOutcome;
 
 /// How long a service is waited for until the database is tried again.
 constexpr auto turn = std::chrono::milliseconds(300);
+/// Without an answer for so long a terminal shows how long it is waited.
+constexpr auto quiet_wait = std::chrono::seconds(2);
 /// A service says once a second that it is there.
 constexpr auto heartbeat_wait = std::chrono::milliseconds(1500);
 
@@ -120,8 +123,14 @@ std::optional<Asked> ask(const Target& target, const OperatorOptions& options,
     if (auto asked = execute_on_file(target, command, why)) return asked;
   const auto deadline = SteadyClock::now() + std::chrono::duration_cast<SteadyClock::duration>(
                                                  std::chrono::duration<double>(options.timeout_s));
+  const auto began = SteadyClock::now();
+  Progress progress;
   std::optional<CommandSender> sender;
   while (SteadyClock::now() < deadline) {
+    const std::chrono::duration<double> waited = SteadyClock::now() - began;
+    if (waited > quiet_wait)
+      progress.update(waited.count() / options.timeout_s,
+                      sender ? "no answer of the service yet" : "no service was found yet");
     if (!sender) {
       const auto service =
           chosen_service(target.endpoint, options.service, target.service, heartbeat_wait);

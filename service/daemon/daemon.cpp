@@ -83,6 +83,14 @@ IdentificationReport report_of(const RefreshResult& result) {
   return report;
 }
 
+/// When the last window was tried; 0 before the first.
+storage::Time last_entry(const storage::Registry& registry) {
+  storage::HistoryFilter newest;
+  newest.last = 1;
+  const auto attempts = registry.attempts(newest);
+  return attempts.empty() ? 0 : attempts.back().time;
+}
+
 void log_attempt(const IdentificationReport& report) {
   log::info("identify", "window decided",
             {{"equipment", report.spacecraft + "/" + report.equipment},
@@ -121,7 +129,7 @@ Daemon::Daemon(const Config& config, Clock clock)
   storage::Database database(config.database, storage::Database::Mode::read_only);
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
-  telemetry_.recover(storage::Archive(database));
+  telemetry_.recover(storage::Archive(database), last_entry(registry));
   watch_.emplace(ServiceWatch::Parts{config, clock_, started_, participant_, writer_, telemetry_,
                                      simulators_, publisher_, damage_of(database)});
   const std::size_t published = publisher_.publish_champions(registry);

@@ -46,7 +46,8 @@ void TelemetryWatch::note(const storage::ParameterDescriptor& descriptor) {
   spacecraft.is_settled = false;
 }
 
-void TelemetryWatch::recover(const storage::Archive& archive) {
+void TelemetryWatch::recover(const storage::Archive& archive, storage::Time last_entry) {
+  last_entry_ = last_entry;
   const MutexLock lock(mutex_);
   for (const std::string& spacecraft : archive.spacecraft())
     for (const storage::ParameterDescriptor& descriptor : archive.parameters(spacecraft))
@@ -128,6 +129,13 @@ std::vector<Alarm> TelemetryWatch::alarms() {
   const MutexLock lock(mutex_);
   const storage::Time now = clock_();
   std::vector<Alarm> alarms;
+  if (now < last_entry_ - minute)
+    alarms.push_back({"clock",
+                      {},
+                      fmt::format("This machine's clock is before the last window that was tried, "
+                                  "at {}. Correct the clock.",
+                                  time_text(last_entry_ / 1'000'000'000 * 1'000'000'000)),
+                      now});
   for (const Equipment& equipment : equipment_)
     if (now - equipment.heard > equipment.config->slide)
       alarms.push_back({"no_telemetry", equipment.name,

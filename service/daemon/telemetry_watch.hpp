@@ -22,8 +22,9 @@ class TelemetryWatch : public ArchiveListener {
   /// Configuration and listener must outlive it.
   TelemetryWatch(const Config& config, Clock clock, ArchiveListener& next);
 
-  /// Takes up the parameters that earlier runs heard of. Call once, before the threads start.
-  void recover(const storage::Archive& archive);
+  /// Takes up the parameters that earlier runs heard of, and when they wrote their last entry [ns];
+  /// 0 where there is none. Call once, before the threads start.
+  void recover(const storage::Archive& archive, storage::Time last_entry);
 
   void stored(const std::vector<storage::TelemetryFrame>& frames,
               const storage::AppendReport& report) override;
@@ -32,7 +33,8 @@ class TelemetryWatch : public ArchiveListener {
 
   /// What is wrong now: `no_telemetry` of an equipment for longer than its slide, `unknown_names`
   /// of an equipment or of a spacecraft that is not configured, `clock` of a spacecraft whose
-  /// telemetry is ahead. Their texts stay the same as long as nothing changes. For any thread.
+  /// telemetry is ahead, or of none where the clock is before the last entry. Their texts stay the
+  /// same as long as nothing changes. For any thread.
   std::vector<storage::Alarm> alarms();
 
  private:
@@ -59,6 +61,7 @@ class TelemetryWatch : public ArchiveListener {
   const Config& config_;
   const Clock clock_;
   ArchiveListener& next_;
+  storage::Time last_entry_ = 0;
   mutable Mutex mutex_;
   std::vector<Equipment> equipment_ REIDENT_GUARDED_BY(mutex_);
   std::map<std::string, Spacecraft> spacecraft_ REIDENT_GUARDED_BY(mutex_);

@@ -34,8 +34,9 @@ struct Glossary {
        "by "
        "itself."},
       {"clock", "a clock is wrong",
-       "Telemetry is ahead of this machine's clock by more than max_clock_lead. No window follows "
-       "it.",
+       "Telemetry is ahead of this machine's clock by more than max_clock_lead, and no window "
+       "follows "
+       "it; or the clock is before the last window that was tried.",
        "Correct the clock of this machine or of the source."},
       {"closed_loop", "the inputs follow the outputs",
        "A controller makes the inputs from the outputs, so that the model would be the "

@@ -253,6 +253,46 @@ CommandOutcome identify_now(const Order& order) {
                   order.full_name(), time_text(*end)));
 }
 
+constexpr std::string_view acknowledge_prefix = "acknowledge ";
+
+std::string alarm_text(const storage::Alarm& alarm) {
+  const auto& [spacecraft, equipment] = alarm.about;
+  if (spacecraft.empty()) return alarm.code;
+  return alarm.code + " of " + (equipment.empty() ? spacecraft : full_name(alarm.about));
+}
+
+/// Whether the command names what the alarm is about, by the spacecraft, the equipment or both; one
+/// that names neither means every alarm of the code.
+bool is_about(const storage::Alarm& alarm, const Command& command) {
+  const auto& [spacecraft, equipment] = alarm.about;
+  if (command.equipment.empty() || (command.spacecraft.empty() && command.equipment == spacecraft))
+    return true;
+  return command.equipment == equipment &&
+         (command.spacecraft.empty() || command.spacecraft == spacecraft);
+}
+
+CommandOutcome acknowledge(const Command& command, Registry& registry, storage::Time now) {
+  const std::string code = command.action.substr(acknowledge_prefix.size());
+  std::vector<std::string> raised, acknowledged;
+  for (const storage::Alarm& alarm : registry.alarms()) {
+    raised.push_back(alarm_text(alarm));
+    if (alarm.code == code && is_about(alarm, command) &&
+        registry.acknowledge(code, alarm.about, command.actor, command.reason, now))
+      acknowledged.push_back(alarm_text(alarm));
+  }
+  if (!acknowledged.empty())
+    return done(fmt::format("{} {} acknowledged by {}{}", joined(acknowledged),
+                            acknowledged.size() > 1 ? "are" : "is", command.actor,
+                            reason_text(command.reason)));
+  return refused(
+      fmt::format("no alarm {}{} is raised; raised: {}", code,
+                  command.equipment.empty()
+                      ? ""
+                      : " of " + (command.spacecraft.empty() ? "" : command.spacecraft + "/") +
+                            command.equipment,
+                  raised.empty() ? "none" : joined(raised)));
+}
+
 struct Action {
   std::string_view name;
   CommandOutcome (*carry_out)(const Order&);
@@ -300,11 +340,16 @@ dds::Fault fault_of_texts(const Command& command) {
 
 CommandOutcome carry_out(const Command& command, Registry& registry, const CommandContext& context,
                          storage::Time now) {
+  if (command.action.starts_with(acknowledge_prefix)) {
+    if (const auto fault = fault_of_texts(command)) return refused(*fault);
+    return acknowledge(command, registry, now);
+  }
   const auto action = std::find_if(actions.begin(), actions.end(),
                                    [&](const Action& one) { return one.name == command.action; });
   if (action == actions.end()) {
     std::vector<std::string> names;
     for (const Action& one : actions) names.emplace_back(one.name);
+    names.emplace_back("acknowledge ALARM");
     return refused(fmt::format("there is no action {}; known: {}", command.action, joined(names)));
   }
   if (const auto fault = fault_of_texts(command))

@@ -1,18 +1,20 @@
 #include "service/satcs/csv_export.hpp"
 
-#include <cerrno>
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <optional>
-#include <system_error>
 #include <unordered_map>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "service/support/progress.hpp"
+#include "service/support/time_text.hpp"
+
 namespace reident::satcs {
 namespace {
+
+constexpr std::size_t bytes_at_once = 1 << 16;
 
 void append_time(std::string& row, storage::Time time) {
   const auto [seconds, nanoseconds] = std::div(time, storage::second_ns);
@@ -25,36 +27,38 @@ void append_time(std::string& row, storage::Time time) {
 
 }  // namespace
 
-void write_csv(FrameStream& stream, const std::filesystem::path& path) {
-  std::ofstream file(path, std::ios::binary);
-  std::string row = "unix_s";
+bool write_csv(FrameStream& stream, OutputFile& file, const std::stop_token& stop) {
+  std::string rows = "unix_s";
   std::unordered_map<std::uint32_t, std::size_t> column;
   for (const auto& parameter : stream.parameters()) {
     column.emplace(parameter.id, column.size());
-    row += "," + parameter.name;
+    rows += "," + parameter.name;
   }
-  file << row << '\n';
+  rows += '\n';
+  Progress progress;
   storage::TelemetryFrame frame;
   std::vector<std::optional<double>> cells;
-  while (file && stream.next(frame)) {
+  while (!stop.stop_requested() && stream.next(frame)) {
     cells.assign(column.size(), std::nullopt);
     for (const auto& sample : frame.samples) {
       if (sample.quality != storage::Quality::invalid)
         cells[column.at(sample.parameter)] = sample.value;
     }
-    row.clear();
-    append_time(row, frame.generation_time);
+    append_time(rows, frame.generation_time);
     for (const auto& cell : cells) {
-      row += ',';
-      if (cell) fmt::format_to(std::back_inserter(row), "{}", *cell);
+      rows += ',';
+      if (cell) fmt::format_to(std::back_inserter(rows), "{}", *cell);
     }
-    file << row << '\n';
+    rows += '\n';
+    if (rows.size() < bytes_at_once) continue;
+    file.write(rows);
+    rows.clear();
+    if (progress.due()) progress.update(stream.progress(), time_text(frame.generation_time));
   }
-  file.flush();
-  if (!file) {
-    throw std::runtime_error(path.string() + ": cannot be written: " +
-                             std::error_code(errno, std::generic_category()).message());
-  }
+  if (stop.stop_requested()) return false;
+  file.write(rows);
+  file.finish();
+  return true;
 }
 
 }  // namespace reident::satcs

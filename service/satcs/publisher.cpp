@@ -143,22 +143,25 @@ Outcome Publication::write_frames() {
 
 Outcome Publication::wait_for_readers() {
   constexpr auto look_again = std::chrono::milliseconds(20);
+  constexpr auto tell_again = std::chrono::minutes(1);
   const auto began = Clock::now();
-  bool told = false;
+  auto tell = began;
   while (!stop_.stop_requested()) {
     const std::uint32_t readers = frames_.matched_readers();
     if (readers >= options_.wait_readers) return Outcome::complete;
     if (options_.wait_timeout && Clock::now() - began >= *options_.wait_timeout) {
       return Outcome::no_readers;
     }
-    if (!told) {
+    if (Clock::now() >= tell) {
       progress_.clear();
-      log::info("satcs", "waiting for readers of the telemetry",
-                {{"readers", readers},
-                 {"wanted", options_.wait_readers},
-                 {"domain", options_.endpoint.domain},
-                 {"partition", options_.endpoint.partition}});
-      told = true;
+      log::info(
+          "satcs",
+          "waiting for readers of the telemetry; reidentd on this domain and partition is one",
+          {{"readers", readers},
+           {"wanted", options_.wait_readers},
+           {"domain", options_.endpoint.domain},
+           {"partition", options_.endpoint.partition}});
+      tell += tell_again;
     }
     sleep_until(Clock::now() + look_again, stop_);
   }

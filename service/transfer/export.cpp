@@ -183,6 +183,9 @@ void Export::write_samples(const SeriesInfo& series, const SampleColumns& batch)
   append_text(before, series.spacecraft);
   append_text(before += ',', series.name);
   before.append(",").append(storage::name(series.origin)).append(",");
+  const auto descriptor = telemetry_.parameter(series.spacecraft, series.name);
+  std::string unit;
+  append_text(unit, descriptor ? descriptor->unit : "");
   std::int64_t source = 0;
   std::string source_text;
   for (std::size_t i = 0; i < batch.size(); ++i) {
@@ -196,7 +199,7 @@ void Export::write_samples(const SeriesInfo& series, const SampleColumns& batch)
     append_time(line, batch.time[i]);
     line += ',';
     append_value(line, batch.value[i]);
-    line.append(",").append(storage::name(batch.quality[i]));
+    line.append(",").append(storage::name(batch.quality[i])).append(",").append(unit);
     text_.end_line();
   }
   report_.samples += batch.size();

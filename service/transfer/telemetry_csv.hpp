@@ -2,7 +2,7 @@
 //
 // Long layout, one sample a row, columns in any order:
 //
-//   spacecraft,parameter,origin,source,time,value,quality
+//   spacecraft,parameter,origin,source,time,value,quality,unit
 //
 // Wide layout, one time a row: a column with the time and one for each parameter. A file is long
 // when it has the columns parameter, time and value. A value that is written and read again has the
@@ -21,8 +21,8 @@
 namespace reident::transfer {
 
 /// In the order in which they are written.
-inline constexpr std::array<std::string_view, 7> long_columns = {
-    "spacecraft", "parameter", "origin", "source", "time", "value", "quality"};
+inline constexpr std::array<std::string_view, 8> long_columns = {
+    "spacecraft", "parameter", "origin", "source", "time", "value", "quality", "unit"};
 
 /// Whether a file with these columns is long.
 bool is_long_layout(const std::vector<std::string>& columns);

@@ -56,7 +56,8 @@ bool Summaries::next() {
   for (; at_ < series_.size(); ++at_) {
     if (!blocks_) {
       const SeriesBlocks::Options options{
-          .wanted = {request_.extremes || request_.values, false, false}};
+          .wanted = {request_.extremes || request_.values || request_.times, request_.quality,
+                     false}};
       blocks_ = std::make_unique<SeriesBlocks>(file_, series_[at_], request_.selection, options);
       row_ = 0;
     }
@@ -79,7 +80,7 @@ bool Summaries::next_of_series() {
 
 bool Summaries::has_more() {
   if (chunk_ || row_ < blocks_->block().size()) return true;
-  if (!request_.values)
+  if (!request_.needs_rows())
     chunk_ = blocks_->take_undecoded([this](const ChunkEntry& chunk) {
       return bucket_of(chunk.first_time) == bucket_of(chunk.last_time);
     });
@@ -96,13 +97,32 @@ void Summaries::add_rows() {
   const auto count = static_cast<std::size_t>(end - begin);
   if (summary_.samples == 0) summary_.first_time = *begin;
   summary_.last_time = *(end - 1);
-  if (!block.value.empty()) {
-    if (summary_.samples == 0) summary_.first_value = block.value[row_];
-    summary_.last_value = block.value[row_ + count - 1];
-    add_values(summary_, std::span(block.value).subspan(row_, count));
+  if (!block.value.empty()) add_values_of(count);
+  if (request_.quality) {
+    const auto qualities = std::span(block.quality).subspan(row_, count);
+    const Quality worst = *std::max_element(qualities.begin(), qualities.end(), is_better);
+    if (is_better(summary_.worst_quality, worst)) summary_.worst_quality = worst;
   }
   summary_.samples += count;
   row_ += count;
+}
+
+void Summaries::add_values_of(std::size_t count) {
+  const SampleColumns& block = blocks_->block();
+  const auto values = std::span(block.value).subspan(row_, count);
+  if (summary_.samples == 0) summary_.first_value = values.front();
+  summary_.last_value = values.back();
+  const Summary before = summary_;
+  add_values(summary_, values);
+  if (!request_.times || summary_.numbers == 0) return;
+  const auto time_of = [&](double value) {
+    const auto at = std::find(values.begin(), values.end(), value) - values.begin();
+    return block.time[row_ + static_cast<std::size_t>(at)];
+  };
+  const bool is_first = before.numbers == 0;
+  if (is_first || summary_.least < before.least) summary_.least_time = time_of(summary_.least);
+  if (is_first || summary_.greatest > before.greatest)
+    summary_.greatest_time = time_of(summary_.greatest);
 }
 
 void Summaries::add_chunk() {

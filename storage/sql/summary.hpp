@@ -28,6 +28,8 @@ struct Summary {
   double greatest = -std::numeric_limits<double>::infinity();
   double first_value = 0;
   double last_value = 0;
+  Time least_time = 0, greatest_time = 0;  // of the first sample with that value
+  Quality worst_quality = Quality::good;
 };
 
 struct SummaryRequest {
@@ -35,6 +37,11 @@ struct SummaryRequest {
   std::optional<std::int64_t> step;  // [ns], > 0; one range in all without one
   bool extremes = false;             // least and greatest are asked for
   bool values = false;               // sum, numbers, first and last value are
+  bool times = false;                // least_time and greatest_time are
+  bool quality = false;              // worst_quality is
+
+  /// Whether every sample has to be looked at.
+  bool needs_rows() const { return values || times || quality; }
 };
 
 /// Summaries of the ranges that have samples, series by series, each in order of time.
@@ -55,6 +62,7 @@ class Summaries {
   bool next_of_series();
   bool has_more();
   void add_rows();
+  void add_values_of(std::size_t count);
   void add_chunk();
 
   ArchiveFile& file_;

@@ -26,6 +26,9 @@ enum class Field : char {
   greatest,
   first_value,
   last_value,
+  least_time,
+  greatest_time,
+  worst_quality,
   begin_time,
   end_time,
   step,
@@ -38,7 +41,8 @@ enum class Field : char {
 constexpr const char* declaration =
     "CREATE TABLE telemetry_summary (spacecraft TEXT, parameter TEXT, origin TEXT, bucket INTEGER, "
     "first_time INTEGER, last_time INTEGER, samples INTEGER, mean, least, greatest, first_value, "
-    "last_value, begin_time HIDDEN, end_time HIDDEN, step HIDDEN, quality HIDDEN, "
+    "last_value, least_time INTEGER, greatest_time INTEGER, worst_quality TEXT, begin_time HIDDEN, "
+    "end_time HIDDEN, step HIDDEN, quality HIDDEN, "
     "utc TEXT HIDDEN, series INTEGER HIDDEN, PRIMARY KEY (series, bucket)) WITHOUT ROWID";
 
 constexpr Field arguments[] = {Field::begin_time, Field::end_time, Field::step, Field::quality};
@@ -88,7 +92,7 @@ int best_index(sqlite3_vtab*, sqlite3_index_info* question) {
   }
   question->estimatedRows = static_cast<sqlite3_int64>(30 * rows);
   question->estimatedCost = 1e6 * rows;
-  question->idxNum = static_cast<int>(question->colUsed & 0x3ffff);
+  question->idxNum = static_cast<int>(question->colUsed & 0x1fffff);
   question->idxStr = sqlite3_mprintf("%s", text.c_str());
   question->needToFreeIdxStr = 1;
   return question->idxStr == nullptr ? SQLITE_NOMEM : SQLITE_OK;
@@ -129,6 +133,8 @@ int filter(sqlite3_vtab_cursor* base, int columns, const char* text, int operand
     request.extremes = is_asked(used, Field::least) || is_asked(used, Field::greatest);
     request.values = is_asked(used, Field::mean) || is_asked(used, Field::first_value) ||
                      is_asked(used, Field::last_value);
+    request.times = is_asked(used, Field::least_time) || is_asked(used, Field::greatest_time);
+    request.quality = is_asked(used, Field::worst_quality);
     for (int i = 0; i < operands; ++i, text += 2) {
       const int column = text[0] - 'A';
       understand_operand(request, static_cast<Field>(column), static_cast<Comparison>(text[1]),
@@ -157,6 +163,10 @@ void give_value(sqlite3_context* context, const Summary& summary, Field field) {
     sqlite3_result_double(context, summary.least);
   if (field == Field::greatest && summary.least <= summary.greatest)
     sqlite3_result_double(context, summary.greatest);
+  if (field == Field::least_time && summary.least <= summary.greatest)
+    sqlite3_result_int64(context, summary.least_time);
+  if (field == Field::greatest_time && summary.least <= summary.greatest)
+    sqlite3_result_int64(context, summary.greatest_time);
   if (field == Field::first_value) sqlite3_result_double(context, summary.first_value);
   if (field == Field::last_value) sqlite3_result_double(context, summary.last_value);
 }
@@ -185,6 +195,8 @@ void give_column(sqlite3_context* context, const Cursor& cursor, Field field) {
       return sqlite3_result_int64(context, static_cast<sqlite3_int64>(summary.samples));
     case Field::series:
       return sqlite3_result_int64(context, series.id);
+    case Field::worst_quality:
+      return give(context, name(summary.worst_quality));
     case Field::begin_time:
     case Field::end_time:
     case Field::step:

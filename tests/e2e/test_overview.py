@@ -75,6 +75,16 @@ class Overview(EndToEnd):
         kinds = self.query("SELECT DISTINCT kind FROM alarm")
         self.assertEqual(kinds, [("raise",)], "an alarm whose text stays is raised once")
 
+        order = ["acknowledge", "--actor", "Ana", "--config", self.folder / "reident.toml"]
+        for alarm in (["no_telemetry", "SAT/OTHER"], ["unknown_names"]):
+            status, said = self.reident(*order, *alarm)
+            self.assertEqual(status, 0, said)
+            self.assertIn(f"{alarm[0]} of SAT/OTHER is acknowledged by Ana", said)
+        self.assertEqual(self.reident(*order, "disk")[0], 2)
+        status, view = self.overview()
+        self.assertEqual((status, view["act"], {one["seen_by"] for one in view["alarms"]}),
+                         (0, False, {"Ana"}), view)
+
     def test_a_second_service_is_an_alarm_of_both_until_it_ends(self):
         self.configure([plant.equipment()])
         first = self.start_daemon()

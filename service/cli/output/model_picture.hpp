@@ -1,7 +1,8 @@
 // A published model as one picture: what was measured and what the model says, their difference,
-// the singular values that its order was chosen by, and its poles.
+// the inputs, the singular values that its order was chosen by, and its poles.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@
 namespace reident::cli {
 
 struct PicturePart {
-  std::string name;  // "identify", "tune" or "validate": its class in the style sheet too
+  /// "identify", "tune", "validate", or "excluded": its class in the style sheet too.
+  std::string name;
   storage::TimeRange range;
 };
 
@@ -23,6 +25,13 @@ struct PictureData {
   storage::TimeRange range;
   std::vector<PicturePart> parts;
   std::vector<double> singular_values;  // descending; empty where they are not known
+  /// Another version of the same outputs, run over the same range.
+  struct Other {
+    std::string name;
+    ModelRun run;
+  };
+  std::optional<Other> other = {};
+  std::optional<storage::Time> change = {};  // since when the equipment is another
 };
 
 /// A self-contained SVG document. However many rows there are it stays below 500 kB: a pixel column

@@ -245,16 +245,19 @@ void print_json(const std::vector<Attempt>& attempts, const Decided& decided) {
 Refusal nothing_selected(const Arguments& arguments, const HistoryReader& history) {
   HistoryFilter newest;
   newest.last = 1;
-  if (history.attempts(newest).empty())
+  const std::vector<Attempt> last = history.attempts(newest);
+  if (last.empty())
     return {"no window has been tried yet; reident status shows what the service does"};
   const auto or_any = [](const std::string& name) { return name.empty() ? "(any)" : name; };
-  return {fmt::format("no {} of {}{}; the database has {}",
-                      arguments.versions_only ? "version" : "attempt",
-                      full_name({or_any(arguments.spacecraft), or_any(arguments.equipment)}),
-                      arguments.outcome.empty() && !arguments.time.from && !arguments.time.to
-                          ? ""
-                          : " with this outcome and time",
-                      equipment_in(history))};
+  const bool is_narrowed = !arguments.outcome.empty() || arguments.time.from || arguments.time.to;
+  return {fmt::format(
+      "no {} of {}{}; the database has {}", arguments.versions_only ? "version" : "attempt",
+      full_name({or_any(arguments.spacecraft), or_any(arguments.equipment)}),
+      is_narrowed ? fmt::format(" with this outcome and time; the last window that was "
+                                "tried ends at {}",
+                                time_text(last.back().window.end))
+                  : "",
+      equipment_in(history))};
 }
 
 /// The attempts that are asked for, and whether more were left out.

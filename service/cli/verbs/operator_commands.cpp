@@ -19,6 +19,7 @@ struct Arguments {
   OperatorOptions options;
   std::string subject;
   std::int64_t version = 0;
+  std::string alarm;  // of acknowledge
 };
 
 int run(const Arguments& arguments, const std::string& action) {
@@ -108,7 +109,35 @@ std::function<int()> declare_rollback(CLI::App& command) {
   return work;
 }
 
+int run_acknowledge(const Arguments& arguments) {
+  OperatorOrder order{"acknowledge " + arguments.alarm, "", "", 0};
+  if (!arguments.subject.empty()) {
+    const auto parsed = parse_subject(arguments.subject);
+    if (const auto* refusal = std::get_if<Refusal>(&parsed)) return refuse(*refusal);
+    order.spacecraft = std::get<Subject>(parsed).spacecraft;
+    order.equipment = std::get<Subject>(parsed).equipment;
+  }
+  return operate(arguments.options, order);
+}
+
+std::function<int()> declare_acknowledge(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      .add_option("alarm", arguments->alarm,
+                  "code of an alarm that is raised, as 'reident overview' shows it")
+      ->required();
+  declare_common(command, arguments, "");
+  command.get_option("equipment")
+      ->required(false)
+      ->description("EQUIPMENT, SPACECRAFT/EQUIPMENT or SPACECRAFT (all that have the alarm)");
+  command.add_option("--reason", arguments->options.reason, "what is done about it, kept with it");
+  footer(command, "no_telemetry CBERS-4/BDR --reason \"the station is in maintenance\"");
+  return [arguments] { return run_acknowledge(*arguments); };
+}
+
 const VerbRegistration registered[] = {
+    VerbRegistration({"acknowledge", "Note who has seen an alarm, so that it asks nobody to act",
+                      WorksOn::decision, declare_acknowledge}),
     VerbRegistration(
         decision("approve", "Make a waiting version the champion", "seen on two passes")),
     VerbRegistration(decision("reject", "Refuse a waiting version", "a heater test fell into it")),

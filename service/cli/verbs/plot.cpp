@@ -30,6 +30,7 @@ struct Arguments {
   HistoryAccessOptions access;
   std::string subject;
   std::optional<std::string> output;
+  std::optional<std::int64_t> with;
   bool record = false;
   bool replace = false;
   RangeOptions range;
@@ -40,6 +41,13 @@ std::vector<PicturePart> parts_of(const StoredVersion& story, storage::TimeRange
   std::vector<PicturePart> parts = {{"identify", story.model.identified_from}};
   if (const auto tune = tuned_on(story.version)) parts.push_back({"tune", *tune});
   parts.push_back({"validate", story.model.validated_on});
+  const auto evidence = evidence_of(story.attempt);
+  const auto longest =
+      evidence.value(ordered_json::json_pointer("/implausible/longest"), ordered_json::array());
+  for (const ordered_json& range : longest)
+    parts.push_back(
+        {"excluded",
+         {range.value("begin_ns", std::int64_t{0}), range.value("end_ns", std::int64_t{0})}});
   std::erase_if(parts, [shown](const PicturePart& part) {
     return part.range.end <= shown.begin || part.range.begin >= shown.end ||
            part.range.end <= part.range.begin;
@@ -57,16 +65,40 @@ std::vector<double> singular_values_of(const storage::Attempt& attempt) {
   return values;
 }
 
-std::variant<std::string, Refusal> picture_of(const storage::SampleReader& archive,
-                                              const StoredVersion& story,
-                                              const RangeOptions& options) {
-  const auto range = range_of(options, story.version.window);
+/// The run of another version of the same equipment and outputs.
+std::variant<PictureData::Other, Refusal> other_run(const Readers& readers,
+                                                    const StoredVersion& story, std::int64_t number,
+                                                    storage::TimeRange shown) {
+  const storage::Version& version = story.version;
+  auto found =
+      find_stored_version(readers.history, {version.spacecraft, version.equipment, number});
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
+  const EquipmentModel& model = std::get<StoredVersion>(found).model;
+  if (signal_names(model.outputs) != signal_names(story.model.outputs))
+    return Refusal{fmt::format("version {} has other outputs than version {}; name another one",
+                               number, version.number)};
+  auto run = run_model(readers.telemetry, model, shown, shown.begin);
+  if (const auto* reason = std::get_if<std::string>(&run)) return Refusal{*reason};
+  return PictureData::Other{fmt::format("version {}", number), std::get<ModelRun>(std::move(run))};
+}
+
+/// Since when the equipment is another, as the champion's record shows.
+std::optional<storage::Time> change_of(const history::HistoryReader& history,
+                                       const storage::EquipmentName& name) {
+  for (const history::OverviewRow& row : history.overview())
+    if (row.name == name && row.change) return row.change->since;
+  return std::nullopt;
+}
+
+std::variant<std::string, Refusal> picture_of(const Readers& readers, const StoredVersion& story,
+                                              const Arguments& arguments) {
+  const auto range = range_of(arguments.range, story.version.window);
   if (const auto* refusal = std::get_if<Refusal>(&range)) return *refusal;
   const auto& shown = std::get<storage::TimeRange>(range);
-  const auto run = run_model(archive, story.model, shown, shown.begin);
+  const auto run = run_model(readers.telemetry, story.model, shown, shown.begin);
   if (const auto* reason = std::get_if<std::string>(&run)) return Refusal{*reason};
   const storage::Version& version = story.version;
-  const PictureData data{
+  PictureData data{
       .title = fmt::format("{} version {}", full_name({version.spacecraft, version.equipment}),
                            version.number),
       .subtitle = fmt::format("{}; {}; {} to {}", version.status, story.model.method,
@@ -75,7 +107,13 @@ std::variant<std::string, Refusal> picture_of(const storage::SampleReader& archi
       .run = std::get<ModelRun>(run),
       .range = shown,
       .parts = parts_of(story, shown),
-      .singular_values = singular_values_of(story.attempt)};
+      .singular_values = singular_values_of(story.attempt),
+      .change = change_of(readers.history, {version.spacecraft, version.equipment})};
+  if (arguments.with) {
+    auto other = other_run(readers, story, *arguments.with, shown);
+    if (const auto* refusal = std::get_if<Refusal>(&other)) return *refusal;
+    data.other = std::get<PictureData::Other>(std::move(other));
+  }
   return model_picture(data);
 }
 
@@ -121,9 +159,8 @@ int write_picture(const std::string& picture, const std::string& path, bool repl
 int run(const Arguments& arguments) {
   return with_version(
       arguments.access, arguments.subject, [&](const Readers& readers, const StoredVersion& story) {
-        const auto picture = arguments.record
-                                 ? picture_of_record(readers.history, story)
-                                 : picture_of(readers.telemetry, story, arguments.range);
+        const auto picture = arguments.record ? picture_of_record(readers.history, story)
+                                              : picture_of(readers, story, arguments);
         if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
         return write_picture(std::get<std::string>(picture),
                              arguments.output.value_or(fmt::format(
@@ -141,6 +178,8 @@ std::function<int()> declare(CLI::App& command) {
   command.add_flag(
       "--record", arguments->record,
       "draw its record beside the champion's instead: scores, mean, sure mean, change");
+  command.add_option("--with", arguments->with, "number of another version, drawn too")
+      ->check(above_zero());
   add_range_options(command, arguments->range, "the window of the version");
   add_access_options(command, arguments->access);
   command.footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");
@@ -148,7 +187,7 @@ std::function<int()> declare(CLI::App& command) {
 }
 
 const VerbRegistration registered(
-    {"plot", "Draw a version: measured and simulated outputs, error, singular values, poles (SVG)",
+    {"plot", "Draw a version: outputs measured and simulated, errors, inputs, poles (SVG)",
      WorksOn::history, declare});
 
 }  // namespace

@@ -198,20 +198,20 @@ static Status run_ticks(Instance* instance, int64_t count) {
   double* const du = instance->scratch;
   double* const next = du + model->inputs;
   double* const before = next + model->order;
-  double* const parameters = before + model->order + model->outputs;
-  const size_t moving = (model->order + model->outputs) * sizeof *before;
+  const size_t moving = model->inputs + model->order + model->outputs;
+  double* const parameters = before + moving;
   size_t missing = model->inputs;
-  memcpy(before, run_state(model, run), moving);
+  memcpy(before, run_inputs(model, run), moving * sizeof *before);
   for (int64_t k = 0; k < count; ++k) {
     const double periods = (double)(run->ticks + k - run->clock.periods);
     parameters_at(instance, periods * model->period_s - run->clock.rest_s, parameters);
     const size_t lacking = inputs_of(model, run, parameters, du);
     if (missing == model->inputs) missing = lacking;
+    memcpy(run_inputs(model, run), du, model->inputs * sizeof *du);
     if (tick(model, du, run_state(model, run), run_outputs(model, run), next)) continue;
-    memcpy(run_state(model, run), before, moving);
+    memcpy(run_inputs(model, run), before, moving * sizeof *before);
     return discard(instance, "the inputs drive the model beyond what a double can hold: no step");
   }
-  memcpy(run_inputs(model, run), du, model->inputs * sizeof *du);
   run->ticks += count;
   if (missing == model->inputs) return status_ok;
   return warn(instance,

@@ -25,7 +25,8 @@ typedef struct Host {
 typedef struct {
   Model model;
   Run run;
-  double* scratch; /* du (m), next x (n), a copy of x and y (n + p), parameters at a tick (q) */
+  double*
+      scratch; /* du (m), next x (n), copies of du, x and y (m + n + p), parameters at a tick (q) */
   char* name;
   Host host;
   int has_event_mode; /* whether the host uses it */
@@ -128,7 +129,7 @@ static const char* instance_prepare(Instance* instance, const char* token) {
            "together";
   instance->run.values = calloc(run_values(model) + 1, sizeof *instance->run.values);
   instance->scratch =
-      calloc(model->inputs + 2 * model->order + model->outputs + model->parameters + 1,
+      calloc(2 * model->inputs + 2 * model->order + model->outputs + model->parameters + 1,
              sizeof *instance->scratch);
   if (instance->run.values == NULL || instance->scratch == NULL) return "there is no memory for it";
   run_reset(model, &instance->run);

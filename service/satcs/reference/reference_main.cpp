@@ -1,5 +1,6 @@
 // satcs-reference: the reference spacecraft, publishing its telemetry.
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,6 +14,8 @@
 #include "service/satcs/reference/life_text.hpp"
 #include "service/satcs/reference/random.hpp"
 #include "service/satcs/reference/reference_stream.hpp"
+#include "service/support/output_file.hpp"
+#include "service/support/stop_signal.hpp"
 #include "service/support/time_text.hpp"
 
 namespace {
@@ -112,11 +115,13 @@ int main(int argc, char** argv) {
   publisher.spacecraft = "REFERENCE";
   bool json = false;
   bool simulated = false;
+  bool replace = false;
   std::string csv;
   std::vector<std::string> life, faults;
   add_reference_options(app, options);
   app.add_option("--csv", csv, "Write the telemetry to this file and publish nothing")
       ->type_name("FILE");
+  app.add_flag("--replace", replace, "Replace a file of --csv that exists");
   app.add_flag("--simulated", simulated,
                "The telemetry of a simplified, hand-written simulation of the same spacecraft and\n"
                "operations instead, from source 'simulator' with origin 'simulated'");
@@ -145,7 +150,11 @@ int main(int argc, char** argv) {
         simulated ? handwritten_stream(options, sender) : reference_stream(options, sender);
     if (!faults.empty()) stream = with_faults(std::move(stream), faults, options);
     if (csv.empty()) return publish_and_report(*stream, sender, publisher, json);
-    write_csv(*stream, csv);
-    return exit_complete;
+    if (!replace && std::filesystem::exists(csv))
+      throw BadRequest(csv + " exists; name another file, or replace it with --replace");
+    const reident::StopSignal stop;
+    using reident::OutputFile;
+    OutputFile file(csv, replace ? OutputFile::Existing::replaced : OutputFile::Existing::kept);
+    return write_csv(*stream, file, stop.token()) ? exit_complete : exit_signal + stop.number();
   });
 }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "service/support/time_text.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
 namespace reident::test::telemetry_watch_test {
@@ -107,13 +108,24 @@ TEST_F(Watch, TelemetryAheadOfTheClockIsAnAlarmUntilItIsNot) {
   EXPECT_THAT(codes(), IsEmpty());
 }
 
+TEST_F(Watch, AClockBeforeTheLastEntryIsAnAlarmUntilItIsCorrected) {
+  watch.recover(archive, now + 90 * minute);
+  const auto alarms = watch.alarms();
+  ASSERT_THAT(alarms, SizeIs(1));
+  EXPECT_EQ(alarms[0].code + alarms[0].about.spacecraft, "clock");
+  EXPECT_THAT(alarms[0].text, HasSubstr("at " + time_text(now + 90 * minute)));
+  now += 89 * minute;
+  store(telemetry(day, 5));
+  EXPECT_THAT(codes(), ::testing::Not(::testing::Contains("clock /")));
+}
+
 TEST_F(Watch, KnowsWhatEarlierRunsWereTold) {
   archive.describe(descriptors());
   Config misspelt = config();
   misspelt.spacecraft[0].equipment[0].outputs = {"z"};
   TelemetryWatch again(
       misspelt, [this] { return now; }, next);
-  again.recover(archive);
+  again.recover(archive, 0);
   now += 10 * second;
   EXPECT_THAT(again.alarms(), SizeIs(1));
 }

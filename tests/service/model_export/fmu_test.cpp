@@ -373,6 +373,25 @@ TEST(Fmu, KeepsAnInputsLastValueWhereItsExpressionHasNone) {
   EXPECT_EQ(run.instance->outputs(), other.instance->outputs());
 }
 
+TEST(Fmu, KeepsTheValueOfTheTickBeforeWhereAnExpressionHasNoneWithinAStep) {
+  Hosted run(random_version({2, 1, 1, true, 1, {"U / V_BUS"}}, 28));
+  run.instance->start();
+  const fmi2ValueReference references[] = {0, 1};
+  const int orders[] = {1, 1};
+  const double slopes[] = {1, -1};  // V_BUS is 1, then 0
+  EXPECT_EQ(run.instance->set({3, 1}), fmi2OK);
+  EXPECT_EQ(
+      run.binary.set_input_derivatives(run.instance->component, references, 2, orders, slopes),
+      fmi2OK);
+  EXPECT_EQ(run.instance->step(2), fmi2Warning);
+  run.reference.step({3, 1});
+  run.reference.step({4, 0});
+  Distance distance;
+  EXPECT_EQ(run.instance->set({5, 2}), fmi2OK);
+  distance.add(run.instance->outputs(), run.reference.step({5, 2}));
+  EXPECT_LE(distance.largest, 1e-12);
+}
+
 TEST(Fmu, RefusesCallsThatMustNotBeMadeAndSaysWhy) {
   const Hosted run(random_version({2, 2, 1}, 12));
   const FmuBinary& fmi = run.binary;

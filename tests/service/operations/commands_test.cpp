@@ -280,6 +280,33 @@ TEST_F(Commands, a_window_is_asked_for_once_and_only_of_a_service) {
   expect_refused(without, {"no telemetry of SAT/PUMP has come"});
 }
 
+TEST_F(Commands, an_alarm_that_is_acknowledged_stays_raised_and_names_who_has_seen_it) {
+  registry_.raise({"no_telemetry", {"SAT", "PLANT"}, "Nothing came.", now_});
+  registry_.raise({"no_telemetry", {"SAT", "PUMP"}, "Nothing came.", now_});
+  registry_.raise({"unknown_names", {"SAT", ""}, "It is not configured.", now_});
+  registry_.raise({"disk", {}, "Full.", now_});
+  const auto seen_by = [this] {
+    std::vector<std::string> names;
+    for (const storage::Alarm& alarm : registry_.alarms()) names.push_back(alarm.acknowledged_by);
+    return names;
+  };
+  using testing::ElementsAre;
+  expect_done(order("acknowledge no_telemetry"),
+              "no_telemetry of SAT/PLANT is acknowledged by Ana (training)");
+  EXPECT_THAT(seen_by(), ElementsAre("", "Ana", "", ""));
+  const Command of_all{"console", ++requests_, "acknowledge no_telemetry", "", "", 0, "Bo", ""};
+  expect_done(execute(of_all), "no_telemetry of SAT/PLANT, no_telemetry of SAT/PUMP are");
+  const Command of_craft{"console", ++requests_, "acknowledge unknown_names", "", "SAT", 0,
+                         "Bo",      ""};
+  expect_done(execute(of_craft), "unknown_names of SAT is acknowledged by Bo");
+  EXPECT_THAT(seen_by(), ElementsAre("", "Bo", "Bo", "Bo"));
+  expect_refused(command("acknowledge damage"),
+                 {"no alarm damage of SAT/PLANT is raised", "disk", "no_telemetry of SAT/PUMP"});
+  Command nameless = command("acknowledge disk");
+  nameless.actor = "";
+  expect_refused(nameless, {"the operator's name"});
+}
+
 TEST_F(Commands, of_two_operators_the_second_is_told_what_the_first_decided) {
   version(wait);
   Command first = command("approve", 1), second_one = command("reject", 1);

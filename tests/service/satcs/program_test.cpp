@@ -405,5 +405,14 @@ TEST_F(Programs, TheHandWrittenSimulationIsWrittenToAFile) {
   EXPECT_THAT(text, testing::Not(HasSubstr("V_MEA")));
 }
 
+TEST_F(Programs, AFileThatExistsIsReplacedWhereThatIsAskedForAlone) {
+  std::ofstream(folder_ / "t.csv") << "kept";
+  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--duration 1min --csv t.csv")).wait(), 2);
+  EXPECT_THAT(errors(), HasSubstr("t.csv exists"));
+  EXPECT_EQ(text_of(folder_ / "t.csv"), "kept");
+  EXPECT_EQ(Child(command(SATCS_REFERENCE, "--duration 1min --csv t.csv --replace")).wait(), 0);
+  EXPECT_THAT(text_of(folder_ / "t.csv"), testing::StartsWith("unix_s,"));
+}
+
 }  // namespace
 }  // namespace reident::test::program_test

@@ -31,11 +31,11 @@ TEST_F(ExportTest, HasASampleARowWithAllThatIsKnownOfIt) {
   for (const bool compacted : {false, true}) {
     if (compacted) archive.compact();
     EXPECT_EQ(test::exported(database),
-              "spacecraft,parameter,origin,source,time,value,quality\n"
-              "CB4,9,real,station,2023-11-14T22:13:20Z,1,good\n"
-              "CB4,I_BUS,real,station,2023-11-14T22:13:20Z,-0,suspect\n"
-              "CB4,V_BUS,real,station,2023-11-14T22:13:20Z,28.1,good\n"
-              "CB4,V_BUS,real,station,2023-11-14T22:13:20.5Z,nan,invalid\n");
+              "spacecraft,parameter,origin,source,time,value,quality,unit\n"
+              "CB4,9,real,station,2023-11-14T22:13:20Z,1,good,\n"
+              "CB4,I_BUS,real,station,2023-11-14T22:13:20Z,-0,suspect,A\n"
+              "CB4,V_BUS,real,station,2023-11-14T22:13:20Z,28.1,good,V\n"
+              "CB4,V_BUS,real,station,2023-11-14T22:13:20.5Z,nan,invalid,V\n");
   }
 }
 
@@ -60,9 +60,9 @@ TEST_F(ExportTest, IsBoundedByTimeParameterAndOrigin) {
   ExportOptions options = test::everything();
   options.range = {t0 + 2 * second, t0 + 4 * second};
   EXPECT_EQ(test::exported(database, options),
-            "spacecraft,parameter,origin,source,time,value,quality\n"
-            "CB4,V_BUS,real,station,2023-11-14T22:13:22Z,2,good\n"
-            "CB4,V_BUS,real,station,2023-11-14T22:13:23Z,3,good\n");
+            "spacecraft,parameter,origin,source,time,value,quality,unit\n"
+            "CB4,V_BUS,real,station,2023-11-14T22:13:22Z,2,good,V\n"
+            "CB4,V_BUS,real,station,2023-11-14T22:13:23Z,3,good,V\n");
   options = test::everything();
   options.origin = Origin::simulated;
   EXPECT_THAT(test::exported(database, options), HasSubstr("I_BUS,simulated,station"));

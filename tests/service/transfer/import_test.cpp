@@ -132,7 +132,7 @@ TEST_F(ImportTest, EachQualityThatAnExportWritesComesBack) {
   EXPECT_THAT(archive.read("CB4", Origin::real, 1, test::everything().range).quality,
               ::testing::ElementsAreArray(storage::qualities));
   for (const Quality quality : storage::qualities)
-    EXPECT_THAT(text, HasSubstr("," + std::string(storage::name(quality)) + "\n"));
+    EXPECT_THAT(text, HasSubstr("," + std::string(storage::name(quality)) + ",\n"));
 }
 
 TEST_F(ImportTest, TheParametersOfTheArchiveKeepTheirNumbersAndUnits) {

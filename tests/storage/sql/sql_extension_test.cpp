@@ -236,9 +236,11 @@ TEST_F(SqlExtensionTest, ASummaryHasARowForEachSeriesAndStep) {
   simulated.origin = Origin::simulated;
   append({simulated});
   for (int i = 0; i < 2; ++i, archive.compact()) {
-    EXPECT_THAT(ask("SELECT * FROM telemetry_summary(0, 4e9)"),
-                ElementsAre("CB4|V_BUS|real|NULL|0|3000000000|4|2|0.5|3.5|0.5|3.5",
-                            "CB4|V_BUS|simulated|NULL|3000000000|3000000000|1|-1|-1|-1|-1|-1"));
+    EXPECT_THAT(
+        ask("SELECT * FROM telemetry_summary(0, 4e9)"),
+        ElementsAre("CB4|V_BUS|real|NULL|0|3000000000|4|2|0.5|3.5|0.5|3.5|0|3000000000|good",
+                    "CB4|V_BUS|simulated|NULL|3000000000|3000000000|1|-1|-1|-1|-1|-1|3000000000|"
+                    "3000000000|suspect"));
     EXPECT_THAT(
         ask("SELECT utc, samples, mean FROM telemetry_summary('1970-01-01 00:01', NULL, "
             "'1min') WHERE parameter = 'V_BUS'"),
@@ -249,6 +251,24 @@ TEST_F(SqlExtensionTest, ASummaryHasARowForEachSeriesAndStep) {
     EXPECT_THAT(ask("SELECT name, mean FROM (SELECT 'all' AS name, 0 AS first, 2000000000 AS last "
                     "UNION SELECT 'none', 5, 5) JOIN telemetry_summary(first, last)"),
                 ElementsAre("all|1"));
+  }
+}
+
+TEST_F(SqlExtensionTest, ASummaryHasTheFirstTimesOfItsExtremesAndTheWorstQuality) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const double values[] = {4.5, 4, 9, 1, 9, 1, 5, nan, nan, 7};
+  const Quality worst[] = {Quality::out_of_limits, Quality::invalid};
+  for (int i = 0; i < 10; ++i)
+    append({frame(static_cast<std::uint64_t>(i + 1), i * second,
+                  {{1, i % 5 == 2 ? worst[i / 5] : Quality::good, values[i]}})});
+  for (int i = 0; i < 2; ++i, archive.compact()) {
+    EXPECT_THAT(ask("SELECT least, least_time, greatest, greatest_time, worst_quality "
+                    "FROM telemetry_summary(NULL, NULL, '5s')"),
+                ElementsAre("1|3000000000|9|2000000000|out of limits",
+                            "1|5000000000|7|9000000000|invalid"));
+    EXPECT_THAT(ask("SELECT least_time, worst_quality FROM telemetry_summary(7e9, 9e9)"),
+                ElementsAre("NULL|invalid"));
+    EXPECT_THAT(ask("SELECT worst_quality FROM telemetry_summary"), ElementsAre("invalid"));
   }
 }
 

@@ -153,6 +153,37 @@ TEST(Picture, OfAModelThatCanFollowTelemetryShowsThatErrorToo) {
   EXPECT_THAT(example.picture(), HasSubstr("following telemetry: MRSE 2.5 %"));
 }
 
+TEST(Picture, ShowsInputsWhatWasLeftOutAnotherVersionAndTheChange) {
+  Example example(1, 600);
+  example.model.inputs.push_back({"I_IN", "A", 0, 1});
+  PictureData data{.title = "SAT/EQ version 3",
+                   .subtitle = "approved",
+                   .model = example.model,
+                   .run = example.run,
+                   .range = example.range,
+                   .parts = {},
+                   .singular_values = {}};
+  std::string picture = model_picture(data);
+  EXPECT_THAT(picture, HasSubstr("<g id=\"input-1\">"));
+  EXPECT_THAT(picture, HasSubstr("I_IN [A]"));
+  for (const char* absent : {"left out", "output-1-other", "class=\"change\""})
+    EXPECT_THAT(picture, Not(HasSubstr(absent)));
+  data.parts = {{"excluded", {start, start + 60 * second}},
+                {"excluded", {start + 90 * second, start + 95 * second}}};
+  data.change = start + 300 * second;
+  ModelRun other = example.run;
+  other.y_hat *= 1.05;
+  other.score = data.run.score;
+  data.other = PictureData::Other{"version 2", std::move(other)};
+  picture = model_picture(data);
+  for (const char* shown : {"left out", "<g id=\"output-1-other\">",
+                            "<g id=\"output-1-other-error\">", "version 2", "class=\"change\""})
+    EXPECT_THAT(picture, HasSubstr(shown));
+  EXPECT_EQ(picture.find("left out"), picture.rfind("left out")) << "the legend names it once";
+  data.change = example.range.end;
+  EXPECT_THAT(model_picture(data), Not(HasSubstr("class=\"change\"")));
+}
+
 TEST(Picture, OfManyRowsAndOutputsStaysSmall) {
   EXPECT_LT(Example(1, 200'000).picture().size(), 100'000U);
   EXPECT_LT(Example(12, 20'000).picture().size(), 500'000U);
