@@ -214,11 +214,6 @@ Plan read_plan(const fs::path& folder) {
   plan.folder = fs::canonical(folder);
   plan.digest = sha256_hex(json->dump());
   plan.program_version = json->at("program_version").get<std::string>();
-  if (plan.program_version != program_version())
-    refuse(
-        fmt::format("the sweep in {} was planned by reident {}, and this is {}: results of two "
-                    "programs do not go together; begin again in another folder",
-                    folder.string(), plan.program_version, program_version()));
   for (const ordered_json& digest : json->at("configurations")) {
     const fs::path file = configuration_file(plan.folder, plan.configurations.size());
     plan.configurations.push_back(loaded(file));

@@ -65,7 +65,7 @@ struct Question {
 Plan make_plan(const Question& question, const std::filesystem::path& folder,
                const std::function<bool()>& go_on);
 
-/// Throws std::invalid_argument where there is no plan, or another version of the program made it.
+/// Throws std::invalid_argument where there is no plan, or a configuration was changed since.
 Plan read_plan(const std::filesystem::path& folder);
 
 }  // namespace reident::sweep

@@ -10,6 +10,7 @@
 #include "service/operations/backfill.hpp"
 #include "service/support/mutex.hpp"
 #include "service/support/program_identity.hpp"
+#include "service/support/version.hpp"
 #include "service/sweep/comparison.hpp"
 #include "service/sweep/task_file.hpp"
 #include "storage/archive/archive.hpp"
@@ -175,6 +176,11 @@ bool run_task(const Plan& plan, TaskId task, WorkerPool& workers,
     throw std::invalid_argument(fmt::format("there is no {} task {}: the sweep has 0 to {}",
                                             name(task.kind), task.number, tasks - 1));
   if (result_of(plan, task)) return true;
+  if (plan.program_version != program_version())
+    throw std::invalid_argument(
+        fmt::format("the sweep in {} was planned by reident {}, and this is {}: results of two "
+                    "programs do not go together; begin again in another folder",
+                    plan.folder.string(), plan.program_version, program_version()));
   try {
     const auto result = task.kind == TaskKind::candidates
                             ? find_candidates(plan, task.number, stop)

@@ -28,7 +28,8 @@ struct TaskId {
 /// Does the task, unless its result is there. `stop` is asked after each window. Returns false
 /// where it was stopped, and then nothing is left of it. Where it fails, the reason is kept in the
 /// folder and thrown: storage::Error, or std::runtime_error, also for a judgement whose candidates
-/// are not there.
+/// are not there. Throws std::invalid_argument for a number that there is not, and where another
+/// version of the program made the plan.
 bool run_task(const Plan& plan, TaskId task, WorkerPool& workers,
               const std::function<bool()>& stop);
 

@@ -101,7 +101,7 @@ bool verify_all_series(Connection& connection, const VerifyOptions& options, Ver
     return go_on({share_of_pages + (1 - share_of_pages) * std::min(1.0, done / all),
                   "series " + std::to_string(report.series) + " of " + std::to_string(ids.size())});
   };
-  SeriesVerifier verifier(connection, options.quick, report, references, advanced);
+  SeriesVerifier verifier(connection, options, report, references, advanced);
   for (const std::int64_t id : ids)
     if (!verifier.verify(id) || !advanced(0)) return false;
   verify_data_rows(connection, references, report);

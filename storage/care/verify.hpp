@@ -10,6 +10,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "storage/registry/registry.hpp"
@@ -30,11 +31,17 @@ struct Finding {
   std::string remedy;  // what an operator can do
 };
 
+/// Chunks in which nothing was found: XXH64 of their bytes, by the row of chunk_data.
+using SoundChunks = std::unordered_map<std::int64_t, std::uint64_t>;
+
 /// How thoroughly to look.
 struct VerifyOptions {
   /// Looks at the summaries of chunks and does not decode them; leaves out what follows from their
   /// samples, and that indexes agree with their tables.
   bool quick = false;
+  /// Chunks that an earlier verify found sound are not decoded where their bytes are the same.
+  /// Leaves out the comparison of gaps for their series: it takes the samples of all.
+  const SoundChunks* known = nullptr;
   /// Returns what is wrong with a version's model or provenance, in words; absent where nothing is.
   /// Storage cannot read them: without this function they are not checked.
   std::function<std::optional<std::string>(const Version&)> mistake_in{};
@@ -55,7 +62,9 @@ struct VerifyReport {
   std::uint64_t chunks = 0;
   std::uint64_t samples = 0;  // in chunks and fragments
   std::uint64_t versions = 0;
-  bool complete = true;  // false when it was stopped
+  bool complete = true;     // false when it was stopped
+  std::uint64_t known = 0;  // chunks that were not decoded since they are as they were
+  SoundChunks sound;        // those and what was decoded; none where it looked quickly
 
   static constexpr std::size_t most_findings = 1000;
   /// Counts a finding, and keeps it where fewer than most_findings are kept.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "storage/chunks/checksum.hpp"
 #include "storage/chunks/fragment.hpp"
 
 namespace reident::storage {
@@ -49,11 +50,11 @@ bool DataReferences::has(std::int64_t id) const {
   return found != seen_.end() && found->second[static_cast<std::uint64_t>(id) % block];
 }
 
-SeriesVerifier::SeriesVerifier(sqlite::Connection& connection, bool quick, VerifyReport& report,
-                               DataReferences& references,
+SeriesVerifier::SeriesVerifier(sqlite::Connection& connection, const VerifyOptions& options,
+                               VerifyReport& report, DataReferences& references,
                                std::function<bool(std::uint64_t)> advanced)
     : connection_(connection),
-      quick_(quick),
+      options_(options),
       report_(report),
       references_(references),
       advanced_(std::move(advanced)) {}
@@ -175,7 +176,7 @@ bool SeriesVerifier::read_chunks(std::int64_t series) {
           "its data (row " + std::to_string(chunk.integer(7)) + " of chunk_data) are missing",
           restore_samples);
     } else {
-      look_at_chunk(row, chunk.bytes(8));
+      look_at_chunk(row, chunk.integer(7), chunk.bytes(8));
     }
     seen_.samples += row.samples;
     seen_.first = std::min(seen_.first.value_or(row.first), row.first);
@@ -186,18 +187,40 @@ bool SeriesVerifier::read_chunks(std::int64_t series) {
   return true;
 }
 
-void SeriesVerifier::look_at_chunk(const Row& row, std::span<const std::uint8_t> bytes) {
+bool SeriesVerifier::is_known(const Row& row, std::int64_t data, std::uint64_t digest) const {
+  if (options_.known == nullptr) return false;
+  const auto found = options_.known->find(data);
+  if (found == options_.known->end() || found->second != digest) return false;
+  // What is recent too is counted by the times of its chunk.
+  const auto recent = std::ranges::lower_bound(recent_, row.first);
+  return recent == recent_.end() || *recent > row.last;
+}
+
+void SeriesVerifier::look_at_chunk(const Row& row, std::int64_t data,
+                                   std::span<const std::uint8_t> bytes) {
+  const std::uint64_t found_before = report_.found;
   const auto summary = read_summary(bytes);
   std::optional<ChunkError> error;
   if (const auto* wrong = std::get_if<ChunkError>(&summary)) {
     error = *wrong;
   } else {
     compare_with_summary(row, std::get<ChunkSummary>(summary));
-    if (quick_) return;
+    if (options_.quick) return;
+    const std::uint64_t digest = xxh64(bytes);
+    if (is_known(row, data, digest)) {
+      seen_.known = true;
+      ++report_.known;
+      report_.sound.emplace(data, digest);
+      return;
+    }
     samples_ = {};
     error = decoder_.decode(bytes, samples_.target());
+    if (!error) {
+      look_at_samples(row);
+      if (report_.found == found_before) report_.sound.emplace(data, digest);
+      return;
+    }
   }
-  if (!error) return look_at_samples(row);
   seen_.undecodable = true;
   add("chunk", row.first, row.last,
       std::to_string(row.samples) + " samples cannot be read: their chunk " + error->message,
@@ -269,7 +292,7 @@ void SeriesVerifier::read_revisions(std::int64_t series) {
 }
 
 void SeriesVerifier::compare_series() {
-  if (quick_ || seen_.undecodable) return;
+  if (options_.quick || seen_.undecodable) return;
   // What was set aside is still counted, unless it was archived again.
   if (count_ < seen_.samples || count_ > seen_.samples + set_aside_)
     add("series", first_, last_, than("samples", count_, seen_.samples), counts_are_wrong);
@@ -279,7 +302,7 @@ void SeriesVerifier::compare_series() {
 }
 
 void SeriesVerifier::compare_gaps(std::int64_t series) {
-  if (quick_ || seen_.undecodable) return;
+  if (options_.quick || seen_.undecodable || seen_.known) return;
   constexpr const char* remedy =
       "the samples themselves are sound; the list of gaps is wrong: report it with the file";
   std::vector<SampleGap> stored;

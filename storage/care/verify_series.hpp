@@ -37,7 +37,7 @@ class DataReferences {
 class SeriesVerifier {
  public:
   /// `advanced` gets how many samples were looked at, and says whether to go on.
-  SeriesVerifier(sqlite::Connection& connection, bool quick, VerifyReport& report,
+  SeriesVerifier(sqlite::Connection& connection, const VerifyOptions& options, VerifyReport& report,
                  DataReferences& references, std::function<bool(std::uint64_t)> advanced);
 
   /// In one snapshot. False when it was stopped.
@@ -57,12 +57,15 @@ class SeriesVerifier {
     std::set<std::int64_t> sources;
     std::vector<SampleGap> gaps;
     bool undecodable = false;
+    bool known = false;  // some chunk was not decoded since it is as it was
   };
 
   bool begin(std::int64_t series);
   void read_recent(std::int64_t series);
   bool read_chunks(std::int64_t series);
-  void look_at_chunk(const Row& row, std::span<const std::uint8_t> bytes);
+  void look_at_chunk(const Row& row, std::int64_t data, std::span<const std::uint8_t> bytes);
+  /// Whether it need not be decoded.
+  bool is_known(const Row& row, std::int64_t data, std::uint64_t digest) const;
   void compare_with_summary(const Row& row, const ChunkSummary& summary);
   void look_at_samples(const Row& row);
   void look_at_values(Time first, Time last);
@@ -75,7 +78,7 @@ class SeriesVerifier {
            const char* remedy);
 
   sqlite::Connection& connection_;
-  const bool quick_;
+  const VerifyOptions& options_;
   VerifyReport& report_;
   DataReferences& references_;
   const std::function<bool(std::uint64_t)> advanced_;

@@ -36,10 +36,12 @@ def wait_until(condition, what, deadline_s=DEADLINE_S):
 class Process:
     """A program under test; its output is in files, so that no pipe can fill."""
 
-    def __init__(self, folder, name, arguments, user=None):
+    def __init__(self, folder, name, arguments, user=None, middleware=None):
         self.log = folder / f"{name}.log"
         self.out = folder / f"{name}.out"
         environment = {key: value for key, value in os.environ.items() if key != "CYCLONEDDS_URI"}
+        if middleware:
+            environment["CYCLONEDDS_URI"] = f"file://{middleware}"
         with open(self.log, "ab") as log, open(self.out, "ab") as out:
             self.process = subprocess.Popen(
                 [str(BIN / arguments[0]), *map(str, arguments[1:])], stdin=subprocess.DEVNULL,
@@ -93,9 +95,10 @@ class EndToEnd(unittest.TestCase):
 
     # -- programs
 
-    def start(self, *arguments, name=None, user=None):
+    def start(self, *arguments, name=None, user=None, middleware=None):
+        """`middleware`: the file that CYCLONEDDS_URI names."""
         name = name or f"{arguments[0]}-{len(self.processes)}"
-        process = Process(self.folder, name, arguments, user)
+        process = Process(self.folder, name, arguments, user, middleware)
         self.processes.append(process)
         return process
 

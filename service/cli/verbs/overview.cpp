@@ -1,6 +1,8 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <span>
+#include <stdexcept>
 #include <thread>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/verb.hpp"
+#include "service/fleet/instances.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
@@ -25,11 +28,13 @@ using storage::EquipmentName;
 using storage::Time;
 
 constexpr std::size_t width_without_terminal = 80;
+constexpr std::size_t rows_of_screen = 20;  // of a fleet
 constexpr double default_interval_s = 2;
 constexpr double max_interval_s = 86'400;
 
 struct Arguments {
   HistoryAccessOptions access;
+  std::optional<std::string> fleet;
   bool watch = false;
   double interval_s = default_interval_s;
   bool json = false;
@@ -40,6 +45,7 @@ struct Overview {
   std::vector<OverviewRow> rows;
   std::vector<Alarm> alarms;
   Time now = 0;
+  std::size_t rows_shown = SIZE_MAX;  // in the table
 };
 
 /// The equipment of the configuration that no window was tried of are rows too.
@@ -50,17 +56,37 @@ void add_untried(const Config& config, std::vector<OverviewRow>& rows) {
       rows.emplace_back().name = name;
 }
 
+Alarm no_service(std::string text, Time now) {
+  return {"no_service", {}, std::move(text), now};
+}
+
+/// Of all instances of a folder.
+Overview read_fleet(const std::string& folder) {
+  WorkerPool workers(usable_cores());
+  Overview overview{{}, {}, utc_now(), rows_of_screen};
+  for (fleet::Instance& one : fleet::read_instances(folder, workers)) {
+    std::ranges::move(one.rows, std::back_inserter(overview.rows));
+    std::ranges::move(one.alarms, std::back_inserter(overview.alarms));
+    if (!one.problem.empty())
+      overview.alarms.push_back(no_service(one.name + ": " + one.problem, overview.now));
+    else if (!one.has_service)
+      overview.alarms.push_back(
+          no_service("No service runs for " + one.name + ". Start it.", overview.now));
+  }
+  history::put_worst_first(overview.rows, overview.alarms);
+  return overview;
+}
+
 Overview read(const Readers& readers, const std::optional<Config>& config) {
   Overview overview{readers.history.overview(), readers.history.alarms(), utc_now()};
   if (config) {
     add_untried(*config, overview.rows);
     if (!storage::Database::has_writer(config->database))
-      overview.alarms.insert(overview.alarms.begin(),
-                             {"no_service",
-                              {},
-                              "No service runs on " + config->database.string() +
-                                  ": what is below is as the last one left it. Start reidentd.",
-                              overview.now});
+      overview.alarms.insert(
+          overview.alarms.begin(),
+          no_service("No service runs on " + config->database.string() +
+                         ": what is below is as the last one left it. Start reidentd.",
+                     overview.now));
   }
   history::put_worst_first(overview.rows, overview.alarms);
   return overview;
@@ -110,7 +136,8 @@ std::string table_text(const Overview& overview, std::size_t width) {
                {"sims", right},
                {"to know"}});
   const bool colours = shows_colours();
-  for (const OverviewRow& row : overview.rows) {
+  const std::size_t shown = std::min(overview.rows_shown, overview.rows.size());
+  for (const OverviewRow& row : std::span(overview.rows).first(shown)) {
     const auto ago = [&](Time time) { return rough_duration_text(overview.now - time); };
     const bool has_champion = row.champion > 0;
     table.add({full_name(row.name), has_champion ? std::to_string(row.champion) : "none",
@@ -122,7 +149,10 @@ std::string table_text(const Overview& overview, std::size_t width) {
               colours && history::needs_action(row, overview.alarms) ? Table::Look::urgent
                                                                      : Table::Look::plain);
   }
-  return table.text(width);
+  std::string text = table.text(width);
+  if (shown < overview.rows.size())
+    text += fmt::format("and {} more; --json lists all\n", overview.rows.size() - shown);
+  return text;
 }
 
 std::string name_of(const EquipmentName& about) {
@@ -134,7 +164,8 @@ std::string alarms_text(const Overview& overview, std::size_t width) {
   if (overview.alarms.empty()) return {};
   Table table({{"alarm"}, {"about"}, {"since", Table::Align::right}, {"seen by"}, {"what"}});
   const bool colours = shows_colours();
-  for (const Alarm& alarm : overview.alarms) {
+  const std::size_t shown = std::min(overview.rows_shown, overview.alarms.size());
+  for (const Alarm& alarm : std::span(overview.alarms).first(shown)) {
     table.add({alarm.code, name_of(alarm.about), rough_duration_text(overview.now - alarm.since),
                is_seen_to(alarm) ? alarm.acknowledged_by : "-", alarm.text},
               colours && !is_seen_to(alarm) ? Table::Look::urgent : Table::Look::plain);
@@ -214,29 +245,45 @@ std::optional<Config> local_config(const Arguments& arguments) {
   return config ? std::move(*config) : std::nullopt;
 }
 
+int show(const Arguments& arguments, const std::function<Overview()>& look) {
+  const auto interval = std::chrono::duration<double>(arguments.interval_s);
+  for (;;) {
+    const Overview overview = look();
+    if (arguments.watch && terminal_width() > 0) fmt::print("\033[H\033[2J");
+    if (arguments.json)
+      print_json(overview);
+    else
+      print_text(overview);
+    if (!arguments.watch) return needs_action(overview) ? exit_failed : exit_done;
+    fmt::print("{}\n", time_text(overview.now / 1'000'000'000 * 1'000'000'000));
+    if (std::fflush(stdout) != 0) return exit_failed;
+    std::this_thread::sleep_for(interval);
+  }
+}
+
 int run(const Arguments& arguments) {
+  if (arguments.fleet) {
+    try {
+      return show(arguments, [&] { return read_fleet(*arguments.fleet); });
+    } catch (const std::invalid_argument& error) {
+      return refuse({error.what()});
+    }
+  }
   const std::optional<Config> config = local_config(arguments);
   return with_readers(arguments.access, [&](const Readers& readers) {
-    const auto interval = std::chrono::duration<double>(arguments.interval_s);
-    for (;;) {
-      const Overview overview = read(readers, config);
-      if (arguments.watch && terminal_width() > 0) fmt::print("\033[H\033[2J");
-      if (arguments.json)
-        print_json(overview);
-      else
-        print_text(overview);
-      if (!arguments.watch)
-        return static_cast<int>(needs_action(overview) ? exit_failed : exit_done);
-      fmt::print("{}\n", time_text(overview.now / 1'000'000'000 * 1'000'000'000));
-      if (std::fflush(stdout) != 0) return static_cast<int>(exit_failed);
-      std::this_thread::sleep_for(interval);
-    }
+    return show(arguments, [&] { return read(readers, config); });
   });
 }
 
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   add_access_options(command, arguments->access);
+  command
+      .add_option("--fleet", arguments->fleet,
+                  "folder with the configurations of many services: all of their equipment")
+      ->excludes("--config")
+      ->excludes("--database")
+      ->excludes("--remote");
   CLI::Option* watch = command.add_flag("--watch", arguments->watch, "again and again, until ^C");
   command.add_option("--every", arguments->interval_s, "seconds between two looks, with --watch")
       ->needs(watch)

@@ -107,6 +107,8 @@ void run_here(const Plan& plan, TaskKind kind, WorkerPool& workers, const StopSi
     try {
       run_task(plan, {kind, before.left[i]}, workers,
                [&] { return stop.token().stop_requested(); });
+    } catch (const std::invalid_argument&) {
+      throw;
     } catch (const std::exception&) {
       // The folder has the reason, and the states show it.
     }

@@ -1,6 +1,9 @@
 #include "storage/care/verify.hpp"
 
 #include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,7 +11,9 @@
 #include "service/cli/file_errors.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
+#include "service/support/output_file.hpp"
 #include "service/support/progress.hpp"
+#include "service/support/sha256.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/windows/provenance.hpp"
@@ -23,9 +28,14 @@ using storage::VerifyReport;
 struct Arguments {
   DatabaseOptions database;
   std::string file;
+  std::optional<std::string> known;
   bool quick = false;
   bool json = false;
 };
+
+std::string checked_end(const std::string& lines) {
+  return "sha256 " + sha256_hex(lines) + "\n";
+}
 
 /// "V_BUS of CB4 (real), 2026-03-01T12:00:00Z to 2026-03-01T14:16:31Z"; empty for the whole file.
 std::string where(const Finding& finding) {
@@ -60,11 +70,12 @@ void print_json(const Arguments& arguments, const VerifyReport& report) {
   ordered_json findings = ordered_json::array();
   for (const Finding& finding : report.findings) findings.push_back(to_json(finding));
   const ordered_json object = {
-      {"file", arguments.file},      {"sound", report.complete && report.found == 0},
-      {"complete", report.complete}, {"quick", arguments.quick},
-      {"series", report.series},     {"chunks", report.chunks},
-      {"samples", report.samples},   {"versions", report.versions},
-      {"found", report.found},       {"findings", findings}};
+      {"file", arguments.file},       {"sound", report.complete && report.found == 0},
+      {"complete", report.complete},  {"quick", arguments.quick},
+      {"series", report.series},      {"chunks", report.chunks},
+      {"chunks_known", report.known}, {"samples", report.samples},
+      {"versions", report.versions},  {"found", report.found},
+      {"findings", findings}};
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
@@ -80,10 +91,41 @@ void print(const Arguments& arguments, const VerifyReport& report) {
                              : report.found == 1 ? "1 finding"
                                                  : fmt::format("{} findings", report.found);
   const std::string samples =
-      arguments.quick ? "" : fmt::format(" with {} samples", report.samples);
+      arguments.quick
+          ? ""
+          : fmt::format(
+                " with {} samples{}", report.samples,
+                report.known == 0 ? "" : fmt::format(", {} more as they were", report.known));
   fmt::print("{}: {}; looked at {} series, {} chunks{} and {} versions{}\n", arguments.file,
              report.complete ? result : result + " so far, stopped", report.series, report.chunks,
              samples, report.versions, arguments.quick ? " quickly" : "");
+}
+
+/// What an earlier run found sound: a chunk a line, and the SHA-256 of the lines. Nothing where the
+/// file is not there; where it is not whole that is printed, and every chunk is decoded.
+storage::SoundChunks read_known(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return {};
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  const std::size_t end = text.find("sha256 ");
+  storage::SoundChunks chunks;
+  if (end == std::string::npos || text.substr(end) != checked_end(text.substr(0, end))) {
+    print_error("reident: {} is not whole: every chunk is decoded", file);
+    return chunks;
+  }
+  std::istringstream lines(text.substr(0, end));
+  std::int64_t data = 0;
+  std::uint64_t digest = 0;
+  while (lines >> data >> digest) chunks.emplace(data, digest);
+  return chunks;
+}
+
+void write_known(const std::string& file, const storage::SoundChunks& chunks) {
+  std::string text;
+  for (const auto& [data, digest] : chunks) text += fmt::format("{} {}\n", data, digest);
+  OutputFile output(file);
+  output.write(text + checked_end(text));
+  output.finish();
 }
 
 int run(Arguments& arguments) {
@@ -94,13 +136,16 @@ int run(Arguments& arguments) {
   return refusing_what_cannot_be([&] {
     storage::Database database(arguments.file, storage::Database::Mode::read_only);
     Progress bar;
+    const storage::SoundChunks known =
+        arguments.known ? read_known(*arguments.known) : storage::SoundChunks();
     const VerifyReport report =
-        verify(database, {.quick = arguments.quick, .mistake_in = mistake_in},
+        verify(database, {.quick = arguments.quick, .known = &known, .mistake_in = mistake_in},
                [&](const storage::VerifyProgress& progress) {
                  bar.update(progress.share, progress.at);
                  return !stop.token().stop_requested();
                });
     bar.clear();
+    if (arguments.known && report.complete) write_known(*arguments.known, report.sound);
     if (arguments.json)
       print_json(arguments, report);
     else
@@ -112,11 +157,16 @@ int run(Arguments& arguments) {
 std::function<int()> declare(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   add_file_argument(command, arguments->database, "database of the service, or a backup");
-  command.add_flag("--quick", arguments->quick,
-                   "look at the summaries of chunks, and do not decode them");
+  CLI::Option* quick = command.add_flag("--quick", arguments->quick,
+                                        "look at the summaries of chunks, and do not decode them");
+  command
+      .add_option("--known", arguments->known,
+                  "file with what an earlier run found sound, made where missing: chunks whose "
+                  "bytes are the same are not decoded again")
+      ->excludes(quick);
   command.add_flag("--json", arguments->json, "one JSON object with the findings");
   command.footer(
-      "Example:\n  reident verify reident.db\n"
+      "Example:\n  reident verify reident.db --known reident.sound\n"
       "Exit status: 0 for a sound file, 1 where something was found or it was stopped, 2 where "
       "there is no such database.");
   return [arguments] { return run(*arguments); };

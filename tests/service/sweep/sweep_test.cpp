@@ -199,6 +199,13 @@ TEST_F(Sweep, KeepsToItsQuestion) {
   EXPECT_THROW(plan("other", {"windw=13min"}), std::invalid_argument);
   EXPECT_THROW(plan("other", {"NOBODY.window=13min"}), std::invalid_argument);
   EXPECT_THROW(sweep::read_plan(folder("nowhere")), std::invalid_argument);
+  ordered_json older = *sweep::read_task_file(folder("tasks") / "plan.json");
+  older["program_version"] = "0.0.1";
+  sweep::write_task_file(folder("tasks") / "plan.json", older);
+  WorkerPool workers(1);
+  EXPECT_THROW(
+      run_task(sweep::read_plan(folder("tasks")), {TaskKind::candidates, 0}, workers, never),
+      std::invalid_argument);
   EXPECT_THROW(sweep::kubernetes_manifest(first, "image"), std::invalid_argument)
       << "pods see the folder alone";
 }

@@ -123,6 +123,41 @@ TEST_F(Verify, NamesTheParameterAndTheTimeOfAChunkThatWasChanged) {
   EXPECT_THAT(texts(report(true)), IsEmpty()) << "the body is not looked at quickly";
 }
 
+TEST_F(Verify, DecodesAgainWhatChangedAlone) {
+  const auto knowing = [&](const SoundChunks& known) {
+    Database database(path, Mode::read_only);
+    return verify(database, {.known = &known}, to_the_end);
+  };
+  const VerifyReport first = knowing({});
+  EXPECT_EQ(first.known, 0U);
+  EXPECT_EQ(first.sound.size(), first.chunks);
+  const VerifyReport second = knowing(first.sound);
+  EXPECT_THAT(texts(second), IsEmpty());
+  EXPECT_EQ(second.sound, first.sound);
+  // All but those that late samples lie in, which are counted by their times.
+  EXPECT_GE(second.known, first.chunks - 3U * 3);
+  EXPECT_LT(second.known, first.chunks);
+  {
+    Database database(path, Mode::read_write);
+    Archive archive(database, small_chunks);
+    archive.append(frames(860, 1000));
+    archive.compact();
+  }
+  const VerifyReport later = knowing(second.sound);
+  EXPECT_THAT(texts(later), IsEmpty());
+  EXPECT_GT(later.known, 0U);
+  EXPECT_EQ(later.sound.size(), later.chunks);
+  EXPECT_THAT(rows(path,
+                   "UPDATE chunk_data SET bytes = CAST(substr(bytes, 1, length(bytes) - 1) || "
+                   "x'5a' AS BLOB) WHERE id = (SELECT data FROM chunk WHERE series = 2 "
+                   "ORDER BY first_time LIMIT 1)"),
+              IsEmpty());
+  const VerifyReport damaged = knowing(later.sound);
+  ASSERT_THAT(texts(damaged), SizeIs(1)) << "a changed byte is found in what is known too";
+  EXPECT_EQ(damaged.findings[0].check, "chunk");
+  EXPECT_EQ(damaged.sound.size(), later.chunks - 1);
+}
+
 struct Damage {
   const char* sql;
   const char* finding;

@@ -1,0 +1,176 @@
+#include <cstdio>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "service/cli/config_options.hpp"
+#include "service/cli/output/table.hpp"
+#include "service/cli/verb.hpp"
+#include "service/config/fleet_table.hpp"
+#include "service/fleet/instances.hpp"
+#include "service/fleet/site_files.hpp"
+#include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
+
+namespace reident::cli::fleet_verb {
+namespace {
+
+using fleet::Instance;
+using nlohmann::ordered_json;
+
+constexpr std::size_t rows_of_screen = 20;
+
+struct Arguments {
+  std::string table, root = "/";
+  std::string folder = "/etc/reident";
+  bool dry_run = false, all = false, json = false;
+};
+
+int init(const Arguments& arguments) {
+  const auto loaded = load_fleet(arguments.table);
+  if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&loaded)) {
+    for (const ConfigMistake& mistake : *mistakes)
+      print_error("{}", mistake_text(arguments.table, mistake));
+    return exit_impossible;
+  }
+  const auto& table = std::get<Fleet>(loaded);
+  const auto files = fleet::site_files(table);
+  if (!arguments.dry_run) fleet::write_site_files(files, arguments.root);
+  if (arguments.dry_run)
+    for (const auto& [path, text] : files)
+      fmt::print("==> {}\n{}\n", (arguments.root / path).string(), text);
+  fmt::print("{} instances, {} files{}\n", table.instances.size(), files.size(),
+             arguments.dry_run ? ", none written" : "");
+  if (!arguments.dry_run) {
+    fmt::print("next: systemctl daemon-reload && systemctl enable --now");
+    for (const FleetInstance& one : table.instances) fmt::print(" reidentd@{}", one.name);
+    fmt::print("\n");
+  }
+  return exit_done;
+}
+
+std::size_t with_champion(const Instance& instance) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(instance.rows, [](const auto& row) { return row.champion > 0; }));
+}
+
+/// The generation time that the equipment farthest behind has reached.
+std::optional<storage::Time> oldest_telemetry(const Instance& instance) {
+  std::optional<storage::Time> oldest;
+  for (const history::OverviewRow& row : instance.rows)
+    if (row.telemetry && (!oldest || *row.telemetry < *oldest)) oldest = row.telemetry;
+  return oldest;
+}
+
+std::string note_of(const Instance& instance) {
+  if (!instance.problem.empty()) return instance.problem;
+  for (const storage::Alarm& alarm : instance.alarms)
+    if (alarm.acknowledged_by.empty()) return alarm.code + ": " + alarm.text;
+  return {};
+}
+
+void print_table(const std::vector<Instance>& instances, bool all) {
+  constexpr auto right = Table::Align::right;
+  Table table({{"instance"},
+               {"service"},
+               {"models", right},
+               {"waiting", right},
+               {"alarms", right},
+               {"telemetry", right},
+               {"worst"}});
+  const storage::Time now = utc_now();
+  const std::size_t shown = all ? instances.size() : std::min(rows_of_screen, instances.size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    const Instance& one = instances[i];
+    const auto telemetry = oldest_telemetry(one);
+    table.add({one.name, one.has_service ? "runs" : "none",
+               fmt::format("{}/{}", with_champion(one), one.rows.size()),
+               fmt::format("{}", one.waiting()), fmt::format("{}", one.unseen_alarms()),
+               telemetry ? rough_duration_text(now - *telemetry) : "-", note_of(one)},
+              shows_colours() && one.needs_action() ? Table::Look::urgent : Table::Look::plain);
+  }
+  fmt::print("{}", table.text(terminal_width()));
+  const auto act = std::ranges::count_if(instances, &Instance::needs_action);
+  fmt::print("{}{} instances, {} need somebody\n",
+             shown < instances.size()
+                 ? fmt::format("and {} more; --all lists them\n", instances.size() - shown)
+                 : "",
+             instances.size(), act);
+}
+
+void print_json(const std::vector<Instance>& instances) {
+  ordered_json list = ordered_json::array();
+  for (const Instance& one : instances) {
+    const auto telemetry = oldest_telemetry(one);
+    ordered_json alarms = ordered_json::array();
+    for (const storage::Alarm& alarm : one.alarms)
+      alarms.push_back({{"code", alarm.code},
+                        {"spacecraft", alarm.about.spacecraft},
+                        {"equipment", alarm.about.equipment},
+                        {"since", time_text(alarm.since)},
+                        {"seen_by", alarm.acknowledged_by},
+                        {"text", alarm.text}});
+    list.push_back({{"instance", one.name},
+                    {"act", one.needs_action()},
+                    {"problem", one.problem},
+                    {"service", one.has_service},
+                    {"equipment", one.rows.size()},
+                    {"with_champion", with_champion(one)},
+                    {"waiting", one.waiting()},
+                    {"telemetry", telemetry ? ordered_json(time_text(*telemetry)) : ordered_json()},
+                    {"alarms", alarms}});
+  }
+  fmt::print("{}\n", ordered_json({{"instances", list}})
+                         .dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+int status(const Arguments& arguments) {
+  WorkerPool workers(usable_cores());
+  const std::vector<Instance> instances = fleet::read_instances(arguments.folder, workers);
+  if (arguments.json)
+    print_json(instances);
+  else
+    print_table(instances, arguments.all);
+  return std::ranges::any_of(instances, &Instance::needs_action) ? exit_failed : exit_done;
+}
+
+int refusing(const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const std::invalid_argument& error) {
+    return refuse({error.what()});
+  }
+}
+
+std::function<int()> declare(CLI::App& command) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.require_subcommand(1);
+  CLI::App* make = command.add_subcommand(
+      "init", "Write the configurations, the units' drop-ins and the targets of a table");
+  make->add_option("table", arguments->table, "spacecraft, as in deploy/fleet.toml")->required();
+  make->add_option("--root", arguments->root, "folder that the files are written below")
+      ->capture_default_str();
+  make->add_flag("--dry-run", arguments->dry_run, "print the files, and write nothing");
+  CLI::App* show =
+      command.add_subcommand("status", "Show how the instances of this machine are, worst first");
+  show->add_option("folder", arguments->folder, "where the configurations are, one an instance")
+      ->capture_default_str();
+  show->add_flag("--all", arguments->all, "more than a screen");
+  show->add_flag("--json", arguments->json, "one JSON object with all instances");
+  for (CLI::App* one : {make, show}) one->group("Commands");
+  command.footer(
+      "Example:\n  reident fleet init fleet.toml --dry-run\n  reident fleet status /etc/reident\n"
+      "Exit status of status: 0 when all is well; 1 when somebody has to act.");
+  return [arguments, make] {
+    return refusing([&] { return make->parsed() ? init(*arguments) : status(*arguments); });
+  };
+}
+
+const VerbRegistration registered(
+    {"fleet", "Make the services of many spacecraft from one table, and show how all are",
+     WorksOn::database, declare});
+
+}  // namespace
+
+}  // namespace reident::cli::fleet_verb

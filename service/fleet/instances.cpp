@@ -1,0 +1,83 @@
+#include "service/fleet/instances.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <stdexcept>
+#include <system_error>
+#include <tuple>
+
+#include "service/config/config.hpp"
+#include "service/history/stored_readers.hpp"
+
+namespace reident::fleet {
+namespace {
+
+namespace fs = std::filesystem;
+
+Instance read_instance(const fs::path& file) {
+  Instance instance;
+  instance.name = file.stem().string();
+  const auto loaded = load_config(file);
+  if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&loaded)) {
+    instance.problem = file.string() + ": " + mistakes->front().message;
+    return instance;
+  }
+  const Config& config = std::get<Config>(loaded);
+  instance.has_service = storage::Database::has_writer(config.database);
+  try {
+    storage::Database database(config.database, storage::Database::Mode::read_only);
+    const history::StoredHistory history(database);
+    instance.rows = history.overview();
+    instance.alarms = history.alarms();
+  } catch (const std::exception& error) {
+    instance.problem = error.what();
+    return instance;
+  }
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment) {
+      const storage::EquipmentName name{spacecraft.name, equipment.name};
+      if (std::ranges::find(instance.rows, name, &history::OverviewRow::name) ==
+          instance.rows.end())
+        instance.rows.emplace_back().name = name;
+    }
+  history::put_worst_first(instance.rows, instance.alarms);
+  return instance;
+}
+
+}  // namespace
+
+std::size_t Instance::unseen_alarms() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      alarms, [](const storage::Alarm& alarm) { return alarm.acknowledged_by.empty(); }));
+}
+
+std::size_t Instance::waiting() const {
+  std::size_t count = 0;
+  for (const history::OverviewRow& row : rows) count += row.waiting.size();
+  return count;
+}
+
+bool Instance::needs_action() const {
+  return !problem.empty() || !has_service || unseen_alarms() > 0 || waiting() > 0;
+}
+
+std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  if (files.empty())
+    throw std::invalid_argument(folder.string() +
+                                " holds no configuration (*.toml): name the folder of the "
+                                "instances, such as /etc/reident");
+  std::ranges::sort(files);
+  std::vector<Instance> instances(files.size());
+  workers.for_each(files.size(), [&](std::size_t i) { instances[i] = read_instance(files[i]); });
+  const auto badness = [](const Instance& one) {
+    return std::tuple(!one.problem.empty(), !one.has_service, one.unseen_alarms(), one.waiting());
+  };
+  std::ranges::stable_sort(instances, std::ranges::greater(), badness);
+  return instances;
+}
+
+}  // namespace reident::fleet

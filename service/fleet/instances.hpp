@@ -1,0 +1,31 @@
+// How the instances of a machine are: what each one's database says, read side by side.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "service/history/overview_rows.hpp"
+#include "service/support/parallel.hpp"
+
+namespace reident::fleet {
+
+/// One service's configuration, and how the models that it keeps are.
+struct Instance {
+  std::string name;                        // of the file
+  std::string problem;                     // why nothing is known; empty else
+  bool has_service = false;                // a process has the database open for writing
+  std::vector<history::OverviewRow> rows;  // also of equipment that no window was tried of
+  std::vector<storage::Alarm> alarms;
+
+  std::size_t unseen_alarms() const;
+  std::size_t waiting() const;  // versions that wait for an operator
+  /// Whether somebody has to act: any of the above, or no service.
+  bool needs_action() const;
+};
+
+/// The instances whose configurations are `folder`/*.toml, the worst first. Throws
+/// std::invalid_argument where there is none.
+std::vector<Instance> read_instances(const std::filesystem::path& folder, WorkerPool& workers);
+
+}  // namespace reident::fleet

@@ -1,0 +1,88 @@
+"""A site with more services on a machine than the built-in configuration of DDS has ports for."""
+
+import json
+import unittest
+
+import plant
+from harness import EndToEnd, wait_until
+
+SERVICES = 18
+
+
+class Fleet(EndToEnd):
+    def setUp(self):
+        super().setUp()
+        self.names = [f"SAT-{number}" for number in range(1, SERVICES + 1)]
+        self.configure([plant.equipment(bias="approve", baseline_mrse=50.0)])
+        table = self.folder / "fleet.toml"
+        table.write_text(f'''[fleet]
+configuration = "reident.toml"
+domain = {self.domain}
+partition = "{self.partition}/{{}}"
+data = "{self.folder}/data/{{}}"
+[fleet.network]
+interface = "127.0.0.1"
+''' + "".join(f'[[spacecraft]]\nname = "{name}"\n' for name in self.names))
+        status, text = self.reident("fleet", "init", table, "--root", self.folder)
+        self.assertEqual(status, 0, text)
+        self.configurations = self.folder / "etc/reident"
+        self.middleware = self.configurations / "cyclonedds.xml"
+
+    def serve(self, name):
+        (self.folder / "data" / name).mkdir(parents=True)
+        return self.start("reidentd", "--config", self.configurations / f"{name}.toml", name=name,
+                          middleware=self.middleware)
+
+    def status(self):
+        code, text = self.reident("fleet", "status", self.configurations, "--json")
+        return code, json.loads(text)["instances"]
+
+    def replay(self, name):
+        csv = self.folder / "rows.csv"
+        if not csv.exists():
+            plant.write(csv, plant.rows(2400))
+        replay = self.start("satcs-replay", csv, "--spacecraft", name, "--speed", "max", "--domain",
+                            self.domain, "--partition", f"{self.partition}/{name}",
+                            middleware=self.middleware)
+        self.assertEqual(replay.wait(), 0, replay.text())
+
+    def test_eighteen_services_and_a_simulator_of_two_spacecraft(self):
+        services = {name: self.serve(name) for name in self.names}
+        wait_until(lambda: all(one["service"] for one in self.status()[1]), "all run")
+        self.assertEqual(len(self.status()[1]), SERVICES)
+        simulator = self.start("reident-simulator", "--spacecraft", "SAT-*", "--equipment", "PLANT",
+                               "--name", "trainer", "--json", "--cache", self.folder / "cache",
+                               "--domain", self.domain, "--partition", f"{self.partition}/*",
+                               middleware=self.middleware)
+        asked = ["SAT-1", f"SAT-{SERVICES}"]
+        for name in asked:
+            self.replay(name)
+
+        def adopted():
+            events = [json.loads(line) for line in simulator.out.read_text().splitlines() if line]
+            return {one["spacecraft"] for one in events if one.get("event") == "adopted"}
+
+        wait_until(lambda: adopted() == set(asked), "it runs the models of both")
+        for name in asked:
+            wait_until(lambda: self.acknowledged(name), f"the service of {name} has heard of it")
+        code, instances = self.status()
+        self.assertEqual({one["instance"] for one in instances if one["with_champion"]}, set(asked))
+
+        services["SAT-7"].kill()
+        code, instances = self.status()
+        self.assertEqual(code, 1)
+        self.assertEqual((instances[0]["instance"], instances[0]["service"]), ("SAT-7", False))
+        code, text = self.reident("overview", "--fleet", self.configurations, "--json")
+        overview = json.loads(text)
+        self.assertEqual(code, 1)
+        self.assertEqual({one["spacecraft"] for one in overview["equipment"]}, set(self.names))
+        self.assertIn("no_service", [one["code"] for one in overview["alarms"]])
+
+    def acknowledged(self, name):
+        status, text = self.reident("overview", "--json", "--config",
+                                    self.configurations / f"{name}.toml")
+        return json.loads(text)["equipment"][0]["simulators_current"] == 1
+
+
+if __name__ == "__main__":
+    unittest.main()

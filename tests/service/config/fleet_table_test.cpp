@@ -1,0 +1,104 @@
+#include "service/config/fleet_table.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace reident::test::fleet_table_test {
+namespace {
+
+using testing::HasSubstr;
+
+class FleetTable : public testing::Test {
+ protected:
+  std::variant<Fleet, std::vector<ConfigMistake>> load(const std::string& text) const {
+    std::ofstream(folder_ / "fleet.toml") << text;
+    return load_fleet(folder_ / "fleet.toml");
+  }
+  Fleet fleet(const std::string& text) const {
+    const auto loaded = load(text);
+    if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&loaded))
+      ADD_FAILURE() << mistakes->front().message;
+    return std::get<Fleet>(loaded);
+  }
+  ConfigMistake mistake(const std::string& text) const {
+    const auto loaded = load(text);
+    const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&loaded);
+    return mistakes ? mistakes->front() : ConfigMistake{0, "none"};
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(FleetTable, GivesEachSpacecraftWhatAllHaveAndItsOwn) {
+  const Fleet site = fleet(R"([fleet]
+configuration = "one.toml"
+domain = 7
+memory_max = "1G"
+[[spacecraft]]
+name = "SAT-1"
+[[spacecraft]]
+name = "SAT-2"
+configuration = "two.toml"
+partition = "test/SAT-2"
+data = "/data/two"
+memory_max = "2G"
+page = "127.0.0.1:8481"
+)");
+  EXPECT_EQ(site.domain, 7U);
+  EXPECT_FALSE(site.network);
+  ASSERT_EQ(site.instances.size(), 2U);
+  const FleetInstance &one = site.instances[0], &two = site.instances[1];
+  EXPECT_EQ(one.configuration, folder_ / "one.toml");
+  EXPECT_EQ(one.partition, "operations/SAT-1");
+  EXPECT_EQ(one.data, "/var/lib/reident/SAT-1");
+  EXPECT_EQ(one.memory_max, "1G");
+  EXPECT_EQ(one.page, std::nullopt);
+  EXPECT_EQ(two.configuration, folder_ / "two.toml");
+  EXPECT_EQ(two.partition, "test/SAT-2");
+  EXPECT_EQ(two.data, "/data/two");
+  EXPECT_EQ(two.memory_max, "2G");
+  EXPECT_EQ(two.page, "127.0.0.1:8481");
+}
+
+TEST_F(FleetTable, NamesEachMistakeWithItsLine) {
+  const struct {
+    const char* text;
+    std::uint32_t line;
+    const char* words;
+  } cases[] = {
+      {"", 0, "[[spacecraft]]"},
+      {"[[spacecraft]]\nname = \"SAT-1\"\n", 1, "configuration"},
+      {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"SAT/1\"\n", 4, "letters"},
+      {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\ndata = \"here\"\n", 5,
+       "absolute"},
+      {"[fleet]\nconfiguraton = \"x\"\n[[spacecraft]]\nname = \"A\"\n", 2, "configuraton"},
+      {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\n[[spacecraft]]\nname = "
+       "\"A\"\n",
+       0, "the name"},
+      {"[fleet]\nconfiguration = \"x\"\npartition = \"all\"\n[[spacecraft]]\nname = \"A\"\n"
+       "[[spacecraft]]\nname = \"B\"\n",
+       0, "partition all"},
+      {"[fleet]\nconfiguration = \"x\"\n[fleet.network]\npeers = [\"a\"]\n[[spacecraft]]\nname = "
+       "\"A\"\n",
+       3, "interface"},
+  };
+  for (const auto& [text, line, words] : cases) {
+    const ConfigMistake found = mistake(text);
+    EXPECT_EQ(found.line, line) << text;
+    EXPECT_THAT(found.message, HasSubstr(words)) << text;
+  }
+}
+
+TEST(FleetExample, IsRead) {
+  const auto example = load_fleet(REIDENT_EXAMPLES "/fleet.toml");
+  ASSERT_TRUE(std::holds_alternative<Fleet>(example));
+  for (const FleetInstance& one : std::get<Fleet>(example).instances)
+    EXPECT_TRUE(std::holds_alternative<Config>(load_config(one.configuration)));
+}
+
+}  // namespace
+}  // namespace reident::test::fleet_table_test

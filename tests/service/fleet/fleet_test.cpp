@@ -1,0 +1,145 @@
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "service/fleet/instances.hpp"
+#include "service/fleet/site_files.hpp"
+#include "storage/registry/registry.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace reident::test::fleet_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class FleetTest : public testing::Test {
+ protected:
+  fs::path configuration() const {
+    std::ofstream(folder_ / "satellite.toml") << R"([archive]
+keep = "400d"
+[[spacecraft]]
+name = "ANY"
+[[spacecraft.equipment]]
+name = "PLANT"
+inputs = ["u", "v"]
+outputs = ["y"]
+sample_period = "1s"
+window = "10min"
+)";
+    return folder_ / "satellite.toml";
+  }
+
+  Fleet site(std::vector<std::string> names) const {
+    Fleet fleet;
+    fleet.domain = 3;
+    for (std::string& name : names) {
+      FleetInstance one;
+      one.configuration = configuration();
+      one.partition = "operations/" + name;
+      one.data = folder_ / name;
+      one.name = std::move(name);
+      fleet.instances.push_back(std::move(one));
+    }
+    return fleet;
+  }
+
+  std::string text_of(const fs::path& file) const {
+    std::ifstream stream(folder_ / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(FleetTest, WritesWhatTheServicesRead) {
+  Fleet fleet = site({"SAT-1", "SAT-2"});
+  fleet.instances[1].memory_max = "2G";
+  fleet.instances[1].page = "127.0.0.1:8481";
+  fleet::write_site_files(fleet::site_files(fleet), folder_.path());
+  const auto loaded = load_config(folder_ / "etc/reident/SAT-2.toml");
+  ASSERT_TRUE(std::holds_alternative<Config>(loaded));
+  const auto& config = std::get<Config>(loaded);
+  EXPECT_EQ(config.service_name, "SAT-2");
+  EXPECT_EQ(config.domain, 3U);
+  EXPECT_EQ(config.partition, "operations/SAT-2");
+  EXPECT_EQ(config.database, folder_ / "SAT-2/reident.db");
+  EXPECT_TRUE(config.keep);
+  EXPECT_EQ(config.spacecraft[0].name, "SAT-2");
+  EXPECT_EQ(config.spacecraft[0].equipment[0].name, "PLANT");
+  EXPECT_THAT(text_of("etc/systemd/system/reidentd@SAT-2.service.d/fleet.conf"),
+              AllOf(HasSubstr("[Service]\n"), HasSubstr("\nMemoryMax=2G\n"),
+                    Not(HasSubstr("CYCLONEDDS_URI"))));
+  const auto targets = nlohmann::json::parse(text_of("etc/reident/targets.json"));
+  ASSERT_EQ(targets.size(), 1U);
+  EXPECT_EQ(targets[0]["targets"][0], "127.0.0.1:8481");
+  EXPECT_EQ(targets[0]["labels"]["spacecraft"], "SAT-2");
+}
+
+TEST_F(FleetTest, ReplacesItsOwnFilesAlone) {
+  fleet::write_site_files(fleet::site_files(site({"SAT-1"})), folder_.path());
+  fleet::write_site_files(fleet::site_files(site({"SAT-1", "SAT-2"})), folder_.path());
+  EXPECT_TRUE(fs::exists(folder_ / "etc/reident/SAT-2.toml"));
+  std::ofstream(folder_ / "etc/reident/SAT-1.toml") << "# by hand\n";
+  EXPECT_THROW(fleet::write_site_files(fleet::site_files(site({"SAT-0", "SAT-1"})), folder_.path()),
+               std::invalid_argument);
+  EXPECT_EQ(text_of("etc/reident/SAT-1.toml"), "# by hand\n");
+  EXPECT_FALSE(fs::exists(folder_ / "etc/reident/SAT-0.toml")) << "nothing was written";
+}
+
+TEST_F(FleetTest, RefusesAConfigurationOfTwoSpacecraft) {
+  Fleet two = site({"SAT-1"});
+  std::ofstream(folder_ / "two.toml")
+      << text_of("satellite.toml") << "[[spacecraft]]\nname = \"OTHER\"\n";
+  two.instances[0].configuration = folder_ / "two.toml";
+  EXPECT_THROW(fleet::site_files(two), std::invalid_argument);
+}
+
+TEST(FleetNetworkTest, TakesThePortsThatItNeeds) {
+  const std::string multicast = fleet::middleware_configuration({"eth0", {}, 120}, 230);
+  EXPECT_THAT(multicast, AllOf(HasSubstr("<ParticipantIndex>none<"), HasSubstr("name=\"eth0\""),
+                               HasSubstr("<AllowMulticast>spdp<")));
+  const std::string few = fleet::middleware_configuration({"10.0.0.1", {"10.0.0.2"}, 120}, 230);
+  EXPECT_THAT(few,
+              AllOf(HasSubstr("<MaxAutoParticipantIndex>119<"), Not(HasSubstr("DomainGain")),
+                    HasSubstr("address=\"10.0.0.1\""), HasSubstr("<Peer address=\"10.0.0.2\"/>")));
+  EXPECT_THAT(fleet::middleware_configuration({"10.0.0.1", {"10.0.0.2"}, 300}, 60),
+              HasSubstr("<DomainGain>750<"));
+  EXPECT_THROW(fleet::middleware_configuration({"10.0.0.1", {"10.0.0.2"}, 300}, 100),
+               std::invalid_argument);
+}
+
+TEST_F(FleetTest, ShowsTheWorstFirst) {
+  fleet::write_site_files(fleet::site_files(site({"A", "B", "C"})), folder_.path());
+  for (const char* name : {"A", "B"}) fs::create_directory(folder_ / name);
+  const auto open = [&](const char* name) {
+    return storage::Database(folder_ / name / "reident.db", storage::Database::Mode::read_write);
+  };
+  const storage::Database held = open("A");
+  {
+    storage::Database database = open("B");
+    storage::Registry registry(database);
+    registry.raise({"disk", {}, "no room", 1});
+  }
+  WorkerPool workers(2);
+  const auto instances = fleet::read_instances(folder_ / "etc/reident", workers);
+  ASSERT_EQ(instances.size(), 3U);
+  EXPECT_EQ(instances[0].name, "C");
+  EXPECT_THAT(instances[0].problem, HasSubstr("C/reident.db"));
+  EXPECT_EQ(instances[1].name, "B");
+  EXPECT_FALSE(instances[1].has_service);
+  EXPECT_EQ(instances[1].unseen_alarms(), 1U);
+  EXPECT_EQ(instances[2].name, "A");
+  EXPECT_TRUE(instances[2].has_service);
+  EXPECT_FALSE(instances[2].needs_action());
+  EXPECT_EQ(instances[2].rows.size(), 1U) << "equipment that nothing was tried of";
+  EXPECT_THROW(fleet::read_instances(folder_ / "A", workers), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace reident::test::fleet_test
