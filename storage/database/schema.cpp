@@ -214,37 +214,7 @@ CREATE INDEX decision_with_why ON decision (spacecraft, equipment, version)
 CREATE INDEX attempt_left_waiting ON attempt (id) WHERE outcome IN ('waiting', 'unvouched', 'held');
 )sql";
 
-// What two services of a pair share (storage/types/journal.hpp). Without a pair all three are
-// empty.
-constexpr std::string_view pair_tables = R"sql(
-CREATE TABLE term (
-  number INTEGER PRIMARY KEY, service TEXT NOT NULL, time INTEGER NOT NULL,
-  first INTEGER NOT NULL UNIQUE);
-
-CREATE TABLE journal (id INTEGER PRIMARY KEY, kind TEXT NOT NULL, key TEXT NOT NULL);
-
-CREATE TABLE overruled (
-  term INTEGER NOT NULL, position INTEGER NOT NULL, service TEXT NOT NULL, kind TEXT NOT NULL,
-  row_json TEXT NOT NULL, time INTEGER NOT NULL,
-  PRIMARY KEY (term, position)) WITHOUT ROWID;
-
-CREATE VIEW overruled_decision AS
-  SELECT term, service, json_extract(row_json, '$.spacecraft') AS spacecraft,
-         json_extract(row_json, '$.equipment') AS equipment,
-         json_extract(row_json, '$.version') AS version, json_extract(row_json, '$.kind') AS kind,
-         json_extract(row_json, '$.actor') AS actor, json_extract(row_json, '$.reason') AS reason,
-         json_extract(row_json, '$.time') AS time, time AS overruled
-  FROM overruled WHERE kind = 'decision';
-)sql";
-
 // The insert trigger stops INSERT OR REPLACE, which deletes without asking the delete trigger.
-std::string guard(const std::string& table, const std::string& event,
-                  const std::string& condition) {
-  return "CREATE TRIGGER " + table + "_" + event + " BEFORE " + event + " ON " + table + " " +
-         condition + " BEGIN SELECT RAISE(ABORT, 'rows of the table " + table +
-         " are never changed or removed: add a new one'); END;\n";
-}
-
 std::string append_only(const std::string& table, const std::string& same_row) {
   return guard(table, "update", "") + guard(table, "delete", "") +
          guard(table, "insert", "WHEN EXISTS (SELECT 1 FROM " + table + " WHERE " + same_row + ")");
@@ -267,17 +237,6 @@ std::string append_only_notices() {
          append_only("simulator", "id = NEW.id");
 }
 
-std::string journal_triggers() {
-  std::string sql;
-  for (const JournalledTable& table : journalled_tables) {
-    const std::string name(table.name);
-    sql += "CREATE TRIGGER " + name + "_journal AFTER INSERT ON " + name +
-           " WHEN EXISTS (SELECT 1 FROM term) BEGIN INSERT INTO journal (kind, key) VALUES ('" +
-           name + "', " + key_sql(table, "NEW.") + "); END;\n";
-  }
-  return sql;
-}
-
 std::string joined(std::initializer_list<std::string_view> parts) {
   std::string sql;
   for (const std::string_view part : parts) sql += part;
@@ -286,25 +245,17 @@ std::string joined(std::initializer_list<std::string_view> parts) {
 
 }  // namespace
 
-std::string key_sql(const JournalledTable& table, const std::string& prefix) {
-  std::string columns;
-  for (const std::string_view column : table.key)
-    if (!column.empty()) columns += (columns.empty() ? "" : ", ") + prefix + std::string(column);
-  return "json_array(" + columns + ")";
-}
-
 std::string creation() {
   return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
                  decision_table, decision_of_4, score_tables, operator_tables, notice_tables,
                  telemetry_views, hole_view, removal_view, lineage_view, registry_views,
-                 reason_view, notice_views, pair_tables}) +
+                 reason_view, notice_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
                      "equipment = NEW.equipment AND number = NEW.number)") +
-         append_only_decisions() + append_only_scores() + append_only_notices() +
-         journal_triggers() + "PRAGMA application_id = " + std::to_string(application_id) + ";" +
-         user_version();
+         append_only_decisions() + append_only_scores() + append_only_notices() + from_7_to_8() +
+         "PRAGMA application_id = " + std::to_string(application_id) + ";" + user_version();
 }
 
 // A CHECK cannot be altered, so the decisions move to a new table. Dropping the old one drops its
@@ -356,24 +307,6 @@ std::string from_6_to_7() {
 
 std::string bias_effects_of_8() {
   return "ALTER TABLE score ADD COLUMN bias_effects BLOB NOT NULL DEFAULT x'';";
-}
-
-std::string from_7_to_8() {
-  return std::string(pair_tables) + journal_triggers();
-}
-
-std::string without_removal_guards() {
-  std::string sql;
-  for (const JournalledTable& table : journalled_tables)
-    if (table.name != "term") sql += "DROP TRIGGER " + std::string(table.name) + "_delete;\n";
-  return sql;
-}
-
-std::string removal_guards() {
-  std::string sql;
-  for (const JournalledTable& table : journalled_tables)
-    if (table.name != "term") sql += guard(std::string(table.name), "delete", "");
-  return sql;
 }
 
 std::string user_version() {

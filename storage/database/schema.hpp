@@ -48,6 +48,9 @@ std::string from_6_to_7();
 std::string from_7_to_8();
 std::string bias_effects_of_8();  // from_5_to_6() makes these too
 
+/// The statement that makes a trigger which aborts an event on a table.
+std::string guard(const std::string& table, const std::string& event, const std::string& condition);
+
 /// Statements that take away the triggers which keep rows of these tables from being removed, and
 /// that make them again.
 std::string without_removal_guards();

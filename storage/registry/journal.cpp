@@ -63,7 +63,7 @@ void insert_row(Connection& connection, const JournalRow& row) {
   std::string marks;
   for (std::size_t i = 0; i < row.values.size(); ++i) marks += i == 0 ? "?" : ", ?";
   connection
-      .query("INSERT " + std::string(may_be_there ? "OR IGNORE " : "") + "INTO " + row.table +
+      .query("INSERT " + std::string(may_be_there ? "OR REPLACE " : "") + "INTO " + row.table +
              " VALUES (" + marks + ")")
       .run(row.values);
 }
@@ -135,11 +135,14 @@ std::int64_t Journal::last() const {
 }
 
 bool Journal::is_of_no_pair() const {
-  sqlite::Query row = connection(database_).query(
-      "SELECT NOT EXISTS (SELECT 1 FROM term) AND (EXISTS (SELECT 1 FROM attempt) OR "
-      "EXISTS (SELECT 1 FROM hold) OR EXISTS (SELECT 1 FROM command))");
-  row.step();
-  return row.integer(0) != 0;
+  Connection& db = connection(database_);
+  return std::any_of(schema::journalled_tables.begin(), schema::journalled_tables.end(),
+                     [&](const JournalledTable& table) {
+                       sqlite::Query row =
+                           db.query("SELECT 1 FROM " + std::string(table.name) + " LIMIT 1");
+                       return row.step();
+                     }) &&
+         terms().empty();
 }
 
 std::int64_t Journal::term_at(std::int64_t position) const {

@@ -1,6 +1,7 @@
-"""Operation in a failing world, measured: packages under a real systemd, networks that are cut.
+"""Operation in a failing and hostile world: packages under a real systemd, networks that are cut, a
+pair of services whose leader is killed or hangs.
 
-    operations.py BUILD [PART...]
+    operations.py BUILD [PART...] [--quick]
 
 Runs the parts (the programs in the folder operations, all of them by default) one after the other.
 Each prints one JSON object as its last line. What a part cannot measure on this machine it names in
@@ -15,10 +16,10 @@ from pathlib import Path
 FOLDER = Path(__file__).resolve().with_suffix("")
 
 
-def run(part, build):
+def run(part, arguments):
     """The object of its last line."""
     last = ""
-    with subprocess.Popen([sys.executable, str(FOLDER / f"{part}.py"), build],
+    with subprocess.Popen([sys.executable, str(FOLDER / f"{part}.py"), *arguments],
                           stdout=subprocess.PIPE, text=True) as running:
         for last in running.stdout:
             print(last, end="", flush=True)
@@ -28,13 +29,15 @@ def run(part, build):
 
 
 def main():
-    build, *wanted = sys.argv[1:]
+    build, *rest = sys.argv[1:]
+    wanted = [word for word in rest if not word.startswith("-")]
+    options = [word for word in rest if word.startswith("-")]
     parts = sorted(path.stem for path in FOLDER.glob("[a-z]*.py"))
     if unknown := set(wanted) - set(parts):
         sys.exit(f"no such part: {', '.join(unknown)}; there are {', '.join(parts)}")
     figures, left_out = {}, {}
     for part in wanted or parts:
-        of_part = run(part, build)
+        of_part = run(part, [build, *options])
         left_out.update(of_part.pop("left_out", {}))
         figures.update(of_part)
     left_out.update({part: "not asked for" for part in parts if wanted and part not in wanted})

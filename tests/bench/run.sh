@@ -40,10 +40,11 @@
 #                                         Chromium, a year of telemetry, viewers, slow clients, what
 #                                         ingest loses by them.
 #                                         The last line is one JSON object
-#   tests/bench/run.sh operations [PART...]
-#                                         operation in a failing world: packages under a real
-#                                         systemd, networks that are cut. Needs root; says what it
-#                                         leaves out. The last line is one JSON object
+#   tests/bench/run.sh operations [PART...] [--quick]
+#                                         operation in a failing and hostile world: packages under a
+#                                         real systemd, networks that are cut, a pair of services whose
+#                                         leader is killed or hangs. Needs root; says what it leaves
+#                                         out. The last line is one JSON object
 #   tests/bench/run.sh scale [--spacecraft N] [--days N] [--folder FOLDER]
 #                                         a sweep of six spacecraft over 30 days on one core, on two
 #                                         and as a Slurm array on two emulated nodes, which needs
@@ -119,7 +120,7 @@ case $what in
     ;;
   operations)
     arguments=(build/release "$@")
-    targets=(reidentd reident satcs-reference)
+    targets=(reidentd reident satcs-reference e2e_programs)
     deploy/install_packages.sh --with-packages || echo "going on without the tools that are missing"
     ;;
   *)

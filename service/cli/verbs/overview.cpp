@@ -11,6 +11,7 @@
 #include "service/cli/config_options.hpp"
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/service_choice.hpp"
 #include "service/cli/verb.hpp"
 #include "service/fleet/instances.hpp"
 #include "service/operations/commands.hpp"
@@ -31,6 +32,7 @@ constexpr std::size_t width_without_terminal = 80;
 constexpr std::size_t rows_of_screen = 20;  // of a fleet
 constexpr double default_interval_s = 2;
 constexpr double max_interval_s = 86'400;
+constexpr auto heartbeat_wait = std::chrono::milliseconds(1500);
 
 struct Arguments {
   HistoryAccessOptions access;
@@ -46,6 +48,7 @@ struct Overview {
   std::vector<Alarm> alarms;
   Time now = 0;
   std::size_t rows_shown = SIZE_MAX;  // in the table
+  std::vector<ServiceStatus> pair;  // its services that are heard; empty without a pair
 };
 
 /// The equipment of the configuration that no window was tried of are rows too.
@@ -63,7 +66,7 @@ Alarm no_service(std::string text, Time now) {
 /// Of all instances of a folder.
 Overview read_fleet(const std::string& folder) {
   WorkerPool workers(usable_cores());
-  Overview overview{{}, {}, utc_now(), rows_of_screen};
+  Overview overview{{}, {}, utc_now(), rows_of_screen, {}};
   for (fleet::Instance& one : fleet::read_instances(folder, workers)) {
     std::ranges::move(one.rows, std::back_inserter(overview.rows));
     std::ranges::move(one.alarms, std::back_inserter(overview.alarms));
@@ -78,7 +81,7 @@ Overview read_fleet(const std::string& folder) {
 }
 
 Overview read(const Readers& readers, const std::optional<Config>& config) {
-  Overview overview{readers.history.overview(), readers.history.alarms(), utc_now()};
+  Overview overview{readers.history.overview(), readers.history.alarms(), utc_now(), SIZE_MAX, {}};
   if (config) {
     add_untried(*config, overview.rows);
     if (!storage::Database::has_writer(config->database))
@@ -87,6 +90,11 @@ Overview read(const Readers& readers, const std::optional<Config>& config) {
           no_service("No service runs on " + config->database.string() +
                          ": what is below is as the last one left it. Start reidentd.",
                      overview.now));
+  }
+  if (config && !config->pair.empty()) {
+    overview.pair = heard_services({config->domain, config->partition}, heartbeat_wait);
+    std::erase_if(overview.pair,
+                  [&](const ServiceStatus& service) { return service.pair != config->pair; });
   }
   history::put_worst_first(overview.rows, overview.alarms);
   return overview;
@@ -180,6 +188,10 @@ void print_text(const Overview& overview) {
   else
     fmt::print("{}", table_text(overview, width));
   fmt::print("{}", alarms_text(overview, width));
+  for (const ServiceStatus& service : overview.pair)
+    fmt::print("\nservice {} {} in term {}{}", service.service, service.role, service.term,
+               service.lag < 0 ? "" : fmt::format(", {} rows behind", service.lag));
+  if (!overview.pair.empty()) fmt::print("\n");
 }
 
 ordered_json optional_json(const std::optional<double>& number) {
@@ -230,10 +242,17 @@ void print_json(const Overview& overview) {
                       {"since", time_text(alarm.since)},
                       {"seen_by", alarm.acknowledged_by},
                       {"text", alarm.text}});
-  const ordered_json object = {{"time", time_text(overview.now)},
-                               {"act", needs_action(overview)},
-                               {"equipment", std::move(rows)},
-                               {"alarms", std::move(alarms)}};
+  ordered_json pair = ordered_json::array();
+  for (const ServiceStatus& service : overview.pair)
+    pair.push_back({{"service", service.service},
+                    {"role", service.role},
+                    {"term", service.term},
+                    {"lag", service.lag < 0 ? ordered_json() : ordered_json(service.lag)}});
+  ordered_json object = {{"time", time_text(overview.now)},
+                         {"act", needs_action(overview)},
+                         {"equipment", std::move(rows)},
+                         {"alarms", std::move(alarms)}};
+  if (!overview.pair.empty()) object["pair"] = std::move(pair);
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
