@@ -28,8 +28,9 @@ class Ingest {
   void stop();
 
   std::uint64_t frames_received() const { return frames_received_; }
-  /// Frames that broke the contract of the topic and were refused.
+  /// Frames and descriptors that broke the contract of their topic and were refused.
   std::uint64_t frames_rejected() const { return frames_rejected_; }
+  std::uint64_t descriptors_rejected() const { return descriptors_rejected_; }
 
  private:
   /// Returns how many messages there were.
@@ -39,6 +40,7 @@ class Ingest {
   void queue(TelemetryEvent&& event);
   /// Pushes what was taken; waits for room.
   void push_taken();
+  /// Logs what was refused since the last call.
   void count_rejected();
   /// Once a second: what a hundred simulators leave behind is given back when they have left.
   void watch_simulators();
@@ -60,6 +62,7 @@ class Ingest {
   std::atomic<bool> stopping_ = false;
   std::atomic<std::uint64_t> frames_received_ = 0;
   std::atomic<std::uint64_t> frames_rejected_ = 0;
+  std::atomic<std::uint64_t> descriptors_rejected_ = 0;
 };
 
 }  // namespace reident

@@ -147,12 +147,14 @@ struct ServiceStatus {
   std::string failing_champions;  // equipment, separated by commas
   std::string alarms;             // one a line: "code SPACECRAFT/EQUIPMENT: text"
   std::string equipment;          // that it keeps true, separated by commas
+  std::uint64_t descriptors_rejected = 0;
 };
 
 /// Returns the counts with the names that people and programs see.
 inline std::vector<std::pair<const char*, std::uint64_t>> counts(const ServiceStatus& status) {
   return {{"frames_received", status.frames_received},
           {"frames_rejected", status.frames_rejected},
+          {"descriptors_rejected", status.descriptors_rejected},
           {"samples_stored", status.samples_stored},
           {"duplicates", status.duplicates},
           {"conflicts", status.conflicts},

@@ -144,8 +144,11 @@ int main(int argc, char** argv) {
     auto stream =
         simulated ? handwritten_stream(options, sender) : reference_stream(options, sender);
     if (!faults.empty()) stream = with_faults(std::move(stream), faults, options);
-    if (csv.empty()) return publish_and_report(*stream, sender, publisher, json);
-    write_csv(*stream, csv);
-    return exit_complete;
+    if (!csv.empty()) {
+      write_csv(*stream, csv);
+      return exit_complete;
+    }
+    const reident::StopSignal stop;
+    return publish_and_report(*stream, sender, publisher, json, stop);
   });
 }
