@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev cyclonedds-dev cyclonedds-tools libsqlite3-dev libzstd-dev libssl-dev
   libcli11-dev libfmt-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev
-  libzip-dev libmatio-dev libhowardhinnant-date-dev tzdata
+  libzip-dev libmatio-dev libhowardhinnant-date-dev tzdata libxml2-dev
   libboost1.81-dev libboost-url1.81-dev zlib1g-dev  # the operators' page
 )
 for option in "$@"; do

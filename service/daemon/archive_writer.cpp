@@ -15,6 +15,20 @@ constexpr std::size_t batch_bytes = std::size_t{5} << 20;
 constexpr auto idle_wait = 500ms;  // for the first event of a batch; post() ends it earlier
 constexpr auto retry_wait = 1s;    // between two tries of a batch that the disk refused
 
+void log_late_start(const storage::AppendReport::LateStart& start) {
+  if (start.first == 0)
+    log::info("archive", "the first sequence number of a source here is not 1",
+              {{"spacecraft", start.spacecraft},
+               {"source", start.source},
+               {"first_sequence", start.came}});
+  else
+    log::warning("archive", "the first frames of a source have not come; have them sent again",
+                 {{"spacecraft", start.spacecraft},
+                  {"source", start.source},
+                  {"first_sequence", start.came},
+                  {"missing", start.came - start.first}});
+}
+
 }  // namespace
 
 std::size_t QueuedBytes<TelemetryEvent>::operator()(const TelemetryEvent& event) const {
@@ -79,6 +93,7 @@ void ArchiveWriter::commit(const std::vector<storage::TelemetryFrame>& frames,
   const storage::AppendReport report = archive_.append(frames);
   for (const std::string& damage : report.damages)
     log::error("archive", "set damaged samples aside", {{"error", damage}});
+  for (const auto& start : report.late_starts) log_late_start(start);
   std::uint64_t missing = 0;
   for (const storage::SourceCounts& source : archive_.sources()) missing += source.missing;
   {

@@ -369,6 +369,7 @@ void Daemon::heartbeat() {
   status.time = clock_();
   status.frames_received = ingest_->frames_received();
   status.frames_rejected = ingest_->frames_rejected();
+  status.descriptors_rejected = ingest_->descriptors_rejected();
   status.samples_stored = stored.stored;
   status.duplicates = stored.duplicates;
   status.conflicts = stored.conflicts;

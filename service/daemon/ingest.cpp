@@ -34,6 +34,14 @@ void log_acknowledgement(const ModelAcknowledgement& acknowledgement) {
                   {"reason", acknowledgement.reason}});
 }
 
+template <class M>
+void note_rejected(const dds::Reader<M>& reader, std::atomic<std::uint64_t>& count,
+                   const char* what) {
+  if (reader.malformed() == count) return;
+  count = reader.malformed();
+  log::warning("ingest", what, {{"reason", reader.last_malformed()}, {"refused", count.load()}});
+}
+
 }  // namespace
 
 Ingest::Ingest(dds::Participant& participant, const Config& config,
@@ -73,10 +81,9 @@ void Ingest::push_taken() {
 }
 
 void Ingest::count_rejected() {
-  if (frames_.malformed() == frames_rejected_) return;
-  frames_rejected_ = frames_.malformed();
-  log::warning("ingest", "refused a telemetry frame",
-               {{"reason", frames_.last_malformed()}, {"refused", frames_rejected_.load()}});
+  note_rejected(frames_, frames_rejected_, "refused a telemetry frame");
+  note_rejected(descriptors_, descriptors_rejected_,
+                "refused a parameter descriptor; its sender has to correct it");
 }
 
 void Ingest::hear(const ModelAcknowledgement& acknowledgement) {

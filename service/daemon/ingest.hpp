@@ -28,10 +28,11 @@ class Ingest {
   void stop();
 
   std::uint64_t frames_received() const { return frames_received_; }
-  /// Frames that broke the contract of the topic and were refused.
+  /// Frames and descriptors that broke the contract of their topic and were refused.
   std::uint64_t frames_rejected() const { return frames_rejected_; }
   /// Whether the thread came round since the last call, or the queue holds it back.
   bool goes_on() { return came_round_.exchange(false) || waits_for_room_; }
+  std::uint64_t descriptors_rejected() const { return descriptors_rejected_; }
 
  private:
   /// Returns how many messages there were.
@@ -41,6 +42,7 @@ class Ingest {
   void queue(TelemetryEvent&& event);
   /// Pushes what was taken; waits for room.
   void push_taken();
+  /// Logs what was refused since the last call.
   void count_rejected();
   /// Once a second: what a hundred simulators leave behind is given back when they have left.
   void watch_simulators();
@@ -63,6 +65,7 @@ class Ingest {
   std::atomic<std::uint64_t> frames_received_ = 0;
   std::atomic<std::uint64_t> frames_rejected_ = 0;
   std::atomic<bool> came_round_ = false, waits_for_room_ = false;
+  std::atomic<std::uint64_t> descriptors_rejected_ = 0;
 };
 
 }  // namespace reident

@@ -148,6 +148,7 @@ const reident_ServiceStatus& Codec<ServiceStatus>::Encoder::operator()(
   wire_.term = status.term;
   wire_.partner = borrow(status.partner);
   wire_.lag = status.lag;
+  wire_.descriptors_rejected = status.descriptors_rejected;
   return wire_;
 }
 
@@ -181,6 +182,7 @@ Fault Codec<ServiceStatus>::decode(const reident_ServiceStatus& wire,
   status.term = wire.term;
   status.partner = texts.text(wire.partner, "partner");
   status.lag = wire.lag;
+  status.descriptors_rejected = wire.descriptors_rejected;
   return texts.fault();
 }
 

@@ -68,6 +68,7 @@ const satcs_TelemetryFrame& Codec<TelemetryFrame>::Encoder::operator()(
   wire_.parameter = borrow<dds_sequence_uint32>(parameter_);
   wire_.value = borrow<dds_sequence_double>(value_);
   wire_.quality = borrow<dds_sequence_octet>(quality_);
+  wire_.first_sequence_number = frame.first_sequence;
   return wire_;
 }
 
@@ -77,6 +78,7 @@ Fault Codec<TelemetryFrame>::decode(const satcs_TelemetryFrame& wire, const Read
   frame.spacecraft = texts.name(wire.spacecraft, "spacecraft");
   frame.source = texts.name(wire.source, "source");
   frame.sequence = wire.sequence_number;
+  frame.first_sequence = wire.first_sequence_number;
   frame.generation_time = wire.generation_time_ns;
   frame.reception_time = wire.reception_time_ns;
   if (texts.fault()) return texts.fault();

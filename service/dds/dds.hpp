@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -93,6 +94,9 @@ class Writer {
   void dispose(const M& message);
   /// Readers that are matched now, in this process and others.
   std::uint32_t matched_readers() const;
+  /// Those of them that keep all (KEEP_ALL), as archives do: they make a writer wait rather than
+  /// lose anything.
+  std::uint32_t matched_archives() const;
   /// False when `timeout` passed before every matched reader had everything.
   bool wait_for_acknowledgments(std::chrono::nanoseconds timeout);
 
@@ -100,6 +104,11 @@ class Writer {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Why a receiver would refuse the message (idl/README.md, "What a receiver refuses"); absent where
+/// it would not. M is TelemetryFrame or ParameterDescriptor.
+template <class M>
+std::optional<std::string> refusal(const M& message);
 
 /// Bounds of what a reader keeps before it is taken, and of what it accepts.
 struct ReaderOptions {

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "service/dds/codec.hpp"
 #include "service/dds/domain.hpp"
 
@@ -29,10 +33,48 @@ struct Writer<M>::Impl {
     }
   }
 
+  /// Counts them again where readers came or went since the last call: each of either changes the
+  /// status.
+  std::uint32_t count_archives() {
+    dds_publication_matched_status_t status{};
+    check(dds_get_publication_matched_status(writer.get(), &status),
+          "dds_get_publication_matched_status", name);
+    const std::pair now(status.total_count, status.current_count);
+    if (now != std::exchange(counted, now)) {
+      archives = 0;
+      for (const dds_instance_handle_t reader : matched())
+        if (keeps_all(reader)) ++archives;
+    }
+    return archives;
+  }
+
   static constexpr const char* name = Codec<M>::profile.topic;
   Entity topic;
   Entity writer;
   typename Codec<M>::Encoder encode;
+
+ private:
+  std::vector<dds_instance_handle_t> matched() const {
+    const dds_return_t count = check(dds_get_matched_subscriptions(writer.get(), nullptr, 0),
+                                     "dds_get_matched_subscriptions", name);
+    std::vector<dds_instance_handle_t> readers(static_cast<std::size_t>(count));
+    const dds_return_t there =
+        check(dds_get_matched_subscriptions(writer.get(), readers.data(), readers.size()),
+              "dds_get_matched_subscriptions", name);
+    readers.resize(std::min(readers.size(), static_cast<std::size_t>(there)));
+    return readers;
+  }
+  bool keeps_all(dds_instance_handle_t reader) const {
+    dds_builtintopic_endpoint_t* endpoint = dds_get_matched_subscription_data(writer.get(), reader);
+    if (endpoint == nullptr) return false;  // it has just left
+    dds_history_kind_t kind = DDS_HISTORY_KEEP_LAST;
+    dds_qget_history(endpoint->qos, &kind, nullptr);
+    dds_builtintopic_free_endpoint(endpoint);
+    return kind == DDS_HISTORY_KEEP_ALL;
+  }
+
+  std::pair<std::uint32_t, std::uint32_t> counted;  // readers that ever came, and those there now
+  std::uint32_t archives = 0;
 };
 
 template <class M>
@@ -73,12 +115,27 @@ std::uint32_t Writer<M>::matched_readers() const {
 }
 
 template <class M>
+std::uint32_t Writer<M>::matched_archives() const {
+  return impl_->count_archives();
+}
+
+template <class M>
 bool Writer<M>::wait_for_acknowledgments(std::chrono::nanoseconds timeout) {
   const dds_return_t result = dds_wait_for_acks(impl_->writer.get(), timeout.count());
   if (result == DDS_RETCODE_TIMEOUT) return false;
   check(result, "dds_wait_for_acks", impl_->name);
   return true;
 }
+
+template <class M>
+std::optional<std::string> refusal(const M& message) {
+  typename Codec<M>::Encoder encode;
+  M received;
+  return Codec<M>::decode(encode(message), ReaderOptions{}, received);
+}
+
+template std::optional<std::string> refusal(const storage::TelemetryFrame&);
+template std::optional<std::string> refusal(const storage::ParameterDescriptor&);
 
 template class Writer<storage::TelemetryFrame>;
 template class Writer<storage::ParameterDescriptor>;

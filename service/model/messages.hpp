@@ -153,6 +153,7 @@ struct ServiceStatus {
   std::int64_t term = 0;          // the last that it knows
   std::string partner;            // instance name of the other one, while it is heard
   std::int64_t lag = 0;           // rows of the registry that one of the two lacks; -1: not known
+  std::uint64_t descriptors_rejected = 0;
 };
 
 /// Who leads a pair of services, said many times a second by whoever does.
@@ -180,6 +181,7 @@ struct Replica {
 inline std::vector<std::pair<const char*, std::uint64_t>> counts(const ServiceStatus& status) {
   return {{"frames_received", status.frames_received},
           {"frames_rejected", status.frames_rejected},
+          {"descriptors_rejected", status.descriptors_rejected},
           {"samples_stored", status.samples_stored},
           {"duplicates", status.duplicates},
           {"conflicts", status.conflicts},

@@ -44,11 +44,38 @@ std::optional<std::string> parse_name(std::string_view text) {
 /// For people; --json is for programs.
 std::string sentence(const PublisherSummary& summary) {
   if (summary.frames == 0) return fmt::format("{}: no frame was published", name(summary.outcome));
-  return fmt::format(
+  std::string text = fmt::format(
       "{}: {} frames with {} samples ({} invalid) of {} parameters, {} to {}, in {:.2f} s",
       name(summary.outcome), summary.frames, summary.samples, summary.invalid_samples,
       summary.parameters, time_text(summary.first_time), time_text(summary.last_time),
       summary.wall_s);
+  if (summary.frames_missed > 0)
+    text += fmt::format("; {} frames reached no archive", summary.frames_missed);
+  return text;
+}
+
+/// For programs.
+std::string to_json(const PublisherSummary& summary, const Sender& sender,
+                    const PublisherOptions& options, const std::function<std::string()>& more) {
+  nlohmann::ordered_json json = {
+      {"outcome", name(summary.outcome)}, {"spacecraft", options.spacecraft},
+      {"source", sender.source},          {"origin", storage::name(sender.origin)},
+      {"parameters", summary.parameters}, {"frames", summary.frames},
+      {"samples", summary.samples},       {"invalid_samples", summary.invalid_samples}};
+  const bool any = summary.frames > 0;
+  json["first_sequence"] = any ? nlohmann::ordered_json(summary.first_sequence) : nullptr;
+  json["last_sequence"] = any ? nlohmann::ordered_json(summary.last_sequence) : nullptr;
+  json["first_time"] = any ? nlohmann::ordered_json(time_text(summary.first_time)) : nullptr;
+  json["last_time"] = any ? nlohmann::ordered_json(time_text(summary.last_time)) : nullptr;
+  json["frames_missed"] = summary.frames_missed;
+  json["wall_s"] = summary.wall_s;
+  json["lost"] = nlohmann::ordered_json::array();
+  for (const LostFrames& lost : summary.lost)
+    json["lost"].push_back({{"frames", lost.frames},
+                            {"first_time", time_text(lost.first_time)},
+                            {"last_time", time_text(lost.last_time)}});
+  if (more) json["packets"] = nlohmann::ordered_json::parse(more());
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 /// What to do about an outcome that is not the one asked for; empty where there is nothing.
@@ -56,7 +83,7 @@ std::string remedy(Outcome outcome, const PublisherOptions& options) {
   if (outcome == Outcome::no_readers) {
     return fmt::format(
         "fewer than {} readers came within the time-out; start reidentd on domain {} and partition "
-        "'{}', or wait longer with --wait-timeout",
+        "'{}', or wait longer with --wait-timeout (a simulator alone is no archive)",
         options.wait_readers, options.endpoint.domain, options.endpoint.partition);
   }
   if (outcome == Outcome::not_acknowledged) {
@@ -77,6 +104,20 @@ int exit_code(Outcome outcome, int signal) {
       break;
   }
   return exit_not_delivered;
+}
+
+/// Throws BadRequest where a service would refuse what is sent, such as a name that is not UTF-8.
+void check_names(const FrameStream& stream, const Sender& sender, const PublisherOptions& options) {
+  storage::TelemetryFrame frame;
+  frame.spacecraft = options.spacecraft;
+  frame.source = sender.source;
+  if (const auto reason = dds::refusal(frame)) throw BadRequest(*reason + "; give another name");
+  for (auto descriptor : stream.parameters()) {
+    descriptor.spacecraft = options.spacecraft;
+    if (const auto reason = dds::refusal(descriptor))
+      throw BadRequest(fmt::format("parameter '{}': a service would refuse it: {}; correct it",
+                                   descriptor.name, *reason));
+  }
 }
 
 int complain(const CLI::App& app, std::string_view message, int code) {
@@ -107,7 +148,8 @@ void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& opti
   app.add_option("--first-sequence", sender.first_sequence, "Sequence number of the first frame")
       ->capture_default_str();
   app.add_option("--wait-readers", options.wait_readers,
-                 "Write nothing while fewer readers are there")
+                 "Write nothing while fewer readers are there, or no archive (a reader that keeps\n"
+                 "all, as reidentd does) is among them; 0: write for whoever is there")
       ->capture_default_str();
   add_parsed(app, "--wait-timeout", options.wait_timeout, parse_wait,
              "Give up when readers, or their acknowledgments, are missing for so long",
@@ -139,27 +181,6 @@ void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& opti
   app.add_flag("--json", json, "Print the summary as one JSON object");
 }
 
-std::string to_json(const PublisherSummary& summary, const Sender& sender,
-                    const PublisherOptions& options) {
-  nlohmann::ordered_json json = {
-      {"outcome", name(summary.outcome)}, {"spacecraft", options.spacecraft},
-      {"source", sender.source},          {"origin", storage::name(sender.origin)},
-      {"parameters", summary.parameters}, {"frames", summary.frames},
-      {"samples", summary.samples},       {"invalid_samples", summary.invalid_samples}};
-  const bool any = summary.frames > 0;
-  json["first_sequence"] = any ? nlohmann::ordered_json(summary.first_sequence) : nullptr;
-  json["last_sequence"] = any ? nlohmann::ordered_json(summary.last_sequence) : nullptr;
-  json["first_time"] = any ? nlohmann::ordered_json(time_text(summary.first_time)) : nullptr;
-  json["last_time"] = any ? nlohmann::ordered_json(time_text(summary.last_time)) : nullptr;
-  json["wall_s"] = summary.wall_s;
-  json["lost"] = nlohmann::ordered_json::array();
-  for (const LostFrames& lost : summary.lost)
-    json["lost"].push_back({{"frames", lost.frames},
-                            {"first_time", time_text(lost.first_time)},
-                            {"last_time", time_text(lost.last_time)}});
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
   app.set_version_flag("--version", std::string(program_version()));
   try {
@@ -179,10 +200,11 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
 }
 
 int publish_and_report(FrameStream& stream, const Sender& sender, const PublisherOptions& options,
-                       bool json) {
-  const StopSignal stop;
+                       bool json, const StopSignal& stop,
+                       const std::function<std::string()>& more) {
+  check_names(stream, sender, options);
   const PublisherSummary summary = publish(stream, options, stop.token());
-  fmt::print("{}\n", json ? to_json(summary, sender, options) : sentence(summary));
+  fmt::print("{}\n", json ? to_json(summary, sender, options, more) : sentence(summary));
   if (const std::string what = remedy(summary.outcome, options); !what.empty()) {
     log::error("satcs", what);
   }

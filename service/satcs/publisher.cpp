@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -73,6 +74,7 @@ class Publication {
     if (!readers_are_there()) unheard_.ended();
     summary_.lost = unheard_.lost();
     progress_.clear();
+    for (const auto& [source, sender] : senders_) summary_.frames_missed += sender.unheard;
     warn_of_lost();
     summary_.wall_s = std::chrono::duration<double>(Clock::now() - began).count();
     return summary_;
@@ -89,6 +91,9 @@ class Publication {
   void follow(const storage::TelemetryFrame& frame);
   /// Logs each hole once, when it has ended.
   void warn_of_lost();
+  /// Stays for readers that join late; false when it was stopped.
+  bool linger();
+  void meet_late_archive();
   void count(const storage::TelemetryFrame& frame);
   void show_progress(const storage::TelemetryFrame& frame);
 
@@ -101,7 +106,11 @@ class Publication {
   UnheardFrames unheard_;
   std::atomic<std::uint64_t> written_ = 0, acknowledged_ = 0;  // frames
   std::size_t warned_ = 0;                                     // holes that the log has
-  std::map<std::string, Pacer, std::less<>> pacers_;           // by sender: their clocks may differ
+  struct SenderState {
+    Pacer pacer;                // of its own: their clocks may differ
+    std::uint64_t unheard = 0;  // frames since an archive listened
+  };
+  std::map<std::string, SenderState, std::less<>> senders_;
   Progress progress_;
   PublisherSummary summary_;
   std::jthread hearing_;  // ends first
@@ -117,10 +126,34 @@ Outcome Publication::all() {
   if (const Outcome outcome = wait_for_acknowledgments(); outcome != Outcome::complete) {
     return outcome;
   }
-  if (options_.linger.count() == 0) return Outcome::complete;
   // A stop ends the linger early and takes nothing from what was delivered.
-  if (!sleep_until(Clock::now() + options_.linger, stop_)) return Outcome::complete;
+  if (!linger()) return Outcome::complete;
   return wait_for_acknowledgments();
+}
+
+bool Publication::linger() {
+  constexpr auto look_again = std::chrono::milliseconds(100);
+  if (options_.linger.count() == 0) return true;
+  log::info("satcs", "every frame is written; staying for readers that join late",
+            {{"frames", summary_.frames}, {"history", *options_.history}});
+  const auto until = Clock::now() + options_.linger;
+  while (frames_.matched_archives() == 0 && Clock::now() < until)
+    if (!sleep_until(std::min(until, Clock::now() + look_again), stop_)) return false;
+  meet_late_archive();
+  return sleep_until(until, stop_);
+}
+
+void Publication::meet_late_archive() {
+  if (frames_.matched_archives() == 0) return;
+  for (auto& [source, sender] : senders_) {
+    const auto kept = static_cast<std::uint64_t>(*options_.history);
+    if (const std::uint64_t unheard = std::exchange(sender.unheard, 0); unheard > kept) {
+      summary_.frames_missed += unheard - kept;
+      progress_.clear();
+      log::warning("satcs", "an archive came late; frames had left the history and it misses them",
+                   {{"source", source}, {"missed", unheard - kept}, {"history", kept}});
+    }
+  }
 }
 
 Outcome Publication::write_frames() {
@@ -129,11 +162,14 @@ Outcome Publication::write_frames() {
   while (stream_.next(frame)) {
     frame.spacecraft = options_.spacecraft;
     const auto now = Clock::now();
-    const auto due = pacers_.try_emplace(frame.source, options_.speed)
-                         .first->second.due(frame.reception_time, now);
+    SenderState& sender =
+        senders_.try_emplace(frame.source, SenderState{Pacer(options_.speed)}).first->second;
+    const auto due = sender.pacer.due(frame.reception_time, now);
     if (due > now) sleep_until(due, stop_);
     if (const Outcome outcome = wait_for_readers(); outcome != Outcome::complete) return outcome;
+    meet_late_archive();
     if (!frames_.write(frame, [this] { return stop_.stop_requested(); })) return Outcome::stopped;
+    if (frames_.matched_archives() == 0) ++sender.unheard;
     count(frame);
     follow(frame);
     show_progress(frame);
@@ -148,19 +184,21 @@ Outcome Publication::wait_for_readers() {
   auto tell = began;
   while (!stop_.stop_requested()) {
     const std::uint32_t readers = frames_.matched_readers();
-    if (readers >= options_.wait_readers) return Outcome::complete;
+    const std::uint32_t archives = frames_.matched_archives();
+    if (readers >= options_.wait_readers && (archives > 0 || options_.wait_readers == 0))
+      return Outcome::complete;
     if (options_.wait_timeout && Clock::now() - began >= *options_.wait_timeout) {
       return Outcome::no_readers;
     }
     if (Clock::now() >= tell) {
       progress_.clear();
-      log::info(
-          "satcs",
-          "waiting for readers of the telemetry; reidentd on this domain and partition is one",
-          {{"readers", readers},
-           {"wanted", options_.wait_readers},
-           {"domain", options_.endpoint.domain},
-           {"partition", options_.endpoint.partition}});
+      log::info("satcs",
+                "waiting for readers of the telemetry; reidentd on this domain and partition is one",
+                {{"readers", readers},
+                 {"archives", archives},
+                 {"wanted", options_.wait_readers},
+                 {"domain", options_.endpoint.domain},
+                 {"partition", options_.endpoint.partition}});
       tell += tell_again;
     }
     sleep_until(Clock::now() + look_again, stop_);

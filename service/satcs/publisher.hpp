@@ -22,7 +22,9 @@ struct PublisherOptions {
   dds::Endpoint endpoint;
   std::string spacecraft;
   double speed = 1;  // seconds of telemetry a second; infinity: as fast as the readers take it
-  std::uint32_t wait_readers = 1;  // no frame is written while fewer readers are there
+  /// No frame is written while fewer readers are there, or none of them is an archive (a reader
+  /// that keeps all); 0: whoever is there.
+  std::uint32_t wait_readers = 1;
   /// How long to wait for the readers, and for their last acknowledgments; absent: for ever.
   std::optional<std::chrono::nanoseconds> wait_timeout;
   /// Frames kept for readers that join late; absent: what the cut needs, or else more than the
@@ -56,6 +58,9 @@ struct PublisherSummary {
   std::uint64_t last_sequence = 0;
   storage::Time first_time = 0;
   storage::Time last_time = 0;
+  /// Frames that no archive can have: none listened when they were sent, and when one came they had
+  /// left the history, or none came.
+  std::uint64_t frames_missed = 0;
   double wall_s = 0;  // time that it took, waiting included
   /// Frames that no reader heard and that cannot be sent again.
   std::vector<LostFrames> lost;

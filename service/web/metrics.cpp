@@ -136,6 +136,8 @@ void put_service(MetricsText& text, const std::optional<HeardStatus>& heard) {
   count("reident_frames_received_total", "Frames of telemetry.", status.frames_received);
   count("reident_frames_rejected_total", "Frames that were malformed or too large.",
         status.frames_rejected);
+  count("reident_descriptors_rejected_total", "Parameter descriptors that were malformed.",
+        status.descriptors_rejected);
   count("reident_samples_stored_total", "Samples that were new.", status.samples_stored);
   count("reident_samples_duplicate_total", "Samples that came again.", status.duplicates);
   count("reident_samples_conflicting_total", "Samples of another value than one of their time.",

@@ -286,9 +286,13 @@ void Append::track_sequences() {
   for (std::size_t f = 0; f < frames_.size(); ++f) {
     Source& source = sources_[frame_source_[f]];
     ++source.frames;
-    if (!frames_[f].numbered) continue;
-    source.tracker.observe(connection_, {frames_[f].sequence, frames_[f].generation_time},
-                           frame_is_new_[f] != 0);
+    const TelemetryFrame& frame = frames_[f];
+    if (!frame.numbered) continue;
+    const bool begins = source.tracker.observe(connection_, {frame.sequence, frame.generation_time},
+                                               frame.first_sequence, frame_is_new_[f] != 0);
+    if (begins && frame.sequence > std::max<std::uint64_t>(frame.first_sequence, 1))
+      report_.late_starts.push_back(
+          {frame.spacecraft, frame.source, frame.sequence, frame.first_sequence});
   }
 }
 

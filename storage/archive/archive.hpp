@@ -41,6 +41,15 @@ struct AppendReport {
   };
   std::vector<Touched> touched;
 
+  /// A run of a source whose first frame here was not the first that was sent.
+  struct LateStart {
+    std::string spacecraft;
+    std::string source;
+    std::uint64_t came = 0;   // number of the first frame that came
+    std::uint64_t first = 0;  // with which the run began; 0: the source does not say
+  };
+  std::vector<LateStart> late_starts;
+
   /// Samples that were found damaged in the file and set aside (SCHEMA.md), in words.
   std::vector<std::string> damages;
 };

@@ -33,25 +33,34 @@ bool SequenceTracker::fill_gap(sqlite::Connection& connection, Mark frame) {
   return true;
 }
 
-void SequenceTracker::observe(sqlite::Connection& connection, Mark frame, bool brings_new) {
+void SequenceTracker::begin_run(sqlite::Connection& connection, Mark frame, std::uint64_t first) {
+  lowest = highest = frame;
+  if (first == 0 || first >= frame.sequence) return;
+  lowest.sequence = first;
+  add_gap(connection, {first - 1, frame.time}, frame);
+}
+
+bool SequenceTracker::observe(sqlite::Connection& connection, Mark frame, std::uint64_t first,
+                              bool brings_new) {
   if (lowest.sequence > highest.sequence) {
-    lowest = highest = frame;
-    return;
+    begin_run(connection, frame, first);
+    return true;
   }
   if (frame.sequence > highest.sequence) {
     add_gap(connection, highest, frame);
     highest = frame;
-    return;
+    return false;
   }
   ++out_of_order;
   if (frame.sequence < lowest.sequence && lowest.sequence - frame.sequence <= reorder_limit) {
     add_gap(connection, frame, lowest);
     lowest = frame;
-    return;
+    return false;
   }
-  if (fill_gap(connection, frame) || !brings_new) return;
+  if (fill_gap(connection, frame) || !brings_new) return false;
   ++restarts;
-  lowest = highest = frame;
+  begin_run(connection, frame, first);
+  return true;
 }
 
 }  // namespace reident::storage

@@ -4,7 +4,8 @@
 // between them. A frame either goes on (above the highest), fills a gap, or comes below the lowest
 // within `reorder_limit` (reordered at the start, or played backwards). Any other frame was seen:
 // if it brings samples that the archive did not know, the source has begun to count again, and a
-// new run starts; else it is a repetition. Gaps of earlier runs stay as they are.
+// new run starts; else it is a repetition. Gaps of earlier runs stay as they are. Where a source
+// says with which number its run began, what came before the first frame of the run is a gap too.
 #pragma once
 
 #include <cstdint>
@@ -38,9 +39,12 @@ class SequenceTracker {
   std::uint64_t restarts = 0;  // also the number of the current run
   std::uint64_t missing = 0;   // modulo 2^64; exact below that
 
-  void observe(sqlite::Connection& connection, Mark frame, bool brings_new);
+  /// `first` is the first number of the source's run; 0 where the source does not say. Returns
+  /// whether a run began with this frame.
+  bool observe(sqlite::Connection& connection, Mark frame, std::uint64_t first, bool brings_new);
 
  private:
+  void begin_run(sqlite::Connection& connection, Mark frame, std::uint64_t first);
   void add_gap(sqlite::Connection& connection, Mark before, Mark after);
   bool fill_gap(sqlite::Connection& connection, Mark frame);
 };

@@ -43,6 +43,7 @@ struct TelemetryFrame {
   Time reception_time = 0;     // on the ground
   std::vector<Sample> samples;
   bool numbered = true;  // false: it has no sequence number, as one that comes from a file
+  std::uint64_t first_sequence = 0;  // of the source's run; 0: the source does not say
 };
 
 enum class ParameterKind : std::uint8_t { analog = 0, digital = 1 };

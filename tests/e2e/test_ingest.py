@@ -104,6 +104,39 @@ class Ingest(EndToEnd):
         self.assert_stored(parameters(table))
         self.assertEqual(self.missing_sequences(), 0)
 
+    def test_a_replay_waits_for_an_archive_and_not_for_a_simulator(self):
+        table = list(plant.rows(240))
+        csv = plant.write(self.folder / "t.csv", table)
+        self.start("reident-simulator", "--spacecraft", "SAT", "--equipment", "PLANT", "--name",
+                   "trainer", "--cache", self.folder / "cache", *self.endpoint())
+        replay = self.replay(csv, "--speed", "max", "--history", 100, "--linger", "60s")
+        wait_until(lambda: "waiting for readers" in replay.text(), "the replay waits")
+        self.configure([plant.equipment(window="1h", slide="1h")])
+        self.start_daemon()
+        wait_until(lambda: self.stored() == 720, "every row is archived")
+        replay.signal(signal.SIGTERM)
+        self.assertEqual(replay.wait(), 0, replay.text())
+        self.assertEqual(json.loads(replay.out.read_text())["frames_missed"], 0)
+        self.assert_stored(parameters(table))
+        self.assertEqual(self.missing_sequences(), 0)
+
+    def test_what_left_the_history_before_the_archive_came_is_counted_on_both_sides(self):
+        table = list(plant.rows(240))
+        csv = plant.write(self.folder / "t.csv", table)
+        replay = self.replay(csv, "--speed", "max", "--wait-readers", 0, "--history", 100,
+                             "--linger", "60s")
+        wait_until(lambda: "every frame is written" in replay.text(), "the replay lingers")
+        self.configure([plant.equipment(window="1h", slide="1h")])
+        daemon = self.start_daemon()
+        wait_until(lambda: self.stored() == 300, "the history is archived")
+        replay.signal(signal.SIGTERM)
+        self.assertEqual(replay.wait(), 0, replay.text())
+        self.assertEqual(json.loads(replay.out.read_text())["frames_missed"], 140)
+        self.assert_stored(parameters(table[140:]))
+        self.assertEqual(self.wait_idle()["sequence_missing"], 140)
+        self.assertEqual(self.query("SELECT first, last FROM telemetry_gap"), [(1, 140)])
+        self.assertIn("first_sequence=141 missing=140", daemon.text())
+
     def test_a_second_service_on_the_same_archive_is_refused(self):
         self.configure([plant.equipment()])
         first = self.start_daemon()
@@ -170,6 +203,17 @@ class Faults(EndToEnd):
         self.assertEqual(infinite, ["invalid"] * 3)
         self.assertIn((4_000_000_000, second + 7 * NS),
                       {(int(n) if str(n).isdigit() else n, at) for n, at in samples})
+
+    def test_descriptors_that_cannot_be_taken_are_counted_with_the_reason(self):
+        self.configure([plant.equipment(window="1h", slide="1h")])
+        daemon = self.start_daemon()
+        self.publish([{"descriptor": {"id": 1, "name": "drive", "unit": "V"}},
+                      {"descriptor": {"id": 2, "name": ""}},
+                      {"descriptor": {"id": 3, "name": "n" * 256}},
+                      {"frame": {"sequence": 1, "time": 1_600_000_000 * NS, "samples": [[1, 1.0]]}}])
+        wait_until(lambda: self.wait_idle()["descriptors_rejected"] == 2, "two are counted")
+        self.assertIn("name is longer than 255 bytes", daemon.text())
+        self.assertEqual(self.query("SELECT name FROM parameter"), [("drive",)])
 
     def test_good_telemetry_is_identified_in_spite_of_clock_jumps_and_late_frames(self):
         self.configure([plant.equipment()])

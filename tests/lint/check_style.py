@@ -48,6 +48,9 @@ FORBIDDEN_INCLUDES = [  # folder, pattern of what it must not include, why
     ("service/web/", r"service/(daemon|operations|cli)/", "the page writes nothing"),
     ("service/(?!web/)", r"service/web/|boost/(asio|beast)/", "HTTP appears under service/web alone"),
     ("service/(client|dds|model)/", r"storage/(?!types/)", "simulators hold no database"),
+    ("(?!service/satcs/gateway/)", r"libxml/", "XML is read by the gateway alone"),
+    ("service/satcs/gateway/(?!gateway_main)", r"service/dds/|service/satcs/(replay|reference|program)",
+     "packets become frames without a middleware"),
     ("service/telemetry_file/", r"storage/|service/(?!support/|telemetry_file/)",
      "the reader of files knows files alone"),
 ]

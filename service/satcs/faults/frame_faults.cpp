@@ -91,6 +91,7 @@ class TwoStations : public FaultStage {
     if (phase >= turn / 3) {
       Flight heard = flight;
       heard.frame.source += "-2";
+      heard.frame.first_sequence = 0;  // it hears what comes, and does not know when that began
       heard.frame.reception_time += ahead_;
       if (stamps_) heard.frame.generation_time += ahead_;
       if (first_hears) on.push_back(std::move(flight));
@@ -159,6 +160,7 @@ class SimulatedAsReal : public FaultStage {
     Flight flight{beside.generated, beside.arrival, {}};
     flight.frame.source = "simulator";
     flight.frame.sequence = ++sent_;
+    flight.frame.first_sequence = 1;
     flight.frame.generation_time = beside.frame.generation_time;
     flight.frame.reception_time = beside.frame.reception_time;
     simulator_.read(flight.frame.samples);

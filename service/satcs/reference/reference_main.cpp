@@ -149,10 +149,10 @@ int main(int argc, char** argv) {
     auto stream =
         simulated ? handwritten_stream(options, sender) : reference_stream(options, sender);
     if (!faults.empty()) stream = with_faults(std::move(stream), faults, options);
-    if (csv.empty()) return publish_and_report(*stream, sender, publisher, json);
+    const reident::StopSignal stop;
+    if (csv.empty()) return publish_and_report(*stream, sender, publisher, json, stop);
     if (!replace && std::filesystem::exists(csv))
       throw BadRequest(csv + " exists; name another file, or replace it with --replace");
-    const reident::StopSignal stop;
     using reident::OutputFile;
     OutputFile file(csv, replace ? OutputFile::Existing::replaced : OutputFile::Existing::kept);
     return write_csv(*stream, file, stop.token()) ? exit_complete : exit_signal + stop.number();

@@ -29,6 +29,7 @@ class SecondsStream : public FrameStream {
     frame.source = sender_.source;
     frame.origin = sender_.origin;
     frame.sequence = sender_.first_sequence + frames_done_;
+    frame.first_sequence = sender_.first_sequence;
     frame.generation_time = frame.reception_time = model_.time();
     model_.read(frame.samples);
     ++frames_done_;

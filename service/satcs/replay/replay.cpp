@@ -197,6 +197,7 @@ bool ReplayStream::next(storage::TelemetryFrame& frame) {
   frame.source = sender_.source;
   frame.origin = sender_.origin;
   frame.sequence = sender_.first_sequence + rows_done_;
+  frame.first_sequence = sender_.first_sequence;
   frame.samples.clear();
   for (const auto& column : plan_.columns) {
     const Cell cell = reader_.cell(column.position);

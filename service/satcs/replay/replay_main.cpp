@@ -112,6 +112,7 @@ int main(int argc, char** argv) {
     read_arguments(reading, replay);
     if (reading.dry_run) return show(replay);
     ReplayStream stream = open_replay(replay, sender);
-    return publish_and_report(stream, sender, publisher, json);
+    const reident::StopSignal stop;
+    return publish_and_report(stream, sender, publisher, json, stop);
   });
 }

@@ -18,6 +18,7 @@ TEST(Telemetry, ArrivesAsItWasSent) {
   sent.origin = storage::Origin::simulated;
   sent.samples[1].quality = storage::Quality::suspect;
   sent.samples[2].value = -0.0;
+  sent.first_sequence = 5;
   writer.write(sent);
 
   const auto received = take_all(reader, 1);
@@ -26,11 +27,41 @@ TEST(Telemetry, ArrivesAsItWasSent) {
   EXPECT_EQ(received[0].source, "station");
   EXPECT_EQ(received[0].origin, storage::Origin::simulated);
   EXPECT_EQ(received[0].sequence, 7U);
+  EXPECT_EQ(received[0].first_sequence, 5U);
   EXPECT_EQ(received[0].generation_time, sent.generation_time);
   EXPECT_EQ(received[0].reception_time, sent.reception_time);
   ASSERT_EQ(received[0].samples.size(), 3U);
   EXPECT_EQ(received[0].samples[1].quality, storage::Quality::suspect);
   EXPECT_TRUE(std::signbit(received[0].samples[2].value));
+}
+
+TEST(Telemetry, AReaderThatKeepsTheNewestAloneIsNoArchive) {
+  dds::Participant ground(own_endpoint());
+  dds::Participant others(own_endpoint());
+  dds::Writer<TelemetryFrame> writer(ground);
+  EXPECT_EQ(writer.matched_archives(), 0U);
+  const dds::Reader<TelemetryFrame> simulator(others, {.keep_last = 16});
+  ASSERT_TRUE(eventually([&] { return writer.matched_readers() == 1; }));
+  EXPECT_EQ(writer.matched_archives(), 0U);
+  {
+    const dds::Reader<TelemetryFrame> archive(others);
+    ASSERT_TRUE(eventually([&] { return writer.matched_archives() == 1; }));
+  }
+  EXPECT_TRUE(eventually([&] { return writer.matched_archives() == 0; }));
+  EXPECT_EQ(writer.matched_readers(), 1U);
+}
+
+TEST(Telemetry, ASenderKnowsWhatAReceiverWouldRefuse) {
+  TelemetryFrame frame = make_frame(1);
+  EXPECT_EQ(dds::refusal(frame), std::nullopt);
+  frame.source = "Rio de Janeiro \xe3";
+  EXPECT_EQ(dds::refusal(frame), "source is not UTF-8");
+  storage::ParameterDescriptor descriptor{.spacecraft = "SAT", .id = 1, .name = "V"};
+  EXPECT_EQ(dds::refusal(descriptor), std::nullopt);
+  descriptor.unit =
+      "\xb0"
+      "C";
+  EXPECT_EQ(dds::refusal(descriptor), "unit is not UTF-8");
 }
 
 TEST(Telemetry, ALateReaderGetsTheHistoryThatTheWriterKeeps) {

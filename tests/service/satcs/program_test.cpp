@@ -271,6 +271,10 @@ TEST_F(Programs, RefuseImpossibleRequestsInOneLine) {
   }
   EXPECT_EQ(Child(command(SATCS_REPLAY, "none.csv --spacecraft S")).wait(), 2);
   EXPECT_EQ(errors(), "satcs-replay: none.csv: there is no such file; check the path\n");
+  EXPECT_EQ(Child(replay("--force-times --source \xe9")).wait(), 2);
+  EXPECT_THAT(errors(), HasSubstr("satcs-replay: source is not UTF-8; give another name\n"));
+  EXPECT_EQ(Child(replay("--force-times --map a=caf\xe9")).wait(), 2);
+  EXPECT_THAT(errors(), HasSubstr("a service would refuse it: name is not UTF-8"));
   EXPECT_EQ(Child(command(SATCS_REFERENCE, "--fault stuk@+1h/+2h:V_BUS")).wait(), 2);
   EXPECT_THAT(errors(),
               HasSubstr("satcs-reference: --fault: 'stuk@+1h/+2h:V_BUS': there is no fault "

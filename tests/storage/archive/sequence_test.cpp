@@ -24,6 +24,12 @@ class SequenceTest : public ArchiveTest {
   void fresh(const std::vector<std::uint64_t>& sequences) {
     for (const std::uint64_t sequence : sequences) fresh(sequence);
   }
+  /// As the first, of a source whose run began with `first`.
+  void fresh_of_run(std::uint64_t first, std::uint64_t sequence) {
+    TelemetryFrame one = frame(sequence, ++clock_, {{1, Quality::good, 1}});
+    one.first_sequence = first;
+    late_starts_ = archive.append(std::vector{one}).late_starts;
+  }
   void repeated(std::uint64_t sequence) {
     append({frame(sequence, clock_, {{1, Quality::good, 1}})});
   }
@@ -33,6 +39,8 @@ class SequenceTest : public ArchiveTest {
     return gaps;
   }
   SourceCounts counts() const { return archive.sources().at(0); }
+
+  std::vector<AppendReport::LateStart> late_starts_;  // of the last frame of a run
 
  private:
   Time clock_ = 0;
@@ -123,6 +131,43 @@ TEST_F(SequenceTest, FollowsAPlaybackThatRunsBackwards) {
   EXPECT_THAT(gaps(), ElementsAre(Gap(97, 97)));
   EXPECT_EQ(counts().restarts, 0U);
   EXPECT_EQ(counts().last_sequence, 100U);
+}
+
+TEST_F(SequenceTest, CountsWhatASourceSentBeforeItWasHeard) {
+  fresh_of_run(1, 141);
+  ASSERT_EQ(late_starts_.size(), 1U);
+  EXPECT_EQ(late_starts_[0].came, 141U);
+  EXPECT_EQ(late_starts_[0].first, 1U);
+  EXPECT_THAT(gaps(), ElementsAre(Gap(1, 140)));
+  fresh_of_run(1, 142);
+  EXPECT_THAT(late_starts_, IsEmpty());
+  fresh_of_run(1, 3);
+  EXPECT_THAT(gaps(), ElementsAre(Gap(1, 2), Gap(4, 140))) << "it was late";
+  EXPECT_EQ(counts().missing, 139U);
+  EXPECT_EQ(counts().restarts, 0U);
+}
+
+TEST_F(SequenceTest, CountsNothingBeforeARunThatWasHeardFromItsBegin) {
+  fresh_of_run(501, 501);
+  EXPECT_THAT(gaps(), IsEmpty());
+  EXPECT_THAT(late_starts_, IsEmpty());
+}
+
+TEST_F(SequenceTest, DoesNotGuessWhereASourceBeganThatDoesNotSay) {
+  fresh_of_run(0, 141);
+  EXPECT_THAT(gaps(), IsEmpty());
+  ASSERT_EQ(late_starts_.size(), 1U);
+  EXPECT_EQ(late_starts_[0].first, 0U);
+}
+
+TEST_F(SequenceTest, CountsWhatIsMissingAtTheBeginOfASecondRun) {
+  fresh_of_run(1, 1);
+  fresh_of_run(1, 2);
+  fresh_of_run(1, 3);
+  fresh_of_run(1, 4);
+  fresh_of_run(1, 3);
+  EXPECT_EQ(counts().restarts, 1U);
+  EXPECT_THAT(gaps(), ElementsAre(Gap(1, 2)));
 }
 
 TEST_F(SequenceTest, KeepsAnAbsurdJumpAsOneGapAndGoesOn) {
