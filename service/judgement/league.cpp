@@ -76,12 +76,16 @@ void extend(Comparison& comparison, const League& league, const Member& one, con
                  });
 }
 
-/// Scores without what an offset explains of the champion's error in each last cycle: a constant,
-/// or with `effect` above 0 that sensor's.
-std::vector<double> scores_without_offset(const League& league, const Member& member,
-                                          const Comparison& compared, std::size_t effect,
-                                          const SensorPast& past) {
-  Scores scores;
+/// What an offset explains of the champion's error in each last cycle: a constant, or with `effect`
+/// above 0 that of a sensor.
+struct WithoutOffset {
+  Scores member;  // of the member, against the champion without it
+  Scores offset;  // of the champion without it against itself, where the sensor has departed
+};
+
+WithoutOffset without_offset(const League& league, const Member& member, const Comparison& compared,
+                             std::size_t effect, const SensorPast& past) {
+  WithoutOffset found;
   for (const std::size_t i : compared.blocks) {
     OffsetFit fit(effect, past);
     for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
@@ -89,11 +93,13 @@ std::vector<double> scores_without_offset(const League& league, const Member& me
           score && counts(league.blocks[k]))
         fit.add(phase_of(league.blocks[k]), *score);
     const Time begin = league.blocks[i].range.begin;
-    BlockScore champion = *find(*league.champion, begin);
-    champion.square = fit.rest(champion);
-    scores.add(squares_of(*find(member, begin), champion));
+    const BlockScore& champion = *find(*league.champion, begin);
+    BlockScore corrected = champion;
+    corrected.square = fit.rest(champion);
+    found.member.add(squares_of(*find(member, begin), corrected));
+    if (fit.is_departed()) found.offset.add(squares_of(corrected, champion));
   }
-  return scores.values();
+  return found;
 }
 
 /// The past of the sensor `effect` is the champion's record before `since`; where that is short,
@@ -217,22 +223,29 @@ std::optional<Reason> unproved_somewhere(Standard& standard, const Member& membe
   return std::nullopt;
 }
 
-/// R3. Whichever sensor's offset explains the most decides.
+/// R3. Whichever sensor's offset explains the most decides; and one that reads otherwise than in
+/// its past, so that the champion would surely err less without its offset, has to be looked at
+/// first.
 std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
                                   const Comparison& compared, Finding& finding) {
   const std::vector<std::string>& unbound = standard.league.unbound;
   if (standard.limits.bias == BiasPolicy::approve || unbound.empty()) return std::nullopt;
+  bool is_offset = false;
   for (std::size_t effect = 0; effect <= offset_effects(*standard.league.champion); ++effect) {
-    const std::vector<double> scores = scores_without_offset(
+    const WithoutOffset without = without_offset(
         standard.league, member, compared, effect,
         effect > 0 ? past_of(standard.league, effect, standard.since) : SensorPast());
-    const ScoreSeries without = series(scores, standard.assumed);
-    const double wealth = log_wealth(without, dependence(without), 0);
+    const ScoreSeries scores = series(without.member.values(), standard.assumed);
+    const double wealth = log_wealth(scores, dependence(scores), 0);
+    if (!without.offset.values().empty()) {
+      const ScoreSeries offset = series(without.offset.values(), standard.assumed);
+      is_offset = is_offset || log_wealth(offset, dependence(offset), 0) > finding.log_threshold;
+    }
     if (effect > 0 && wealth >= finding.wealth_without_offset) continue;
-    finding.mean_without_offset = without.scores.mean();
+    finding.mean_without_offset = scores.scores.mean();
     finding.wealth_without_offset = wealth;
   }
-  if (finding.wealth_without_offset > finding.log_threshold &&
+  if (!is_offset && finding.wealth_without_offset > finding.log_threshold &&
       finding.mean_without_offset > margin_of(standard.limits))
     return std::nullopt;
   std::string sensors;

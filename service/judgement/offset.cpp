@@ -80,6 +80,10 @@ void OffsetFit::add(std::size_t phase, const BlockScore& score) {
   }
 }
 
+bool OffsetFit::is_departed() const {
+  return effect_ > 0 && std::abs(departure_ / rows_) > spreads * past_->spread();
+}
+
 std::vector<double> OffsetFit::rest(const BlockScore& score) const {
   std::vector<double> squares = score.square;
   const double* effect = effect_ > 0 ? effect_in(score, effect_) : nullptr;
