@@ -401,10 +401,31 @@ def build(figures):
                    for key, label in names.items() if key in figures])]
 
 
+def pair_tables(figures):
+    get = figures.get
+    return [table(["what", "median", "at most", "in time"], [
+        [f"kill -9 of the leader, {get('takeovers')} times; 1.5 s",
+         figure(get("takeover_median_s")) + " s", figure(get("takeover_s")) + " s",
+         get("takeovers_in_time")],
+        [f"SIGSTOP of the leader, {get('hangs')} times; 3 s", figure(get("hang_median_s")) + " s",
+         figure(get("hang_s")) + " s", get("hangs_in_time")]]),
+        table(["random kills", "take-overs", "decisions", "commands", "versions", "lost",
+               "overruled", "numbers with two contents"],
+              [[get(key) for key in ("kills", "kill_takeovers", "decisions_committed",
+                                     "commands_answered", "versions", "decisions_lost",
+                                     "decisions_overruled", "split_numbers")]])]
+
+
 @section("operations", "Operation in a failing world",
          "Packages were installed on a bare Debian 12 under its own systemd. The network between a "
          "source, which does not wait, and the service was cut for 60 s at 100 frames a second, and "
-         "lost packets in both directions.")
+         "lost packets in both directions.",
+         "Two real services of a pair ran on loopback. Times are from the failure of the one that "
+         "leads to the publication by the other one, as a simulator in another process hears it.",
+         "The random kills hit either service while an operator gives one command after the other. "
+         "The next one comes once both are in step again. What is lost are decisions that were ever "
+         "committed, commands that were answered and versions that were published, and that are not "
+         "in the registry at the end. Decisions that were overruled are counted apart.")
 def operations(figures):
     names = {"exposure": "worst exposure of a unit (`systemd-analyze security`)",
              "lintian_errors": "errors that lintian finds in the packages",
@@ -431,6 +452,8 @@ def operations(figures):
     tables = [table(["what", "figure"], rows)]
     if steps:
         tables.append(table(["step of a package's life, and of the image's", "its test"], steps))
+    if "takeovers" in figures:
+        tables += pair_tables(figures)
     if figures["left_out"]:
         tables.append("\n".join(fill(f"Left out: {what}: {why}.", "- ")
                                 for what, why in figures["left_out"].items()))
