@@ -15,6 +15,7 @@ void migrate(sqlite::Connection& connection, std::int64_t version) {
   if (version < 6) connection.execute(schema::from_5_to_6());
   if (version < 7) connection.execute(schema::from_6_to_7());
   if (version >= 6 && version < 8) connection.execute(schema::from_7_to_8());
+  if (version < 9) connection.execute(schema::from_8_to_9());
   connection.execute(schema::user_version());
 }
 

@@ -216,13 +216,8 @@ CREATE INDEX attempt_left_waiting ON attempt (id) WHERE outcome IN ('waiting', '
 
 // The insert trigger stops INSERT OR REPLACE, which deletes without asking the delete trigger.
 std::string append_only(const std::string& table, const std::string& same_row) {
-  const auto trigger = [&](const std::string& event, const std::string& condition) {
-    return "CREATE TRIGGER " + table + "_" + event + " BEFORE " + event + " ON " + table + " " +
-           condition + " BEGIN SELECT RAISE(ABORT, 'rows of the table " + table +
-           " are never changed or removed: add a new one'); END;\n";
-  };
-  return trigger("update", "") + trigger("delete", "") +
-         trigger("insert", "WHEN EXISTS (SELECT 1 FROM " + table + " WHERE " + same_row + ")");
+  return guard(table, "update", "") + guard(table, "delete", "") +
+         guard(table, "insert", "WHEN EXISTS (SELECT 1 FROM " + table + " WHERE " + same_row + ")");
 }
 
 std::string append_only_decisions() {
@@ -259,7 +254,7 @@ std::string creation() {
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
                      "equipment = NEW.equipment AND number = NEW.number)") +
-         append_only_decisions() + append_only_scores() + append_only_notices() +
+         append_only_decisions() + append_only_scores() + append_only_notices() + from_8_to_9() +
          "PRAGMA application_id = " + std::to_string(application_id) + ";" + user_version();
 }
 

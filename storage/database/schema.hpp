@@ -1,13 +1,37 @@
 // Tables and views of a database file; SCHEMA.md describes them. Private to storage.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace reident::storage::schema {
 
 inline constexpr std::int64_t application_id = 0x72656964;  // "reid"
-inline constexpr std::int64_t version = 8;                  // kept in SQLite's user_version
+inline constexpr std::int64_t version = 9;                  // kept in SQLite's user_version
+
+/// A table whose rows the services of a pair share, and the columns that name a row in the journal.
+struct JournalledTable {
+  std::string_view name;
+  std::array<std::string_view, 4> key;  // the rest is empty
+};
+/// Each row refers to rows of the tables before it alone.
+inline constexpr std::array journalled_tables{
+    JournalledTable{"term", {"number"}},
+    JournalledTable{"attempt", {"id"}},
+    JournalledTable{"version", {"attempt"}},
+    JournalledTable{"decision", {"id"}},
+    JournalledTable{"hold", {"id"}},
+    JournalledTable{"command", {"id"}},
+    JournalledTable{"alarm", {"id"}},
+    JournalledTable{"change", {"id"}},
+    JournalledTable{"simulator", {"id"}},
+    JournalledTable{"block", {"spacecraft", "equipment", "begin_time"}},
+    JournalledTable{"score", {"spacecraft", "equipment", "version", "begin_time"}}};
+
+/// The key of a row as a JSON array in SQL, of columns that begin with `prefix`.
+std::string key_sql(const JournalledTable& table, const std::string& prefix);
 
 /// Statements that make everything in an empty file, application_id and user_version included.
 std::string creation();
@@ -22,6 +46,15 @@ std::string from_3_to_4();
 std::string from_5_to_6();
 std::string from_6_to_7();
 std::string from_7_to_8();  // from_5_to_6() makes what it adds
+std::string from_8_to_9();
+
+/// The statement that makes a trigger which aborts an event on a table.
+std::string guard(const std::string& table, const std::string& event, const std::string& condition);
+
+/// Statements that take away the triggers which keep rows of these tables from being removed, and
+/// that make them again.
+std::string without_removal_guards();
+std::string removal_guards();
 
 /// Says that the file is of this version.
 std::string user_version();

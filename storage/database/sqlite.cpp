@@ -113,6 +113,42 @@ std::int64_t Query::run_bound() {
   return sqlite3_changes64(sqlite3_db_handle(statement_));
 }
 
+std::int64_t Query::run(const std::vector<Value>& values) {
+  sqlite3_reset(statement_);
+  int index = 0;
+  for (const Value& value : values) {
+    ++index;
+    if (const auto* integer = std::get_if<std::int64_t>(&value))
+      bind_one(index, *integer);
+    else if (const auto* real = std::get_if<double>(&value))
+      bind_one(index, *real);
+    else if (const auto* text = std::get_if<std::string>(&value))
+      bind_one(index, std::string_view(*text));
+    else if (const auto* bytes = std::get_if<std::vector<std::uint8_t>>(&value))
+      bind_bytes(index, *bytes);
+    else
+      bind_null(index);
+  }
+  return run_bound();
+}
+
+Value Query::value(int column) const {
+  switch (sqlite3_column_type(statement_, column)) {
+    case SQLITE_INTEGER:
+      return integer(column);
+    case SQLITE_FLOAT:
+      return real(column);
+    case SQLITE_TEXT:
+      return text(column);
+    case SQLITE_BLOB: {
+      const auto all = bytes(column);
+      return std::vector<std::uint8_t>(all.begin(), all.end());
+    }
+    default:
+      return std::monostate();
+  }
+}
+
 bool Query::is_null(int column) const {
   return sqlite3_column_type(statement_, column) == SQLITE_NULL;
 }
@@ -135,6 +171,11 @@ std::span<const std::uint8_t> Query::bytes(int column) const {
 
 void Query::bind_one(int index, std::span<const std::uint8_t> bytes) {
   check(sqlite3_bind_blob64(statement_, index, bytes.data(), bytes.size(), SQLITE_STATIC));
+}
+
+void Query::bind_bytes(int index, const std::vector<std::uint8_t>& bytes) {
+  static constexpr std::uint8_t nothing = 0;  // a null pointer would be NULL
+  bind_one(index, std::span(bytes.empty() ? &nothing : bytes.data(), bytes.size()));
 }
 
 void Query::bind_one(int index, double value) {

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <type_traits>
 #include <unordered_map>
+#include <variant>
+#include <vector>
 
 #include <sqlite3.h>
 
@@ -26,6 +28,10 @@ namespace reident::storage::sqlite {
 
 /// Name of a file, for SQLITE_OPEN_URI, that is read as one that does not change: no log, no locks.
 std::string immutable_uri(const std::filesystem::path& path);
+
+/// What a column holds, of whatever type; nothing stands for NULL.
+using Value =
+    std::variant<std::monostate, std::int64_t, double, std::string, std::vector<std::uint8_t>>;
 
 /// A statement in use: bound by position, stepped, read. It is reset when the Query ends.
 class Query {
@@ -56,7 +62,12 @@ class Query {
     return run_bound();
   }
 
+  /// As run(), with values whose types are known at run time alone.
+  std::int64_t run(const std::vector<Value>& values);
+
   bool is_null(int column) const;
+  int columns() const { return sqlite3_column_count(statement_); }
+  Value value(int column) const;
   double real(int column) const;
   std::string text(int column) const;
   /// Valid until the next step.
@@ -70,7 +81,8 @@ class Query {
   void bind_one(int index, double value);  // NaN becomes NULL: SQLite has no NaN
   void bind_one(int index, std::string_view text);
   void bind_one(int index, std::int64_t value);
-  void bind_one(int index, std::span<const std::uint8_t> bytes);  // not copied
+  void bind_one(int index, std::span<const std::uint8_t> bytes);       // not copied
+  void bind_bytes(int index, const std::vector<std::uint8_t>& bytes);  // not copied
   void bind_null(int index);
   template <typename T>
   void bind_one(int index, const std::optional<T>& value) {

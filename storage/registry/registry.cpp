@@ -33,12 +33,21 @@ std::int64_t add_decision(sqlite::Connection& connection, const std::string& spa
   return connection.last_id();
 }
 
+/// Above all numbers that were ever given, and in a pair of the same parity as the term: so both
+/// services never give the same one.
 std::int64_t next_number(sqlite::Connection& connection, const NewAttempt& attempt) {
   sqlite::Query row = connection.query(
-      "SELECT coalesce(max(number), 0) + 1 FROM version WHERE spacecraft = ? AND equipment = ?",
+      "SELECT 1 + max(coalesce((SELECT max(number) FROM version "
+      "                         WHERE spacecraft = ?1 AND equipment = ?2), 0), "
+      "               coalesce((SELECT max(json_extract(row_json, '$.number')) FROM overruled "
+      "                         WHERE kind = 'version' "
+      "                           AND json_extract(row_json, '$.spacecraft') = ?1 "
+      "                           AND json_extract(row_json, '$.equipment') = ?2), 0)), "
+      "       (SELECT max(number) FROM term)",
       attempt.spacecraft, attempt.equipment);
   row.step();
-  return row.integer(0);
+  const std::int64_t next = row.integer(0);
+  return !row.is_null(1) && (next - row.integer(1)) % 2 != 0 ? next + 1 : next;
 }
 
 bool follows(DecisionKind kind, std::string_view status) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "storage/database/database.hpp"
+#include "storage/registry/journal.hpp"
 #include "storage/types/registry_rows.hpp"
 #include "storage/types/telemetry.hpp"
 
@@ -27,6 +28,9 @@ class Registry {
  public:
   /// The database must outlive the registry.
   explicit Registry(Database& database);
+
+  /// The same rows in the order of their recording.
+  Journal journal() const { return Journal(database_); }
 
   /// Records an attempt that gave no model. Returns its id.
   std::int64_t record(const NewAttempt& attempt);

@@ -149,8 +149,8 @@ INSERT INTO decision VALUES
 }
 
 // Version 5 differs from 4 in the qualities that a file may hold, 6 has the records of versions,
-// and 7 what the service noticed.
-TEST(MigrationFrom4To7, AddsTheRecordsAndChangesNothingElse) {
+// 7 what the service noticed, 8 what a bias does to a run, and 9 what two services of a pair share.
+TEST(MigrationFrom4To8, AddsTheRecordsAndChangesNothingElse) {
   const TemporaryFolder folder;
   const auto path = folder / "old.db";
   const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
@@ -172,10 +172,18 @@ TEST(MigrationFrom4To7, AddsTheRecordsAndChangesNothingElse) {
       "DROP TABLE simulator; DROP INDEX decision_with_why; DROP INDEX attempt_left_waiting; "
       "PRAGMA user_version = ";
   const std::string without_effects = "ALTER TABLE score DROP COLUMN bias_effects; ";
-  for (const std::string old : {"4", "5", "6", "7"}) {
-    const bool has_records = old == "6" || old == "7";
-    rows(path, (has_records ? without_effects : without_records) +
-                   (old == "7" ? "PRAGMA user_version = " : without_notices) + old);
+  std::string without_pairs =
+      "DROP VIEW overruled_decision; DROP TABLE term; DROP TABLE journal; DROP TABLE overruled; ";
+  for (const char* table : {"attempt", "version", "decision", "hold", "command", "alarm", "change",
+                            "simulator", "block", "score"})
+    without_pairs += "DROP TRIGGER " + std::string(table) + "_journal; ";
+  for (const std::string old : {"4", "5", "6", "7", "8"}) {
+    const bool has_records = old >= "6";
+    const std::string without_more = !has_records ? without_records
+                                     : old == "8" ? std::string()
+                                                  : without_effects;
+    rows(path, without_pairs + without_more +
+                   (old >= "7" ? "PRAGMA user_version = " : without_notices) + old);
     Database migrated(path, Mode::read_write);
     EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
     EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre(std::to_string(schema::version)));
