@@ -63,7 +63,7 @@ void insert_row(Connection& connection, const JournalRow& row) {
   std::string marks;
   for (std::size_t i = 0; i < row.values.size(); ++i) marks += i == 0 ? "?" : ", ?";
   connection
-      .query("INSERT " + std::string(may_be_there ? "OR IGNORE " : "") + "INTO " + row.table +
+      .query("INSERT " + std::string(may_be_there ? "OR REPLACE " : "") + "INTO " + row.table +
              " VALUES (" + marks + ")")
       .run(row.values);
 }

@@ -29,7 +29,7 @@ class Registry {
   /// The database must outlive the registry.
   explicit Registry(Database& database);
 
-  /// The same rows in the order of their recording.
+  /// Its rows in the order of their recording.
   Journal journal() const { return Journal(database_); }
 
   /// Records an attempt that gave no model. Returns its id.

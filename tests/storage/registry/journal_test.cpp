@@ -137,7 +137,7 @@ TEST_F(JournalTest, WhatTwoDecidedApartIsOverruledAndStaysVisibleInBoth) {
   const JournalPart given_up = ours.part(shared, everything);
   theirs.keep_overruled(given_up, ours.term_at(shared), "a", 40);
   theirs.keep_overruled(given_up, ours.term_at(shared), "a", 41);  // comes twice
-  ours.overrule(shared, 40);
+  ours.overrule(shared, 42);
   EXPECT_EQ(ours.last(), shared);
   EXPECT_EQ(champion_at(std::nullopt), 1);
   ours.apply(theirs.part(shared, everything));
