@@ -201,4 +201,38 @@ struct Codec<HistoryReply> {
   static Fault decode(const Wire& wire, const ReaderOptions& options, HistoryReply& reply);
 };
 
+template <>
+struct Codec<Leadership> {
+  using Wire = reident_Leadership;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_Leadership_desc;
+  static constexpr const Profile& profile = leadership;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const Leadership& message);
+
+   private:
+    Wire wire_{};
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, Leadership& message);
+};
+
+template <>
+struct Codec<Replica> {
+  using Wire = reident_Replica;
+  static constexpr const dds_topic_descriptor_t& descriptor = reident_Replica_desc;
+  static constexpr const Profile& profile = replica;
+
+  class Encoder {
+   public:
+    const Wire& operator()(const Replica& message);
+
+   private:
+    Wire wire_{};
+    std::vector<reident_Term> terms_;
+    std::vector<std::uint8_t> rows_;
+  };
+  static Fault decode(const Wire& wire, const ReaderOptions& options, Replica& message);
+};
+
 }  // namespace reident::dds

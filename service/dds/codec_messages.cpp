@@ -143,6 +143,11 @@ const reident_ServiceStatus& Codec<ServiceStatus>::Encoder::operator()(
   wire_.failing_champions = borrow(status.failing_champions);
   wire_.alarms = borrow(status.alarms);
   wire_.equipment = borrow(status.equipment);
+  wire_.pair = borrow(status.pair);
+  wire_.role = borrow(status.role);
+  wire_.term = status.term;
+  wire_.partner = borrow(status.partner);
+  wire_.lag = status.lag;
   return wire_;
 }
 
@@ -171,6 +176,11 @@ Fault Codec<ServiceStatus>::decode(const reident_ServiceStatus& wire,
   status.failing_champions = texts.text(wire.failing_champions, "failing_champions");
   status.alarms = texts.text(wire.alarms, "alarms");
   status.equipment = texts.text(wire.equipment, "equipment");
+  status.pair = texts.text(wire.pair, "pair");
+  status.role = texts.text(wire.role, "role");
+  status.term = wire.term;
+  status.partner = texts.text(wire.partner, "partner");
+  status.lag = wire.lag;
   return texts.fault();
 }
 

@@ -2,8 +2,8 @@
 //
 // M is one of storage::TelemetryFrame, storage::ParameterDescriptor, ModelVersion,
 // IdentificationReport, ModelAcknowledgement, ServiceStatus, CommandRequest, CommandReply,
-// HistoryRequest and HistoryReply; the topic, its key and its QoS follow from it
-// (service/dds/qos.hpp has every profile).
+// HistoryRequest, HistoryReply, Leadership and Replica; the topic, its key and its QoS follow from
+// it (service/dds/qos.hpp has every profile).
 #pragma once
 
 #include <chrono>
@@ -62,7 +62,8 @@ class Participant {
 /// How much telemetry a writer keeps for services that join late or restart, in frames of one
 /// source.
 struct WriterOptions {
-  std::int32_t history = 1;  // used for TelemetryFrame alone; 0 keeps nothing for late joiners
+  std::int32_t history = 1;   // used for TelemetryFrame alone; 0 keeps nothing for late joiners
+  std::int32_t strength = 0;  // used for Leadership alone: the strongest writer is heard
 };
 
 /// Writes one topic. One thread at a time: a writer keeps the buffers of its last message. Its end
@@ -146,6 +147,9 @@ class Reader {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Whoever leads a pair says so within this time, or leads no more.
+inline constexpr std::chrono::milliseconds leadership_lease{1000};
 
 /// How long a thread waits at most before it looks whether it has to stop; data and wake() end
 /// the wait earlier.

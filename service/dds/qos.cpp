@@ -20,6 +20,11 @@ Qos reliable_qos(const Profile& profile) {
   } else {
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, profile.history);
   }
+  if (profile.lease.count() > 0) {
+    dds_qset_ownership(qos.get(), DDS_OWNERSHIP_EXCLUSIVE);
+    dds_qset_liveliness(qos.get(), DDS_LIVELINESS_MANUAL_BY_TOPIC,
+                        std::chrono::nanoseconds(profile.lease).count());
+  }
   return qos;
 }
 
@@ -36,6 +41,7 @@ Qos writer_qos(const Profile& profile, const WriterOptions& options) {
   const std::int32_t late_joiners =
       profile.history == keep_all ? options.history : profile.late_joiners;
   dds_qset_writer_data_lifecycle(qos.get(), profile.autodispose);
+  if (profile.lease.count() > 0) dds_qset_ownership_strength(qos.get(), options.strength);
   if (profile.lifespan.count() > 0)
     dds_qset_lifespan(qos.get(), std::chrono::nanoseconds(profile.lifespan).count());
   if (late_joiners == 0) {

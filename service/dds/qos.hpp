@@ -35,6 +35,9 @@ struct Profile {
   /// How long a sample may wait for readers that do not take it; 0: for ever. What such a reader
   /// holds back counts against the bound of what a writer keeps for all of them.
   std::chrono::milliseconds lifespan{0};
+  /// Above 0: of several writers of a key the one with the greatest strength is heard alone
+  /// (EXCLUSIVE), until it has written nothing for so long (MANUAL_BY_TOPIC).
+  std::chrono::milliseconds lease{0};
 };
 
 inline constexpr Profile telemetry_frame{"satcs/TelemetryFrame", keep_all, keep_all, false};
@@ -48,6 +51,10 @@ inline constexpr Profile command_reply{"reident/CommandReply", 1, 0, true};
 inline constexpr Profile history_request{"reident/HistoryRequest", 1, 0, false};
 inline constexpr Profile history_reply{"reident/HistoryReply", 1, 0, false,
                                        std::chrono::milliseconds(500)};
+
+inline constexpr Profile leadership{"reident/Leadership", 1, 1, true, std::chrono::milliseconds(0),
+                                    leadership_lease};
+inline constexpr Profile replica{"reident/Replica", 16, 0, true, std::chrono::milliseconds(500)};
 
 /// The middleware's blocking time of one attempt to write: how soon a stop request is seen.
 inline constexpr std::chrono::milliseconds write_slice{100};

@@ -90,5 +90,7 @@ template class Reader<CommandRequest>;
 template class Reader<CommandReply>;
 template class Reader<HistoryRequest>;
 template class Reader<HistoryReply>;
+template class Reader<Leadership>;
+template class Reader<Replica>;
 
 }  // namespace reident::dds

@@ -54,5 +54,7 @@ template void WaitSet::attach(Reader<CommandRequest>& reader);
 template void WaitSet::attach(Reader<CommandReply>& reader);
 template void WaitSet::attach(Reader<HistoryRequest>& reader);
 template void WaitSet::attach(Reader<HistoryReply>& reader);
+template void WaitSet::attach(Reader<Leadership>& reader);
+template void WaitSet::attach(Reader<Replica>& reader);
 
 }  // namespace reident::dds

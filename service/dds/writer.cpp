@@ -90,5 +90,7 @@ template class Writer<CommandRequest>;
 template class Writer<CommandReply>;
 template class Writer<HistoryRequest>;
 template class Writer<HistoryReply>;
+template class Writer<Leadership>;
+template class Writer<Replica>;
 
 }  // namespace reident::dds

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "storage/types/journal.hpp"
 #include "storage/types/registry_rows.hpp"
 #include "storage/types/telemetry.hpp"
 
@@ -147,6 +148,32 @@ struct ServiceStatus {
   std::string failing_champions;  // equipment, separated by commas
   std::string alarms;             // one a line: "code SPACECRAFT/EQUIPMENT: text"
   std::string equipment;          // that it keeps true, separated by commas
+  std::string pair;               // that it is of; empty: of none, and what follows says nothing
+  std::string role;               // "leads", "follows" or "listens" (to who is there)
+  std::int64_t term = 0;          // the last that it knows
+  std::string partner;            // instance name of the other one, while it is heard
+  std::int64_t lag = 0;           // rows of the registry that one of the two lacks; -1: not known
+};
+
+/// Who leads a pair of services, said many times a second by whoever does.
+struct Leadership {
+  std::string pair;
+  std::int64_t term = 0;
+  std::string service;        // instance name
+  std::int64_t position = 0;  // of the last row of its journal
+  std::string successor;      // to whom it gives leadership; empty: it keeps it
+};
+
+/// What the services of a pair send each other about rows of the registry; idl/reident.idl says
+/// which fields count for which kind.
+struct Replica {
+  enum class Kind : std::uint8_t { position, rows, terms, given_up, kept };
+  std::string sender;
+  std::string pair;
+  std::string receiver;  // empty: the other one, whoever that is
+  Kind kind = Kind::position;
+  std::vector<storage::Term> terms;
+  storage::JournalPart part;
 };
 
 /// Returns the counts with the names that people and programs see.
