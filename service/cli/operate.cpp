@@ -82,6 +82,12 @@ std::optional<Asked> execute_on_file(const Target& target, const Command& comman
   try {
     storage::Database database(*target.database, storage::Database::Mode::read_write);
     storage::Registry registry(database);
+    if (!registry.journal().terms().empty()) {
+      why = fmt::format(
+          "{} is the database of a pair of services, whose leader alone carries out commands",
+          target.database->string());
+      return std::nullopt;
+    }
     return Answer{execute(command, registry, target.context, utc_now()), false};
   } catch (const storage::Error& failure) {
     why = failure.what();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,33 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto time_of_others = 300ms;  // for their last heartbeats to come
+
+bool share_equipment(const ServiceStatus& a, const ServiceStatus& b) {
+  const std::vector<std::string> ours = split_names(a.equipment);
+  for (const std::string& one : split_names(b.equipment))
+    if (std::find(ours.begin(), ours.end(), one) != ours.end()) return true;
+  return false;
+}
+
+/// Whether another one has its name, or keeps one of its equipment.
+bool has_double(const ServiceStatus& service, const std::vector<ServiceStatus>& all) {
+  return std::any_of(all.begin(), all.end(), [&](const ServiceStatus& other) {
+    return &other != &service &&
+           (other.service == service.service || share_equipment(service, other));
+  });
+}
+
+/// Leaves the leader alone of each pair that has one.
+void leave_out_standbys(std::vector<ServiceStatus>& services) {
+  std::set<std::string> led;
+  for (const ServiceStatus& service : services)
+    if (service.role == "leads") led.insert(service.pair);
+  std::erase_if(services, [&](const ServiceStatus& service) {
+    return service.role != "leads" && led.contains(service.pair);
+  });
+}
+
+}  // namespace
 
 std::vector<ServiceStatus> heard_services(const dds::Endpoint& endpoint,
                                           std::chrono::milliseconds timeout) {
@@ -38,23 +66,6 @@ std::vector<ServiceStatus> heard_services(const dds::Endpoint& endpoint,
   return services;
 }
 
-bool share_equipment(const ServiceStatus& a, const ServiceStatus& b) {
-  const std::vector<std::string> ours = split_names(a.equipment);
-  for (const std::string& one : split_names(b.equipment))
-    if (std::find(ours.begin(), ours.end(), one) != ours.end()) return true;
-  return false;
-}
-
-/// Whether another one has its name, or keeps one of its equipment.
-bool has_double(const ServiceStatus& service, const std::vector<ServiceStatus>& all) {
-  return std::any_of(all.begin(), all.end(), [&](const ServiceStatus& other) {
-    return &other != &service &&
-           (other.service == service.service || share_equipment(service, other));
-  });
-}
-
-}  // namespace
-
 void add_service_option(CLI::App& command, std::optional<std::string>& service) {
   command.add_option("--service", service, "the service of this name, where there are several");
 }
@@ -64,7 +75,8 @@ std::variant<std::string, Refusal> chosen_service(const dds::Endpoint& endpoint,
                                                   const std::string& configured,
                                                   std::chrono::milliseconds timeout) {
   if (named) return *named;
-  const std::vector<ServiceStatus> services = heard_services(endpoint, timeout);
+  std::vector<ServiceStatus> services = heard_services(endpoint, timeout);
+  leave_out_standbys(services);
   if (services.empty()) return std::string();
   if (services.size() == 1) return services.front().service;
   std::vector<std::string> names;

@@ -95,6 +95,19 @@ void read_service(const toml::table& table, ConfigDocument& document, Config& co
       reader, "log_level", config.log_level,
       {{"debug", "debug"}, {"info", "info"}, {"warning", "warning"}, {"error", "error"}});
   assign(config.workers, reader.integer("workers", 1, 256));
+  const auto strength = reader.integer("strength", 1, 2);
+  assign(config.strength, strength);
+  if (reader.boolean("standby").value_or(false)) {
+    config.pair = config.service_name;
+    config.service_name = fmt::format("{}-{}", config.pair, config.strength);
+    if (!strength)
+      reader.mistake(
+          "standby",
+          "a pair of services needs a strength each: strength = 2 for the one that leads "
+          "when both start, and 1 for the other");
+  } else if (strength) {
+    reader.mistake("strength", "strength counts in a pair alone: add standby = true, or remove it");
+  }
   reader.refuse_unknown_keys();
 }
 

@@ -80,7 +80,9 @@ struct SpacecraftConfig {
 
 /// A whole file that has no mistake.
 struct Config {
-  std::string service_name = "reident";
+  std::string service_name = "reident";  // its instance name: in a pair with the strength
+  std::string pair;  // name of the pair, the one in the file; empty: it is of none
+  int strength = 2;  // 2 or 1: who leads when both start, 2 does
   std::filesystem::path database;
   storage::Durability durability = storage::Durability::power_cut;
   std::uint32_t domain = 0;

@@ -168,6 +168,14 @@ void TableReader::require(std::string_view key, std::string_view example) {
     mistake(key, fmt::format("{} is missing; add a line such as {} = {}", key, key, example));
 }
 
+std::optional<bool> TableReader::boolean(std::string_view key) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  if (const auto* boolean = node->as_boolean()) return **boolean;
+  wrong_type(key, *node, "true or false");
+  return std::nullopt;
+}
+
 std::optional<std::string> TableReader::text(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;

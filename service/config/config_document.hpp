@@ -41,6 +41,7 @@ class TableReader {
   // Bounds are allowed values. A mistake says what is wanted.
 
   std::optional<std::string> text(std::string_view key);
+  std::optional<bool> boolean(std::string_view key);
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t low, std::int64_t high);
   std::optional<double> number(std::string_view key, double low, double high);
   /// A text with a number and a unit; a number alone is a mistake.

@@ -14,8 +14,10 @@ constexpr std::size_t requests_at_most = 16;
 
 }  // namespace
 
-CommandDesk::CommandDesk(dds::Participant& participant, std::string service)
+CommandDesk::CommandDesk(dds::Participant& participant, std::string service,
+                         std::function<bool()> is_one_of_all)
     : service_(std::move(service)),
+      is_one_of_all_(std::move(is_one_of_all)),
       commands_(participant),
       replies_(participant),
       ready_(participant) {
@@ -23,7 +25,7 @@ CommandDesk::CommandDesk(dds::Participant& participant, std::string service)
 }
 
 void CommandDesk::answer(const CommandRequest& request, const Execute& execute) {
-  if (!request.service.empty() && request.service != service_) return;
+  if (!is_meant(request.service)) return;
   const storage::Command& command = request.command;
   std::optional<storage::CommandOutcome> outcome;
   try {

@@ -19,9 +19,10 @@ class CommandDesk {
   using Execute =
       std::function<std::optional<storage::CommandOutcome>(const storage::Command& command)>;
 
-  /// Hears commands to `service` and those to every service. The participant must outlive it.
-  /// Throws dds::Error.
-  CommandDesk(dds::Participant& participant, std::string service);
+  /// Hears commands to `service` and those to every service, these while `is_one_of_all`
+  /// answers true (without it always). The participant must outlive it. Throws dds::Error.
+  CommandDesk(dds::Participant& participant, std::string service,
+              std::function<bool()> is_one_of_all = {});
 
   /// The thread's body: until stop().
   void run(const Execute& execute);
@@ -30,7 +31,12 @@ class CommandDesk {
  private:
   void answer(const CommandRequest& request, const Execute& execute);
 
+  bool is_meant(const std::string& service) const {
+    return service.empty() ? !is_one_of_all_ || is_one_of_all_() : service == service_;
+  }
+
   const std::string service_;
+  const std::function<bool()> is_one_of_all_;
   dds::Reader<CommandRequest> commands_;
   dds::Writer<CommandReply> replies_;
   dds::WaitSet ready_;

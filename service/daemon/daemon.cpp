@@ -101,9 +101,11 @@ Daemon::Daemon(const Config& config, Clock clock)
               config.batch_frames, config.batch_delay, telemetry_),
       keeper_(config, writer_, clock_),
       participant_(dds::Endpoint{config.domain, config.partition}),
-      publisher_(participant_),
-      desk_(participant_, config.service_name),
-      history_desk_(participant_, config.service_name),
+      publisher_(
+          participant_,
+          [this](const storage::Registry& registry) { return !pair_ || pair_->share(registry); }),
+      desk_(participant_, config.service_name, [this] { return leads(); }),
+      history_desk_(participant_, config.service_name, [this] { return leads(); }),
       simulators_(known_simulators(config), started_),
       ingest_(std::in_place, participant_, config, queue_, simulators_, clock_) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
@@ -113,9 +115,19 @@ Daemon::Daemon(const Config& config, Clock clock)
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
   telemetry_.recover(storage::Archive(database));
+  if (!config.pair.empty()) {
+    feed_.pause(true);
+    pair_.emplace(config, clock_, participant_, writer_, pair_listener());
+  } else if (const auto terms = registry.journal().terms(); !terms.empty()) {
+    // What is recorded from now on is of no term that the other one of a former pair has.
+    writer_.post([this, next = terms.back().number + 1](storage::Registry& stored, auto&) {
+      stored.journal().begin_term(next, config_.service_name, clock_());
+    });
+  }
   watch_.emplace(ServiceWatch::Parts{config, clock_, started_, participant_, writer_, telemetry_,
-                                     simulators_, publisher_, damage_of(database)});
-  const std::size_t published = publisher_.publish_champions(registry);
+                                     simulators_, publisher_, damage_of(database),
+                                     pair_ ? &*pair_ : nullptr});
+  const std::size_t published = pair_ ? 0 : publisher_.publish_champions(registry);
   log::info("service", "started",
             {{"version", program_version()},
              {"database", config.database.string()},
@@ -137,6 +149,7 @@ void Daemon::start() {
   desk_thread_ = spawn("command", [this] { answer_operators(); });
   history_thread_ = spawn("history", [this] { answer_history(); });
   monitor_thread_ = spawn("monitor", [this] { watch_champions(); });
+  if (pair_) pair_thread_ = spawn("pair", [this] { pair_->run(); });
 }
 
 std::thread Daemon::spawn(const char* name, std::function<void()> body) {
@@ -176,8 +189,15 @@ void Daemon::identify_windows() {
 }
 
 AttemptContext Daemon::attempt_context(const storage::Registry& registry) {
-  return {{[this](const LeagueContext::Task& task) { writer_.post(task).get(); }, clock_,
-           [this] { return stopping_.load(); },
+  return {{[this](const LeagueContext::Task& task) {
+             writer_
+                 .post([this, &task](storage::Registry& stored, storage::Archive& archive) {
+                   if (!leads()) throw Stopped();
+                   task(stored, archive);
+                 })
+                 .get();
+           },
+           clock_, [this] { return stopping_ || !leads(); },
            [this, &registry](const LeagueDecision& decided) { publish(decided, registry); }},
           config_.digest,
           [this](std::size_t count, const std::function<void(std::size_t)>& task) {
@@ -224,31 +244,80 @@ void Daemon::publish(const LeagueDecision& decided, const storage::Registry& reg
              {"reason", decided.decision.reason}});
 }
 
-void Daemon::answer_operators() {
-  storage::Database database(config_.database, storage::Database::Mode::read_only);
-  const storage::Registry reader(database);
+Pair::Listener Daemon::pair_listener() {
+  return {
+      [this](const storage::Registry& registry) {
+        leagues_.read_again();
+        const std::size_t published = publisher_.publish_champions(registry, true);
+        feed_.pause(false);
+        log::info("pair", "decides from now on", {{"champions", published}});
+      },
+      [this] {
+        feed_.pause(true);
+        publisher_.retire();
+      },
+      [this](const storage::Registry& registry) { publisher_.publish_champions(registry, true); },
+      [this](const std::vector<std::int64_t>& attempts, storage::Registry& registry,
+             storage::Archive& archive) {
+        for (const std::int64_t id : attempts) {
+          const auto attempt = registry.attempt(id);
+          archive.seal(attempt->spacecraft, attempt->window.end);
+          feed_.tried_elsewhere({attempt->spacecraft, attempt->equipment}, attempt->window);
+          feed_.forget_settled(attempt->spacecraft, archive);
+        }
+      }};
+}
+
+storage::CommandOutcome Daemon::hand_over(const storage::Command& command) {
+  if (!pair_) return {false, "this service is of no pair: there is nobody to give leadership to"};
+  const std::string obstacle = pair_->obstacle_to_hand_over();
+  if (!obstacle.empty()) return {false, obstacle};
+  return {true, fmt::format("{} gives leadership to the other one of {}, asked by {}",
+                            config_.service_name, config_.pair, command.actor)};
+}
+
+std::optional<storage::CommandOutcome> Daemon::carry_out(const storage::Command& command,
+                                                         const storage::Registry& reader) {
+  const auto does_not_lead = [this] {
+    const std::string leader = pair_->leader();
+    return storage::CommandOutcome{
+        false, leader.empty() ? "no service of the pair leads now: try again"
+                              : fmt::format("{} does not lead: give the command to {}",
+                                            config_.service_name, leader)};
+  };
+  if (!leads()) return does_not_lead();
   const CommandContext context{
       equipment_of(config_),
       [this](const storage::EquipmentName& equipment, const std::string& cause) {
         return feed_.ask(equipment.spacecraft, equipment.equipment, cause);
-      }};
-  desk_.run([&](const storage::Command& command) -> std::optional<storage::CommandOutcome> {
-    storage::CommandOutcome outcome;
-    try {
-      writer_
-          .post([&](storage::Registry& registry, auto&) {
-            outcome = execute(command, registry, context, clock_());
-          })
-          .get();
-    } catch (const std::future_error&) {  // the writer has ended
-      return std::nullopt;
-    }
-    if (outcome.ok)
-      for (const storage::EquipmentName& equipment : reader.equipment())
-        if (equipment.equipment == command.equipment)
-          publisher_.publish_champion(reader, equipment);
-    return outcome;
-  });
+      },
+      [this](const storage::Command& one) { return hand_over(one); }};
+  storage::CommandOutcome outcome;
+  try {
+    writer_
+        .post([&](storage::Registry& registry, auto&) {
+          if (!leads()) throw Stopped();
+          outcome = execute(command, registry, context, clock_());
+        })
+        .get();
+  } catch (const Stopped&) {
+    return does_not_lead();
+  } catch (const std::future_error&) {  // the writer has ended
+    return std::nullopt;
+  }
+  // One that the other service may not have is sent again, and answered by whoever leads then.
+  if (pair_ && !pair_->share(reader)) return std::nullopt;
+  if (!outcome.ok) return outcome;
+  if (command.action == "switch_over") pair_->hand_over();
+  for (const storage::EquipmentName& equipment : reader.equipment())
+    if (equipment.equipment == command.equipment) publisher_.publish_champion(reader, equipment);
+  return outcome;
+}
+
+void Daemon::answer_operators() {
+  storage::Database database(config_.database, storage::Database::Mode::read_only);
+  const storage::Registry reader(database);
+  desk_.run([&](const storage::Command& command) { return carry_out(command, reader); });
 }
 
 void Daemon::answer_history() {
@@ -264,7 +333,10 @@ void Daemon::watch_champions() {
   const AttemptContext context = attempt_context(registry);
   std::uint64_t seen = 0;
   try {
-    while (feed_.wait_for_telemetry(seen)) leagues_.look(archive, registry, context);
+    while (feed_.wait_for_telemetry(seen)) try {
+        leagues_.look(archive, registry, context);
+      } catch (const Stopped&) {  // the other service of the pair leads
+      }
   } catch (const std::future_error&) {  // the writer has ended
   }
 }
@@ -296,6 +368,7 @@ void Daemon::heartbeat() {
   status.failing_champions = leagues_.failing();
   status.alarms = watch_->text();
   status.equipment = equipment_text(config_);
+  if (pair_) pair_->describe(status);
   publisher_.status(status);
 }
 
@@ -307,6 +380,8 @@ bool Daemon::stop() {
   if (history_thread_.joinable()) history_thread_.join();
   feed_.stop();
   if (monitor_thread_.joinable()) monitor_thread_.join();
+  if (pair_) pair_->stop();
+  if (pair_thread_.joinable()) pair_thread_.join();
   ingest_->stop();
   if (ingest_thread_.joinable()) ingest_thread_.join();
   queue_.close();
@@ -315,6 +390,7 @@ bool Daemon::stop() {
   const std::uint64_t frames = ingest_->frames_received();
   ingest_.reset();
   watch_.reset();
+  pair_.reset();
   participant_.hear_again();  // for the acknowledgments that the publisher's writers wait for
   const ArchiveWriter::Counts stored = writer_.counts();
   if (stored.lost > 0)

@@ -11,6 +11,9 @@
 //   when
 //                                           the champion changes; window feed, when the equipment
 //                                           does
+//   pair thread, where the service is one of two: who leads; rows to and from the other one
+//                                           through the writer. Without leadership nothing is
+//                                           recorded but telemetry, and nothing published
 #pragma once
 
 #include <atomic>
@@ -26,6 +29,7 @@
 #include "service/daemon/history_desk.hpp"
 #include "service/daemon/ingest.hpp"
 #include "service/daemon/league_watch.hpp"
+#include "service/daemon/pair.hpp"
 #include "service/daemon/publisher.hpp"
 #include "service/daemon/service_watch.hpp"
 #include "service/daemon/simulator_book.hpp"
@@ -67,6 +71,12 @@ class Daemon {
   /// What follows from an attempt that was committed.
   void publish(const RecordedAttempt& attempt);
   void publish(const LeagueDecision& decided, const storage::Registry& registry);
+  /// Whether this service may decide: one of no pair always.
+  bool leads() const { return !pair_ || pair_->leads(); }
+  Pair::Listener pair_listener();
+  std::optional<storage::CommandOutcome> carry_out(const storage::Command& command,
+                                                   const storage::Registry& reader);
+  storage::CommandOutcome hand_over(const storage::Command& command);
   void answer_operators();
   void answer_history();
   void watch_champions();
@@ -86,12 +96,14 @@ class Daemon {
   CommandDesk desk_;
   HistoryDesk history_desk_;
   SimulatorBook simulators_;
+  std::optional<Pair> pair_;
   std::optional<ServiceWatch> watch_;
   std::optional<Ingest> ingest_;  // ends before the middleware hears again
   /// By equipment, which has one job at a time: the job's thread owns its entry.
   std::vector<WindowCache> kept_;
 
-  std::thread ingest_thread_, writer_thread_, desk_thread_, history_thread_, monitor_thread_;
+  std::thread ingest_thread_, writer_thread_, desk_thread_, history_thread_, monitor_thread_,
+      pair_thread_;
   std::vector<std::thread> identification_threads_;
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> failed_ = false;

@@ -18,8 +18,10 @@ constexpr auto patience = 2s;
 
 }  // namespace
 
-HistoryDesk::HistoryDesk(dds::Participant& participant, std::string service)
+HistoryDesk::HistoryDesk(dds::Participant& participant, std::string service,
+                         std::function<bool()> is_one_of_all)
     : service_(std::move(service)),
+      is_one_of_all_(std::move(is_one_of_all)),
       requests_(participant),
       replies_(participant),
       ready_(participant) {
@@ -57,7 +59,7 @@ void HistoryDesk::run(const Answer& answer) {
           });
       for (const auto& [request, malformed] : asked) {
         if (stopping_) return;
-        if (!request.service.empty() && request.service != service_) continue;
+        if (!is_meant(request.service)) continue;
         if (!malformed.empty()) {
           reply(request, history::BadQuestion{malformed + "; ask again without that"});
           continue;

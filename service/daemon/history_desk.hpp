@@ -18,9 +18,10 @@ class HistoryDesk {
   using Answer =
       std::function<std::variant<HistoryPage, history::BadQuestion>(const HistoryQuery& query)>;
 
-  /// Hears questions to `service` and those to every service. The participant must outlive it.
-  /// Throws dds::Error.
-  HistoryDesk(dds::Participant& participant, std::string service);
+  /// Hears questions to `service` and those to every service, these while `is_one_of_all`
+  /// answers true (without it always). The participant must outlive it. Throws dds::Error.
+  HistoryDesk(dds::Participant& participant, std::string service,
+              std::function<bool()> is_one_of_all = {});
 
   /// The thread's body: until stop().
   void run(const Answer& answer);
@@ -29,7 +30,12 @@ class HistoryDesk {
  private:
   void reply(const HistoryRequest& request, std::variant<HistoryPage, history::BadQuestion> answer);
 
+  bool is_meant(const std::string& service) const {
+    return service.empty() ? !is_one_of_all_ || is_one_of_all_() : service == service_;
+  }
+
   const std::string service_;
+  const std::function<bool()> is_one_of_all_;
   dds::Reader<HistoryRequest> requests_;
   dds::Writer<HistoryReply> replies_;
   dds::WaitSet ready_;

@@ -13,7 +13,7 @@ LeagueWatch::LeagueWatch(const Config& config, WindowFeed& feed)
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       watched_.push_back(std::unique_ptr<Watched>(
-          new Watched{&spacecraft.name, &equipment, {}, {spacecraft.name, equipment}}));
+          new Watched{&spacecraft.name, &equipment, {}, LeagueKeeper(spacecraft.name, equipment)}));
 }
 
 bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive,
@@ -21,6 +21,10 @@ bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive
                           const LeagueContext& context) {
   Watched& watched = *watched_[equipment];
   const std::lock_guard lock(watched.mutex);
+  if (watched.is_outdated.exchange(false)) {
+    watched.keeper.emplace(*watched.spacecraft, *watched.equipment);
+    watched.is_failing = false;
+  }
   const std::string& spacecraft = *watched.spacecraft;
   const std::string& name = watched.equipment->name;
   LeagueWriter writer;
@@ -56,7 +60,7 @@ bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive
       stored.record_change({spacecraft, name}, change, context.clock());
     });
   };
-  while (const auto window = watched.keeper.advance(archive, registry, reached, writer)) {
+  while (const auto window = watched.keeper->advance(archive, registry, reached, writer)) {
     log::warning("league", "the equipment has changed; it is identified again",
                  {{"equipment", spacecraft + "/" + name},
                   {"window_begin", time_text(window->begin)},
@@ -75,9 +79,13 @@ std::string LeagueWatch::failing() const {
   return names;
 }
 
+void LeagueWatch::read_again() {
+  for (const auto& watched : watched_) watched->is_outdated = true;
+}
+
 void LeagueWatch::forget(std::size_t equipment, storage::TimeRange range) {
   const std::lock_guard lock(watched_[equipment]->mutex);
-  watched_[equipment]->keeper.forget(range);
+  watched_[equipment]->keeper->forget(range);
 }
 
 void LeagueWatch::look(const storage::Archive& archive, const storage::Registry& registry,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,9 @@ class LeagueWatch {
   /// Names of the equipment whose champions fail, separated by commas. For any thread.
   std::string failing() const;
 
+  /// Forgets all that was read of the registry: another service has recorded in it. For any thread.
+  void read_again();
+
   /// Forgets what samples in `range` served.
   void forget(std::size_t equipment, storage::TimeRange range);
 
@@ -53,7 +57,8 @@ class LeagueWatch {
     const std::string* spacecraft;
     const EquipmentConfig* equipment;
     std::mutex mutex;
-    LeagueKeeper keeper;
+    std::optional<LeagueKeeper> keeper;
+    std::atomic<bool> is_outdated = false;  // the keeper
     std::atomic<bool> is_failing = false;
   };
   const Duration settle_;

@@ -8,8 +8,12 @@
 
 namespace reident {
 
-Publisher::Publisher(dds::Participant& participant)
-    : versions_(participant), reports_(participant), status_(participant) {}
+Publisher::Publisher(dds::Participant& participant, MayPublish may_publish)
+    : participant_(participant),
+      may_publish_(std::move(may_publish)),
+      versions_(participant),
+      reports_(participant),
+      status_(participant) {}
 
 bool Publisher::write(const storage::Version& version, const storage::Decision& decision,
                       bool follows_a_newer_one) {
@@ -43,8 +47,14 @@ bool Publisher::write(const storage::Version& version, const storage::Decision& 
 bool Publisher::publish_champion(const storage::Registry& registry,
                                  const storage::EquipmentName& equipment) {
   const MutexLock lock(versions_mutex_);
+  return publish(registry, equipment, false);
+}
+
+bool Publisher::publish(const storage::Registry& registry, const storage::EquipmentName& equipment,
+                        bool may_replace_newer) {
   const auto& [spacecraft, name] = equipment;
   const auto made = registry.champion_decision(spacecraft, name);
+  if (may_publish_ && !may_publish_(registry)) return false;
   const auto published = published_.find(equipment);
   if (!made) {
     if (published == published_.end()) return true;
@@ -55,9 +65,11 @@ bool Publisher::publish_champion(const storage::Registry& registry,
     published_.erase(published);
     return true;
   }
-  if (published != published_.end() && published->second.decision == made->id) return true;
+  if (!may_replace_newer && published != published_.end() && published->second.decision == made->id)
+    return true;
   const auto decisions = registry.decisions(spacecraft, name);
   const bool follows_a_newer_one =
+      may_replace_newer ||
       std::any_of(decisions.begin(), decisions.end(), [&](const storage::Decision& earlier) {
         return earlier.id < made->id && earlier.version > made->version &&
                earlier.kind == storage::DecisionKind::approve;
@@ -75,11 +87,20 @@ std::map<storage::EquipmentName, std::int64_t> Publisher::published() const {
   return versions;
 }
 
-std::size_t Publisher::publish_champions(const storage::Registry& registry) {
+std::size_t Publisher::publish_champions(const storage::Registry& registry,
+                                         bool may_replace_newer) {
+  const MutexLock lock(versions_mutex_);
   std::size_t published = 0;
   for (const storage::Version& champion : registry.champions())
-    if (publish_champion(registry, {champion.spacecraft, champion.equipment})) ++published;
+    if (publish(registry, {champion.spacecraft, champion.equipment}, may_replace_newer))
+      ++published;
   return published;
+}
+
+void Publisher::retire() {
+  const MutexLock lock(versions_mutex_);
+  versions_ = dds::Writer<ModelVersion>(participant_);
+  published_.clear();
 }
 
 }  // namespace reident

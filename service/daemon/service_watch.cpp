@@ -77,6 +77,9 @@ std::vector<Alarm> ServiceWatch::services() const {
     ours.insert(full_name(name));
   for (const auto& [key, other] : others_) {
     const std::string& name = other.status.service;
+    const bool is_partner = !other.status.pair.empty() && other.status.pair == parts_.config.pair &&
+                            name != parts_.config.service_name;
+    if (is_partner) continue;
     std::vector<std::string> shared;
     for (const std::string& one : split_names(other.status.equipment))
       if (ours.contains(one)) shared.push_back(one);
@@ -148,7 +151,8 @@ std::vector<Alarm> ServiceWatch::old_simulators() {
 void ServiceWatch::look() {
   hear_services();
   std::vector<Alarm> now = parts_.telemetry.alarms();
-  for (auto more : {services(), disk_and_damage(), old_simulators()})
+  const auto of_pair = parts_.pair ? parts_.pair->alarms() : std::vector<Alarm>();
+  for (auto more : {services(), disk_and_damage(), old_simulators(), of_pair})
     now.insert(now.end(), more.begin(), more.end());
   for (const Alarm& alarm : now)
     if (!has(alarms_, alarm))
@@ -158,7 +162,20 @@ void ServiceWatch::look() {
     if (!has(now, alarm))
       log::info("alarm", "cleared", {{"code", alarm.code}, {"about", name_of(alarm.about)}});
   alarms_ = std::move(now);
-  keep(parts_.simulators.take_changes(parts_.clock()));
+  if (!parts_.pair || parts_.pair->leads())
+    keep(parts_.simulators.take_changes(parts_.clock()));
+  else
+    let_partner_keep();
+}
+
+// The leader records the same; what it may not have come to is recorded here if it is gone.
+void ServiceWatch::let_partner_keep() {
+  const storage::Time recent = parts_.clock() - heartbeats_missed;
+  std::vector<storage::SimulatorState> changes = parts_.simulators.take_changes(parts_.clock());
+  std::erase_if(changes,
+                [&](const storage::SimulatorState& change) { return change.time < recent; });
+  parts_.simulators.give_back(std::move(changes));
+  kept_.reset();
 }
 
 // The registry's thread may be stuck on a full disk for long: nothing is posted until it has done
@@ -180,11 +197,13 @@ void ServiceWatch::keep(std::vector<storage::SimulatorState> changes) {
   if (changes.empty() && kept_ && same(*kept_, alarms_)) return;
   posted_alarms_ = alarms_;
   posted_changes_ = changes;
-  posted_ = parts_.writer.post([alarms = alarms_, changes, now = parts_.clock()](
-                                   storage::Registry& registry, storage::Archive&) {
-    for (const storage::SimulatorState& change : changes) registry.record_simulator(change);
-    write(registry, alarms, now);
-  });
+  posted_ =
+      parts_.writer.post([alarms = alarms_, changes, now = parts_.clock(), pair = parts_.pair](
+                             storage::Registry& registry, storage::Archive&) {
+        if (pair && !pair->leads()) return;
+        for (const storage::SimulatorState& change : changes) registry.record_simulator(change);
+        write(registry, alarms, now);
+      });
 }
 
 std::string ServiceWatch::text() const {

@@ -10,6 +10,7 @@
 
 #include "service/config/config.hpp"
 #include "service/daemon/archive_writer.hpp"
+#include "service/daemon/pair.hpp"
 #include "service/daemon/publisher.hpp"
 #include "service/daemon/simulator_book.hpp"
 #include "service/daemon/telemetry_watch.hpp"
@@ -29,7 +30,8 @@ class ServiceWatch {
     TelemetryWatch& telemetry;
     SimulatorBook& simulators;
     const Publisher& publisher;
-    std::string damage;  // what is damaged in the file already; empty: nothing
+    std::string damage;          // what is damaged in the file already; empty: nothing
+    const Pair* pair = nullptr;  // that the service is of; null: of none
   };
   /// Throws dds::Error.
   explicit ServiceWatch(Parts parts);
@@ -47,6 +49,7 @@ class ServiceWatch {
   std::vector<storage::Alarm> disk_and_damage() const;
   std::vector<storage::Alarm> old_simulators();
   void keep(std::vector<storage::SimulatorState> changes);
+  void let_partner_keep();
 
   Parts parts_;
   dds::Reader<ServiceStatus> statuses_;

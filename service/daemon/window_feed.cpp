@@ -222,7 +222,7 @@ std::optional<storage::Time> WindowFeed::ask(const std::string& spacecraft,
 
 bool WindowFeed::wait_for_telemetry(std::uint64_t& seen) {
   MutexLock lock(mutex_);
-  while (!stopped_ && batches_ == seen) changed_.wait(mutex_);
+  while (!stopped_ && (paused_ || batches_ == seen)) changed_.wait(mutex_);
   seen = batches_;
   return !stopped_;
 }
@@ -248,6 +248,10 @@ std::optional<WindowFeed::Job> WindowFeed::next_due() {
 std::optional<WindowFeed::Job> WindowFeed::next() {
   MutexLock lock(mutex_);
   while (!stopped_) {
+    if (paused_) {
+      changed_.wait(mutex_);
+      continue;
+    }
     const storage::Time now = clock_();
     if (auto job = take_due(now)) return job;
     if (const auto due = scheduler_.next_due())
@@ -262,6 +266,22 @@ void WindowFeed::finished(const Job& job, bool completed) {
   MutexLock lock(mutex_);
   scheduler_.finished(job.window, completed, clock_());
   changed_.notify_all();
+}
+
+void WindowFeed::pause(bool is_paused) {
+  MutexLock lock(mutex_);
+  paused_ = is_paused;
+  if (!paused_) ++batches_;  // there may be something to look at
+  changed_.notify_all();
+}
+
+void WindowFeed::tried_elsewhere(const storage::EquipmentName& equipment,
+                                 storage::TimeRange window) {
+  MutexLock lock(mutex_);
+  for (std::size_t i = 0; i < equipment_.size(); ++i)
+    if (equipment_[i].spacecraft == equipment.spacecraft &&
+        equipment_[i].config->name == equipment.equipment)
+      scheduler_.tried_elsewhere(i, window);
 }
 
 void WindowFeed::stop() {

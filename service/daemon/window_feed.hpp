@@ -55,6 +55,10 @@ class WindowFeed : public ArchiveListener {
   /// A window that is due now; absent where none is.
   std::optional<Job> next_due();
   void finished(const Job& job, bool completed);
+  /// While paused there is no window and no telemetry to wait for; what comes is remembered.
+  void pause(bool is_paused);
+  /// The other service of the pair has tried a window.
+  void tried_elsewhere(const storage::EquipmentName& equipment, storage::TimeRange window);
   void stop();
 
   /// Forgets the archive's marks of late telemetry that no window has to be looked at for any more.
@@ -119,6 +123,7 @@ class WindowFeed : public ArchiveListener {
   Membership membership_ REIDENT_GUARDED_BY(mutex_);
   storage::Time newest_ REIDENT_GUARDED_BY(mutex_) = 0;
   std::uint64_t batches_ REIDENT_GUARDED_BY(mutex_) = 0;
+  bool paused_ REIDENT_GUARDED_BY(mutex_) = false;
   bool stopped_ REIDENT_GUARDED_BY(mutex_) = false;
 };
 

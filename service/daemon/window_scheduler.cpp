@@ -61,6 +61,11 @@ void WindowScheduler::tried_before(std::size_t equipment, storage::TimeRange win
   state.tried.insert_or_assign(window.end, is_short ? Begin(window.begin) : std::nullopt);
 }
 
+void WindowScheduler::tried_elsewhere(std::size_t equipment, storage::TimeRange window) {
+  equipment_[equipment].due.erase(window.end);
+  tried_before(equipment, window);
+}
+
 std::optional<WindowScheduler::Job> WindowScheduler::next(storage::Time now) {
   std::optional<Job> best;
   for (std::size_t i = 0; i < equipment_.size(); ++i) {

@@ -51,6 +51,8 @@ class WindowScheduler {
            std::optional<storage::Time> begin = std::nullopt);
   /// The window was tried in an earlier run of the service.
   void tried_before(std::size_t equipment, storage::TimeRange window);
+  /// The window was tried by another service now, and is due here no more.
+  void tried_elsewhere(std::size_t equipment, storage::TimeRange window);
 
   /// The next window to identify, which then counts as running; absent when none is due.
   std::optional<Job> next(storage::Time now);

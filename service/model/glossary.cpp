@@ -21,6 +21,10 @@ struct Glossary {
        "same, and no relation of sensors rules that out.",
        "Look at the sensors that the reason names; then 'reident approve' or 'reject'. A declared "
        "relation, or bias = \"approve\", decides such cases without you."},
+      {"cannot_follow", "the standby cannot follow",
+       "The standby cannot record what the leader of its pair sends, or its registry is another "
+       "one.",
+       "The text says which: mend its disk, or start it with a copy of the leader's database."},
       {"challenger", "challenger",
        "The window gave a model that is sound. Telemetry after its window decides whether it "
        "becomes "
@@ -96,6 +100,10 @@ struct Glossary {
        "Nobody has the configured database open for writing: no telemetry is archived, no model is "
        "refreshed.",
        "Start reidentd; its log says why it ended."},
+      {"no_standby", "no standby",
+       "The service leads a pair, and nobody follows it: what it decides has no copy, and nobody "
+       "takes over.",
+       "Start the other service of the pair."},
       {"no_telemetry", "no telemetry comes",
        "No new sample of the equipment came for longer than its slide.",
        "Look for the source; 'reident completeness' shows what came."},
@@ -126,6 +134,9 @@ struct Glossary {
        "The model or its run holds numbers that are not finite.", ""},
       {"on_probation", "on probation",
        "Programs before version 0.2 let the version wait for more telemetry.", ""},
+      {"overruled", "decisions were overruled",
+       "A service of the pair decided without the other one, whose later term holds.",
+       "Look at the view overruled_decision of the database, and decide again where it matters."},
       {"simulators_old", "simulators run something old",
        "A simulator has run another version than the champion for half a minute.",
        "'reident simulators --old' says what it refused and why, or what it waits for."},
@@ -134,6 +145,9 @@ struct Glossary {
        "an "
        "integrator.",
        "A longer window."},
+      {"standby_behind", "the standby is behind",
+       "A decision was published before the standby of the pair had it.",
+       "Look at the disk and the log of the standby."},
       {"telemetry_damaged", "telemetry is damaged",
        "Samples that the attempt needs cannot be decoded any more.",
        "Restore them ('reident verify' lists the damage), then 'reident identify-now'."},

@@ -298,13 +298,23 @@ dds::Fault fault_of_texts(const Command& command) {
   return texts.fault();
 }
 
+/// The one action that is about no equipment.
+constexpr std::string_view switch_over = "switch_over";
+
 CommandOutcome carry_out(const Command& command, Registry& registry, const CommandContext& context,
                          storage::Time now) {
+  if (command.action == switch_over) {
+    if (const auto fault = fault_of_texts(command))
+      return refused(*fault + ": every command names who gave it and why");
+    return context.hand_over ? context.hand_over(command)
+                             : refused("no service runs that could give leadership away");
+  }
   const auto action = std::find_if(actions.begin(), actions.end(),
                                    [&](const Action& one) { return one.name == command.action; });
   if (action == actions.end()) {
     std::vector<std::string> names;
     for (const Action& one : actions) names.emplace_back(one.name);
+    names.emplace_back(switch_over);
     return refused(fmt::format("there is no action {}; known: {}", command.action, joined(names)));
   }
   if (const auto fault = fault_of_texts(command))

@@ -23,6 +23,8 @@ struct CommandContext {
   std::function<std::optional<storage::Time>(const storage::EquipmentName& equipment,
                                              const std::string& cause)>
       ask_for_window;
+  /// Checks whether leadership of a pair can be given away. Empty where no service runs.
+  std::function<storage::CommandOutcome(const storage::Command& command)> hand_over{};
 };
 
 /// Decides and records in one transaction. The outcome is one sentence: what was done, or why

@@ -43,7 +43,8 @@ int serve(const Config& config, const Arguments& arguments, web::Accounts accoun
   std::optional<web::Site> site;
   {
     web::QueryPool pool(config.database, query_threads, query_queue);
-    web::OrderDesk orders(endpoint, config.service_name);
+    // In a pair the one that leads answers.
+    web::OrderDesk orders(endpoint, config.pair.empty() ? config.service_name : std::string());
     site.emplace(web::Site::Parts{config, live, pool, access, orders, audit,
                                   [&server] { return server->counts(); }});
     server.emplace(

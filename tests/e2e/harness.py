@@ -36,13 +36,17 @@ def wait_until(condition, what, deadline_s=DEADLINE_S):
 class Process:
     """A program under test; its output is in files, so that no pipe can fill."""
 
-    def __init__(self, folder, name, arguments, user=None):
+    def __init__(self, folder, name, arguments, user=None, host=None):
+        """`host`: a network namespace with its middleware's configuration (pair.py)."""
         self.log = folder / f"{name}.log"
         self.out = folder / f"{name}.out"
         environment = {key: value for key, value in os.environ.items() if key != "CYCLONEDDS_URI"}
+        if host:
+            environment["CYCLONEDDS_URI"] = host.uri
         with open(self.log, "ab") as log, open(self.out, "ab") as out:
             self.process = subprocess.Popen(
-                [str(BIN / arguments[0]), *map(str, arguments[1:])], stdin=subprocess.DEVNULL,
+                [*(host.prefix if host else ()), str(BIN / arguments[0]), *map(str, arguments[1:])],
+                stdin=subprocess.DEVNULL,
                 stdout=out, stderr=log, env=environment, start_new_session=True, user=user,
                 group=user)
 
@@ -93,9 +97,9 @@ class EndToEnd(unittest.TestCase):
 
     # -- programs
 
-    def start(self, *arguments, name=None, user=None):
+    def start(self, *arguments, name=None, user=None, host=None):
         name = name or f"{arguments[0]}-{len(self.processes)}"
-        process = Process(self.folder, name, arguments, user)
+        process = Process(self.folder, name, arguments, user, host)
         self.processes.append(process)
         return process
 
@@ -147,9 +151,11 @@ class EndToEnd(unittest.TestCase):
         self.assertEqual(replay.wait(), 0, replay.text())
         return json.loads(replay.out.read_text())
 
-    def reident(self, *arguments):
+    def reident(self, *arguments, host=None):
         """Runs a command of the command line; returns its exit status and its output."""
-        done = subprocess.run([str(BIN / "reident"), *map(str, arguments)], capture_output=True,
+        environment = {**os.environ, **({"CYCLONEDDS_URI": host.uri} if host else {})}
+        done = subprocess.run([*(host.prefix if host else ()), str(BIN / "reident"),
+                               *map(str, arguments)], capture_output=True, env=environment,
                               text=True, timeout=DEADLINE_S, check=False)
         return done.returncode, done.stdout + done.stderr
 
@@ -167,12 +173,12 @@ class EndToEnd(unittest.TestCase):
         self.replay_all(csv, "--wait-readers", readers)
         return self.wait_idle()
 
-    def start_simulator(self, name, *options, cache=None):
+    def start_simulator(self, name, *options, cache=None, host=None):
         """By default with a folder of last good versions of its own."""
         return self.start("reident-simulator", "--spacecraft", "SAT", "--equipment", "PLANT",
                           "--name", name, "--json", "--cache",
                           cache or self.folder / f"cache-{name}", *self.endpoint(), *options,
-                          name=name)
+                          name=name, host=host)
 
     def runs(self, simulator):
         """Versions that the simulator took up, in order."""

@@ -72,8 +72,13 @@ int run(const Arguments& arguments) {
   const auto request = request_of(arguments, *config);
   if (const auto* refusal = std::get_if<Refusal>(&request)) return refuse(*refusal);
   const StopSignal stop;
-  return refusing_what_cannot_be([&] {
+  return refusing_what_cannot_be([&]() -> int {
     storage::Database database(config->database, storage::Database::Mode::read_write);
+    if (!storage::Registry(database).journal().terms().empty())
+      return refuse(
+          {fmt::format("{} is the database of a pair of services, whose leader alone "
+                       "records attempts: it tries what it has telemetry of by itself",
+                       config->database.string())});
     WorkerPool workers(usable_cores());
     Progress bar;
     const BackfillProgress progress =

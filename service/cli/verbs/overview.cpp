@@ -9,6 +9,7 @@
 #include "service/cli/config_options.hpp"
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/service_choice.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/text.hpp"
@@ -27,6 +28,7 @@ using storage::Time;
 constexpr std::size_t width_without_terminal = 80;
 constexpr double default_interval_s = 2;
 constexpr double max_interval_s = 86'400;
+constexpr auto heartbeat_wait = std::chrono::milliseconds(1500);
 
 struct Arguments {
   HistoryAccessOptions access;
@@ -40,6 +42,7 @@ struct Overview {
   std::vector<OverviewRow> rows;
   std::vector<Alarm> alarms;
   Time now = 0;
+  std::vector<ServiceStatus> pair;  // its services that are heard; empty without a pair
 };
 
 /// The equipment of the configuration that no window was tried of are rows too.
@@ -51,7 +54,7 @@ void add_untried(const Config& config, std::vector<OverviewRow>& rows) {
 }
 
 Overview read(const Readers& readers, const std::optional<Config>& config) {
-  Overview overview{readers.history.overview(), readers.history.alarms(), utc_now()};
+  Overview overview{readers.history.overview(), readers.history.alarms(), utc_now(), {}};
   if (config) {
     add_untried(*config, overview.rows);
     if (!storage::Database::has_writer(config->database))
@@ -61,6 +64,11 @@ Overview read(const Readers& readers, const std::optional<Config>& config) {
                               "No service runs on " + config->database.string() +
                                   ": what is below is as the last one left it. Start reidentd.",
                               overview.now});
+  }
+  if (config && !config->pair.empty()) {
+    overview.pair = heard_services({config->domain, config->partition}, heartbeat_wait);
+    std::erase_if(overview.pair,
+                  [&](const ServiceStatus& service) { return service.pair != config->pair; });
   }
   history::put_worst_first(overview.rows, overview.alarms);
   return overview;
@@ -149,6 +157,10 @@ void print_text(const Overview& overview) {
   else
     fmt::print("{}", table_text(overview, width));
   fmt::print("{}", alarms_text(overview, width));
+  for (const ServiceStatus& service : overview.pair)
+    fmt::print("\nservice {} {} in term {}{}", service.service, service.role, service.term,
+               service.lag < 0 ? "" : fmt::format(", {} rows behind", service.lag));
+  if (!overview.pair.empty()) fmt::print("\n");
 }
 
 ordered_json optional_json(const std::optional<double>& number) {
@@ -199,10 +211,17 @@ void print_json(const Overview& overview) {
                       {"since", time_text(alarm.since)},
                       {"seen_by", alarm.acknowledged_by},
                       {"text", alarm.text}});
-  const ordered_json object = {{"time", time_text(overview.now)},
-                               {"act", needs_action(overview)},
-                               {"equipment", std::move(rows)},
-                               {"alarms", std::move(alarms)}};
+  ordered_json pair = ordered_json::array();
+  for (const ServiceStatus& service : overview.pair)
+    pair.push_back({{"service", service.service},
+                    {"role", service.role},
+                    {"term", service.term},
+                    {"lag", service.lag < 0 ? ordered_json() : ordered_json(service.lag)}});
+  ordered_json object = {{"time", time_text(overview.now)},
+                         {"act", needs_action(overview)},
+                         {"equipment", std::move(rows)},
+                         {"alarms", std::move(alarms)}};
+  if (!overview.pair.empty()) object["pair"] = std::move(pair);
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 

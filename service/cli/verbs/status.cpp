@@ -101,6 +101,13 @@ nlohmann::ordered_json json_of(const ServiceStatus& status) {
   object["failing_champions"] = status.failing_champions;
   object["alarms"] = lines_of(status.alarms);
   object["equipment"] = split_names(status.equipment);
+  if (!status.pair.empty())
+    object["pair"] = {
+        {"name", status.pair},
+        {"role", status.role},
+        {"term", status.term},
+        {"partner", status.partner},
+        {"lag", status.lag < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(status.lag)}};
   return object;
 }
 
@@ -114,6 +121,10 @@ void print_json(const ServiceStatus& status, const Heard& others) {
 void print_text(const ServiceStatus& status) {
   fmt::print("service {} ({}), up since {}, {}\n", status.service, status.program_version,
              time_text(status.started), is_idle(status) ? "idle" : "at work");
+  if (!status.pair.empty())
+    fmt::print("pair {}: {} in term {}, with {}{}\n", status.pair, status.role, status.term,
+               status.partner.empty() ? "nobody" : status.partner,
+               status.lag < 0 ? "" : fmt::format(", {} rows of the registry behind", status.lag));
   fmt::print("newest telemetry {}\n", newest_text(status));
   Table table({{"count"}, {"", Table::Align::right}});
   for (const auto& [name, count] : counts(status)) table.add({name, fmt::format("{}", count)});

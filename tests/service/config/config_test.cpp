@@ -51,6 +51,18 @@ TEST(Config, AMinimalFileHasGoodDefaults) {
   EXPECT_EQ(bdr.approval, ApprovalPolicy::automatic);
 }
 
+TEST(Config, TheServicesOfAPairAreCalledByTheirStrength) {
+  const auto pair = [](const std::string& keys) {
+    return config_of("[service]\n" + keys + minimal);
+  };
+  EXPECT_EQ(pair("").pair, "");
+  const Config config = pair("name = \"flight\"\nstandby = true\nstrength = 1\n");
+  EXPECT_EQ(config.pair, "flight");
+  EXPECT_EQ(config.service_name, "flight-1");
+  EXPECT_EQ(config.strength, 1);
+  EXPECT_EQ(pair("standby = false\n").service_name, "reident");
+}
+
 TEST(Config, EveryKeyIsRead) {
   const Config config = config_of(R"(
 [service]
@@ -267,6 +279,13 @@ const Mistake values[] = {
      "9: equipment BDR: horizon 5 is too short for orders up to 10; make it at least 11"},
     {"short_horizon_for_three_outputs", with(6, "outputs = [\"a\", \"b\", \"c\"]\nhorizon = 4"),
      "7: equipment BDR: horizon 4 is too short for orders up to 10; make it at least 5"},
+    {"standby", "[service]\nstandby = true\n" + minimal,
+     "2: [service] a pair of services needs a strength each: strength = 2 for the one that leads "
+     "when both start, and 1 for the other"},
+    {"standby_type", "[service]\nstandby = \"yes\"\n" + minimal,
+     "2: [service] standby must be true or false, not the text \"yes\""},
+    {"strength", "[service]\nstrength = 1\n" + minimal,
+     "2: [service] strength counts in a pair alone: add standby = true, or remove it"},
     {"log_level", "[service]\nlog_level = \"loud\"\n" + minimal,
      "2: [service] log_level must be one of \"debug\", \"info\", \"warning\", \"error\""},
     {"durability", "[archive]\ndurability = \"full\"\n" + minimal,

@@ -1,0 +1,332 @@
+#include "service/daemon/pair.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "service/support/log.hpp"
+
+namespace reident {
+namespace {
+
+using namespace std::chrono_literals;
+using Role = LeadershipRule::Role;
+using Step = LeadershipRule::Step;
+
+constexpr std::size_t sayings_at_most = 64;
+constexpr Instant turn_interval = 40ms;
+constexpr Instant saying_interval = 100ms;                   // that this service leads
+constexpr Instant alive_within = 5s;                         // the archive's thread
+constexpr Instant alone_at_most = 5s;                        // before an alarm
+constexpr storage::Time overruled_for = 86'400'000'000'000;  // an alarm stays
+
+Instant steady_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+const char* name(Role role) {
+  switch (role) {
+    case Role::leads:
+      return "leads";
+    case Role::follows:
+      return "follows";
+    case Role::listens:
+      break;
+  }
+  return "listens";
+}
+
+}  // namespace
+
+Pair::Pair(const Config& config, Clock clock, dds::Participant& participant, ArchiveWriter& writer,
+           Listener listener)
+    : config_(config),
+      clock_(clock),
+      participant_(participant),
+      writer_(writer),
+      listener_(std::move(listener)),
+      leaders_(participant),
+      ready_(participant),
+      replication_(config, std::move(clock), participant, writer, ready_,
+                   {listener_.copied, [this] { listener_.overruled(replication_.registry()); }}),
+      rule_(config.strength, steady_now()),
+      taking_over_(writer, ready_),
+      sign_of_life_(writer, ready_) {
+  ready_.attach(leaders_);
+}
+
+void Pair::run() {
+  thread_ = std::this_thread::get_id();
+  std::string last_error;  // said once
+  while (!stopping_) {
+    ready_.wait(turn_interval);
+    try {
+      turn();
+      last_error.clear();
+    } catch (const storage::Error& error) {
+      if (error.what() != std::exchange(last_error, error.what()))
+        log::error("pair", "the registry cannot be read; it is tried again",
+                   {{"error", error.what()}});
+    } catch (const std::future_error&) {  // the archive's thread has ended
+      break;
+    }
+  }
+  if (is_leading()) {
+    share_the_last();
+    step_down();
+  }
+}
+
+void Pair::share_the_last() {
+  const Instant until = steady_now() + share_limit;
+  try {
+    for (Instant now = steady_now(); now < until && is_leading(); now = steady_now()) {
+      turn();
+      const auto partner = replication_.partner(now);
+      if (!partner || !partner->follows ||
+          partner->standing.position >= replication_.standing().position)
+        return;
+      ready_.wait(turn_interval);
+    }
+  } catch (const std::exception& error) {
+    log::warning("pair", "the other service may lack the last rows", {{"error", error.what()}});
+  }
+}
+
+void Pair::stop() {
+  stopping_ = true;
+  ready_.wake();
+}
+
+void Pair::turn() {
+  const Instant now = steady_now();
+  hear_leaders(now);
+  replication_.turn({is_leading(), rule_.leader(), now});
+  if (const auto partner = replication_.partner(now))
+    rule_.hear_partner(partner->standing, partner->heard);
+  const Standing ours = replication_.standing();
+  take(rule_.look(ours, now), ours, now);
+  if (const std::string failure = taking_over_.finish(); !failure.empty())
+    log::error("pair", "a term cannot be recorded; it is tried again", {{"error", failure}});
+  bool hands_over = false;
+  {
+    const MutexLock lock(mutex_);
+    hands_over = std::exchange(hands_over_, false) && is_leading();
+  }
+  if (hands_over) {
+    const auto partner = replication_.partner(now);
+    leadership_->write({config_.pair, rule_.latest_term(), config_.service_name, ours.position,
+                        partner ? partner->service : ""},
+                       [] { return true; });
+    rule_.hand_over(now);
+    step_down();
+  } else if (is_leading() && now >= next_saying_ && archive_works(now)) {
+    say_that_it_leads(ours, now);
+  }
+  note(ours, now);
+}
+
+void Pair::hear_leaders(Instant now) {
+  leaders_.take(
+      sayings_at_most,
+      [&](Leadership&& said) {
+        if (said.pair != config_.pair || said.service == config_.service_name) return;
+        rule_.hear_leader(said.term, said.service, said.successor == config_.service_name, now);
+        const MutexLock lock(mutex_);
+        seen_.leader_position = said.position;
+      },
+      {},
+      [&](Leadership&& ended) {
+        if (ended.pair == config_.pair && !is_leading()) rule_.hear_end();
+      });
+}
+
+void Pair::take(Step step, const Standing& ours, Instant now) {
+  if (step == Step::step_down) {
+    log::warning("pair", "leads no more", {{"term", ours.term}, {"leader", rule_.leader()}});
+    step_down();
+  } else if (step == Step::take_over && !taking_over_.is_pending() && !replication_.is_foreign()) {
+    take_over(ours);
+    next_saying_ = now;
+  }
+}
+
+void Pair::take_over(const Standing& ours) {
+  const std::int64_t term = rule_.next_term(ours.term);
+  taking_over_.post(
+      [this, term](storage::Registry& registry, auto&) {
+        registry.journal().begin_term(term, config_.service_name, clock_());
+        said_at_ = steady_now().count();
+        may_record_ = true;
+      },
+      [this, term] {
+        rule_.took_over(term);
+        const auto strength =
+            std::min<std::int64_t>(term, std::numeric_limits<std::int32_t>::max());
+        dds::WriterOptions options;
+        options.strength = static_cast<std::int32_t>(strength);
+        leadership_.emplace(participant_, options);
+        say_that_it_leads(replication_.standing(), steady_now());
+        log::info("pair", "leads", {{"term", term}});
+        listener_.leads(replication_.registry());
+      });
+}
+
+void Pair::step_down() {
+  may_record_ = false;
+  leadership_.reset();
+  {
+    const MutexLock lock(mutex_);
+    changed_.notify_all();  // whoever waits in share() holds what the listener needs
+  }
+  listener_.leads_no_more();
+}
+
+void Pair::say_that_it_leads(const Standing& ours, Instant now) {
+  next_saying_ = now + saying_interval;
+  leadership_->write({config_.pair, rule_.latest_term(), config_.service_name, ours.position, {}},
+                     [] { return true; });
+  said_at_ = steady_now().count();
+}
+
+bool Pair::archive_works(Instant now) {
+  sign_of_life_.finish();
+  if (!sign_of_life_.is_pending()) {
+    life_seen_ = now;
+    sign_of_life_.post([](auto&, auto&) {}, {});
+  }
+  return now - life_seen_ < alive_within;
+}
+
+void Pair::note(const Standing& ours, Instant now) {
+  const auto partner = replication_.partner(now);
+  const bool is_alone = is_leading() && !(partner && partner->follows);
+  std::optional<storage::Journal::Overruled> overruled;
+  const bool looks = now >= next_overruled_check_;
+  if (looks) {
+    next_overruled_check_ = now + 1s;
+    overruled = replication_.registry().journal().overruled_since(clock_() - overruled_for);
+  }
+  const MutexLock lock(mutex_);
+  seen_.ours = ours;
+  seen_.partner = partner;
+  seen_.role = rule_.role();
+  seen_.latest_term = std::max(rule_.latest_term(), ours.term);
+  seen_.leader = is_leading() ? config_.service_name : rule_.leader();
+  seen_.obstacle = replication_.obstacle();
+  if (!is_alone)
+    seen_.alone_since = {};
+  else if (seen_.alone_since == Instant{})
+    seen_.alone_since = now;
+  seen_.now = now;
+  if (looks) seen_.overruled = overruled;
+  changed_.notify_all();
+}
+
+bool Pair::leads() const {
+  return may_record_ && steady_now() - Instant(said_at_) < LeadershipRule::lease;
+}
+
+bool Pair::share(const storage::Registry& registry) {
+  if (!leads()) return false;
+  if (std::this_thread::get_id() == thread_) return true;  // it would wait for itself
+  const std::int64_t last = registry.journal().last();
+  const Instant until = steady_now() + share_limit;
+  ready_.wake();
+  const MutexLock lock(mutex_);
+  while (may_record_ && !stopping_ && seen_.partner && seen_.partner->follows &&
+         seen_.partner->standing.position < last) {
+    const Instant left = until - steady_now();
+    if (left <= Instant::zero()) {
+      published_beyond_ = last;
+      break;
+    }
+    changed_.wait_for(mutex_, left);
+  }
+  return leads();
+}
+
+std::string Pair::obstacle_to_hand_over() const {
+  const MutexLock lock(mutex_);
+  if (!seen_.partner || !seen_.partner->follows)
+    return "the other service of the pair is not there, or does not follow: 'reident status' shows "
+           "both";
+  const std::int64_t behind = seen_.ours.position - seen_.partner->standing.position;
+  constexpr std::int64_t few = 1000;
+  if (behind > few)
+    return fmt::format("{} lacks {} rows of the registry still: try again when it has them",
+                       seen_.partner->service, behind);
+  return {};
+}
+
+void Pair::hand_over() {
+  const MutexLock lock(mutex_);
+  hands_over_ = true;
+  ready_.wake();
+}
+
+std::string Pair::leader() const {
+  const MutexLock lock(mutex_);
+  return seen_.leader;
+}
+
+void Pair::describe(ServiceStatus& status) const {
+  const MutexLock lock(mutex_);
+  status.pair = config_.pair;
+  status.role = name(seen_.role);
+  status.term = seen_.latest_term;
+  status.partner = seen_.partner                 ? seen_.partner->service
+                   : seen_.role == Role::follows ? seen_.leader
+                                                 : std::string();
+  if (seen_.role == Role::leads)
+    status.lag = seen_.partner && seen_.partner->follows
+                     ? seen_.ours.position - seen_.partner->standing.position
+                     : -1;
+  else
+    status.lag = seen_.role == Role::follows && seen_.obstacle.empty()
+                     ? std::max<std::int64_t>(0, seen_.leader_position - seen_.ours.position)
+                     : -1;
+}
+
+std::vector<storage::Alarm> Pair::alarms() const {
+  const storage::Time time = clock_();
+  std::vector<storage::Alarm> alarms;
+  const MutexLock lock(mutex_);
+  if (!seen_.obstacle.empty())
+    alarms.push_back({"cannot_follow",
+                      {},
+                      fmt::format("{} cannot follow: {}.", config_.service_name, seen_.obstacle),
+                      time});
+  if (seen_.role == Role::leads && seen_.alone_since > Instant::zero() &&
+      seen_.now - seen_.alone_since > alone_at_most)
+    alarms.push_back(
+        {"no_standby",
+         {},
+         fmt::format("No service of the pair {} follows {}: what is decided now has no "
+                     "copy, and nobody takes over. Start the other one.",
+                     config_.pair, config_.service_name),
+         time});
+  if (seen_.role == Role::leads && seen_.partner && seen_.partner->follows &&
+      seen_.partner->standing.position < published_beyond_)
+    alarms.push_back(
+        {"standby_behind",
+         {},
+         fmt::format("A decision was published before {} had it: that did not take it "
+                     "within {} s. Look at its disk and its log.",
+                     seen_.partner->service,
+                     std::chrono::duration_cast<std::chrono::seconds>(share_limit).count()),
+         time});
+  if (seen_.overruled && seen_.overruled->decisions > 0)
+    alarms.push_back({"overruled",
+                      {},
+                      fmt::format("{} decided without the other service of the pair: {} of its "
+                                  "decisions and commands are overruled. The view "
+                                  "overruled_decision shows them.",
+                                  seen_.overruled->service, seen_.overruled->decisions),
+                      time});
+  return alarms;
+}
+
+}  // namespace reident
