@@ -40,6 +40,11 @@
 #                                         Chromium, a year of telemetry, viewers, slow clients, what
 #                                         ingest loses by them.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh operations [PART...] [--quick]
+#                                         a pair of services (part standby): how soon the other one
+#                                         takes over from a leader that was killed or hangs, and what
+#                                         200 random kills lose.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh build [--suite]    processor and wall time of a build from nothing, without
 #                                         and with the tests; with --suite also of the tests.
 #                                         The last line is one JSON object
@@ -103,6 +108,10 @@ case $what in
   web)
     arguments=(build/release "$@")
     targets=(reident_web_archive reidentd reident reident-web satcs-replay satcs-reference)
+    ;;
+  operations)
+    arguments=(build/release "$@")
+    targets=(e2e_programs)
     ;;
   *)
     usage
