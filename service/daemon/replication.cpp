@@ -82,7 +82,7 @@ void Replication::turn(const Turn& turn) {
     next_report_ = turn.now + report_interval;
     if (giving_up_ && !turn.leader.empty())
       send_given_up(turn.leader);
-    else
+    else if (!is_foreign_)
       say_position(turn.leader);
   }
 }

@@ -135,11 +135,14 @@ std::int64_t Journal::last() const {
 }
 
 bool Journal::is_of_no_pair() const {
-  sqlite::Query row = connection(database_).query(
-      "SELECT NOT EXISTS (SELECT 1 FROM term) AND (EXISTS (SELECT 1 FROM attempt) OR "
-      "EXISTS (SELECT 1 FROM hold) OR EXISTS (SELECT 1 FROM command))");
-  row.step();
-  return row.integer(0) != 0;
+  Connection& db = connection(database_);
+  return std::any_of(schema::journalled_tables.begin(), schema::journalled_tables.end(),
+                     [&](const JournalledTable& table) {
+                       sqlite::Query row =
+                           db.query("SELECT 1 FROM " + std::string(table.name) + " LIMIT 1");
+                       return row.step();
+                     }) &&
+         terms().empty();
 }
 
 std::int64_t Journal::term_at(std::int64_t position) const {

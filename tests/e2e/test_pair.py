@@ -16,6 +16,10 @@ class Pair(PairOfServices):
 
     def test_the_standby_has_every_row_and_takes_over_when_the_leader_is_killed(self):
         self.start_both()
+        _, text = self.reident("overview", "--json", "--config", self.folder / "2.toml")
+        self.assertEqual({one["service"]: (one["role"], one["term"], one["lag"])
+                          for one in json.loads(text)["pair"]},
+                         {"reident-2": ("leads", 2, 0), "reident-1": ("follows", 2, 0)})
         simulator = self.start_simulator("trainer")
         self.replay_flight("first", 3, count=1300)
         first = self.wait_for_champion(2, [simulator])

@@ -130,5 +130,42 @@ TEST_F(PublisherTest, OfDecisionsOnTwoThreadsTheLastOneIsPublishedLast) {
   EXPECT_EQ(next(late), champion);
 }
 
+TEST_F(PublisherTest, WhoTakesOverPublishesAgainSoThatItRunsInstead) {
+  dds::Reader<ModelVersion> reader(simulator_);
+  version(approve);
+  publisher_.publish_champions(registry_);
+  EXPECT_FALSE(take_all(reader, 1).at(0).rollback);
+  EXPECT_EQ(publisher_.publish_champions(registry_, true), 1U);
+  const ModelVersion again = take_all(reader, 1).at(0);
+  EXPECT_EQ(again.number, 1);
+  EXPECT_TRUE(again.rollback) << "a simulator may run what was overruled";
+}
+
+TEST_F(PublisherTest, WhoRetiresLeavesNothingForLateSimulatorsAndMayBeginAgain) {
+  dds::Reader<ModelVersion> early(simulator_);
+  version(approve);
+  publisher_.publish_champions(registry_);
+  EXPECT_EQ(next(early), 1);
+  publisher_.retire();
+  EXPECT_TRUE(publisher_.published().empty());
+  dds::Reader<ModelVersion> late(simulator_);
+  ASSERT_TRUE(eventually([&] { return late.matched_writers() == 1; }));
+  version(approve);
+  publisher_.publish_champions(registry_);
+  EXPECT_EQ(next(late), 2) << "and not the one before";
+}
+
+TEST_F(PublisherTest, WhatMayNotBePublishedIsNotUntilItMay) {
+  bool may = false;
+  Publisher asking(service_, [&](const storage::Registry&) { return may; });
+  dds::Reader<ModelVersion> reader(simulator_);
+  version(approve);
+  EXPECT_FALSE(asking.publish_champion(registry_, bdr_));
+  EXPECT_TRUE(asking.published().empty());
+  may = true;
+  EXPECT_TRUE(asking.publish_champion(registry_, bdr_));
+  EXPECT_EQ(next(reader), 1);
+}
+
 }  // namespace
 }  // namespace reident::test::publisher_test

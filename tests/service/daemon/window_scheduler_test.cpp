@@ -36,6 +36,16 @@ TEST_F(Scheduler, GivesAWindowOnceTelemetryHasReachedItsEndAndNothingFellIntoItF
   EXPECT_EQ(scheduler.next(200), (Job{0, {-20, 10}, "slide"}));
 }
 
+TEST_F(Scheduler, AWindowThatAnotherServiceTriedIsDueAgainForLateTelemetryAlone) {
+  telemetry(0, 21, 100);
+  scheduler.tried_elsewhere(0, {-20, 10});
+  EXPECT_EQ(scheduler.pending(), 1U);
+  EXPECT_EQ(complete(200).window, (storage::TimeRange{-10, 20}));
+  EXPECT_FALSE(scheduler.next(200));
+  scheduler.touched(0, 5, 300);
+  EXPECT_EQ(scheduler.next(400), (Job{0, {-20, 10}, "late telemetry"}));
+}
+
 TEST_F(Scheduler, WaitsForStragglers) {
   telemetry(0, 11, 100);
   EXPECT_FALSE(scheduler.next(104));

@@ -312,5 +312,16 @@ TEST_F(Commands, a_command_repeated_after_a_lost_reply_gets_the_same_reply_and_n
   expect_refused(changed, {"was another command (roll_back)"});
 }
 
+TEST_F(Commands, leadership_is_given_away_by_a_service_alone_and_the_command_is_kept) {
+  Command order = command("switch_over");
+  order.equipment.clear();
+  expect_refused(order, {"no service runs"});
+  context_.hand_over = [](const Command& one) { return CommandOutcome{true, "for " + one.actor}; };
+  order.request = ++requests_;
+  expect_done(execute(order), "for Ana");
+  context_.hand_over = {};
+  expect_done(execute(order), "for Ana");  // the same command, sent again
+}
+
 }  // namespace
 }  // namespace reident::test::commands_test
