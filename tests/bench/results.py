@@ -401,6 +401,28 @@ def build(figures):
                    for key, label in names.items() if key in figures])]
 
 
+@section("operations", "Operation in a failing world",
+         "Two real services of a pair on loopback. Times are from the failure of the one that leads "
+         "to the publication by the other one, as a simulator in another process hears it.",
+         "The random kills hit either service while an operator gives one command after the other. "
+         "The next one comes once both are in step again. What is lost are decisions that were ever "
+         "committed, commands that were answered and versions that were published, and that are not "
+         "in the registry at the end. Decisions that were overruled are counted apart.")
+def operations(figures):
+    get = figures.get
+    return [table(["what", "median", "at most", "in time"], [
+        [f"kill -9 of the leader, {get('takeovers')} times; 1.5 s",
+         figure(get("takeover_median_s")) + " s", figure(get("takeover_s")) + " s",
+         get("takeovers_in_time")],
+        [f"SIGSTOP of the leader, {get('hangs')} times; 3 s", figure(get("hang_median_s")) + " s",
+         figure(get("hang_s")) + " s", get("hangs_in_time")]]),
+        table(["random kills", "take-overs", "decisions", "commands", "versions", "lost",
+               "overruled", "numbers with two contents"],
+              [[get(key) for key in ("kills", "kill_takeovers", "decisions_committed",
+                                     "commands_answered", "versions", "decisions_lost",
+                                     "decisions_overruled", "split_numbers")]])]
+
+
 def parse(text):
     return json.loads(text, parse_float=Decimal)
 
