@@ -1,5 +1,8 @@
 #include "service/client/simulator.hpp"
 
+#include <algorithm>
+
+#include "service/client/name_pattern.hpp"
 #include "service/support/utc_clock.hpp"
 
 namespace reident {
@@ -9,6 +12,7 @@ constexpr std::size_t take_at_most = 256;
 // What a simulator may lag behind before it loses telemetry: it must never slow the source, which
 // the archive depends on.
 constexpr std::int32_t frames_kept = 16384;
+constexpr std::chrono::seconds version_within{5};  // of the start: the service publishes at once
 
 std::optional<ModelCache> cache_of(const SimulatorOptions& options) {
   if (!options.cache) return std::nullopt;
@@ -35,10 +39,16 @@ void Simulator::run(const std::stop_token& stop) {
   const ModelSubscriber::Listener heard = listener();
   models_.poll(heard);  // what was kept, without waiting
   auto next_report = Clock::now() + options_.report_period;
+  std::optional say_unpublished = Clock::now() + version_within;
   while (!stop.stop_requested()) {
-    ready_.wait(std::max<Clock::duration>(next_report - Clock::now(), std::chrono::nanoseconds(1)));
+    const auto next = std::min(next_report, say_unpublished.value_or(next_report));
+    ready_.wait(std::max<Clock::duration>(next - Clock::now(), std::chrono::nanoseconds(1)));
     models_.poll(heard);
     take_telemetry();
+    if (say_unpublished && Clock::now() >= *say_unpublished) {
+      report_unpublished();
+      say_unpublished.reset();
+    }
     if (Clock::now() < next_report) continue;
     report_running();
     next_report = Clock::now() + options_.report_period;
@@ -106,6 +116,18 @@ void Simulator::take_telemetry() {
   frames_.take(take_at_most, [this](storage::TelemetryFrame&& frame) {
     for (auto& [name, running] : equipment_) running.live.add(frame);
   });
+}
+
+void Simulator::report_unpublished() const {
+  std::vector<std::string> wanted = options_.subscription.equipment;
+  if (wanted.empty()) wanted.emplace_back("*");
+  const std::string& spacecraft = options_.subscription.spacecraft;
+  for (const std::string& equipment : wanted)
+    if (std::none_of(equipment_.begin(), equipment_.end(), [&](const auto& running) {
+          return matches(spacecraft, running.first.spacecraft) &&
+                 matches(equipment, running.first.equipment);
+        }))
+      report_.unpublished(spacecraft, equipment);
 }
 
 void Simulator::report_running() {

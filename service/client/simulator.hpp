@@ -41,6 +41,8 @@ class Simulator {
   using Clock = std::chrono::steady_clock;
 
   void take_telemetry();
+  /// Says which of the names that are subscribed to nobody publishes.
+  void report_unpublished() const;
   ModelSubscriber::Listener listener();
   /// Makes the equipment's run, or exchanges its version.
   void adopt(const ModelVersion& version, const Arrival& arrival);

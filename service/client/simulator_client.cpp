@@ -16,8 +16,9 @@ namespace {
 using namespace std::chrono_literals;
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr auto report_period = 5s;  // of what runs, to the service
-constexpr auto soonest_look = 1ms;  // whether a run took what was posted
+constexpr auto report_period = 5s;   // of what runs, to the service
+constexpr auto version_within = 5s;  // of a run's begin: the service publishes at once
+constexpr auto soonest_look = 1ms;   // whether a run took what was posted
 constexpr auto latest_look = 250ms;
 
 storage::EquipmentName name_of(const ModelVersion& version) {
@@ -113,9 +114,29 @@ void SimulatorClient::tell_fault(const char* what) {
   say(std::move(event));
 }
 
+void SimulatorClient::tell_unpublished() {
+  for (Run& run : runs_) {
+    if (!run.say_unpublished || SteadyClock::now() < *run.say_unpublished) continue;
+    run.say_unpublished.reset();
+    const storage::EquipmentName name{run.runner->spacecraft(), run.runner->equipment()};
+    if (models_.newest(name) != nullptr) continue;
+    SimulatorEvent event;
+    event.kind = SimulatorEvent::Kind::unpublished;
+    event.equipment = name;
+    event.text = "nobody publishes a version of " + name.spacecraft + "/" + name.equipment +
+                 ": look at the names, the domain and the partition, and with 'reident overview' "
+                 "whether it has a champion";
+    event.time = utc_now();
+    say(std::move(event));
+  }
+}
+
 std::chrono::nanoseconds SimulatorClient::patience() {
   const MutexLock lock(mutex_);
-  const auto until_report = std::chrono::nanoseconds(next_report_ - SteadyClock::now());
+  auto next = next_report_;
+  for (const Run& run : runs_)
+    if (run.say_unpublished) next = std::min(next, *run.say_unpublished);
+  const auto until_report = std::chrono::nanoseconds(next - SteadyClock::now());
   const bool any_waits = std::any_of(runs_.begin(), runs_.end(),
                                      [](const Run& run) { return run.runner->is_waiting(); });
   if (!any_waits) return std::max<std::chrono::nanoseconds>(until_report, 1ns);
@@ -127,6 +148,7 @@ void SimulatorClient::look() {
   const MutexLock lock(mutex_);
   models_.poll(listener());
   for (Run& run : runs_) collect(run);
+  tell_unpublished();
   if (SteadyClock::now() < next_report_) return;
   next_report_ = SteadyClock::now() + report_period;
   for (Run& run : runs_) {
@@ -309,6 +331,7 @@ std::variant<EquipmentRunner*, std::string> SimulatorClient::open(
   Run& run = runs_.emplace_back();
   run.runner = std::make_unique<EquipmentRunner>(equipment.spacecraft, equipment.equipment,
                                                  std::move(declaration));
+  run.say_unpublished = SteadyClock::now() + version_within;
   if (const auto* newest = models_.newest(equipment)) take_in(run, *newest);
   ready_.wake();  // it may be waited for sooner now
   return run.runner.get();

@@ -34,7 +34,7 @@ struct SimulatorClientOptions {
 
 /// The meanings are those of reident_event in client.h.
 struct SimulatorEvent {
-  enum class Kind { available = 1, swapped, refused, offered, cache, fault };
+  enum class Kind { available = 1, swapped, refused, offered, cache, fault, unpublished };
   Kind kind = Kind::available;
   storage::EquipmentName equipment;
   std::string text;
@@ -99,11 +99,14 @@ class SimulatorClient {
     std::optional<ModelSubscriber::Verified> posted;  // runs, or will at the next step
     std::optional<ModelSubscriber::Verified> offered;
     RunningModel told;
+    /// When to say that nobody publishes the equipment; absent once that was said.
+    std::optional<std::chrono::steady_clock::time_point> say_unpublished;
   };
   void work();  // the thread
   /// Takes what was published, what the runs have left, and reports every few seconds.
   void look();
   void tell_fault(const char* what);
+  void tell_unpublished() REIDENT_REQUIRES(mutex_);
   ModelSubscriber::Listener listener() REIDENT_REQUIRES(mutex_);
   /// Posts the version to the run where it fits what runs, and else offers it.
   void take_in(Run& run, const ModelSubscriber::Verified& verified) REIDENT_REQUIRES(mutex_);

@@ -103,6 +103,16 @@ TEST_F(ClientInterface, RunsAVersionFromTheStepAfterItCameAndReportsIt) {
   EXPECT_EQ(told->running.since, swapped.time_ns);
 }
 
+TEST_F(ClientInterface, SaysOnceThatNobodyPublishesAnEquipment) {
+  versions_->write(example_version(1));
+  Runner published(*client_, "CBERS4", "BDR", inputs, outputs);
+  Runner runner(*client_, "CBERS4", "BRD", inputs, outputs);
+  const ClientEvent said = event(Kind::unpublished);
+  EXPECT_EQ(said.spacecraft + "/" + said.equipment, "CBERS4/BRD");
+  EXPECT_THAT(said.text, HasSubstr("CBERS4/BRD"));
+  while (const auto next = client_->next_event(100)) EXPECT_NE(next->kind, Kind::unpublished);
+}
+
 TEST_F(ClientInterface, SwapsInMidRunWithoutAJump) {
   versions_->write(example_version(1));
   event(Kind::available);

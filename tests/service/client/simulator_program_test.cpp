@@ -89,6 +89,8 @@ TEST_F(SimulatorProgram, StartedLateRunsTheChampionAndSwapsWhileItRuns) {
 TEST_F(SimulatorProgram, WaitsWithoutAServiceAndStopsCleanly) {
   Child simulator(command());
   ASSERT_TRUE(eventually([&] { return versions_.matched_readers() == 1; }));
+  ASSERT_TRUE(eventually([&] { return !events("unpublished").empty(); }));
+  EXPECT_EQ(events("unpublished")[0]["equipment"], "BDR");
   simulator.signal(SIGINT);
   EXPECT_EQ(simulator.wait(), 0);
 }

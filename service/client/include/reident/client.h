@@ -86,13 +86,14 @@ REIDENT_API void reident_client_close(reident_client* client);
 
 /* Kinds of events. */
 enum {
-  REIDENT_EVENT_AVAILABLE = 1, /* a verified version; runners whose signals it has change to it */
-  REIDENT_EVENT_SWAPPED = 2,   /* a runner made its first step on the version */
-  REIDENT_EVENT_REFUSED = 3,   /* the version must not run; the one before goes on */
-  REIDENT_EVENT_OFFERED = 4,   /* its inputs, outputs or period are others than those that run, or
-                                  not what the runner declares: see reident_accept */
-  REIDENT_EVENT_CACHE = 5,     /* the file of last good versions could not be read or written */
-  REIDENT_EVENT_FAULT = 6      /* the middleware failed; the runs go on */
+  REIDENT_EVENT_AVAILABLE = 1,  /* a verified version; runners whose signals it has change to it */
+  REIDENT_EVENT_SWAPPED = 2,    /* a runner made its first step on the version */
+  REIDENT_EVENT_REFUSED = 3,    /* the version must not run; the one before goes on */
+  REIDENT_EVENT_OFFERED = 4,    /* its inputs, outputs or period are others than those that run, or
+                                   not what the runner declares: see reident_accept */
+  REIDENT_EVENT_CACHE = 5,      /* the file of last good versions could not be read or written */
+  REIDENT_EVENT_FAULT = 6,      /* the middleware failed; the runs go on */
+  REIDENT_EVENT_UNPUBLISHED = 7 /* no version came within 5 s after a runner was opened */
 };
 
 /* One event. What does not belong to its kind is 0 or "". */

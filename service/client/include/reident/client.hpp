@@ -55,7 +55,7 @@ struct ClientSignal {
 /// What happened, as in reident_event; it owns its texts. What does not belong to its kind is 0 or
 /// empty. Kinds that a later library adds have other values: ignore them.
 struct ClientEvent {
-  enum class Kind { available = 1, swapped, refused, offered, cache, fault };
+  enum class Kind { available = 1, swapped, refused, offered, cache, fault, unpublished };
   Kind kind;
   std::string spacecraft, equipment;
   std::string text;  // one sentence for a log
