@@ -57,9 +57,9 @@ class Simulators(EndToEnd):
         return Service(self, name)
 
     def start_telemetry(self, name="live", **keywords):
-        """Much faster than life, and longer than any test."""
+        """Much faster than life, and longer than any test; no archive is waited for."""
         csv = plant.write(self.folder / f"{name}.csv", plant.rows(40_000, **keywords))
-        return self.replay(csv, "--speed", "60")
+        return self.replay(csv, "--speed", "60", "--wait-readers", 0)
 
     def start_running(self, name="trainer", cache=None):
         return self.start_simulator(name, "--report", "0.2", cache=cache)

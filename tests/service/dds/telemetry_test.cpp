@@ -56,7 +56,9 @@ TEST(Telemetry, ASenderKnowsWhatAReceiverWouldRefuse) {
   EXPECT_EQ(dds::refusal(frame), std::nullopt);
   frame.source = "Rio de Janeiro \xe3";
   EXPECT_EQ(dds::refusal(frame), "source is not UTF-8");
-  storage::ParameterDescriptor descriptor{.spacecraft = "SAT", .id = 1, .name = "V"};
+  storage::ParameterDescriptor descriptor;
+  descriptor.spacecraft = "SAT";
+  descriptor.name = "V";
   EXPECT_EQ(dds::refusal(descriptor), std::nullopt);
   descriptor.unit =
       "\xb0"

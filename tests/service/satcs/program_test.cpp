@@ -116,6 +116,9 @@ TEST_F(Programs, ReplayBringsEveryRowAndItsDescriptors) {
   EXPECT_EQ(json["last_sequence"], 1500);
   EXPECT_EQ(json["first_time"], "2023-11-14T22:13:20Z");
   EXPECT_EQ(json["last_time"], "2023-11-14T22:29:59Z");
+  EXPECT_EQ(json["frames_missed"], 0);
+  EXPECT_THAT(json["found"].get<std::string>(), HasSubstr("header in line 1"));
+  EXPECT_EQ(json["columns_left_out"], nlohmann::json::array());
 }
 
 TEST_F(Programs, ReplayAtFullSpeedLosesNothingToASlowReader) {

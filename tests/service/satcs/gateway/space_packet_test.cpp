@@ -58,7 +58,7 @@ TEST(SpacePacket, HasItsPrimaryHeader) {
 TEST(SpacePacket, ComesOutOfAStreamHoweverItIsCut) {
   Bytes stream;
   for (const Bytes& packet : {one, two, three}) append(stream, packet);
-  for (const std::size_t piece : {1, 2, 5, 7, 100, 1000}) {
+  for (const std::size_t piece : {1U, 2U, 5U, 7U, 100U, 1000U}) {
     const Split split(stream, piece);
     EXPECT_THAT(split.packets, ElementsAre(one, two, three));
     EXPECT_THAT(split.offsets, ElementsAre(0, 9, 16));
@@ -71,7 +71,7 @@ TEST(SpacePacket, IsFoundAgainBehindBytesThatAreNone) {
   append(stream, Bytes(50, 0xff));
   append(stream, two);
   append(stream, three);
-  for (const std::size_t piece : {1, 13, 1000}) {
+  for (const std::size_t piece : {1U, 13U, 1000U}) {
     const Split split(stream, piece);
     EXPECT_THAT(split.packets, ElementsAre(one, two, three));
     EXPECT_THAT(split.left_out, ElementsAre("no_header at 9: 50"));
