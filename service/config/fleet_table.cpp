@@ -12,8 +12,7 @@
 namespace reident {
 namespace {
 
-constexpr int default_participants = 120;
-constexpr int most_participants = 5000;
+constexpr int most_gateways = 100;
 
 /// What spacecraft have where they do not say otherwise; {} stands for the name.
 struct FleetDefaults {
@@ -41,11 +40,10 @@ std::optional<FleetNetwork> read_network(TableReader& fleet, ConfigDocument& doc
   if (table == nullptr) return std::nullopt;
   TableReader reader(*table, "[fleet.network]", document);
   FleetNetwork network;
-  reader.require("interface", "\"eth0\"");
-  network.interface = reader.text("interface").value_or("");
-  if (const auto peers = reader.texts("peers")) network.peers = *peers;
-  network.participants = static_cast<int>(
-      reader.integer("participants", 1, most_participants).value_or(default_participants));
+  reader.require("host", "\"10.0.0.1\"");
+  network.host = reader.text("host").value_or("");
+  network.gateways =
+      static_cast<int>(reader.integer("gateways", 0, most_gateways).value_or(network.gateways));
   reader.refuse_unknown_keys();
   return network;
 }
@@ -65,7 +63,7 @@ void read_defaults(const toml::table& table, ConfigDocument& document, Fleet& fl
 }
 
 std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocument& document,
-                                           const FleetDefaults& defaults,
+                                           const Fleet& fleet, const FleetDefaults& defaults,
                                            const std::filesystem::path& folder) {
   TableReader reader(table, "[[spacecraft]]", document);
   reader.require("name", "\"SAT-1\"");
@@ -75,6 +73,10 @@ std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocum
   const auto memory_max = reader.text("memory_max"), cpu_quota = reader.text("cpu_quota");
   FleetInstance instance;
   instance.page = reader.text("page");
+  const auto host = reader.text("host");
+  if (host && !fleet.network)
+    reader.mistake("host", "host needs a [fleet.network], which says that there is one");
+  if (fleet.network) instance.host = host.value_or(fleet.network->host);
   reader.refuse_unknown_keys();
   if (!name) return std::nullopt;
   instance.name = *name;
@@ -126,7 +128,7 @@ std::variant<Fleet, std::vector<ConfigMistake>> load_fleet(const std::filesystem
   if (const toml::table* table = reader.section("fleet"))
     read_defaults(*table, document, fleet, defaults);
   for (const toml::table* table : reader.sections("spacecraft"))
-    if (auto one = read_instance(*table, document, defaults, file.parent_path()))
+    if (auto one = read_instance(*table, document, fleet, defaults, file.parent_path()))
       fleet.instances.push_back(*std::move(one));
   reader.refuse_unknown_keys();
   if (fleet.instances.empty() && document.mistakes.empty())

@@ -19,19 +19,20 @@ struct FleetInstance {
   std::string partition;
   std::filesystem::path data;                        // absolute; folder of its database
   std::optional<std::string> memory_max, cpu_quota;  // as systemd takes them
+  std::string host;                 // address of its machine; empty without a network
   std::optional<std::string> page;  // HOST:PORT of its operators' page, which has its metrics
 };
 
-/// How the middleware of the site finds others. Without it all stays on the loopback interface of
-/// one machine, in 16 services of a domain.
+/// Programs of a site that find each other by fixed ports, and not by asking all: what a service
+/// and its clients spend on discovery does not depend on how many others there are.
 struct FleetNetwork {
-  std::string interface;           // its name or its address
-  std::vector<std::string> peers;  // that are asked; empty: multicast
-  int participants = 0;            // of a domain on a machine, where peers are asked
+  std::string host;  // address of the machine of the gateways, and of services that name none
+  int gateways = 1;
 };
 
 struct Fleet {
   std::uint32_t domain = 0;
+  /// Without it all traffic stays on the loopback interface, with 16 services on a machine.
   std::optional<FleetNetwork> network;
   std::vector<FleetInstance> instances;  // at least one; names are distinct
 };

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -36,13 +37,92 @@ std::string configuration_of(const FleetInstance& instance, std::uint32_t domain
   return fmt::format("# {}\n{}", mark, std::get<std::string>(text));
 }
 
-std::string drop_in_of(const FleetInstance& instance, bool has_network) {
+/// Ports of the DDSI standard, and the files that name them. Services and gateways have the ports
+/// of an index of their own on their machine. Clients have any, and ask only whom they need.
+class Network {
+ public:
+  explicit Network(const Fleet& fleet) : fleet_(fleet) {
+    for (const FleetInstance& one : fleet.instances) indices_[one.name] = next_[one.host]++;
+    for (int i = 0; i < fleet.network->gateways; ++i)
+      gateways_.push_back(next_[fleet.network->host]++);
+    for (const auto& [host, count] : next_)
+      gain_ = std::max(
+          gain_, (first_offset + 2 * count + standard_gain - 1) / standard_gain * standard_gain);
+    if (first_port + gain_ * (static_cast<int>(fleet.domain) + 1) > last_port)
+      throw std::invalid_argument(fmt::format(
+          "so many services of a machine take {} ports of a domain, and domain {} has none left: "
+          "use a lower domain",
+          gain_, fleet.domain));
+  }
+
+  std::map<fs::path, std::string> files() const {
+    std::map<fs::path, std::string> files;
+    std::vector<std::string> gateways, all;
+    for (const int index : gateways_) gateways.push_back(address(fleet_.network->host, index));
+    all = gateways;
+    for (const FleetInstance& one : fleet_.instances) {
+      const int index = indices_.at(one.name);
+      std::vector<std::string> own = gateways;
+      own.push_back(address(one.host, index));
+      all.push_back(own.back());
+      files[one.name + ".xml"] = text(one.host, index, {});
+      files[one.name + "-clients.xml"] = text(client_host(), std::nullopt, own);
+    }
+    files["clients.xml"] = text(client_host(), std::nullopt, all);
+    for (std::size_t i = 0; i < gateways_.size(); ++i)
+      files[fmt::format("gateway-{}.xml", i + 1)] = text(
+          fleet_.network->host, gateways_[i], {all.begin() + std::ssize(gateways_), all.end()});
+    return files;
+  }
+
+ private:
+  static constexpr int first_port = 7400, standard_gain = 250, first_offset = 10;
+  static constexpr int last_port = 65535;
+
+  std::string address(const std::string& host, int index) const {
+    return fmt::format(
+        "{}:{}", host,
+        first_port + gain_ * static_cast<int>(fleet_.domain) + first_offset + 2 * index);
+  }
+  /// Clients of services on the loopback interface are there too; others have one of their own.
+  std::string client_host() const {
+    return fleet_.network->host.starts_with("127.") ? fleet_.network->host : "";
+  }
+
+  std::string text(const std::string& host, std::optional<int> index,
+                   const std::vector<std::string>& peers) const {
+    std::string interfaces, asked;
+    if (!host.empty())
+      interfaces = fmt::format(
+          "<Interfaces><NetworkInterface address=\"{}\" multicast=\"false\"/></Interfaces>", host);
+    for (const std::string& peer : peers) asked += fmt::format("<Peer address=\"{}\"/>\n", peer);
+    return fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- {} -->\n"
+        "<CycloneDDS xmlns=\"https://cdds.io/config\">\n<Domain Id=\"any\">\n"
+        "<General>{}<AllowMulticast>false</AllowMulticast>"
+        "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>64000B</FragmentSize></General>\n"
+        "<Discovery><ParticipantIndex>{}</ParticipantIndex><SPDPInterval>2s</SPDPInterval>"
+        "<Ports><DomainGain>{}</DomainGain></Ports>\n<Peers>\n{}</Peers></Discovery>\n"
+        "</Domain>\n</CycloneDDS>\n",
+        mark, interfaces, index ? std::to_string(*index) : "none", gain_, asked);
+  }
+
+  const Fleet& fleet_;
+  std::map<std::string, int> next_;  // index of each host
+  std::map<std::string, int> indices_;
+  std::vector<int> gateways_;
+  int gain_ = standard_gain;
+};
+
+std::string drop_in_of(const FleetInstance& instance) {
   std::string text =
       fmt::format("# {}\n[Service]\nReadWritePaths=-{}\n", mark, instance.data.string());
   if (instance.memory_max) text += fmt::format("MemoryMax={}\n", *instance.memory_max);
   if (instance.cpu_quota) text += fmt::format("CPUQuota={}\n", *instance.cpu_quota);
-  if (has_network)
-    text += "Environment=CYCLONEDDS_URI=file:///etc/reident/cyclonedds.xml\nIPAddressAllow=any\n";
+  if (instance.host.empty()) return text;
+  text += fmt::format("Environment=CYCLONEDDS_URI=file:///etc/reident/cyclonedds/{}.xml\n",
+                      instance.name);
+  if (!instance.host.starts_with("127.")) text += "IPAddressAllow=any\n";
   return text;
 }
 
@@ -63,63 +143,16 @@ bool is_ours(const fs::path& file) {
 
 }  // namespace
 
-std::string middleware_configuration(const FleetNetwork& network, std::uint32_t domain) {
-  constexpr int first_port = 7400, standard_gain = 250, offset = 10, last_port = 65535;
-  std::string discovery;
-  std::string ports;
-  if (network.peers.empty()) {
-    // Others are told the port: no index, and so no bound of how many there are on a machine.
-    discovery = "      <ParticipantIndex>none</ParticipantIndex>\n";
-  } else {
-    const int needed = offset + 2 * network.participants;
-    const int gain = (needed + standard_gain - 1) / standard_gain * standard_gain;
-    if (first_port + gain * (static_cast<int>(domain) + 1) > last_port)
-      throw std::invalid_argument(fmt::format(
-          "{} participants of a machine take {} ports of a domain, and domain {} has none left: "
-          "use a lower domain, or fewer participants",
-          network.participants, gain, domain));
-    if (gain > standard_gain) ports = fmt::format("<DomainGain>{}</DomainGain>", gain);
-    discovery = fmt::format(
-        "      <ParticipantIndex>auto</ParticipantIndex>\n"
-        "      <MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>\n",
-        network.participants - 1);
-    if (!ports.empty()) discovery += fmt::format("      <Ports>{}</Ports>\n", ports);
-    discovery += "      <Peers>\n";
-    for (const std::string& peer : network.peers)
-      discovery += fmt::format("        <Peer address=\"{}\"/>\n", peer);
-    discovery += "      </Peers>\n";
-  }
-  const bool is_address = network.interface.find_first_not_of("0123456789.") == std::string::npos ||
-                          network.interface.find(':') != std::string::npos;
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<!-- {} -->\n"
-      "<CycloneDDS xmlns=\"https://cdds.io/config\">\n"
-      "  <Domain Id=\"any\">\n"
-      "    <General>\n"
-      "      <Interfaces><NetworkInterface {}=\"{}\" multicast=\"{}\"/></Interfaces>\n"
-      "      <AllowMulticast>{}</AllowMulticast>\n"
-      "      <MaxMessageSize>65500B</MaxMessageSize>\n"
-      "      <FragmentSize>64000B</FragmentSize>\n"
-      "    </General>\n"
-      "    <Discovery>\n{}    </Discovery>\n"
-      "  </Domain>\n"
-      "</CycloneDDS>\n",
-      mark, is_address ? "address" : "name", network.interface, network.peers.empty(),
-      network.peers.empty() ? "spdp" : "false", discovery);
-}
-
 std::map<fs::path, std::string> site_files(const Fleet& fleet) {
   const fs::path configurations = "etc/reident", units = "etc/systemd/system";
   std::map<fs::path, std::string> files;
   for (const FleetInstance& one : fleet.instances) {
     files[configurations / (one.name + ".toml")] = configuration_of(one, fleet.domain);
-    files[units / fmt::format("reidentd@{}.service.d", one.name) / "fleet.conf"] =
-        drop_in_of(one, fleet.network.has_value());
+    files[units / fmt::format("reidentd@{}.service.d", one.name) / "fleet.conf"] = drop_in_of(one);
   }
   if (fleet.network)
-    files[configurations / "cyclonedds.xml"] =
-        middleware_configuration(*fleet.network, fleet.domain);
+    for (auto& [name, text] : Network(fleet).files())
+      files[configurations / "cyclonedds" / name] = text;
   files[configurations / "targets.json"] = targets_of(fleet);
   return files;
 }

@@ -45,8 +45,11 @@
 #                                         real systemd, networks that are cut, a pair of services whose
 #                                         leader is killed or hangs. Needs root; says what it leaves
 #                                         out. The last line is one JSON object
-#   tests/bench/run.sh scale [--spacecraft N] [--days N] [--folder FOLDER]
-#                                         a sweep of six spacecraft over 30 days on one core, on two
+#   tests/bench/run.sh scale [--services N] [--spacecraft N] [--days N] [--folder FOLDER]
+#                                         a hundred services and simulators on this machine: until
+#                                         all have found each other, what they take when idle, and
+#                                         their status; a sweep of six spacecraft over 30 days on
+#                                         one core, on two
 #                                         and as a Slurm array on two emulated nodes, which needs
 #                                         root: whether the bits are equal, and the speed-up.
 #                                         The last line is one JSON object
@@ -112,7 +115,7 @@ case $what in
     ;;
   scale)
     arguments=(build/release deploy "$@")
-    targets=(reident satcs-reference)
+    targets=(reident reidentd reident-simulator satcs-reference)
     ;;
   web)
     arguments=(build/release "$@")

@@ -1,6 +1,9 @@
-"""A constellation: sweeps over several spacecraft on one core, on two, and as a Slurm array.
+"""A constellation: many services on a machine, and sweeps over several spacecraft on one core, on
+two, and as a Slurm array.
 
-    scale.py BUILD DEPLOY [--spacecraft N] [--days N] [--folder FOLDER]
+    scale.py BUILD DEPLOY [--services N] [--spacecraft N] [--days N] [--folder FOLDER]
+
+site_of_services.py says what is measured of the services (--services 0 leaves them out).
 
 Each spacecraft is satcs-reference with another seed, and with a string of its array lost in the
 middle. The cluster has two emulated nodes (slurmctld and two slurmd of this machine, started and
@@ -9,12 +12,13 @@ measured and, as the last line, one JSON object of the figures:
 
   sweep_equal     whether the Slurm array gave the registries of one machine, to the bit
   sweep_speedup   wall time on one core over that on two, both undisturbed
-  load            other work of the machine during the two runs [processes]
+  load_of_sweeps  other work of the machine before the two runs [processes]
 """
 
 import argparse
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -24,6 +28,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "e2e"))
 
+import site_of_services  # noqa: E402: found in this folder
 import slurm  # noqa: E402: found in the folder above
 
 CHANGE = "window=400min"
@@ -93,30 +98,44 @@ def digests(report):
     return {one["name"]: one["registry_sha256"] for one in report["spacecraft"]}
 
 
+def measure_sweeps(arguments, folder):
+    constellation = Constellation(arguments, folder)
+    one, load_one = constellation.on_cores("one", 1)
+    two, load_two = constellation.on_cores("two", 2)
+    report = constellation.report("one")
+    figures = {"spacecraft": arguments.spacecraft, "days": arguments.days,
+               "equipment": report["equipment"], "windows": report["windows"],
+               "one_core_s": round(one, 1), "two_cores_s": round(two, 1),
+               "sweep_speedup": round(one / two, 2),
+               "load_of_sweeps": [round(load_one, 1), round(load_two, 1)],
+               "two_cores_equal": digests(constellation.report("two")) == digests(report)}
+    if why := slurm.missing():
+        print(f"without Slurm: {why}")
+    else:
+        constellation.on_slurm("array")
+        figures["sweep_equal"] = digests(constellation.report("array")) == digests(report)
+    return figures
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("build")
     parser.add_argument("deploy")
+    parser.add_argument("--services", type=int, default=100)
     parser.add_argument("--spacecraft", type=int, default=6)
     parser.add_argument("--days", type=float, default=30)
     parser.add_argument("--folder", default=None)
     arguments = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what was started is ended all the same
     with tempfile.TemporaryDirectory(prefix="reident-scale-", dir=arguments.folder) as folder:
-        constellation = Constellation(arguments, Path(folder))
-        one, load_one = constellation.on_cores("one", 1)
-        two, load_two = constellation.on_cores("two", 2)
-        report = constellation.report("one")
-        equal = digests(report) == digests(constellation.report("two"))
-        figures = {"spacecraft": arguments.spacecraft, "days": arguments.days,
-                   "equipment": report["equipment"], "windows": report["windows"],
-                   "one_core_s": round(one, 1), "two_cores_s": round(two, 1),
-                   "sweep_speedup": round(one / two, 2),
-                   "load": [round(load_one, 1), round(load_two, 1)], "two_cores_equal": equal}
-        if why := slurm.missing():
-            print(f"without Slurm: {why}")
-        else:
-            constellation.on_slurm("array")
-            figures["sweep_equal"] = digests(constellation.report("array")) == digests(report)
+        figures = {}
+        if arguments.services:
+            (site := Path(folder) / "site").mkdir()
+            figures |= site_of_services.measure(arguments.build, arguments.services, site)
+            print(figures, flush=True)
+        if arguments.spacecraft:
+            (sweeps := Path(folder) / "sweeps").mkdir()
+            figures |= measure_sweeps(arguments, sweeps)
         print(json.dumps(figures))
 
 

@@ -21,17 +21,19 @@ domain = {self.domain}
 partition = "{self.partition}/{{}}"
 data = "{self.folder}/data/{{}}"
 [fleet.network]
-interface = "127.0.0.1"
+host = "127.0.0.1"
 ''' + "".join(f'[[spacecraft]]\nname = "{name}"\n' for name in self.names))
         status, text = self.reident("fleet", "init", table, "--root", self.folder)
         self.assertEqual(status, 0, text)
         self.configurations = self.folder / "etc/reident"
-        self.middleware = self.configurations / "cyclonedds.xml"
+
+    def middleware(self, name):
+        return self.configurations / "cyclonedds" / f"{name}.xml"
 
     def serve(self, name):
         (self.folder / "data" / name).mkdir(parents=True)
         return self.start("reidentd", "--config", self.configurations / f"{name}.toml", name=name,
-                          middleware=self.middleware)
+                          middleware=self.middleware(name))
 
     def status(self):
         code, text = self.reident("fleet", "status", self.configurations, "--json")
@@ -43,7 +45,7 @@ interface = "127.0.0.1"
             plant.write(csv, plant.rows(2400))
         replay = self.start("satcs-replay", csv, "--spacecraft", name, "--speed", "max", "--domain",
                             self.domain, "--partition", f"{self.partition}/{name}",
-                            middleware=self.middleware)
+                            middleware=self.middleware("gateway-1"))
         self.assertEqual(replay.wait(), 0, replay.text())
 
     def test_eighteen_services_and_a_simulator_of_two_spacecraft(self):
@@ -53,7 +55,7 @@ interface = "127.0.0.1"
         simulator = self.start("reident-simulator", "--spacecraft", "SAT-*", "--equipment", "PLANT",
                                "--name", "trainer", "--json", "--cache", self.folder / "cache",
                                "--domain", self.domain, "--partition", f"{self.partition}/*",
-                               middleware=self.middleware)
+                               middleware=self.middleware("clients"))
         asked = ["SAT-1", f"SAT-{SERVICES}"]
         for name in asked:
             self.replay(name)

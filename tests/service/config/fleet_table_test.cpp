@@ -82,9 +82,9 @@ TEST_F(FleetTable, NamesEachMistakeWithItsLine) {
       {"[fleet]\nconfiguration = \"x\"\npartition = \"all\"\n[[spacecraft]]\nname = \"A\"\n"
        "[[spacecraft]]\nname = \"B\"\n",
        0, "partition all"},
-      {"[fleet]\nconfiguration = \"x\"\n[fleet.network]\npeers = [\"a\"]\n[[spacecraft]]\nname = "
+      {"[fleet]\nconfiguration = \"x\"\n[fleet.network]\ngateways = 2\n[[spacecraft]]\nname = "
        "\"A\"\n",
-       3, "interface"},
+       3, "host"},
   };
   for (const auto& [text, line, words] : cases) {
     const ConfigMistake found = mistake(text);

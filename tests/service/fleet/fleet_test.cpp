@@ -100,18 +100,45 @@ TEST_F(FleetTest, RefusesAConfigurationOfTwoSpacecraft) {
   EXPECT_THROW(fleet::site_files(two), std::invalid_argument);
 }
 
-TEST(FleetNetworkTest, TakesThePortsThatItNeeds) {
-  const std::string multicast = fleet::middleware_configuration({"eth0", {}, 120}, 230);
-  EXPECT_THAT(multicast, AllOf(HasSubstr("<ParticipantIndex>none<"), HasSubstr("name=\"eth0\""),
-                               HasSubstr("<AllowMulticast>spdp<")));
-  const std::string few = fleet::middleware_configuration({"10.0.0.1", {"10.0.0.2"}, 120}, 230);
-  EXPECT_THAT(few,
-              AllOf(HasSubstr("<MaxAutoParticipantIndex>119<"), Not(HasSubstr("DomainGain")),
-                    HasSubstr("address=\"10.0.0.1\""), HasSubstr("<Peer address=\"10.0.0.2\"/>")));
-  EXPECT_THAT(fleet::middleware_configuration({"10.0.0.1", {"10.0.0.2"}, 300}, 60),
-              HasSubstr("<DomainGain>750<"));
-  EXPECT_THROW(fleet::middleware_configuration({"10.0.0.1", {"10.0.0.2"}, 300}, 100),
-               std::invalid_argument);
+TEST_F(FleetTest, GivesEachServiceAPortAndEachClientThoseThatItNeeds) {
+  Fleet fleet = site({"SAT-1", "SAT-2", "SAT-3"});
+  fleet.network = FleetNetwork{"10.0.0.1", 1};
+  for (FleetInstance& one : fleet.instances) one.host = "10.0.0.1";
+  fleet.instances[2].host = "10.0.0.2";
+  const auto files = fleet::site_files(fleet);
+  const auto middleware = [&](const std::string& name) {
+    return files.at("etc/reident/cyclonedds/" + name + ".xml");
+  };
+  EXPECT_THAT(middleware("SAT-2"),
+              AllOf(HasSubstr("<ParticipantIndex>1<"), HasSubstr("address=\"10.0.0.1\""),
+                    Not(HasSubstr("<Peer "))));
+  EXPECT_THAT(middleware("SAT-3"),
+              AllOf(HasSubstr("<ParticipantIndex>0<"), HasSubstr("address=\"10.0.0.2\"")));
+  // 7400 + 250 * 3 + 10 + 2 * index
+  EXPECT_THAT(middleware("SAT-2-clients"),
+              AllOf(HasSubstr("<ParticipantIndex>none<"), HasSubstr("10.0.0.1:8162"),
+                    HasSubstr("10.0.0.1:8164"), Not(HasSubstr("10.0.0.1:8160"))))
+      << "its service and the gateway";
+  EXPECT_THAT(middleware("clients"), AllOf(HasSubstr("10.0.0.1:8160"), HasSubstr("10.0.0.1:8162"),
+                                           HasSubstr("10.0.0.2:8160"), HasSubstr("10.0.0.1:8164")));
+  EXPECT_THAT(middleware("gateway-1"),
+              AllOf(HasSubstr("<ParticipantIndex>2<"), HasSubstr("10.0.0.2:8160"),
+                    Not(HasSubstr("10.0.0.1:8164"))));
+  EXPECT_THAT(files.at("etc/systemd/system/reidentd@SAT-3.service.d/fleet.conf"),
+              AllOf(HasSubstr("cyclonedds/SAT-3.xml\n"), HasSubstr("IPAddressAllow=any\n")));
+}
+
+TEST_F(FleetTest, TakesThePortsOfSeveralDomainsForManyServices) {
+  std::vector<std::string> names;
+  for (int i = 0; i < 200; ++i) names.push_back("SAT-" + std::to_string(i));
+  Fleet fleet = site(names);
+  fleet.network = FleetNetwork{"127.0.0.1", 0};
+  for (FleetInstance& one : fleet.instances) one.host = "127.0.0.1";
+  fleet.domain = 60;
+  EXPECT_THAT(fleet::site_files(fleet).at("etc/reident/cyclonedds/SAT-199.xml"),
+              AllOf(HasSubstr("<DomainGain>500<"), HasSubstr("<ParticipantIndex>199<")));
+  fleet.domain = 150;
+  EXPECT_THROW(fleet::site_files(fleet), std::invalid_argument);
 }
 
 TEST_F(FleetTest, ShowsTheWorstFirst) {
