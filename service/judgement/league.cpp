@@ -76,16 +76,17 @@ void extend(Comparison& comparison, const League& league, const Member& one, con
                  });
 }
 
-/// What an offset explains of the champion's error in each last cycle: a constant, or with `effect`
-/// above 0 that of a sensor.
+/// A member against the champion without what an offset explains of its error in each last cycle: a
+/// constant, or with `effect` above 0 that of a sensor.
 struct WithoutOffset {
-  Scores member;  // of the member, against the champion without it
-  Scores offset;  // of the champion without it against itself, where the sensor has departed
+  Scores scores;
+  double explained = 0;  // share of what the member errs less; the mean over the outputs
 };
 
 WithoutOffset without_offset(const League& league, const Member& member, const Comparison& compared,
                              std::size_t effect, const SensorPast& past) {
   WithoutOffset found;
+  std::vector<double> gained, explained;  // by output
   for (const std::size_t i : compared.blocks) {
     OffsetFit fit(effect, past);
     for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
@@ -93,12 +94,20 @@ WithoutOffset without_offset(const League& league, const Member& member, const C
           score && counts(league.blocks[k]))
         fit.add(phase_of(league.blocks[k]), *score);
     const Time begin = league.blocks[i].range.begin;
+    const BlockScore& own = *find(member, begin);
     const BlockScore& champion = *find(*league.champion, begin);
-    BlockScore corrected = champion;
-    corrected.square = fit.rest(champion);
-    found.member.add(squares_of(*find(member, begin), corrected));
-    if (fit.is_departed()) found.offset.add(squares_of(corrected, champion));
+    BlockScore rest = champion;
+    rest.square = fit.rest(champion);
+    found.scores.add(squares_of(own, rest));
+    gained.resize(rest.square.size(), 0);
+    explained.resize(rest.square.size(), 0);
+    for (std::size_t q = 0; q < gained.size(); ++q) {
+      gained[q] += champion.square[q] - own.square[q];
+      explained[q] += champion.square[q] - rest.square[q];
+    }
   }
+  for (std::size_t q = 0; q < gained.size(); ++q)
+    if (gained[q] > 0) found.explained += explained[q] / gained[q] / double(gained.size());
   return found;
 }
 
@@ -223,34 +232,32 @@ std::optional<Reason> unproved_somewhere(Standard& standard, const Member& membe
   return std::nullopt;
 }
 
-/// R3. Whichever sensor's offset explains the most decides; and one that reads otherwise than in
-/// its past, so that the champion would surely err less without its offset, has to be looked at
-/// first.
+/// R3. What is left without an offset has to be enough, whichever sensor's it is. The effect of a
+/// sensor in a derived input is known to the first order alone: so it must not explain more than
+/// half of what the member errs less, either.
 std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
                                   const Comparison& compared, Finding& finding) {
-  const std::vector<std::string>& unbound = standard.league.unbound;
-  if (standard.limits.bias == BiasPolicy::approve || unbound.empty()) return std::nullopt;
-  bool is_offset = false;
-  for (std::size_t effect = 0; effect <= offset_effects(*standard.league.champion); ++effect) {
-    const WithoutOffset without = without_offset(
-        standard.league, member, compared, effect,
-        effect > 0 ? past_of(standard.league, effect, standard.since) : SensorPast());
-    const ScoreSeries scores = series(without.member.values(), standard.assumed);
+  constexpr double most_explained = 0.5;
+  const League& league = standard.league;
+  if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty()) return std::nullopt;
+  bool may_be = false;
+  for (std::size_t effect = 0; effect <= offset_effects(*league.champion); ++effect) {
+    const WithoutOffset without =
+        without_offset(league, member, compared, effect,
+                       effect > 0 ? past_of(league, effect, standard.since) : SensorPast());
+    const ScoreSeries scores = series(without.scores.values(), standard.assumed);
     const double wealth = log_wealth(scores, dependence(scores), 0);
-    if (!without.offset.values().empty()) {
-      const ScoreSeries offset = series(without.offset.values(), standard.assumed);
-      is_offset = is_offset || log_wealth(offset, dependence(offset), 0) > finding.log_threshold;
-    }
+    const double mean = scores.scores.mean();
+    may_be = may_be || !(wealth > finding.log_threshold && mean > margin_of(standard.limits)) ||
+             (effect > 0 && without.explained > most_explained);
     if (effect > 0 && wealth >= finding.wealth_without_offset) continue;
-    finding.mean_without_offset = scores.scores.mean();
+    finding.mean_without_offset = mean;
     finding.wealth_without_offset = wealth;
   }
-  if (!is_offset && finding.wealth_without_offset > finding.log_threshold &&
-      finding.mean_without_offset > margin_of(standard.limits))
-    return std::nullopt;
+  if (!may_be) return std::nullopt;
   std::string sensors;
-  for (const std::string& name : unbound) sensors += (sensors.empty() ? "" : ", ") + name;
-  return because<Code::bias_unverified>(standard.league.champion->version, sensors);
+  for (const std::string& name : league.unbound) sensors += (sensors.empty() ? "" : ", ") + name;
+  return because<Code::bias_unverified>(league.champion->version, sensors);
 }
 
 /// R5.

@@ -80,10 +80,6 @@ void OffsetFit::add(std::size_t phase, const BlockScore& score) {
   }
 }
 
-bool OffsetFit::is_departed() const {
-  return effect_ > 0 && std::abs(departure_ / rows_) > spreads * past_->spread();
-}
-
 std::vector<double> OffsetFit::rest(const BlockScore& score) const {
   std::vector<double> squares = score.square;
   const double* effect = effect_ > 0 ? effect_in(score, effect_) : nullptr;
@@ -94,8 +90,8 @@ std::vector<double> OffsetFit::rest(const BlockScore& score) const {
     } else if (effect && sums_[q].effect_square > 0) {
       const double reach = spreads * past_->spread(), moved = departure_ / rows_;
       const double offset =
-          std::clamp(sums_[q].product / sums_[q].effect_square, moved - reach, moved + reach);
-      squares[q] += offset * (offset * effect[1 + 2 * q] - 2 * effect[2 + 2 * q]);
+          std::clamp(-sums_[q].product / sums_[q].effect_square, moved - reach, moved + reach);
+      squares[q] += offset * (offset * effect[1 + 2 * q] + 2 * effect[2 + 2 * q]);
     }
   }
   return squares;

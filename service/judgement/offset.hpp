@@ -55,8 +55,6 @@ class OffsetFit {
 
   /// Takes in a block.
   void add(std::size_t phase, const storage::BlockScore& score);
-  /// Whether the sensor reads otherwise than in its past.
-  bool is_departed() const;
   /// The mean squares of a block's errors without what is explained.
   std::vector<double> rest(const storage::BlockScore& score) const;
 

@@ -1,7 +1,6 @@
 #include "service/windows/window_cache.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -12,6 +11,7 @@
 namespace reident {
 
 using identification::Index;
+using identification::Matrix;
 using identification::Record;
 using identification::TickRange;
 using identification::TickSet;
@@ -19,10 +19,9 @@ using identification::Vector;
 
 namespace {
 
-/// WindowData::bias_effects of the sensor, for biases of three tenths of its values: first upwards,
-/// then downwards. Where the true value would give no input that is finite, the other way counts.
-std::array<Record, 2> bias_effects(const WindowRequest& request, const Record& samples,
-                                   const std::string& sensor) {
+/// WindowData::bias_effects of the sensor, for biases of a tenth of its values up and down. Where
+/// one of them gives no input that is finite, the other counts.
+Record bias_effect(const WindowRequest& request, const Record& samples, const std::string& sensor) {
   std::vector<std::string> inputs = request.inputs;
   inputs.push_back(sensor);
   InputExpressions expressions(inputs, request.derived);
@@ -30,11 +29,11 @@ std::array<Record, 2> bias_effects(const WindowRequest& request, const Record& s
   const auto place = std::ranges::find(names, sensor) - names.begin();
   const double values = std::sqrt(samples.u.col(place).squaredNorm() /
                                   static_cast<double>(std::max<Index>(1, samples.rows())));
-  const double bias = values > 0 ? 0.3 * values : 1;
+  const double bias = values > 0 ? values / 10 : 1;
   Record effect = expressions.evaluate(samples);
   const Index m = effect.u.cols() - 1;
   effect.y = effect.u.col(m);
-  std::array<Record, 2> effects{effect, effect};
+  effect.u = Matrix::Zero(effect.rows(), m);
   Vector raw(samples.u.cols()), above(m + 1), here(m + 1), below(m + 1);
   const auto inputs_at = [&](Index row, double offset, Vector& found) {
     raw = samples.u.row(row).transpose();
@@ -44,17 +43,14 @@ std::array<Record, 2> bias_effects(const WindowRequest& request, const Record& s
   };
   Index kept = 0;
   for (Index row = 0; row < samples.rows(); ++row) {
-    if (!inputs_at(row, 0, here)) continue;  // as the record has it
-    const bool has_above = inputs_at(row, bias, above), has_below = inputs_at(row, -bias, below);
-    above = has_above ? Vector((above - here) / bias) : Vector(Vector::Zero(m + 1));
-    below = has_below ? Vector((here - below) / bias) : above;
-    if (!has_above) above = below;
-    effects[0].u.row(kept) = below.transpose();
-    effects[1].u.row(kept) = above.transpose();
+    if (!inputs_at(row, 0, here)) continue;  // it is not in the record
+    double width = 2 * bias;
+    if (!inputs_at(row, bias, above)) above = here, width -= bias;
+    if (!inputs_at(row, -bias, below)) below = here, width -= bias;
+    if (width > 0) effect.u.row(kept) = (above - below).head(m).transpose() / width;
     ++kept;
   }
-  for (Record& one : effects) one.u = one.u.leftCols(m).eval();
-  return effects;
+  return effect;
 }
 
 }  // namespace
@@ -104,8 +100,8 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
   InputExpressions expressions(request_.inputs, request_.derived);
   Record read = expressions.evaluate(sensors.empty() ? std::move(samples) : samples);
   for (const std::string& sensor : sensors)
-    for (Record& effect : bias_effects(request_, samples, sensor))
-      data.bias_effects.push_back(without(std::move(effect), data.plausibility.holes));
+    data.bias_effects.push_back(
+        without(bias_effect(request_, samples, sensor), data.plausibility.holes));
   data.read_coverage = coverage_of(read, window, request_.period);
   data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);

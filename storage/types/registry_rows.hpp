@@ -167,8 +167,7 @@ struct BlockScore {
   std::vector<double> noise;
   /// At the end of the block.
   RunState state;
-  /// What a bias of a sensor does to the run, over the bias. For one sensor behind the other, and
-  /// for a bias upwards and one downwards: the mean of its
+  /// What a bias of a sensor does to the run, over the bias. For one sensor behind the other: the mean of its
   /// values, and for each output the means of the effect's square and of its product with the
   /// error. Empty where biases act like constants in the outputs.
   std::vector<double> bias_effects;

@@ -204,7 +204,7 @@ Records sensor_of_a_derived_input(double explained, double moved) {
   int block = 0;
   for (BlockScore& score : records.league().champion->scores) {
     const double mean = 5 + 0.1 * std::sin(block);
-    score.bias_effects = {mean + (block < 100 ? 0 : moved), 0.25, block < 100 ? 0 : explained};
+    score.bias_effects = {mean + (block < 100 ? 0 : moved), 0.25, block < 100 ? 0 : -explained};
     ++block;
   }
   return records;
