@@ -39,15 +39,15 @@ void Simulator::run(const std::stop_token& stop) {
   const ModelSubscriber::Listener heard = listener();
   models_.poll(heard);  // what was kept, without waiting
   auto next_report = Clock::now() + options_.report_period;
-  std::optional say_unpublished = Clock::now() + version_within;
+  auto say_unpublished = Clock::now() + version_within;
   while (!stop.stop_requested()) {
-    const auto next = std::min(next_report, say_unpublished.value_or(next_report));
+    const auto next = std::min(next_report, say_unpublished);
     ready_.wait(std::max<Clock::duration>(next - Clock::now(), std::chrono::nanoseconds(1)));
     models_.poll(heard);
     take_telemetry();
-    if (say_unpublished && Clock::now() >= *say_unpublished) {
+    if (Clock::now() >= say_unpublished) {
       report_unpublished();
-      say_unpublished.reset();
+      say_unpublished = Clock::time_point::max();
     }
     if (Clock::now() < next_report) continue;
     report_running();
