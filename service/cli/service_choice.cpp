@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "service/cli/config_options.hpp"
 #include "service/support/text.hpp"
 
 namespace reident::cli {
@@ -17,8 +18,8 @@ using namespace std::chrono_literals;
 
 constexpr auto time_of_others = 300ms;  // for their last heartbeats to come
 
-std::vector<ServiceStatus> heard_services(const dds::Endpoint& endpoint,
-                                          std::chrono::milliseconds timeout) {
+std::variant<std::vector<ServiceStatus>, Refusal> heard_services(
+    const dds::Endpoint& endpoint, std::chrono::milliseconds timeout) {
   dds::Participant participant(endpoint);
   dds::Reader<ServiceStatus> reader(participant);
   dds::WaitSet ready(participant);
@@ -35,6 +36,7 @@ std::vector<ServiceStatus> heard_services(const dds::Endpoint& endpoint,
   }
   std::vector<ServiceStatus> services;
   for (auto& [key, status] : heard) services.push_back(std::move(status));
+  if (services.empty() && participant.misses_security()) return missing_security(endpoint);
   return services;
 }
 
@@ -64,7 +66,9 @@ std::variant<std::string, Refusal> chosen_service(const dds::Endpoint& endpoint,
                                                   const std::string& configured,
                                                   std::chrono::milliseconds timeout) {
   if (named) return *named;
-  const std::vector<ServiceStatus> services = heard_services(endpoint, timeout);
+  const auto heard = heard_services(endpoint, timeout);
+  if (const auto* refusal = std::get_if<Refusal>(&heard)) return *refusal;
+  const auto& services = std::get<std::vector<ServiceStatus>>(heard);
   if (services.empty()) return std::string();
   if (services.size() == 1) return services.front().service;
   std::vector<std::string> names;

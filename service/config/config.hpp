@@ -85,6 +85,7 @@ struct Config {
   storage::Durability durability = storage::Durability::power_cut;
   std::uint32_t domain = 0;
   std::string partition = "operations";
+  std::filesystem::path security{};        // folder of the service's files; empty: not secured
   std::size_t queue_frames = 8192;         // bound of the queue between DDS and the archive
   std::size_t queue_mib = 64;              // its bound in memory
   std::size_t batch_frames = 4096;         // frames of one transaction, at most; no more than 5 MiB

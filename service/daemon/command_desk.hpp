@@ -6,7 +6,9 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 
+#include "service/daemon/window_feed.hpp"
 #include "service/dds/dds.hpp"
 #include "storage/registry/registry.hpp"
 
@@ -19,9 +21,10 @@ class CommandDesk {
   using Execute =
       std::function<std::optional<storage::CommandOutcome>(const storage::Command& command)>;
 
-  /// Hears commands to `service` and those to every service. The participant must outlive it.
-  /// Throws dds::Error.
-  CommandDesk(dds::Participant& participant, std::string service);
+  /// Hears commands to `service` and those to every service. The participant must outlive it; where
+  /// it is secured, signed commands alone are executed, and the actor is the one who signed. Throws
+  /// dds::Error.
+  CommandDesk(dds::Participant& participant, std::string service, Clock clock);
 
   /// The thread's body: until stop().
   void run(const Execute& execute);
@@ -29,8 +32,12 @@ class CommandDesk {
 
  private:
   void answer(const CommandRequest& request, const Execute& execute);
+  /// The command with who ordered it, or why it is not executed.
+  std::variant<storage::Command, std::string> command_of(const CommandRequest& request) const;
 
+  const dds::Participant& participant_;
   const std::string service_;
+  const Clock clock_;
   dds::Reader<CommandRequest> commands_;
   dds::Writer<CommandReply> replies_;
   dds::WaitSet ready_;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "service/operations/commands.hpp"
+#include "service/security/material.hpp"
 #include "service/support/log.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
@@ -53,6 +54,11 @@ std::string equipment_text(const Config& config) {
   std::vector<std::string> names;
   for (const storage::EquipmentName& name : equipment_of(config)) names.push_back(full_name(name));
   return joined(names);
+}
+
+std::string security_text(const dds::Participant& participant) {
+  const auto material = participant.material();
+  return material ? security::description(*material) : "none";
 }
 
 IdentificationReport report_of(const RefreshResult& result) {
@@ -100,9 +106,9 @@ Daemon::Daemon(const Config& config, Clock clock)
       writer_(open_for_writing(config), {.recent_samples = config.recent_samples}, queue_,
               config.batch_frames, config.batch_delay, telemetry_),
       keeper_(config, writer_, clock_),
-      participant_(dds::Endpoint{config.domain, config.partition}),
+      participant_(dds::Endpoint{config.domain, config.partition, config.security}),
       publisher_(participant_),
-      desk_(participant_, config.service_name),
+      desk_(participant_, config.service_name, clock_),
       history_desk_(participant_, config.service_name),
       simulators_(known_simulators(config), started_),
       ingest_(std::in_place, participant_, config, queue_, simulators_, clock_) {
@@ -121,6 +127,7 @@ Daemon::Daemon(const Config& config, Clock clock)
              {"database", config.database.string()},
              {"domain", config.domain},
              {"partition", config.partition},
+             {"security", security_text(participant_)},
              {"champions", published},
              {"windows_pending", feed_.pending()}});
 }
@@ -296,6 +303,7 @@ void Daemon::heartbeat() {
   status.failing_champions = leagues_.failing();
   status.alarms = watch_->text();
   status.equipment = equipment_text(config_);
+  if (const auto material = participant_.material()) status.certificate_end = material->end;
   publisher_.status(status);
 }
 

@@ -118,6 +118,12 @@ std::vector<Alarm> ServiceWatch::disk_and_damage() const {
   return alarms;
 }
 
+std::vector<Alarm> ServiceWatch::certificate() const {
+  const std::string warning = parts_.participant.security_warning();
+  if (warning.empty()) return {};
+  return {{"certificate", {}, warning, parts_.clock()}};
+}
+
 std::vector<Alarm> ServiceWatch::old_simulators() {
   const storage::Time now = parts_.clock();
   const std::map<storage::EquipmentName, std::int64_t> champions = parts_.publisher.published();
@@ -148,7 +154,7 @@ std::vector<Alarm> ServiceWatch::old_simulators() {
 void ServiceWatch::look() {
   hear_services();
   std::vector<Alarm> now = parts_.telemetry.alarms();
-  for (auto more : {services(), disk_and_damage(), old_simulators()})
+  for (auto more : {services(), disk_and_damage(), old_simulators(), certificate()})
     now.insert(now.end(), more.begin(), more.end());
   for (const Alarm& alarm : now)
     if (!has(alarms_, alarm))

@@ -143,6 +143,7 @@ const reident_ServiceStatus& Codec<ServiceStatus>::Encoder::operator()(
   wire_.failing_champions = borrow(status.failing_champions);
   wire_.alarms = borrow(status.alarms);
   wire_.equipment = borrow(status.equipment);
+  wire_.certificate_end_ns = status.certificate_end;
   return wire_;
 }
 
@@ -171,6 +172,7 @@ Fault Codec<ServiceStatus>::decode(const reident_ServiceStatus& wire,
   status.failing_champions = texts.text(wire.failing_champions, "failing_champions");
   status.alarms = texts.text(wire.alarms, "alarms");
   status.equipment = texts.text(wire.equipment, "equipment");
+  status.certificate_end = wire.certificate_end_ns;
   return texts.fault();
 }
 

@@ -1,37 +1,22 @@
 #include "service/dds/codec.hpp"
-#include "service/dds/domain.hpp"
+#include "service/dds/writer_core.hpp"
 
 namespace reident::dds {
 
 template <class M>
 struct Writer<M>::Impl {
   Impl(Participant& participant, const WriterOptions& options)
-      : topic(dds_create_topic(participant.impl().participant.get(), &Codec<M>::descriptor, name,
-                               nullptr, nullptr),
-              "dds_create_topic", name),
-        writer(dds_create_writer(participant.impl().publisher.get(), topic.get(),
-                                 writer_qos(Codec<M>::profile, options).get(), nullptr),
-               "dds_create_writer", name) {}
+      : core(participant, Codec<M>::profile, Codec<M>::descriptor, options) {}
 
-  /// Makes the call until it does not time out, or `stop` answers true: then false.
-  bool insist(const char* what, const std::function<dds_return_t()>& call,
-              const std::function<bool()>& stop) const {
-    const bool waits_for_room = Codec<M>::profile.history == keep_all;
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while (true) {
-      const dds_return_t result = call();
-      if (result != DDS_RETCODE_TIMEOUT) {
-        check(result, what, name);
-        return true;
-      }
-      if (stop()) return false;
-      if (!waits_for_room && std::chrono::steady_clock::now() >= deadline) fail(result, what, name);
-    }
+  /// Writes a copy of the message.
+  static WriterCore::Call rewrite(const M& message) {
+    return [message](dds_entity_t writer) {
+      typename Codec<M>::Encoder encode;
+      return dds_write(writer, &encode(message));
+    };
   }
 
-  static constexpr const char* name = Codec<M>::profile.topic;
-  Entity topic;
-  Entity writer;
+  WriterCore core;
   typename Codec<M>::Encoder encode;
 };
 
@@ -52,32 +37,25 @@ void Writer<M>::write(const M& message) {
 
 template <class M>
 bool Writer<M>::write(const M& message, const std::function<bool()>& stop) {
-  const auto& wire = impl_->encode(message);
-  return impl_->insist(
-      "dds_write", [&] { return dds_write(impl_->writer.get(), &wire); }, stop);
+  const auto* wire = &impl_->encode(message);
+  return impl_->core.write(
+      wire, [wire](dds_entity_t writer) { return dds_write(writer, wire); }, stop,
+      impl_->core.keeps_state() ? Impl::rewrite(message) : WriterCore::Call());
 }
 
 template <class M>
 void Writer<M>::dispose(const M& message) {
-  const auto& wire = impl_->encode(message);
-  impl_->insist(
-      "dds_dispose", [&] { return dds_dispose(impl_->writer.get(), &wire); }, [] { return false; });
+  impl_->core.dispose(&impl_->encode(message));
 }
 
 template <class M>
 std::uint32_t Writer<M>::matched_readers() const {
-  dds_publication_matched_status_t status{};
-  check(dds_get_publication_matched_status(impl_->writer.get(), &status),
-        "dds_get_publication_matched_status", impl_->name);
-  return status.current_count;
+  return impl_->core.matched_readers();
 }
 
 template <class M>
 bool Writer<M>::wait_for_acknowledgments(std::chrono::nanoseconds timeout) {
-  const dds_return_t result = dds_wait_for_acks(impl_->writer.get(), timeout.count());
-  if (result == DDS_RETCODE_TIMEOUT) return false;
-  check(result, "dds_wait_for_acks", impl_->name);
-  return true;
+  return impl_->core.wait_for_acknowledgments(timeout);
 }
 
 template class Writer<storage::TelemetryFrame>;

@@ -70,6 +70,9 @@ struct ModelAcknowledgement {
 struct CommandRequest {
   storage::Command command;
   std::string service;  // instance name of the one that is asked; empty: every one
+  // service/security/command_signature.hpp; both empty on a domain that is not secured.
+  std::string certificate{};  // of who signed, PEM
+  std::string signature{};    // hexadecimal
 };
 
 /// What came of a command; kept with the command, so that each copy of it gets the first reply.
@@ -143,10 +146,11 @@ struct ServiceStatus {
   std::uint64_t attempts = 0;
   std::uint64_t approvals = 0;
   storage::Time newest_telemetry = 0;
-  std::string last_error;         // empty when all is well
-  std::string failing_champions;  // equipment, separated by commas
-  std::string alarms;             // one a line: "code SPACECRAFT/EQUIPMENT: text"
-  std::string equipment;          // that it keeps true, separated by commas
+  std::string last_error;             // empty when all is well
+  std::string failing_champions;      // equipment, separated by commas
+  std::string alarms;                 // one a line: "code SPACECRAFT/EQUIPMENT: text"
+  std::string equipment;              // that it keeps true, separated by commas
+  storage::Time certificate_end = 0;  // of the service's own; 0: the domain is not secured
 };
 
 /// Returns the counts with the names that people and programs see.
