@@ -40,6 +40,10 @@
 #                                         Chromium, a year of telemetry, viewers, slow clients, what
 #                                         ingest loses by them.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh operations [--rounds N] [--frames N]
+#                                         a secured domain: what seven kinds of intruders see and
+#                                         reach, and what security costs.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh build [--suite]    processor and wall time of a build from nothing, without
 #                                         and with the tests; with --suite also of the tests.
 #                                         The last line is one JSON object
@@ -103,6 +107,10 @@ case $what in
   web)
     arguments=(build/release "$@")
     targets=(reident_web_archive reidentd reident reident-web satcs-replay satcs-reference)
+    ;;
+  operations)
+    arguments=(build/release "$@")
+    targets=(e2e_programs forge_permissions lax_access_control reident_bench_publisher)
     ;;
   *)
     usage
