@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "service/security/command_signature.hpp"
+
 namespace reident::cli {
 namespace {
 
@@ -21,6 +23,7 @@ CommandSender::CommandSender(const dds::Endpoint& endpoint, CommandRequest reque
       ready_(participant_),
       request_(std::move(request)) {
   ready_.attach(replies_);
+  if (const auto material = participant_.material()) security::sign(request_, *material);
 }
 
 std::optional<storage::CommandOutcome> CommandSender::wait(std::chrono::milliseconds timeout) {

@@ -23,7 +23,7 @@ class CommandSender {
   dds::Writer<CommandRequest> commands_;
   dds::Reader<CommandReply> replies_;
   dds::WaitSet ready_;
-  const CommandRequest request_;
+  CommandRequest request_;
   std::optional<std::chrono::steady_clock::time_point> sent_;
 };
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "service/security/material.hpp"
+
 namespace reident::cli {
 
 std::variant<std::optional<Config>, Refusal> chosen_config(const std::optional<std::string>& file) {
@@ -25,11 +27,23 @@ std::variant<dds::Endpoint, Refusal> chosen_endpoint(const std::optional<std::st
   auto chosen = chosen_config(file);
   if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
   dds::Endpoint endpoint;
-  if (const auto& config = std::get<std::optional<Config>>(chosen))
-    endpoint = {config->domain, config->partition};
+  endpoint.security = security::folder_of_environment();
+  if (const auto& config = std::get<std::optional<Config>>(chosen)) endpoint = endpoint_of(*config);
   endpoint.domain = domain.value_or(endpoint.domain);
   endpoint.partition = partition.value_or(endpoint.partition);
   return endpoint;
+}
+
+dds::Endpoint endpoint_of(const Config& config) {
+  const std::filesystem::path own = security::folder_of_environment();
+  return {config.domain, config.partition, own.empty() ? config.security : own};
+}
+
+Refusal missing_security(const dds::Endpoint& endpoint) {
+  return {fmt::format(
+      "domain {} is secured, and this command has no certificate: nothing can be heard; name its "
+      "folder with --security FOLDER or REIDENT_SECURITY ('reident security grant' makes one)",
+      endpoint.domain)};
 }
 
 std::string mistake_text(const std::string& file, const ConfigMistake& mistake) {

@@ -24,6 +24,13 @@ std::variant<dds::Endpoint, Refusal> chosen_endpoint(const std::optional<std::st
                                                      std::optional<std::uint32_t> domain,
                                                      const std::optional<std::string>& partition);
 
+/// Where the service of a configuration is. The files of security are the caller's own
+/// (reident --security, REIDENT_SECURITY), or else those that the configuration names.
+dds::Endpoint endpoint_of(const Config& config);
+
+/// What to do where Participant::misses_security().
+Refusal missing_security(const dds::Endpoint& endpoint);
+
 /// "FILE:LINE: what", or "FILE: what" of the file as a whole.
 std::string mistake_text(const std::string& file, const ConfigMistake& mistake);
 

@@ -9,6 +9,7 @@
 #include "service/cli/service_choice.hpp"
 #include "service/history/remote_readers.hpp"
 #include "service/history/stored_readers.hpp"
+#include "service/security/material.hpp"
 #include "service/support/terminal.hpp"
 
 namespace reident::cli {
@@ -30,8 +31,9 @@ std::variant<Service, Refusal> service_of(const HistoryAccessOptions& options) {
   auto chosen = chosen_config(options.database.config);
   if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
   Service service;
+  service.endpoint.security = security::folder_of_environment();
   if (const auto& config = std::get<std::optional<Config>>(chosen))
-    service = {{config->domain, config->partition}, config->service_name};
+    service = {endpoint_of(*config), config->service_name};
   else if (!options.domain && !options.partition)
     return Refusal{
         fmt::format("there is no {} here; name the service's configuration with --config FILE, or "

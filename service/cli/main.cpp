@@ -3,6 +3,7 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <optional>
@@ -43,8 +44,9 @@ bool is_long(const std::vector<std::string>& words) {
 
 /// Why the first word that is no option names no verb; absent where it does, or there is none.
 std::optional<Refusal> unknown_verb(const std::vector<std::string>& words) {
-  const auto word = std::find_if(words.begin(), words.end(),
-                                 [](const std::string& one) { return !one.starts_with('-'); });
+  auto word = words.begin();
+  while (word != words.end() && word->starts_with('-'))
+    word += *word == "--security" && word + 1 != words.end() ? 2 : 1;  // its folder follows
   if (word == words.end()) return std::nullopt;
   std::vector<std::string> names;
   for (const Verb& verb : verbs()) names.emplace_back(verb.name);
@@ -80,6 +82,12 @@ int run(int argc, char** argv) {
       app.add_flag("--remote")
           ->description(
               "with a command that reads: ask the running service over DDS instead of a file");
+  app.add_option_function<std::string>(
+         "--security",
+         [](const std::string& folder) { ::setenv("REIDENT_SECURITY", folder.c_str(), 1); },
+         "on a secured domain: folder of your own certificate (REIDENT_SECURITY, or what the "
+         "configuration names)")
+      ->type_name("FOLDER");
   const auto remote_in_vain = [&app, remote]() -> std::optional<std::string> {
     for (const Verb& verb : verbs())
       if (verb.works_on != WorksOn::history && remote->count() > 0 &&

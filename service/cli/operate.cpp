@@ -15,6 +15,7 @@
 #include "service/cli/config_options.hpp"
 #include "service/cli/service_choice.hpp"
 #include "service/operations/commands.hpp"
+#include "service/security/command_signature.hpp"
 #include "service/support/program_identity.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/terminal.hpp"
@@ -43,6 +44,7 @@ struct Target {
 
 std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
   Target target;
+  target.endpoint.security = security::folder_of_environment();
   if (options.database.database) {
     target.database = *options.database.database;
   } else {
@@ -50,7 +52,7 @@ std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
     if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
     if (const auto& config = std::get<std::optional<Config>>(chosen)) {
       target = {config->database,
-                {config->domain, config->partition},
+                endpoint_of(*config),
                 config->service_name,
                 {equipment_of(*config), {}}};
     } else if (!options.domain && !options.partition) {
@@ -161,6 +163,22 @@ int report_timeout(const Target& target, const OperatorOptions& options, const s
   return exit_timed_out;
 }
 
+/// On a secured domain the actor is who the certificate says, also where the file itself is worked
+/// on. Refused where the files are wrong, or of a role that may not order.
+std::optional<Refusal> sign_off(const Target& target, Command& command) {
+  if (target.endpoint.security.empty()) return std::nullopt;
+  const auto read = security::read_material(target.endpoint.security, utc_now());
+  if (const auto* mistakes = std::get_if<std::vector<std::string>>(&read))
+    return Refusal{mistakes->front()};
+  const auto& material = std::get<security::Material>(read);
+  CommandRequest request{command, target.service};
+  security::sign(request, material);
+  const auto actor = security::actor_of(request, material, utc_now());
+  if (const auto* why = std::get_if<std::string>(&actor)) return Refusal{*why};
+  command.actor = std::get<security::Actor>(actor).name;
+  return std::nullopt;
+}
+
 void print_json(const Command& command, const Answer& answer) {
   const nlohmann::ordered_json object = {
       {"ok", answer.outcome.ok},
@@ -198,6 +216,7 @@ int operate(const OperatorOptions& options, const OperatorOrder& order) {
                   options.actor,
                   options.reason};
   name_the_version(target, command);
+  if (const auto refusal = sign_off(target, command)) return refuse(*refusal);
   std::string why;
   const auto asked = ask(target, options, command, why);
   if (!asked) return report_timeout(target, options, why);

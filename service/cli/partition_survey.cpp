@@ -50,6 +50,7 @@ class Listener {
     for (auto& [key, said] : simulators_) sight.simulators.push_back(std::move(said));
     sight.champions = std::move(champions_);
     sight.services = services_;
+    sight.misses_security = participant_.misses_security();
     return sight;
   }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "service/cli/config_options.hpp"
 #include "service/support/text.hpp"
 
 namespace reident::cli {
@@ -45,8 +46,8 @@ void leave_out_standbys(std::vector<ServiceStatus>& services) {
 
 }  // namespace
 
-std::vector<ServiceStatus> heard_services(const dds::Endpoint& endpoint,
-                                          std::chrono::milliseconds timeout) {
+std::variant<std::vector<ServiceStatus>, Refusal> heard_services(
+    const dds::Endpoint& endpoint, std::chrono::milliseconds timeout) {
   dds::Participant participant(endpoint);
   dds::Reader<ServiceStatus> reader(participant);
   dds::WaitSet ready(participant);
@@ -63,6 +64,7 @@ std::vector<ServiceStatus> heard_services(const dds::Endpoint& endpoint,
   }
   std::vector<ServiceStatus> services;
   for (auto& [key, status] : heard) services.push_back(std::move(status));
+  if (services.empty() && participant.misses_security()) return missing_security(endpoint);
   return services;
 }
 
@@ -75,7 +77,9 @@ std::variant<std::string, Refusal> chosen_service(const dds::Endpoint& endpoint,
                                                   const std::string& configured,
                                                   std::chrono::milliseconds timeout) {
   if (named) return *named;
-  std::vector<ServiceStatus> services = heard_services(endpoint, timeout);
+  auto heard = heard_services(endpoint, timeout);
+  if (const auto* refusal = std::get_if<Refusal>(&heard)) return *refusal;
+  auto services = std::get<std::vector<ServiceStatus>>(std::move(heard));
   leave_out_standbys(services);
   if (services.empty()) return std::string();
   if (services.size() == 1) return services.front().service;

@@ -13,18 +13,17 @@
 namespace reident::cli {
 
 /// The last heartbeats of the services that are heard: none within `timeout`, or those that come in
-/// a moment after the first one.
-std::vector<ServiceStatus> heard_services(const dds::Endpoint& endpoint,
-                                          std::chrono::milliseconds timeout);
+/// a moment after the first one. Refused where the domain is secured and this program is not.
+std::variant<std::vector<ServiceStatus>, Refusal> heard_services(const dds::Endpoint& endpoint,
+                                                                 std::chrono::milliseconds timeout);
 
 /// Adds --service.
 void add_service_option(CLI::App& command, std::optional<std::string>& service);
 
 /// The name of the service that is meant, of a pair its leader: `named` by an option; or the only
-/// one that is heard, or
-/// of several the one that the configuration names, if it shares neither name nor equipment with
-/// another. Refused where that is not clear, with the names. Empty where none was heard within
-/// `timeout`: then whoever hears the question may answer.
+/// one that is heard, or of several the one that the configuration names, if it shares neither name
+/// nor equipment with another. Refused where that is not clear, with the names. Empty where none was
+/// heard within `timeout`: then whoever hears the question may answer.
 std::variant<std::string, Refusal> chosen_service(const dds::Endpoint& endpoint,
                                                   const std::optional<std::string>& named,
                                                   const std::string& configured,

@@ -11,12 +11,13 @@
 #include "service/client/simulator_client.hpp"
 #include "service/history/remote_history.hpp"
 #include "service/model/model_json.hpp"
+#include "service/security/material.hpp"
 #include "service/support/utc_clock.hpp"
 #include "service/support/version.hpp"
 
 // What programs that were compiled before rely on. New members come after the last one.
 static_assert(sizeof(void*) != 8 ||
-              (offsetof(reident_options, cache_folder) == 56 && sizeof(reident_options) >= 64 &&
+              (offsetof(reident_options, security_folder) == 64 && sizeof(reident_options) >= 72 &&
                offsetof(reident_event, matched_rows) == 84 && sizeof(reident_event) >= 88 &&
                offsetof(reident_history_query, page_size) == 56 &&
                sizeof(reident_history_query) >= 64 && sizeof(reident_signal) == 16 &&
@@ -151,6 +152,9 @@ reident::SimulatorClientOptions client_options(const reident_options& given) {
   } else if (*c.cache_folder != '\0') {
     options.cache = c.cache_folder;
   }
+  options.endpoint.security = c.security_folder == nullptr
+                                  ? reident::security::folder_of_environment()
+                                  : std::filesystem::path(c.security_folder);
   return options;
 }
 

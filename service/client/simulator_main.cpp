@@ -39,6 +39,10 @@ void add_options(CLI::App& app, reident::SimulatorOptions& options, std::string&
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
   app.add_option("--partition", options.endpoint.partition, "DDS partition")->capture_default_str();
+  app.add_option("--security", options.endpoint.security,
+                 "On a secured domain: folder of the simulator's certificate")
+      ->envname("REIDENT_SECURITY")
+      ->type_name("FOLDER");
   app.add_option("--report", report_s, "Seconds between two reports of the running errors")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();

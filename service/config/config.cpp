@@ -160,6 +160,13 @@ void read_dds(const toml::table& table, ConfigDocument& document, Config& config
     config.partition = *partition;
   }
   read_cut(reader, config);
+  if (const auto security = reader.text("security")) {
+    if (security->empty() || security->find('\0') != std::string::npos)
+      reader.mistake("security",
+                     "security must be a folder that 'reident security grant' made; leave the key "
+                     "out where the domain is not secured");
+    config.security = *security;
+  }
   reader.refuse_unknown_keys();
 }
 
@@ -516,6 +523,8 @@ std::variant<Config, std::vector<ConfigMistake>> parse_config(std::string_view t
     return std::move(document.mistakes);
   }
   if (config.database.is_relative()) config.database = folder / config.database;
+  if (!config.security.empty() && config.security.is_relative())
+    config.security = folder / config.security;
   config.digest = sha256_hex(text);
   return config;
 }

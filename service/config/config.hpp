@@ -90,6 +90,7 @@ struct Config {
   std::string partition = "operations";
   Duration cut = 0;  // the longest cut of the network that loses no telemetry; 0: as DDS has it
   double rate = 0;   // frames a second of a source; known where a cut is
+  std::filesystem::path security{};        // folder of the service's files; empty: not secured
   std::size_t queue_frames = 8192;         // bound of the queue between DDS and the archive
   std::size_t queue_mib = 64;              // its bound in memory
   std::size_t batch_frames = 4096;         // frames of one transaction, at most; no more than 5 MiB

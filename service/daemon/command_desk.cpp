@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "service/security/command_signature.hpp"
 #include "service/support/log.hpp"
 
 namespace reident {
@@ -14,9 +15,11 @@ constexpr std::size_t requests_at_most = 16;
 
 }  // namespace
 
-CommandDesk::CommandDesk(dds::Participant& participant, std::string service,
+CommandDesk::CommandDesk(dds::Participant& participant, std::string service, Clock clock,
                          std::function<bool()> is_one_of_all)
-    : service_(std::move(service)),
+    : participant_(participant),
+      service_(std::move(service)),
+      clock_(std::move(clock)),
       is_one_of_all_(std::move(is_one_of_all)),
       commands_(participant),
       replies_(participant),
@@ -24,12 +27,25 @@ CommandDesk::CommandDesk(dds::Participant& participant, std::string service,
   ready_.attach(commands_);
 }
 
+std::variant<storage::Command, std::string> CommandDesk::command_of(
+    const CommandRequest& request) const {
+  const auto material = participant_.material();
+  if (!material) return request.command;
+  auto actor = security::actor_of(request, *material, clock_());
+  if (auto* why = std::get_if<std::string>(&actor)) return std::move(*why);
+  storage::Command command = request.command;
+  command.actor = std::get<security::Actor>(std::move(actor)).name;
+  return command;
+}
+
 void CommandDesk::answer(const CommandRequest& request, const Execute& execute) {
   if (!is_meant(request.service)) return;
-  const storage::Command& command = request.command;
+  const auto checked = command_of(request);
+  const auto* why = std::get_if<std::string>(&checked);
+  const storage::Command& command = why ? request.command : std::get<storage::Command>(checked);
   std::optional<storage::CommandOutcome> outcome;
   try {
-    outcome = execute(command);
+    outcome = why ? storage::CommandOutcome{false, *why} : execute(command);
   } catch (const storage::Error& error) {
     // Not kept, so that the same command can succeed later.
     outcome = {false, error.what()};

@@ -6,7 +6,9 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 
+#include "service/daemon/window_feed.hpp"
 #include "service/dds/dds.hpp"
 #include "storage/registry/registry.hpp"
 
@@ -20,8 +22,9 @@ class CommandDesk {
       std::function<std::optional<storage::CommandOutcome>(const storage::Command& command)>;
 
   /// Hears commands to `service` and those to every service, these while `is_one_of_all`
-  /// answers true (without it always). The participant must outlive it. Throws dds::Error.
-  CommandDesk(dds::Participant& participant, std::string service,
+  /// answers true (without it always). The participant must outlive it; where it is secured, signed
+  /// commands alone are executed, and the actor is the one who signed. Throws dds::Error.
+  CommandDesk(dds::Participant& participant, std::string service, Clock clock,
               std::function<bool()> is_one_of_all = {});
 
   /// The thread's body: until stop().
@@ -30,12 +33,16 @@ class CommandDesk {
 
  private:
   void answer(const CommandRequest& request, const Execute& execute);
+  /// The command with who ordered it, or why it is not executed.
+  std::variant<storage::Command, std::string> command_of(const CommandRequest& request) const;
 
   bool is_meant(const std::string& service) const {
     return service.empty() ? !is_one_of_all_ || is_one_of_all_() : service == service_;
   }
 
+  const dds::Participant& participant_;
   const std::string service_;
+  const Clock clock_;
   const std::function<bool()> is_one_of_all_;
   dds::Reader<CommandRequest> commands_;
   dds::Writer<CommandReply> replies_;

@@ -10,6 +10,7 @@
 
 #include "service/dds/network_cut.hpp"
 #include "service/operations/commands.hpp"
+#include "service/security/material.hpp"
 #include "service/support/log.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
@@ -36,7 +37,7 @@ storage::Database open_for_writing(const Config& config) {
 }
 
 dds::Endpoint endpoint_of(const Config& config) {
-  dds::Endpoint endpoint{config.domain, config.partition};
+  dds::Endpoint endpoint{config.domain, config.partition, config.security};
   if (config.cut > 0)
     endpoint.lease =
         dds::settings_for({std::chrono::nanoseconds(config.cut), config.rate}, 0).lease;
@@ -62,6 +63,11 @@ std::string equipment_text(const Config& config) {
   std::vector<std::string> names;
   for (const storage::EquipmentName& name : equipment_of(config)) names.push_back(full_name(name));
   return joined(names);
+}
+
+std::string security_text(const dds::Participant& participant) {
+  const auto material = participant.material();
+  return material ? security::description(*material) : "none";
 }
 
 IdentificationReport report_of(const RefreshResult& result) {
@@ -121,7 +127,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       publisher_(
           participant_,
           [this](const storage::Registry& registry) { return !pair_ || pair_->share(registry); }),
-      desk_(participant_, config.service_name, [this] { return leads(); }),
+      desk_(participant_, config.service_name, clock_, [this] { return leads(); }),
       history_desk_(participant_, config.service_name, [this] { return leads(); }),
       simulators_(known_simulators(config), started_),
       ingest_(std::in_place, participant_, config, queue_, simulators_, clock_) {
@@ -150,6 +156,7 @@ Daemon::Daemon(const Config& config, Clock clock)
              {"database", config.database.string()},
              {"domain", config.domain},
              {"partition", config.partition},
+             {"security", security_text(participant_)},
              {"champions", published},
              {"windows_pending", feed_.pending()}});
 }
@@ -387,6 +394,7 @@ void Daemon::heartbeat() {
   status.alarms = watch_->text();
   status.equipment = equipment_text(config_);
   if (pair_) pair_->describe(status);
+  if (const auto material = participant_.material()) status.certificate_end = material->end;
   publisher_.status(status);
 }
 

@@ -121,6 +121,12 @@ std::vector<Alarm> ServiceWatch::disk_and_damage() const {
   return alarms;
 }
 
+std::vector<Alarm> ServiceWatch::certificate() const {
+  const std::string warning = parts_.participant.security_warning();
+  if (warning.empty()) return {};
+  return {{"certificate", {}, warning, parts_.clock()}};
+}
+
 std::vector<Alarm> ServiceWatch::old_simulators() {
   const storage::Time now = parts_.clock();
   const std::map<storage::EquipmentName, std::int64_t> champions = parts_.publisher.published();
@@ -152,7 +158,7 @@ void ServiceWatch::look() {
   hear_services();
   std::vector<Alarm> now = parts_.telemetry.alarms();
   const auto of_pair = parts_.pair ? parts_.pair->alarms() : std::vector<Alarm>();
-  for (auto more : {services(), disk_and_damage(), old_simulators(), of_pair})
+  for (auto more : {services(), disk_and_damage(), old_simulators(), certificate(), of_pair})
     now.insert(now.end(), more.begin(), more.end());
   for (const Alarm& alarm : now)
     if (!has(alarms_, alarm))

@@ -48,6 +48,7 @@ class ServiceWatch {
   std::vector<storage::Alarm> services() const;
   std::vector<storage::Alarm> disk_and_damage() const;
   std::vector<storage::Alarm> old_simulators();
+  std::vector<storage::Alarm> certificate() const;
   void keep(std::vector<storage::SimulatorState> changes);
   void let_partner_keep();
 

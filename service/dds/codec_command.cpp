@@ -13,6 +13,8 @@ const reident_Command& Codec<CommandRequest>::Encoder::operator()(const CommandR
   wire_.actor = borrow(command.actor);
   wire_.reason = borrow(command.reason);
   wire_.service = borrow(request.service);
+  wire_.certificate = borrow(request.certificate);
+  wire_.signature = borrow(request.signature);
   return wire_;
 }
 
@@ -30,6 +32,8 @@ Fault Codec<CommandRequest>::decode(const reident_Command& wire, const ReaderOpt
   command.actor = texts.text(wire.actor, "actor");
   command.reason = texts.text(wire.reason, "reason");
   request.service = texts.text(wire.service, "service");
+  request.certificate = texts.text(wire.certificate, "certificate");
+  request.signature = texts.text(wire.signature, "signature");
   return texts.fault();
 }
 

@@ -149,6 +149,7 @@ const reident_ServiceStatus& Codec<ServiceStatus>::Encoder::operator()(
   wire_.partner = borrow(status.partner);
   wire_.lag = status.lag;
   wire_.descriptors_rejected = status.descriptors_rejected;
+  wire_.certificate_end_ns = status.certificate_end;
   return wire_;
 }
 
@@ -183,6 +184,7 @@ Fault Codec<ServiceStatus>::decode(const reident_ServiceStatus& wire,
   status.partner = texts.text(wire.partner, "partner");
   status.lag = wire.lag;
   status.descriptors_rejected = wire.descriptors_rejected;
+  status.certificate_end = wire.certificate_end_ns;
   return texts.fault();
 }
 

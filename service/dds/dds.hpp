@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,6 +18,10 @@
 #include "service/model/messages.hpp"
 #include "service/model/model_version.hpp"
 #include "storage/types/telemetry.hpp"
+
+namespace reident::security {
+struct Material;
+}
 
 namespace reident::dds {
 
@@ -30,6 +35,8 @@ class Error : public std::runtime_error {
 struct Endpoint {
   std::uint32_t domain = 0;              // 0 to 230
   std::string partition = "operations";  // separates operations, training and test
+  /// Folder of a member's files (service/security/material.hpp); empty: the domain is not secured.
+  std::filesystem::path security{};
   /// One of many that look for services, sources and consoles and not for each other: on loopback
   /// it takes a port of its own range. A domain's first participant in a process decides for all.
   bool simulator = false;
@@ -42,10 +49,15 @@ struct Endpoint {
 /// Joins a domain. Without CYCLONEDDS_URI in the environment all traffic stays on 127.0.0.1. Must
 /// outlive its readers, writers and wait sets. Any number of threads may make these at the same
 /// time.
+///
+/// A secured one looks at its files each second. What changed is taken up while it runs: it joins
+/// again with the new files, its readers and writers follow, and some seconds later it leaves with
+/// the old ones. A state that was written comes again; reliable topics lose nothing. Files that are
+/// wrong are not taken up, and the log says why, as it does of a certificate that ends.
 class Participant {
  public:
   /// Throws Error where the domain is not one, or this machine has no port left in it
-  /// (idl/README.md, "On a private network").
+  /// (idl/README.md, "On a private network"), or the files of its security are wrong: all that is.
   explicit Participant(const Endpoint& endpoint);
   ~Participant();
   Participant(Participant&&) noexcept;
@@ -56,6 +68,16 @@ class Participant {
   void stop_hearing();
   /// Ends that. Readers that still exist then go on.
   void hear_again();
+
+  /// The files that were taken up last; null where the domain is not secured. From any thread, as
+  /// the next.
+  std::shared_ptr<const security::Material> material() const;
+  /// What somebody has to see to: files that end within 30, 7 or 1 days or have ended, or that were
+  /// changed and are wrong. Empty where there is nothing.
+  std::string security_warning() const;
+  /// Whether programs of reident were discovered that are secured, while this one is not: they hear
+  /// nothing of it, nor it of them. Discovery takes some 100 ms.
+  bool misses_security() const;
 
   struct Impl;
   Impl& impl() const { return *impl_; }

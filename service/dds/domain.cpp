@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "service/dds/qos.hpp"
+#include "service/dds/loan.hpp"
 #include "service/support/mutex.hpp"
 
 namespace reident::dds {
@@ -12,6 +12,7 @@ namespace {
 
 struct SharedDomain {
   Entity entity;  // empty where the middleware made the domain on its own
+  std::filesystem::path security;
   std::size_t users = 0;
   std::size_t silences = 0;
 };
@@ -53,16 +54,6 @@ std::string simulator_discovery(std::uint32_t domain) {
          "</UnicastDataOffset></Ports><Peers>" + peers + "</Peers></Discovery></Domain>";
 }
 
-dds_entity_t joined(dds_entity_t result, const char* call, std::uint32_t domain) {
-  if (result >= 0) return result;
-  throw Error(
-      std::string(call) + " failed for domain " + std::to_string(domain) + ": " +
-      dds_strretcode(result) +
-      "; use a domain from 0 to 230, and at most 104 simulators and 16 other processes of a domain "
-      "on a machine, and where CYCLONEDDS_URI is set, check the configuration and the interfaces "
-      "it names");
-}
-
 /// Empty where the endpoint has nothing that differs from the middleware's own settings.
 std::string cut_configuration(const Endpoint& endpoint) {
   // The default would be half a minute with a long lease: participants that connect again after a
@@ -91,12 +82,7 @@ Entity create_domain(const Endpoint& endpoint) {
   const dds_entity_t result = dds_create_domain(domain, configuration.c_str());
   // Another library of this process was first; its configuration holds.
   if (result == DDS_RETCODE_PRECONDITION_NOT_MET) return {};
-  return Entity(joined(result, "dds_create_domain", domain));
-}
-
-Entity create_participant(std::uint32_t domain) {
-  return Entity(
-      joined(dds_create_participant(domain, nullptr, nullptr), "dds_create_participant", domain));
+  return Entity(joined_domain(result, "dds_create_domain", domain));
 }
 
 }  // namespace
@@ -105,7 +91,16 @@ DomainUse::DomainUse(const Endpoint& endpoint) : domain_(endpoint.domain) {
   const MutexLock lock(domains_mutex);
   auto found = domains().find(domain_);
   if (found == domains().end())
-    found = domains().emplace(domain_, SharedDomain{create_domain(endpoint), 0}).first;
+    found =
+        domains().emplace(domain_, SharedDomain{create_domain(endpoint), endpoint.security}).first;
+  if (found->second.security != endpoint.security) {
+    const auto text = [](const std::filesystem::path& folder) {
+      return folder.empty() ? "no files of security" : folder.string();
+    };
+    throw Error("this process uses domain " + std::to_string(domain_) + " with " +
+                text(found->second.security) + " already, and with " + text(endpoint.security) +
+                " now; use one folder for a domain in a process");
+  }
   ++found->second.users;
 }
 
@@ -116,16 +111,7 @@ DomainUse::~DomainUse() {
 }
 
 Participant::Impl::Impl(const Endpoint& endpoint)
-    : domain(endpoint),
-      partition(endpoint.partition),
-      participant(create_participant(endpoint.domain)) {
-  const std::string about = "partition \"" + partition + "\"";
-  const Qos qos = partition_qos(partition);
-  publisher = {dds_create_publisher(participant.get(), qos.get(), nullptr), "dds_create_publisher",
-               about};
-  subscriber = {dds_create_subscriber(participant.get(), qos.get(), nullptr),
-                "dds_create_subscriber", about};
-}
+    : domain(endpoint), partition(endpoint.partition), sessions(endpoint) {}
 
 Participant::Participant(const Endpoint& endpoint) : impl_(std::make_unique<Impl>(endpoint)) {}
 Participant::~Participant() = default;
@@ -136,7 +122,8 @@ Silence::Silence(Participant& participant) : participant_(participant.impl()) {
   const MutexLock lock(domains_mutex);
   std::size_t& silences = domains().at(participant_.domain.domain_).silences;
   if (silences == 0) {
-    check(dds_domain_set_deafmute(participant_.participant.get(), true, false, DDS_INFINITY),
+    check(dds_domain_set_deafmute(participant_.sessions.newest()->participant.get(), true, false,
+                                  DDS_INFINITY),
           "dds_domain_set_deafmute", "the domain");
   }
   ++silences;
@@ -145,7 +132,37 @@ Silence::Silence(Participant& participant) : participant_(participant.impl()) {
 Silence::~Silence() {
   const MutexLock lock(domains_mutex);
   if (--domains().at(participant_.domain.domain_).silences > 0) return;
-  dds_domain_set_deafmute(participant_.participant.get(), false, false, DDS_INFINITY);
+  dds_domain_set_deafmute(participant_.sessions.newest()->participant.get(), false, false,
+                          DDS_INFINITY);
+}
+
+std::shared_ptr<const security::Material> Participant::material() const {
+  return impl_->sessions.newest()->material;
+}
+
+std::string Participant::security_warning() const {
+  return impl_->sessions.warning();
+}
+
+bool Participant::misses_security() const {
+  const SharedSession session = impl_->sessions.newest();
+  if (session->material) return false;
+  const Entity others(dds_create_reader(session->participant.get(),
+                                        DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
+                      "dds_create_reader", "the participants of the domain");
+  const Loan loan(others.get(), Loan::capacity, "the participants of the domain");
+  for (std::size_t i = 0; i < loan.count; ++i) {
+    if (!loan.infos[i].valid_data) continue;
+    void* data = nullptr;
+    std::size_t size = 0;
+    dds_qget_userdata(static_cast<const dds_builtintopic_participant_t*>(loan.samples[i])->qos,
+                      &data, &size);
+    const bool is_secured =
+        data != nullptr && std::string_view(static_cast<const char*>(data), size) == secured_mark;
+    dds_free(data);
+    if (is_secured) return true;
+  }
+  return false;
 }
 
 void Participant::stop_hearing() {

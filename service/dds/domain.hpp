@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "service/dds/entity.hpp"
+#include "service/dds/session.hpp"
 
 namespace reident::dds {
 
@@ -21,7 +21,9 @@ class DomainUse {
  public:
   /// Makes the domain where it has none in this process. All of the endpoint but the partition
   /// counts then alone. Where another library of the process made the domain before, its
-  /// configuration holds. Throws Error.
+  /// configuration holds. Throws Error, also where the process uses the domain with other files of
+  /// security, or with some and without: the middleware keeps one set of permissions, and fails
+  /// without words.
   explicit DomainUse(const Endpoint& endpoint);
   ~DomainUse();
   DomainUse(const DomainUse&) = delete;
@@ -52,9 +54,7 @@ struct Participant::Impl {
 
   DomainUse domain;
   std::string partition;
-  Entity participant;
-  Entity publisher;  // in the partition, as is the subscriber
-  Entity subscriber;
+  SessionKeeper sessions;
   std::optional<Silence> silence;  // between stop_hearing() and hear_again()
 };
 

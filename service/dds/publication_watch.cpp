@@ -18,11 +18,11 @@ bool match(const char* one, const char* other) {
 
 }  // namespace
 
-PublicationWatch::PublicationWatch(Participant& participant, std::string topic)
+PublicationWatch::PublicationWatch(const Session& session, std::string topic)
     : topic_(std::move(topic)),
-      partition_(participant.impl().partition),
-      publications_(dds_create_reader(participant.impl().participant.get(),
-                                      DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
+      partition_(session.partition),
+      publications_(dds_create_reader(session.participant.get(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION,
+                                      nullptr, nullptr),
                     "dds_create_reader", "the publications of the domain"),
       has_publications_(dds_create_readcondition(publications_.get(), DDS_ANY_STATE),
                         "dds_create_readcondition", "the publications of the domain") {}

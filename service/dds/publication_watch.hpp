@@ -3,19 +3,18 @@
 
 #include <string>
 
-#include "service/dds/domain.hpp"
-#include "service/dds/entity.hpp"
+#include "service/dds/session.hpp"
 
 namespace reident::dds {
 
 /// Follows the middleware's own topic of publications, which has every writer of the domain. The
 /// status of incompatible QoS that a reader can be asked for would not do: it keeps the policy of
 /// the last writer alone, and does not separate writers of other partitions from those of its own.
-/// One thread at a time. The participant has to outlive it.
+/// One thread at a time. The session has to outlive it.
 class PublicationWatch {
  public:
-  /// Watches writers of `topic` in the participant's partition. Throws Error.
-  PublicationWatch(Participant& participant, std::string topic);
+  /// Watches writers of `topic` in the session's partition. Throws Error.
+  PublicationWatch(const Session& session, std::string topic);
 
   /// Writers that a RELIABLE, TRANSIENT_LOCAL reader of the partition does not match.
   struct Unmatched {

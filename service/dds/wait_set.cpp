@@ -5,10 +5,11 @@
 namespace reident::dds {
 
 struct WaitSet::Impl {
-  explicit Impl(dds_entity_t participant)
-      : wait_set(dds_create_waitset(participant), "dds_create_waitset", "the participant"),
-        guard(dds_create_guardcondition(participant), "dds_create_guardcondition",
-              "the participant") {
+  // The library is the owner, no participant: readers of two sessions may be attached.
+  Impl()
+      : wait_set(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "dds_create_waitset", "the library"),
+        guard(dds_create_guardcondition(DDS_CYCLONEDDS_HANDLE), "dds_create_guardcondition",
+              "the library") {
     check(dds_waitset_attach(wait_set.get(), guard.get(), 0), "dds_waitset_attach", "the guard");
   }
 
@@ -17,8 +18,7 @@ struct WaitSet::Impl {
   std::vector<std::weak_ptr<ReaderCore>> readers;
 };
 
-WaitSet::WaitSet(Participant& participant)
-    : impl_(std::make_unique<Impl>(participant.impl().participant.get())) {}
+WaitSet::WaitSet(Participant& /*participant*/) : impl_(std::make_unique<Impl>()) {}
 WaitSet::~WaitSet() = default;
 
 template <class M>

@@ -1,80 +1,23 @@
-#include <algorithm>
-#include <utility>
-#include <vector>
-
 #include "service/dds/codec.hpp"
-#include "service/dds/domain.hpp"
+#include "service/dds/writer_core.hpp"
 
 namespace reident::dds {
 
 template <class M>
 struct Writer<M>::Impl {
   Impl(Participant& participant, const WriterOptions& options)
-      : topic(dds_create_topic(participant.impl().participant.get(), &Codec<M>::descriptor, name,
-                               nullptr, nullptr),
-              "dds_create_topic", name),
-        writer(dds_create_writer(participant.impl().publisher.get(), topic.get(),
-                                 writer_qos(Codec<M>::profile, options).get(), nullptr),
-               "dds_create_writer", name) {}
+      : core(participant, Codec<M>::profile, Codec<M>::descriptor, options) {}
 
-  /// Makes the call until it does not time out, or `stop` answers true: then false.
-  bool insist(const char* what, const std::function<dds_return_t()>& call,
-              const std::function<bool()>& stop) const {
-    const bool waits_for_room = Codec<M>::profile.history == keep_all;
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while (true) {
-      const dds_return_t result = call();
-      if (result != DDS_RETCODE_TIMEOUT) {
-        check(result, what, name);
-        return true;
-      }
-      if (stop()) return false;
-      if (!waits_for_room && std::chrono::steady_clock::now() >= deadline) fail(result, what, name);
-    }
+  /// Writes a copy of the message.
+  static WriterCore::Call rewrite(const M& message) {
+    return [message](dds_entity_t writer) {
+      typename Codec<M>::Encoder encode;
+      return dds_write(writer, &encode(message));
+    };
   }
 
-  /// Counts them again where readers came or went since the last call: each of either changes the
-  /// status.
-  std::uint32_t count_archives() {
-    dds_publication_matched_status_t status{};
-    check(dds_get_publication_matched_status(writer.get(), &status),
-          "dds_get_publication_matched_status", name);
-    const std::pair now(status.total_count, status.current_count);
-    if (now != std::exchange(counted, now)) {
-      archives = 0;
-      for (const dds_instance_handle_t reader : matched())
-        if (keeps_all(reader)) ++archives;
-    }
-    return archives;
-  }
-
-  static constexpr const char* name = Codec<M>::profile.topic;
-  Entity topic;
-  Entity writer;
+  WriterCore core;
   typename Codec<M>::Encoder encode;
-
- private:
-  std::vector<dds_instance_handle_t> matched() const {
-    const dds_return_t count = check(dds_get_matched_subscriptions(writer.get(), nullptr, 0),
-                                     "dds_get_matched_subscriptions", name);
-    std::vector<dds_instance_handle_t> readers(static_cast<std::size_t>(count));
-    const dds_return_t there =
-        check(dds_get_matched_subscriptions(writer.get(), readers.data(), readers.size()),
-              "dds_get_matched_subscriptions", name);
-    readers.resize(std::min(readers.size(), static_cast<std::size_t>(there)));
-    return readers;
-  }
-  bool keeps_all(dds_instance_handle_t reader) const {
-    dds_builtintopic_endpoint_t* endpoint = dds_get_matched_subscription_data(writer.get(), reader);
-    if (endpoint == nullptr) return false;  // it has just left
-    dds_history_kind_t kind = DDS_HISTORY_KEEP_LAST;
-    dds_qget_history(endpoint->qos, &kind, nullptr);
-    dds_builtintopic_free_endpoint(endpoint);
-    return kind == DDS_HISTORY_KEEP_ALL;
-  }
-
-  std::pair<std::uint32_t, std::uint32_t> counted;  // readers that ever came, and those there now
-  std::uint32_t archives = 0;
 };
 
 template <class M>
@@ -94,37 +37,30 @@ void Writer<M>::write(const M& message) {
 
 template <class M>
 bool Writer<M>::write(const M& message, const std::function<bool()>& stop) {
-  const auto& wire = impl_->encode(message);
-  return impl_->insist(
-      "dds_write", [&] { return dds_write(impl_->writer.get(), &wire); }, stop);
+  const auto* wire = &impl_->encode(message);
+  return impl_->core.write(
+      wire, [wire](dds_entity_t writer) { return dds_write(writer, wire); }, stop,
+      impl_->core.keeps_state() ? Impl::rewrite(message) : WriterCore::Call());
 }
 
 template <class M>
 void Writer<M>::dispose(const M& message) {
-  const auto& wire = impl_->encode(message);
-  impl_->insist(
-      "dds_dispose", [&] { return dds_dispose(impl_->writer.get(), &wire); }, [] { return false; });
+  impl_->core.dispose(&impl_->encode(message));
 }
 
 template <class M>
 std::uint32_t Writer<M>::matched_readers() const {
-  dds_publication_matched_status_t status{};
-  check(dds_get_publication_matched_status(impl_->writer.get(), &status),
-        "dds_get_publication_matched_status", impl_->name);
-  return status.current_count;
+  return impl_->core.matched_readers();
 }
 
 template <class M>
 std::uint32_t Writer<M>::matched_archives() const {
-  return impl_->count_archives();
+  return impl_->core.matched_archives();
 }
 
 template <class M>
 bool Writer<M>::wait_for_acknowledgments(std::chrono::nanoseconds timeout) {
-  const dds_return_t result = dds_wait_for_acks(impl_->writer.get(), timeout.count());
-  if (result == DDS_RETCODE_TIMEOUT) return false;
-  check(result, "dds_wait_for_acks", impl_->name);
-  return true;
+  return impl_->core.wait_for_acknowledgments(timeout);
 }
 
 template <class M>

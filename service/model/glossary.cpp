@@ -30,6 +30,12 @@ struct Glossary {
        "becomes "
        "champion.",
        ""},
+      {"certificate", "a certificate ends",
+       "The service's certificate, or another of its files of security, ends within 30, 7 or 1 "
+       "days, has "
+       "ended, or was changed and is wrong. Once it has ended, nothing is sent or heard.",
+       "'reident security renew' in the site's folder, and copy the member's folder; the service "
+       "takes it up while it runs."},
       {"champion_failed", "the champion fails",
        "The champion errs surely more than a constant at the mean, or than the simulator's own "
        "model, "

@@ -71,6 +71,9 @@ struct ModelAcknowledgement {
 struct CommandRequest {
   storage::Command command;
   std::string service;  // instance name of the one that is asked; empty: every one
+  // service/security/command_signature.hpp; both empty on a domain that is not secured.
+  std::string certificate{};  // of who signed, PEM
+  std::string signature{};    // hexadecimal
 };
 
 /// What came of a command; kept with the command, so that each copy of it gets the first reply.
@@ -154,6 +157,7 @@ struct ServiceStatus {
   std::string partner;            // instance name of the other one, while it is heard
   std::int64_t lag = 0;           // rows of the registry that one of the two lacks; -1: not known
   std::uint64_t descriptors_rejected = 0;
+  storage::Time certificate_end = 0;  // of the service's own; 0: the domain is not secured
 };
 
 /// Who leads a pair of services, said many times a second by whoever does.

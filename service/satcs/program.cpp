@@ -178,6 +178,10 @@ void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& opti
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
   app.add_option("--partition", options.endpoint.partition, "DDS partition")->capture_default_str();
+  app.add_option("--security", options.endpoint.security,
+                 "On a secured domain: folder of the gateway's certificate")
+      ->envname("REIDENT_SECURITY")
+      ->type_name("FOLDER");
   app.add_flag("--json", json, "Print the summary as one JSON object");
 }
 

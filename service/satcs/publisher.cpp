@@ -180,8 +180,10 @@ Outcome Publication::write_frames() {
 Outcome Publication::wait_for_readers() {
   constexpr auto look_again = std::chrono::milliseconds(20);
   constexpr auto tell_again = std::chrono::minutes(1);
+  constexpr auto discovery = std::chrono::seconds(2);  // of programs that are there
   const auto began = Clock::now();
   auto tell = began;
+  bool looked = false;
   while (!stop_.stop_requested()) {
     const std::uint32_t readers = frames_.matched_readers();
     const std::uint32_t archives = frames_.matched_archives();
@@ -200,6 +202,13 @@ Outcome Publication::wait_for_readers() {
                  {"domain", options_.endpoint.domain},
                  {"partition", options_.endpoint.partition}});
       tell += tell_again;
+    }
+    if (!looked && Clock::now() - began >= discovery) {
+      looked = true;
+      if (participant_.misses_security())
+        log::warning("satcs",
+                     "the domain is secured, and this program has no certificate: nobody hears it; "
+                     "name its folder with --security or REIDENT_SECURITY");
     }
     sleep_until(Clock::now() + look_again, stop_);
   }

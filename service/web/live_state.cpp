@@ -38,6 +38,8 @@ Json status_value(const HeardStatus& heard) {
   for (const auto& [name, count] : counts(status)) value[name] = count;
   value["newest_telemetry"] =
       status.newest_telemetry == 0 ? Json() : time_value(status.newest_telemetry);
+  value["certificate_end"] =
+      status.certificate_end == 0 ? Json() : time_value(status.certificate_end);
   value["last_error"] = status.last_error;
   value["failing_champions"] = status.failing_champions;
   return value;

@@ -27,14 +27,16 @@ constexpr unsigned query_threads = 2;
 constexpr std::size_t query_queue = 32;
 
 struct Arguments {
-  std::string config, accounts, audit;
+  std::string config, accounts, audit, security;
   bool hash_password = false;
   web::ServerOptions server;
 };
 
 int serve(const Config& config, const Arguments& arguments, web::Accounts accounts,
           const StopSignal& signal) {
-  const dds::Endpoint endpoint{config.domain, config.partition};
+  const dds::Endpoint endpoint{
+      config.domain, config.partition,
+      arguments.security.empty() ? config.security : std::filesystem::path(arguments.security)};
   web::LiveState live(endpoint, config.database);
   web::Access access(std::move(accounts));
   web::Audit audit(arguments.audit);
@@ -77,6 +79,9 @@ int serve(const Config& config, const Arguments& arguments, web::Accounts accoun
 
 void declare(CLI::App& app, Arguments& arguments) {
   web::ServerOptions& options = arguments.server;
+  app.add_option("--security", arguments.security,
+                 "on a secured domain: folder of the page's certificate")
+      ->envname("REIDENT_SECURITY");
   app.name("reident-web");
   app.set_version_flag("--version", std::string(program_version()));
   app.add_option("-c,--config", arguments.config,

@@ -128,6 +128,11 @@ void put_service(MetricsText& text, const std::optional<HeardStatus>& heard) {
   text.add(status.last_error.empty() ? 0 : 1);
   text.begin("reident_service_start_timestamp_seconds", "gauge", "When the service began.");
   text.add(seconds_of(status.started));
+  if (status.certificate_end != 0) {
+    text.begin("reident_certificate_end_timestamp_seconds", "gauge",
+               "When the service's certificate ends, on a secured domain.");
+    text.add(seconds_of(status.certificate_end));
+  }
   const auto count = [&](std::string_view name, std::string_view help, std::uint64_t value,
                          std::string_view type = "counter") {
     text.begin(name, type, help);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "service/security/command_signature.hpp"
 #include "service/support/log.hpp"
 
 namespace reident::web {
@@ -126,13 +127,15 @@ HttpResponse OrderDesk::reply_to(const storage::Command& command) {
 }
 
 std::optional<storage::CommandOutcome> OrderDesk::ask(const storage::Command& command) {
+  CommandRequest request{command, service_};
+  if (const auto material = participant_.material()) security::sign(request, *material);
   const auto deadline = SteadyClock::now() + reply_within;
   std::optional<SteadyClock::time_point> sent;
   std::optional<storage::CommandOutcome> outcome;
   for (auto now = SteadyClock::now(); !outcome && now < deadline; now = SteadyClock::now()) {
     const bool is_heard = commands_.matched_readers() > 0 && replies_.matched_writers() > 0;
     if (is_heard && (!sent || now - *sent >= again_after)) {
-      commands_.write({command, service_});
+      commands_.write(request);
       sent = now;
     }
     ready_.wait(look_around);

@@ -43,8 +43,9 @@
 #   tests/bench/run.sh operations [PART...] [--quick]
 #                                         operation in a failing and hostile world: packages under a
 #                                         real systemd, networks that are cut, a pair of services whose
-#                                         leader is killed or hangs. Needs root; says what it leaves
-#                                         out. The last line is one JSON object
+#                                         leader is killed or hangs, what seven kinds of intruders see
+#                                         and reach, and what security costs. Needs root; says what it
+#                                         leaves out. The last line is one JSON object
 #   tests/bench/run.sh scale [--services N] [--spacecraft N] [--days N] [--folder FOLDER]
 #                                         a hundred services and simulators on this machine: until
 #                                         all have found each other, what they take when idle, and
@@ -123,7 +124,8 @@ case $what in
     ;;
   operations)
     arguments=(build/release "$@")
-    targets=(reidentd reident satcs-reference e2e_programs)
+    targets=(reidentd reident satcs-reference e2e_programs forge_permissions lax_access_control
+             reident_bench_publisher)
     deploy/install_packages.sh --with-packages || echo "going on without the tools that are missing"
     ;;
   *)

@@ -22,7 +22,8 @@ struct PublishedVersion {
 struct PartitionSurvey {
   std::vector<ModelAcknowledgement> simulators;
   std::map<storage::EquipmentName, PublishedVersion> champions;
-  std::size_t services = 0;  // that publish versions; 0: the champions are not known
+  std::size_t services = 0;      // that publish versions; 0: the champions are not known
+  bool misses_security = false;  // others are secured and the survey is not: it heard none of them
 };
 
 enum class SimulatorState {

@@ -8,8 +8,10 @@
 #include "service/cli/output/table.hpp"
 #include "service/cli/verb.hpp"
 #include "service/dds/network_cut.hpp"
+#include "service/security/material.hpp"
 #include "service/support/size_text.hpp"
 #include "service/support/time_text.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident::cli::check_config_verb {
 namespace {
@@ -97,10 +99,26 @@ void print_cut(const Config& config) {
       size_text(settings.unacknowledged_bytes));
 }
 
+/// What is wrong with the folder that the configuration names.
+std::vector<ConfigMistake> mistakes_of_security(const Config& config) {
+  const auto read = security::read_material(config.security, utc_now());
+  std::vector<ConfigMistake> mistakes;
+  if (const auto* wrong = std::get_if<std::vector<std::string>>(&read)) {
+    for (const std::string& one : *wrong) mistakes.push_back({0, "security: " + one});
+  } else if (const auto& material = std::get<security::Material>(read);
+             material.role != "service") {
+    mistakes.push_back(
+        {0, fmt::format("security: {} is of {} {}; reidentd needs a folder of the role service",
+                        config.security.string(), material.role, material.name)});
+  }
+  return mistakes;
+}
+
 void print_summary(const Config& config) {
   fmt::print("service {} on domain {}, partition {}; database {}\n", config.service_name,
              config.domain, config.partition, config.database.string());
   if (config.cut > 0) print_cut(config);
+  if (!config.security.empty()) fmt::print("secured by {}\n", config.security.string());
   Table table(
       {{"equipment"}, {"every"}, {"window"}, {"slide"}, {"order"}, {"approval"}, {"signals"}});
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
@@ -161,6 +179,7 @@ void print_summary_json(const Config& config) {
               {"domain", config.domain},
               {"partition", config.partition},
               {"network_cut", cut},
+              {"security", config.security.string()},
               {"database", config.database.string()},
               {"digest", config.digest},
               {"equipment", list},
@@ -171,10 +190,14 @@ int run(const Arguments& arguments) {
   const auto loaded = load_config(arguments.file);
   if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&loaded))
     return print_mistakes(arguments, *mistakes);
+  const auto& config = std::get<Config>(loaded);
+  if (!config.security.empty())
+    if (const auto mistakes = mistakes_of_security(config); !mistakes.empty())
+      return print_mistakes(arguments, mistakes);
   if (arguments.json)
-    print_summary_json(std::get<Config>(loaded));
+    print_summary_json(config);
   else
-    print_summary(std::get<Config>(loaded));
+    print_summary(config);
   return exit_done;
 }
 

@@ -92,7 +92,10 @@ Overview read(const Readers& readers, const std::optional<Config>& config) {
                      overview.now));
   }
   if (config && !config->pair.empty()) {
-    overview.pair = heard_services({config->domain, config->partition}, heartbeat_wait);
+    auto heard =
+        heard_services(endpoint_of(*config), heartbeat_wait);
+    if (auto* services = std::get_if<std::vector<ServiceStatus>>(&heard))
+      overview.pair = std::move(*services);
     std::erase_if(overview.pair,
                   [&](const ServiceStatus& service) { return service.pair != config->pair; });
   }

@@ -184,6 +184,7 @@ int run(const Arguments& arguments) {
   const PartitionSurvey sight =
       look_into(endpoint, std::chrono::duration_cast<std::chrono::nanoseconds>(
                               std::chrono::duration<double>(arguments.wait_s)));
+  if (sight.misses_security && sight.simulators.empty()) return refuse(missing_security(endpoint));
   auto rows = list_simulators(sight, std::get<storage::EquipmentName>(wanted));
   const bool any = !rows.empty();
   if (arguments.old) std::erase_if(rows, [](const SimulatorRow& row) { return !row.is_old(); });

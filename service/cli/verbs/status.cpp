@@ -10,6 +10,7 @@
 #include "service/cli/output/table.hpp"
 #include "service/cli/verb.hpp"
 #include "service/dds/dds.hpp"
+#include "service/support/floor_divide.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
@@ -48,9 +49,8 @@ using Heard = std::map<std::pair<std::string, storage::Time>, ServiceStatus>;
 
 /// Listens until the wish is met, and a moment more for others. Empty when the time ran out;
 /// `heard` is then the last heartbeat, if there was one. `all` gets those of every service.
-std::optional<ServiceStatus> listen(const dds::Endpoint& endpoint, const Arguments& arguments,
+std::optional<ServiceStatus> listen(dds::Participant& participant, const Arguments& arguments,
                                     std::optional<ServiceStatus>& heard, Heard& all) {
-  dds::Participant participant(endpoint);
   dds::Reader<ServiceStatus> reader(participant);
   dds::WaitSet waits(participant);
   waits.attach(reader);
@@ -80,6 +80,12 @@ std::string newest_text(const ServiceStatus& status) {
   return status.newest_telemetry == 0 ? "none" : time_text(status.newest_telemetry);
 }
 
+/// Until the service's certificate ends, by the service's clock; below 0 once it has ended.
+std::int64_t days_left(const ServiceStatus& status) {
+  constexpr std::int64_t day = 86'400'000'000'000;
+  return floor_divide(status.certificate_end - status.time, day);
+}
+
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -97,6 +103,12 @@ nlohmann::ordered_json json_of(const ServiceStatus& status) {
   object["newest_telemetry"] = status.newest_telemetry == 0
                                    ? nlohmann::ordered_json()
                                    : nlohmann::ordered_json(time_text(status.newest_telemetry));
+  object["certificate_end"] = status.certificate_end == 0
+                                  ? nlohmann::ordered_json()
+                                  : nlohmann::ordered_json(time_text(status.certificate_end));
+  object["certificate_days"] = status.certificate_end == 0
+                                   ? nlohmann::ordered_json()
+                                   : nlohmann::ordered_json(days_left(status));
   object["last_error"] = status.last_error;
   object["failing_champions"] = status.failing_champions;
   object["alarms"] = lines_of(status.alarms);
@@ -126,6 +138,9 @@ void print_text(const ServiceStatus& status) {
                status.partner.empty() ? "nobody" : status.partner,
                status.lag < 0 ? "" : fmt::format(", {} rows of the registry behind", status.lag));
   fmt::print("newest telemetry {}\n", newest_text(status));
+  if (status.certificate_end != 0)
+    fmt::print("certificate until {} ({} days)\n", time_text(status.certificate_end),
+               days_left(status));
   Table table({{"count"}, {"", Table::Align::right}});
   for (const auto& [name, count] : counts(status)) table.add({name, fmt::format("{}", count)});
   fmt::print("{}", table.text(0));
@@ -153,12 +168,15 @@ int report_timeout(const dds::Endpoint& endpoint, const Arguments& arguments,
 }
 
 int run(const Arguments& arguments) {
-  const auto endpoint = chosen_endpoint(arguments.config, arguments.domain, arguments.partition);
-  if (const auto* refusal = std::get_if<Refusal>(&endpoint)) return refuse(*refusal);
+  const auto chosen = chosen_endpoint(arguments.config, arguments.domain, arguments.partition);
+  if (const auto* refusal = std::get_if<Refusal>(&chosen)) return refuse(*refusal);
+  const dds::Endpoint& endpoint = std::get<dds::Endpoint>(chosen);
+  dds::Participant participant(endpoint);
   std::optional<ServiceStatus> heard;
   Heard others;
-  const auto status = listen(std::get<dds::Endpoint>(endpoint), arguments, heard, others);
-  if (!status) return report_timeout(std::get<dds::Endpoint>(endpoint), arguments, heard);
+  const auto status = listen(participant, arguments, heard, others);
+  if (!heard && participant.misses_security()) return refuse(missing_security(endpoint));
+  if (!status) return report_timeout(endpoint, arguments, heard);
   others.erase({status->service, status->started});
   if (arguments.json) {
     print_json(*status, others);

@@ -20,6 +20,7 @@ struct Options {
   std::uint32_t domain = 0;
   std::string partition;
   std::string spacecraft;
+  std::string security;
   std::uint64_t frames = 0;
   std::size_t parameters = 629;
 };
@@ -34,7 +35,7 @@ void publish(const Options& options) {
   std::vector<reident::storage::TelemetryFrame> frames(options.frames);
   for (std::uint64_t k = 0; k < options.frames; ++k)
     telemetry.fill(k, options.spacecraft, frames[k]);
-  reident::dds::Participant participant({options.domain, options.partition});
+  reident::dds::Participant participant({options.domain, options.partition, options.security});
   reident::dds::Writer<reident::storage::TelemetryFrame> writer(participant);
   reident::test::wait_for_reader(writer);
   std::puts("ready");
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   app.add_option("--domain", options.domain, "DDS domain")->required();
   app.add_option("--partition", options.partition, "DDS partition")->required();
   app.add_option("--spacecraft", options.spacecraft, "Whose telemetry")->required();
+  app.add_option("--security", options.security, "Folder of the gateway's certificate");
   app.add_option("--frames", options.frames, "How many")->required();
   app.add_option("--parameters", options.parameters, "Samples of a frame")->capture_default_str();
   try {

@@ -22,7 +22,7 @@ class Desk : public testing::Test {
  protected:
   dds::Participant service_{own_endpoint()};
   dds::Participant operator_{own_endpoint()};
-  CommandDesk desk_{service_, "first"};
+  CommandDesk desk_{service_, "first", [] { return storage::Time{1}; }};
   dds::Writer<CommandRequest> commands_{operator_};
   dds::Reader<CommandReply> replies_{operator_};
   std::vector<Command> executed_;

@@ -65,6 +65,9 @@ typedef struct {
   const char* const* equipment; /* names or patterns; with a count of 0: every one */
   size_t equipment_count;
   const char* cache_folder; /* NULL: $XDG_CACHE_HOME/reident or ~/.cache/reident; "": none */
+  /* On a secured domain: folder of the simulator's certificate (deploy/SECURITY.md). NULL:
+   * $REIDENT_SECURITY, or not secured where that is not set; "": not secured. */
+  const char* security_folder;
 } reident_options;
 
 /* Sets every option to its default. Compiled into the program, which knows its structure's size. */

@@ -43,6 +43,9 @@ struct ClientOptions {
   std::vector<std::string> equipment;  // names or patterns; empty: every one
   /// Where the last good versions are kept; absent: the user's cache folder; empty: nowhere.
   std::optional<std::string> cache_folder;
+  /// On a secured domain: folder of the simulator's certificate (deploy/SECURITY.md); absent: what
+  /// REIDENT_SECURITY names, if anything; empty: not secured.
+  std::optional<std::string> security_folder;
 };
 
 /// An input or output of a runner: the SATCS parameter (of an output: the model's output) and its
@@ -214,6 +217,7 @@ inline Client::Client(const ClientOptions& options) {
   c.equipment = equipment.data();
   c.equipment_count = equipment.size();
   c.cache_folder = options.cache_folder ? options.cache_folder->c_str() : nullptr;
+  c.security_folder = options.security_folder ? options.security_folder->c_str() : nullptr;
   client_.reset(detail::checked(reident_client_open(&c)));
 }
 

@@ -94,9 +94,12 @@ class Client:
 
     def __init__(self, simulator: Optional[str] = None, domain: int = 0,
                  partition: str = "operations", spacecraft: str = "*",
-                 equipment: Sequence[str] = (), cache_folder: Optional[str] = None):
+                 equipment: Sequence[str] = (), cache_folder: Optional[str] = None,
+                 security_folder: Optional[str] = None):
         """`spacecraft` and `equipment` are names or patterns with * and ?; without equipment every
-        one. `cache_folder` keeps the last good versions: None is the user's, "" none."""
+        one. `cache_folder` keeps the last good versions: None is the user's, "" none.
+        `security_folder` has the simulator's certificate on a secured domain: None is what
+        REIDENT_SECURITY names, if anything, "" not secured."""
         if isinstance(equipment, str):
             equipment = [equipment]
         options = _abi.Options(size=ctypes.sizeof(_abi.Options))
@@ -105,6 +108,7 @@ class Client:
         options.partition, options.spacecraft = _text(partition), _text(spacecraft)
         options.equipment, options.equipment_count = names, len(equipment)
         options.cache_folder = _text(cache_folder)
+        options.security_folder = _text(security_folder)
         self._handle = library.reident_client_open(ctypes.byref(options))
         self._runners = []
         if not self._handle:

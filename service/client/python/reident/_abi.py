@@ -36,7 +36,7 @@ class Options(ctypes.Structure):
     _fields_ = [("size", c_size_t), ("simulator", c_char_p), ("domain", c_uint32),
                 ("partition", c_char_p), ("spacecraft", c_char_p),
                 ("equipment", POINTER(c_char_p)), ("equipment_count", c_size_t),
-                ("cache_folder", c_char_p)]
+                ("cache_folder", c_char_p), ("security_folder", c_char_p)]
 
 
 class Event(ctypes.Structure):

@@ -211,6 +211,7 @@ export interface Service {
   time: string;
   age_s: number;
   newest_telemetry: string | null;
+  certificate_end: string | null; // null: the domain is not secured
   last_error: string;
   failing_champions: string;
   [count: string]: string | number | null;

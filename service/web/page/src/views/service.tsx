@@ -23,6 +23,7 @@ function One({ service, zone }: { service: Service; zone: string }) {
           ["version of the program", service.program_version],
           ["started", `${timeText(service.started)} ${zone}`],
           ["newest telemetry", `${timeText(service.newest_telemetry)} ${zone}`],
+          ["certificate until", service.certificate_end ? `${timeText(service.certificate_end)} ${zone}` : "not secured"],
           ["failing champions", service.failing_champions || "none"],
           ...counts.map(([name, key]): [string, string] => [name, count(service[key] as number)]),
         ]} />
