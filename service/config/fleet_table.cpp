@@ -1,6 +1,7 @@
 #include "service/config/fleet_table.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <set>

@@ -32,7 +32,7 @@ struct FleetNetwork {
 
 struct Fleet {
   std::uint32_t domain = 0;
-  /// Without it all traffic stays on the loopback interface, with 16 services on a machine.
+  /// Without it all traffic stays on the loopback interface, which has 120 ports of a domain.
   std::optional<FleetNetwork> network;
   std::vector<FleetInstance> instances;  // at least one; names are distinct
 };

@@ -101,7 +101,7 @@ class Network {
         "<CycloneDDS xmlns=\"https://cdds.io/config\">\n<Domain Id=\"any\">\n"
         "<General>{}<AllowMulticast>false</AllowMulticast>"
         "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>64000B</FragmentSize></General>\n"
-        "<Discovery><ParticipantIndex>{}</ParticipantIndex><SPDPInterval>2s</SPDPInterval>"
+        "<Discovery><ParticipantIndex>{}</ParticipantIndex><SPDPInterval>5s</SPDPInterval>"
         "<Ports><DomainGain>{}</DomainGain></Ports>\n<Peers>\n{}</Peers></Discovery>\n"
         "</Domain>\n</CycloneDDS>\n",
         mark, interfaces, index ? std::to_string(*index) : "none", gain_, asked);

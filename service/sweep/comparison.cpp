@@ -1,5 +1,6 @@
 #include "service/sweep/comparison.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>

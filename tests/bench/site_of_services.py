@@ -7,6 +7,7 @@ The figures:
   discovery_s      from the start of the first program until every simulator runs its model
   idle_core        processor time of all services over wall time, while nothing comes
   fleet_status_s   `reident fleet status` of all of them, the median of five
+  fleet_status_cpu_s  the processor time of one
   service_mib      resident memory of a service, the median
   load             other work of the machine at the begin [processes]
 """
@@ -107,16 +108,18 @@ class Site:
         before, begin = sum(map(cpu_s, services)), time.monotonic()
         wait_until(lambda: time.monotonic() - begin > IDLE_S, "the time has passed")
         idle = (sum(map(cpu_s, services)) - before) / (time.monotonic() - begin)
-        times = []
+        times, cpu = [], os.times()
         for _ in range(5):
             begin = time.monotonic()
             report = json.loads(self.reident("fleet", "status", self.configurations, "--json",
                                              check=False))
             times.append(time.monotonic() - begin)
+        cpu = [after - before for before, after in zip(cpu, os.times())]
         assert all(one["service"] and one["with_champion"] for one in report["instances"])
         return {"services": len(services), "simulators": len(logs),
                 "started_s": round(started, 2), "discovery_s": round(discovery, 2),
                 "idle_core": round(idle, 3), "fleet_status_s": round(statistics.median(times), 3),
+                "fleet_status_cpu_s": round((cpu[2] + cpu[3]) / len(times), 3),
                 "service_mib": round(statistics.median(map(resident_mib, services)), 1),
                 "load": round(load, 1)}
 

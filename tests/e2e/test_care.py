@@ -2,11 +2,12 @@
 
 import json
 import sqlite3
+import subprocess
 import sys
 import unittest
 
 import plant
-from harness import EndToEnd, wait_until
+from harness import BIN, EndToEnd, wait_until
 
 
 class Care(EndToEnd):
@@ -95,6 +96,36 @@ class Care(EndToEnd):
         status, text = self.reident("retain", self.database, "--keep", "3h")
         self.assertEqual(status, 2)
         self.assertIn("of its own configuration", text)
+
+    def test_a_verify_decodes_what_changed_since_the_last_one(self):
+        known = self.folder / "reident.sound"
+
+        def add(name, **keywords):
+            csv = plant.write(self.folder / name, plant.rows(20_000, **keywords))
+            status, text = self.reident("import", csv, "--db", self.database, "--spacecraft", "SAT")
+            self.assertEqual(status, 0, text)
+
+        def verify():
+            done = subprocess.run([BIN / "reident", "verify", self.database, "--known", known,
+                                   "--json"], capture_output=True, text=True, check=True)
+            report = json.loads(done.stdout)
+            return report["chunks"], report["chunks_known"], report["samples"], done.stderr
+
+        add("one.csv")
+        chunks, skipped, samples, _ = verify()
+        self.assertEqual((skipped, samples), (0, 60_000))
+        self.assertEqual(verify()[:3], (chunks, chunks, 0))
+        add("two.csv", first=20_000)
+        more, skipped, samples, _ = verify()
+        self.assertGreater(more, chunks)
+        self.assertGreater(skipped, 0)
+        self.assertGreaterEqual(samples, 60_000)
+        self.assertLess(samples, 120_000)
+        known.write_text(known.read_text()[1:])
+        _, skipped, samples, words = verify()
+        self.assertEqual((skipped, samples), (0, 120_000))
+        self.assertIn("reident.sound", words)
+        self.assertEqual(verify()[1], more)
 
 
 if __name__ == "__main__":

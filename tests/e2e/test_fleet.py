@@ -1,4 +1,4 @@
-"""A site with more services on a machine than the built-in configuration of DDS has ports for."""
+"""A site with more services on a machine than the built-in configuration of DDS has ports for services."""
 
 import json
 import unittest

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 #include <thread>

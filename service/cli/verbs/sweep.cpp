@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
