@@ -68,7 +68,7 @@ std::string to_json(const PublisherSummary& summary, const Sender& sender,
   json["last_time"] = any ? nlohmann::ordered_json(time_text(summary.last_time)) : nullptr;
   json["frames_missed"] = summary.frames_missed;
   json["wall_s"] = summary.wall_s;
-  if (more) json["packets"] = nlohmann::ordered_json::parse(more());
+  if (more) json.update(nlohmann::ordered_json::parse(more()));
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
