@@ -74,7 +74,7 @@ std::string to_json(const PublisherSummary& summary, const Sender& sender,
     json["lost"].push_back({{"frames", lost.frames},
                             {"first_time", time_text(lost.first_time)},
                             {"last_time", time_text(lost.last_time)}});
-  if (more) json["packets"] = nlohmann::ordered_json::parse(more());
+  if (more) json.update(nlohmann::ordered_json::parse(more()));
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

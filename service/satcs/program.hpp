@@ -55,9 +55,9 @@ void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& opti
 /// Returns the exit status.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
 
-/// Publishes all of `stream` until the stop, and prints the summary; `more` gives a JSON object of
-/// the stream's own, which the summary has as "packets". Returns the exit status. Throws BadRequest
-/// where a service would refuse a name, dds::Error, and what the stream throws.
+/// Publishes all of `stream` until the stop, and prints the summary; `more` gives a JSON object
+/// whose fields the summary gets too. Returns the exit status. Throws BadRequest where a service
+/// would refuse a name, dds::Error, and what the stream throws.
 int publish_and_report(FrameStream& stream, const Sender& sender, const PublisherOptions& options,
                        bool json, const StopSignal& stop,
                        const std::function<std::string()>& more = {});

@@ -291,6 +291,22 @@ std::variant<Found, Error> find_header(HeadLines& lines, const Dialect& dialect,
   return found;
 }
 
+/// Takes the line of units that was given in place of the one that was found.
+std::optional<Error> take_units(const HeadLines& lines, std::optional<std::uint64_t> wanted,
+                                const std::string& name, Found& found) {
+  if (!wanted) return std::nullopt;
+  found.units.reset();
+  if (*wanted == 0) return std::nullopt;
+  const auto units = static_cast<std::size_t>(*wanted) - 1;
+  const std::string option = "--units " + std::to_string(*wanted);
+  if (units >= lines.size()) return whole_file(name, option + " is behind the last line");
+  if (!found.header || units <= *found.header || lines[units].cells.empty())
+    return whole_file(name, option + " is not a line below the header");
+  found.units = units;
+  found.first_row = std::max(found.first_row, units + 1);
+  return std::nullopt;
+}
+
 /// The separator in a first line "sep=;".
 std::optional<char> told_separator(const HeadLines& lines) {
   if (lines.empty()) return std::nullopt;
@@ -306,7 +322,7 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
                                           const DialectOptions& options, const std::string& name) {
   Dialect dialect;
   Layout& layout = dialect.layout;
-  layout.line_end = find_line_end(head.text);
+  layout.line_end = options.line_end.value_or(find_line_end(head.text));
   HeadLines lines = lines_of(head, layout.line_end);
   if (std::all_of(lines.begin(), lines.end(), is_blank))
     return whole_file(name,
@@ -321,8 +337,10 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
   layout.cells = usual_cells(lines, layout.comment);
   if (!options.names.empty() && layout.cells == 0) layout.cells = options.names.size();
   join_cells(lines, layout);
-  const auto found = find_header(lines, dialect, options, name);
+  auto found = find_header(lines, dialect, options, name);
   if (const auto* error = std::get_if<Error>(&found)) return *error;
+  if (auto error = take_units(lines, options.units_line, name, std::get<Found>(found)))
+    return *std::move(error);
   const auto& [first_row, header, units] = std::get<Found>(found);
   std::vector<std::string> cells;
   if (header) {

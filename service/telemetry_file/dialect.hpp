@@ -18,6 +18,8 @@ namespace reident::telemetry_file {
 struct DialectOptions {
   std::optional<char> separator;             // a blank: any number of blanks and tabs
   std::optional<std::uint64_t> header_line;  // 0: there is no header
+  std::optional<std::uint64_t> units_line;   // below the header; 0: there are none
+  std::optional<char> line_end;              // LF or CR
   std::vector<std::string> names;            // of the columns, in place of those of the file
   std::optional<std::string> comment;        // what lines begin with that are no rows
   std::vector<std::string> wanted;           // names that the header must have, where they decide

@@ -39,6 +39,21 @@ Error wrong(std::string_view flag, const std::string& text, std::string_view tak
   return {fmt::format("{} {} is not {}", flag, text, takes)};
 }
 
+/// The number of a line, or 0 for none.
+std::optional<Error> take_line(std::string_view flag, const std::optional<std::string>& text,
+                               std::optional<std::uint64_t>& line) {
+  if (!text) return std::nullopt;
+  std::uint64_t number = 0;
+  if (*text != "none") {
+    const char* const last = text->data() + text->size();
+    const auto [end, error] = std::from_chars(text->data(), last, number);
+    if (error != std::errc{} || end != last || number == 0)
+      return wrong(flag, *text, "the number of a line, or none");
+  }
+  line = number;
+  return std::nullopt;
+}
+
 std::optional<Error> take_dialect(const ReadingArguments& arguments, ReadingOptions& options) {
   DialectOptions& dialect = options.dialect;
   if (arguments.separator) {
@@ -47,15 +62,12 @@ std::optional<Error> take_dialect(const ReadingArguments& arguments, ReadingOpti
       return wrong("--separator", *arguments.separator,
                    "comma, semicolon, tab, bar, blank or one character");
   }
-  if (arguments.header && *arguments.header == "none") {
-    dialect.header_line = 0;
-  } else if (arguments.header) {
-    std::uint64_t line = 0;
-    const char* const last = arguments.header->data() + arguments.header->size();
-    const auto [end, error] = std::from_chars(arguments.header->data(), last, line);
-    if (error != std::errc{} || end != last || line == 0)
-      return wrong("--header", *arguments.header, "the number of a line, or none");
-    dialect.header_line = line;
+  if (auto error = take_line("--header", arguments.header, dialect.header_line)) return error;
+  if (auto error = take_line("--units", arguments.units, dialect.units_line)) return error;
+  if (arguments.line_end) {
+    if (*arguments.line_end != "lf" && *arguments.line_end != "cr")
+      return wrong("--line-end", *arguments.line_end, "lf or cr");
+    dialect.line_end = *arguments.line_end == "cr" ? '\r' : '\n';
   }
   dialect.names = arguments.names;
   dialect.comment = arguments.comment;
@@ -154,6 +166,8 @@ void add_reading_options(CLI::App& app, ReadingArguments& arguments) {
   text("--encoding", arguments.encoding, "as iconv names them: UTF-8, UTF-16LE, ISO-8859-1, ...",
        "NAME");
   text("--header", arguments.header, "line with the names of the columns, or none", "LINE");
+  text("--units", arguments.units, "line below it with the units of the columns, or none", "LINE");
+  text("--line-end", arguments.line_end, "lf (also of CR and LF) or cr", "NAME");
   app.add_option("--names", arguments.names, "names of the columns, separated by commas")
       ->delimiter(',')
       ->type_name("NAMES")

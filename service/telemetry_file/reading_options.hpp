@@ -9,7 +9,8 @@ namespace reident::telemetry_file {
 
 /// What a command line says, before it is checked.
 struct ReadingArguments {
-  std::optional<std::string> separator, decimal, thousands, encoding, header, comment;
+  std::optional<std::string> separator, decimal, thousands, encoding, header, units, line_end,
+      comment;
   std::vector<std::string> names;
   std::optional<std::string> time, time_format, time_unit, time_zone, epoch, clock_back;
   bool force_times = false;
@@ -18,7 +19,8 @@ struct ReadingArguments {
   bool dry_run = false;
 };
 
-/// Adds --separator, --decimal, --thousands, --encoding, --header, --names, --comment, --time and
+/// Adds --separator, --decimal, --thousands, --encoding, --header, --units, --line-end, --names,
+/// --comment, --time and
 /// what is said of it, --missing, --map-states, --skip-bad-lines and --dry-run. The arguments have
 /// to live until the command line was parsed.
 void add_reading_options(CLI::App& app, ReadingArguments& arguments);

@@ -87,7 +87,8 @@ std::vector<std::string> PacketCounts::sentences() const {
 }
 
 std::string PacketCounts::json() const {
-  nlohmann::ordered_json object;
+  nlohmann::ordered_json json;
+  auto& object = json["packets"];
   object["apids"] = nlohmann::ordered_json::array();
   for (const auto& [apid, counts] : apids_)
     object["apids"].push_back({{"apid", apid},
@@ -106,7 +107,7 @@ std::string PacketCounts::json() const {
   for (const auto& [container, rest] : rests_)
     object["longer_than_container"].push_back(
         {{"container", container}, {"packets", rest.packets}, {"bits", rest.bits}});
-  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace reident::satcs

@@ -40,7 +40,7 @@ class PacketCounts {
   std::uint64_t missing() const;
   /// For people: what is missing and what was left out, a sentence each.
   std::vector<std::string> sentences() const;
-  /// One JSON object.
+  /// {"packets": {"apids": [...], "left_out": [...], "longer_than_container": [...]}}
   std::string json() const;
 
  private:

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "service/satcs/program.hpp"
 #include "service/satcs/replay/replay.hpp"
@@ -77,14 +78,20 @@ void read_arguments(const ReadingArguments& arguments, ReplayOptions& options) {
   options.skip_bad_lines = arguments.skip_bad_lines;
 }
 
-ReplayStream open_replay(const ReplayOptions& options, const Sender& sender) {
+ReplayPlan make_plan(const ReplayOptions& options) {
   auto planned = plan_replay(options);
   if (const auto* error = std::get_if<reident::csv::Error>(&planned)) {
     throw BadRequest(error->message);
   }
-  auto& plan = std::get<ReplayPlan>(planned);
-  say(plan);
-  return ReplayStream(std::move(plan), sender);
+  say(std::get<ReplayPlan>(planned));
+  return std::get<ReplayPlan>(std::move(planned));
+}
+
+/// How the file was read, for programs.
+std::string json_of(const ReplayPlan& plan) {
+  const nlohmann::ordered_json json = {
+      {"found", plan.found}, {"remarks", plan.remarks}, {"columns_left_out", plan.left_out}};
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 int show(const ReplayOptions& options) {
@@ -111,8 +118,10 @@ int main(int argc, char** argv) {
   return run_program(app, argc, argv, [&] {
     read_arguments(reading, replay);
     if (reading.dry_run) return show(replay);
-    ReplayStream stream = open_replay(replay, sender);
+    ReplayPlan plan = make_plan(replay);
+    const std::string found = json_of(plan);
+    ReplayStream stream(std::move(plan), sender);
     const reident::StopSignal stop;
-    return publish_and_report(stream, sender, publisher, json, stop);
+    return publish_and_report(stream, sender, publisher, json, stop, [&found] { return found; });
   });
 }

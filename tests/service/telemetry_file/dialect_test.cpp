@@ -33,6 +33,43 @@ struct Found {
   std::uint64_t header, units, first;
 };
 
+std::variant<Dialect, Error> dialect_of(const std::string& text, const DialectOptions& options) {
+  RowReader rows(TextSource::of_text(text, "t.csv"));
+  const auto head = rows.head(1 << 20);
+  return find_dialect(std::get<RowReader::Head>(head), options, "t.csv");
+}
+
+TEST(TelemetryDialect, TakesTheLineOfUnitsThatIsGiven) {
+  const std::string text = file_of("time,u,v\nA,V,s\ns,load units,bus units\n", ",", false);
+  DialectOptions options;
+  options.units_line = 3;
+  const auto third = std::get<Dialect>(dialect_of(text, options));
+  EXPECT_THAT(third.units, ElementsAre("s", "load units", "bus units"));
+  EXPECT_EQ(third.units_line, 3U);
+  EXPECT_EQ(third.first_line, 4U);
+  options.units_line = 0;
+  const auto none = std::get<Dialect>(dialect_of(text, options));
+  EXPECT_THAT(none.units, ElementsAre());
+  EXPECT_EQ(none.first_line, 4U);
+  for (const std::uint64_t wrong : {1U, 1000U}) {
+    options.units_line = wrong;
+    EXPECT_THAT(std::get<Error>(dialect_of(text, options)).message,
+                HasSubstr("--units " + std::to_string(wrong)));
+  }
+}
+
+TEST(TelemetryDialect, TakesTheLineEndThatIsGiven) {
+  const std::string text = "time,u\r2024-02-28T22:00:00Z,1\r2024-02-28T22:00:10Z,2\r\n";
+  DialectOptions options;
+  options.line_end = '\r';
+  EXPECT_EQ(std::get<Dialect>(dialect_of(text, options)).layout.line_end, '\r');
+  EXPECT_EQ(std::get<Dialect>(dialect_of(text, options)).first_line, 2U);
+  options.line_end = '\n';
+  EXPECT_EQ(
+      std::get<Dialect>(dialect_of("time,u\n2024-02-28T22:00:00Z,1\n", options)).layout.line_end,
+      '\n');
+}
+
 TEST(TelemetryDialect, IsFoundFromTheFirstRows) {
   for (const Found& c : {
            Found{"time,u,v\n", ",", false, 1, 0, 2},
