@@ -58,4 +58,25 @@ inline std::string name_of(const ::testing::TestParamInfo<Mistake>& tested) {
   return tested.param.name;
 }
 
+/// The minimal file with one line changed.
+inline std::string with(int line, const std::string& replacement) {
+  std::string text;
+  std::string rest = minimal;
+  for (int at = 1; !rest.empty(); ++at) {
+    const std::size_t end = rest.find('\n') + 1;
+    text += at == line ? replacement + "\n" : rest.substr(0, end);
+    rest.erase(0, end);
+  }
+  return text;
+}
+
+/// With P = U * I_BDRIN1 as a second input on lines 5 and 9 to 12, line `line` replaced.
+inline std::string with_derived(std::size_t line, const std::string& text) {
+  const std::vector<std::string> table = {"[[spacecraft.equipment.derived]]", "name = \"P\"",
+                                          "expression = \"U * I_BDRIN1\"", "unit = \"W\""};
+  std::string result = with(5, "inputs = [\"I_BDRIN1\", \"P\"]");
+  for (std::size_t i = 0; i < table.size(); ++i) result += (9 + i == line ? text : table[i]) + "\n";
+  return result;
+}
+
 }  // namespace reident
