@@ -240,7 +240,7 @@ TEST_F(Verify, FindsWhatContradictsItselfInOtherTables) {
       {"DROP TRIGGER attempt_delete; DELETE FROM attempt", "that do not exist"},
       {"INSERT INTO block VALUES ('CB4', 'BDR', 5, 9, 1, 1.0, x'00', x'00', x'', x'', x'')",
        "a block is no list of numbers"},
-      {"INSERT INTO score VALUES ('CB4', 'BDR', 1, 5, 1, x'', x'00', x'', x'', NULL, x'', 0)",
+      {"INSERT INTO score VALUES ('CB4', 'BDR', 1, 5, 1, x'', x'00', x'', x'', NULL, x'', 0, x'')",
        "a score of version 1 is no list of numbers"},
       {"INSERT INTO late_range (series, begin_time, end_time) VALUES (1, 9, 5)", "late"},
       {"INSERT INTO damaged_chunk (series, first_time, last_time, samples, bytes, reason, time) "
