@@ -57,11 +57,11 @@ int main(int argc, char** argv) {
   }
   dds::Participant participant({static_cast<std::uint32_t>(std::stoul(argv[2])), argv[3]});
   const dds::Entity topic(
-      dds_create_topic(participant.impl().participant.get(), &reident_ModelVersion_desc,
-                       dds::model_version.topic, nullptr, nullptr),
+      dds_create_topic(participant.impl().sessions.newest()->participant.get(),
+                       &reident_ModelVersion_desc, dds::model_version.topic, nullptr, nullptr),
       "dds_create_topic", dds::model_version.topic);
   const dds::Entity writer(
-      dds_create_writer(participant.impl().publisher.get(), topic.get(),
+      dds_create_writer(participant.impl().sessions.newest()->publisher.get(), topic.get(),
                         dds::writer_qos(dds::model_version, {}).get(), nullptr),
       "dds_create_writer", dds::model_version.topic);
   std::ifstream orders(argv[1]);

@@ -98,11 +98,11 @@ TEST(StateTopics, AMalformedMessageIsCountedAndTheNextOneArrives) {
   reident_ModelVersion wire = encode(good);
   wire.order = 40;
   const dds::Entity topic(
-      dds_create_topic(participant.impl().participant.get(), &reident_ModelVersion_desc,
-                       "reident/ModelVersion", nullptr, nullptr),
+      dds_create_topic(participant.impl().sessions.newest()->participant.get(),
+                       &reident_ModelVersion_desc, "reident/ModelVersion", nullptr, nullptr),
       "dds_create_topic", "test");
   const dds::Entity careless(
-      dds_create_writer(participant.impl().publisher.get(), topic.get(),
+      dds_create_writer(participant.impl().sessions.newest()->publisher.get(), topic.get(),
                         dds::writer_qos(dds::model_version, {}).get(), nullptr),
       "dds_create_writer", "test");
   ASSERT_EQ(dds_write(careless.get(), &wire), DDS_RETCODE_OK);

@@ -142,13 +142,13 @@ TEST(Telemetry, AWriterWithoutHistoryIsHeardWherePartitionsArePatterns) {
 class CarelessWriter {
  public:
   explicit CarelessWriter(dds::Participant& participant)
-      : topic_(dds_create_topic(participant.impl().participant.get(),
+      : topic_(dds_create_topic(participant.impl().sessions.newest()->participant.get(),
                                 &dds::Codec<TelemetryFrame>::descriptor, dds::telemetry_frame.topic,
                                 nullptr, nullptr)) {
     const dds::Qos qos(dds_create_qos());
     dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
-    writer_ = dds::Entity(
-        dds_create_writer(participant.impl().publisher.get(), topic_.get(), qos.get(), nullptr));
+    writer_ = dds::Entity(dds_create_writer(participant.impl().sessions.newest()->publisher.get(),
+                                            topic_.get(), qos.get(), nullptr));
   }
 
  private:
