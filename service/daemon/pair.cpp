@@ -45,7 +45,6 @@ Pair::Pair(const Config& config, Clock clock, dds::Participant& participant, Arc
     : config_(config),
       clock_(clock),
       participant_(participant),
-      writer_(writer),
       listener_(std::move(listener)),
       leaders_(participant),
       ready_(participant),
@@ -107,9 +106,11 @@ void Pair::turn() {
   if (const auto partner = replication_.partner(now))
     rule_.hear_partner(partner->standing, partner->heard);
   const Standing ours = replication_.standing();
-  take(rule_.look(ours, now), ours, now);
-  if (const std::string failure = taking_over_.finish(); !failure.empty())
+  take(rule_.look(ours, now), ours);
+  if (std::string failure = taking_over_.finish(); !failure.empty() && failure != failure_) {
     log::error("pair", "a term cannot be recorded; it is tried again", {{"error", failure}});
+    failure_ = std::move(failure);
+  }
   bool hands_over = false;
   {
     const MutexLock lock(mutex_);
@@ -143,13 +144,12 @@ void Pair::hear_leaders(Instant now) {
       });
 }
 
-void Pair::take(Step step, const Standing& ours, Instant now) {
+void Pair::take(Step step, const Standing& ours) {
   if (step == Step::step_down) {
     log::warning("pair", "leads no more", {{"term", ours.term}, {"leader", rule_.leader()}});
     step_down();
   } else if (step == Step::take_over && !taking_over_.is_pending() && !replication_.is_foreign()) {
     take_over(ours);
-    next_saying_ = now;
   }
 }
 

@@ -61,7 +61,7 @@ class Pair {
   bool is_leading() const { return leadership_.has_value(); }
   void turn();
   void hear_leaders(Instant now);
-  void take(LeadershipRule::Step step, const Standing& ours, Instant now);
+  void take(LeadershipRule::Step step, const Standing& ours);
   void take_over(const Standing& ours);
   void step_down();
   void say_that_it_leads(const Standing& ours, Instant now);
@@ -74,7 +74,6 @@ class Pair {
   const Config& config_;
   const Clock clock_;
   dds::Participant& participant_;
-  ArchiveWriter& writer_;
   const Listener listener_;
   dds::Reader<Leadership> leaders_;
   std::optional<dds::Writer<Leadership>> leadership_;  // while it leads
@@ -82,6 +81,7 @@ class Pair {
   Replication replication_;
   LeadershipRule rule_;
   PostedTask taking_over_;
+  std::string failure_;  // to take over, as the log has it
   PostedTask sign_of_life_;
   Instant life_seen_{};
   Instant next_saying_{}, next_overruled_check_{};

@@ -2,6 +2,7 @@
 
 import json
 import signal
+import subprocess
 import time
 import unittest
 
@@ -56,6 +57,19 @@ class Pair(PairOfServices):
         self.assert_same_rows()
         self.assertEqual(self.ask(2, "SELECT actor FROM hold_now"), [("Ana",)])
         self.assertEqual(self.champion_of(2), champion)
+
+    def test_a_leader_that_cannot_write_is_replaced_and_follows_when_it_can(self):
+        self.start_both()
+        process = str(self.sides[2].process.pid)
+        subprocess.run(["prlimit", "--pid", process, "--fsize=4096:unlimited"], check=True)
+        self.replay_flight("first", 2, count=1300)
+        wait_until(lambda: "pair: leads" in self.sides[1].text(), "the standby leads")
+        subprocess.run(["prlimit", "--pid", process, "--fsize=unlimited"], check=True)
+        wait_until(lambda: self.leads(1, follower=2), "it follows")
+        wait_until(lambda: self.champion_of(1), "the standby decides")
+        self.assert_same_rows()
+        samples = "SELECT parameter, samples FROM telemetry_series"
+        wait_until(lambda: self.ask(1, samples) == self.ask(2, samples), "no sample is missing")
 
     def test_leadership_is_given_back_by_command_alone(self):
         self.start_both()

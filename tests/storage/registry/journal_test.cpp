@@ -57,8 +57,9 @@ class JournalTest : public RegistryTest {
     block.range = {static_cast<Time>(60 * times_), static_cast<Time>(60 * times_ + 60)};
     block.believed = 0.1;
     block.output_mean = {-0.0, 1e-300};
-    registry.record_scores("CB4", "BDR", block,
-                           {{second, block.range.begin, 5, {0.1}, {0.2}, {}, {{1, 2}, 7, {3}, 4}}});
+    registry.record_scores(
+        "CB4", "BDR", block,
+        {{second, block.range.begin, 5, {0.1}, {0.2}, {}, {{1, 2}, 7, {3}, 4}, {0.5}}});
   }
 
  private:
