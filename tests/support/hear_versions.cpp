@@ -13,7 +13,7 @@ namespace {
 
 [[noreturn]] void hear(std::uint32_t domain, const std::string& partition) {
   using namespace std::chrono_literals;
-  reident::dds::Participant participant({domain, partition, true});
+  reident::dds::Participant participant({domain, partition, {}, true});
   reident::dds::Reader<reident::ModelVersion> versions(participant);
   reident::dds::WaitSet ready(participant);
   ready.attach(versions);
