@@ -12,30 +12,16 @@ namespace reident {
 namespace {
 
 using namespace std::chrono_literals;
-using Role = LeadershipRule::Role;
 using Step = LeadershipRule::Step;
 
 constexpr std::size_t sayings_at_most = 64;
 constexpr Instant turn_interval = 40ms;
 constexpr Instant saying_interval = 100ms;                   // that this service leads
 constexpr Instant alive_within = 5s;                         // the archive's thread
-constexpr Instant alone_at_most = 5s;                        // before an alarm
 constexpr storage::Time overruled_for = 86'400'000'000'000;  // an alarm stays
 
 Instant steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
-}
-
-const char* name(Role role) {
-  switch (role) {
-    case Role::leads:
-      return "leads";
-    case Role::follows:
-      return "follows";
-    case Role::listens:
-      break;
-  }
-  return "listens";
 }
 
 }  // namespace
@@ -265,68 +251,6 @@ void Pair::hand_over() {
   const MutexLock lock(mutex_);
   hands_over_ = true;
   ready_.wake();
-}
-
-std::string Pair::leader() const {
-  const MutexLock lock(mutex_);
-  return seen_.leader;
-}
-
-void Pair::describe(ServiceStatus& status) const {
-  const MutexLock lock(mutex_);
-  status.pair = config_.pair;
-  status.role = name(seen_.role);
-  status.term = seen_.latest_term;
-  status.partner = seen_.partner                 ? seen_.partner->service
-                   : seen_.role == Role::follows ? seen_.leader
-                                                 : std::string();
-  if (seen_.role == Role::leads)
-    status.lag = seen_.partner && seen_.partner->follows
-                     ? seen_.ours.position - seen_.partner->standing.position
-                     : -1;
-  else
-    status.lag = seen_.role == Role::follows && seen_.obstacle.empty()
-                     ? std::max<std::int64_t>(0, seen_.leader_position - seen_.ours.position)
-                     : -1;
-}
-
-std::vector<storage::Alarm> Pair::alarms() const {
-  const storage::Time time = clock_();
-  std::vector<storage::Alarm> alarms;
-  const MutexLock lock(mutex_);
-  if (!seen_.obstacle.empty())
-    alarms.push_back({"cannot_follow",
-                      {},
-                      fmt::format("{} cannot follow: {}.", config_.service_name, seen_.obstacle),
-                      time});
-  if (seen_.role == Role::leads && seen_.alone_since > Instant::zero() &&
-      seen_.now - seen_.alone_since > alone_at_most)
-    alarms.push_back(
-        {"no_standby",
-         {},
-         fmt::format("No service of the pair {} follows {}: what is decided now has no "
-                     "copy, and nobody takes over. Start the other one.",
-                     config_.pair, config_.service_name),
-         time});
-  if (seen_.role == Role::leads && seen_.partner && seen_.partner->follows &&
-      seen_.partner->standing.position < published_beyond_)
-    alarms.push_back(
-        {"standby_behind",
-         {},
-         fmt::format("A decision was published before {} had it: that did not take it "
-                     "within {} s. Look at its disk and its log.",
-                     seen_.partner->service,
-                     std::chrono::duration_cast<std::chrono::seconds>(share_limit).count()),
-         time});
-  if (seen_.overruled && seen_.overruled->decisions > 0)
-    alarms.push_back({"overruled",
-                      {},
-                      fmt::format("{} decided without the other service of the pair: {} of its "
-                                  "decisions and commands are overruled. The view "
-                                  "overruled_decision shows them.",
-                                  seen_.overruled->service, seen_.overruled->decisions),
-                      time});
-  return alarms;
 }
 
 }  // namespace reident
