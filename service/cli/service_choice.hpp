@@ -22,8 +22,8 @@ void add_service_option(CLI::App& command, std::optional<std::string>& service);
 
 /// The name of the service that is meant, of a pair its leader: `named` by an option; or the only
 /// one that is heard, or of several the one that the configuration names, if it shares neither name
-/// nor equipment with another. Refused where that is not clear, with the names. Empty where none was
-/// heard within `timeout`: then whoever hears the question may answer.
+/// nor equipment with another. Refused where that is not clear, with the names. Empty where none
+/// was heard within `timeout`: then whoever hears the question may answer.
 std::variant<std::string, Refusal> chosen_service(const dds::Endpoint& endpoint,
                                                   const std::optional<std::string>& named,
                                                   const std::string& configured,

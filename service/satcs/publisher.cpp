@@ -194,13 +194,14 @@ Outcome Publication::wait_for_readers() {
     }
     if (Clock::now() >= tell) {
       progress_.clear();
-      log::info("satcs",
-                "waiting for readers of the telemetry; reidentd on this domain and partition is one",
-                {{"readers", readers},
-                 {"archives", archives},
-                 {"wanted", options_.wait_readers},
-                 {"domain", options_.endpoint.domain},
-                 {"partition", options_.endpoint.partition}});
+      log::info(
+          "satcs",
+          "waiting for readers of the telemetry; reidentd on this domain and partition is one",
+          {{"readers", readers},
+           {"archives", archives},
+           {"wanted", options_.wait_readers},
+           {"domain", options_.endpoint.domain},
+           {"partition", options_.endpoint.partition}});
       tell += tell_again;
     }
     if (!looked && Clock::now() - began >= discovery) {

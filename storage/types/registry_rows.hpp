@@ -167,9 +167,9 @@ struct BlockScore {
   std::vector<double> noise;
   /// At the end of the block.
   RunState state;
-  /// What a bias of a sensor does to the run, over the bias. For one sensor behind the other: the mean of its
-  /// values, and for each output the means of the effect's square and of its product with the
-  /// error. Empty where biases act like constants in the outputs.
+  /// What a bias of a sensor does to the run, over the bias. For one sensor behind the other: the
+  /// mean of its values, and for each output the means of the effect's square and of its product
+  /// with the error. Empty where biases act like constants in the outputs.
   std::vector<double> bias_effects;
 };
 

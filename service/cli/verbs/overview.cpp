@@ -51,7 +51,7 @@ struct Overview {
   std::vector<Alarm> alarms;
   Time now = 0;
   std::size_t rows_shown = SIZE_MAX;  // in the table
-  std::vector<ServiceStatus> pair;  // its services that are heard; empty without a pair
+  std::vector<ServiceStatus> pair;    // its services that are heard; empty without a pair
 };
 
 /// The equipment of the configuration that no window was tried of are rows too.
@@ -95,8 +95,7 @@ Overview read(const Readers& readers, const std::optional<Config>& config) {
                      overview.now));
   }
   if (config && !config->pair.empty()) {
-    auto heard =
-        heard_services(endpoint_of(*config), heartbeat_wait);
+    auto heard = heard_services(endpoint_of(*config), heartbeat_wait);
     if (auto* services = std::get_if<std::vector<ServiceStatus>>(&heard))
       overview.pair = std::move(*services);
     std::erase_if(overview.pair,

@@ -55,9 +55,10 @@ TEST_F(ExportModel, WritesAllFilesAtOnceAndSaysWhat) {
   const test::Ran ran =
       reident(command("BDR@1", {"--fmu", "a.fmu", "--mat", "a.mat", "--json", "a.json"}));
   EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_EQ(ran.out,
-            "a.fmu: FMU (FMI 2.0) of CBERS4/BDR version 1\na.mat: MATLAB file of CBERS4/BDR version 1\n"
-            "a.json: JSON of CBERS4/BDR version 1\n");
+  EXPECT_EQ(
+      ran.out,
+      "a.fmu: FMU (FMI 2.0) of CBERS4/BDR version 1\na.mat: MATLAB file of CBERS4/BDR version 1\n"
+      "a.json: JSON of CBERS4/BDR version 1\n");
   for (const char* name : {"a.fmu", "a.mat", "a.json"}) EXPECT_TRUE(exists(name)) << name;
   const test::Ran again = reident(command("CBERS4/BDR@1", {"--json", "a.json", "--force"}));
   EXPECT_EQ(again.status, 0) << again.err;
