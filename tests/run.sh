@@ -19,5 +19,5 @@ cmake --preset "$preset" -DBUILD_TESTING=ON >/dev/null
 cmake --build --preset "$preset"
 exclude=()
 case $preset in asan | tsan) exclude=(-LE lint) ;; esac
-# Tests with processes of their own mostly wait for them: two tests for each processor.
-ctest --preset "$preset" -j "$((2 * $(nproc)))" "${exclude[@]}" "$@"
+# Tests with processes of their own mostly wait for them: three tests for each processor.
+ctest --preset "$preset" -j "$((3 * $(nproc)))" "${exclude[@]}" "$@"

@@ -25,17 +25,17 @@ struct Glossary {
        "The standby cannot record what the leader of its pair sends, or its registry is another "
        "one.",
        "The text says which: mend its disk, or start it with a copy of the leader's database."},
-      {"challenger", "challenger",
-       "The window gave a model that is sound. Telemetry after its window decides whether it "
-       "becomes "
-       "champion.",
-       ""},
       {"certificate", "a certificate ends",
        "The service's certificate, or another of its files of security, ends within 30, 7 or 1 "
        "days, has "
        "ended, or was changed and is wrong. Once it has ended, nothing is sent or heard.",
        "'reident security renew' in the site's folder, and copy the member's folder; the service "
        "takes it up while it runs."},
+      {"challenger", "challenger",
+       "The window gave a model that is sound. Telemetry after its window decides whether it "
+       "becomes "
+       "champion.",
+       ""},
       {"champion_failed", "the champion fails",
        "The champion errs surely more than a constant at the mean, or than the simulator's own "
        "model, "

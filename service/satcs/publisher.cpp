@@ -137,10 +137,11 @@ bool Publication::linger() {
   log::info("satcs", "every frame is written; staying for readers that join late",
             {{"frames", summary_.frames}, {"history", *options_.history}});
   const auto until = Clock::now() + options_.linger;
-  while (frames_.matched_archives() == 0 && Clock::now() < until)
-    if (!sleep_until(std::min(until, Clock::now() + look_again), stop_)) return false;
+  bool goes_on = true;
+  while (goes_on && frames_.matched_archives() == 0 && Clock::now() < until)
+    goes_on = sleep_until(std::min(until, Clock::now() + look_again), stop_);
   meet_late_archive();
-  return sleep_until(until, stop_);
+  return goes_on && sleep_until(until, stop_);
 }
 
 void Publication::meet_late_archive() {

@@ -62,7 +62,7 @@ def main():
             print(f"{key:16} {value}")
         if "--suite" in sys.argv:
             clock = Clock()
-            suite = subprocess.run(["ctest", "--test-dir", folder, "-j", str(2 * os.cpu_count()),
+            suite = subprocess.run(["ctest", "--test-dir", folder, "-j", str(3 * os.cpu_count()),
                                     "--output-on-failure"], stdout=subprocess.PIPE, text=True,
                                    check=False)
             if suite.returncode != 0:

@@ -51,7 +51,8 @@ class Faults(EndToEnd):
     def truth(self, duration, *options):
         """{(parameter, time): value} of what satcs-reference sends without faults."""
         path = self.folder / "truth.csv"
-        writer = self.start("satcs-reference", "--duration", duration, "--csv", path, *options)
+        writer = self.start("satcs-reference", "--duration", duration, "--csv", path, "--replace",
+                            *options)
         self.assertEqual(writer.wait(), 0, writer.text())
         with open(path, newline="", encoding="ascii") as file:
             return {(name, int(row["unix_s"]) * NS): float(cell)

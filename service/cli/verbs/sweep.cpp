@@ -14,6 +14,7 @@
 #include "service/support/mutex.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/sweep/engines.hpp"
 #include "service/sweep/plan.hpp"
 #include "service/sweep/report.hpp"
