@@ -114,6 +114,7 @@ class Ingest(EndToEnd):
         self.configure([plant.equipment(window="1h", slide="1h")])
         self.start_daemon()
         wait_until(lambda: self.stored() == 720, "every row is archived")
+        wait_until(lambda: "every frame is written" in replay.text(), "the replay lingers")
         replay.signal(signal.SIGTERM)
         self.assertEqual(replay.wait(), 0, replay.text())
         self.assertEqual(json.loads(replay.out.read_text())["frames_missed"], 0)
