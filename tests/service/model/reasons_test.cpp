@@ -78,8 +78,8 @@ const Example of_a_member[] = {
     {because<Code::worse_in_regime>(3),
      "Surely worse than champion 3 in an operating regime that this one has served."},
     {because<Code::bias_unverified>(3, "V_BUS, I_BUS"),
-     "Better than champion 3 but for a constant, which a biased sensor of V_BUS, I_BUS would show "
-     "too; no relation binds it. Waits for an operator's approval."},
+     "Better than champion 3 but for what a biased sensor of V_BUS, I_BUS would show too; no "
+     "relation binds it. Waits for an operator's approval."},
     {because<Code::too_soon>(hour, 3, 36 * hour),
      "The window ends 1h after that of champion 3; versions are at least 36h apart."},
     {because<Code::held>("ana", "eclipse season"),
