@@ -4,16 +4,21 @@
 #include <array>
 #include <utility>
 
+#include <boost/asio/buffer.hpp>
 #include <boost/beast/http/error.hpp>
+#include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/rfc7230.hpp>
+#include <boost/beast/http/string_body.hpp>
 #include <boost/url/parse.hpp>
 #include <boost/url/url_view.hpp>
+#include <fmt/format.h>
 
 namespace reident::web {
 namespace {
 
 namespace http = boost::beast::http;
 
+using RequestMessage = http::request<http::string_body>;
 using NamedValue = std::pair<std::string_view, std::string_view>;
 
 constexpr std::array headers_of_all = {
@@ -27,12 +32,9 @@ constexpr std::array headers_of_all = {
     NamedValue{"Vary", "Accept-Encoding"}};
 constexpr NamedValue header_of_tls{"Strict-Transport-Security", "max-age=31536000"};
 
-std::string text_of(boost::core::string_view text) {
-  return {text.data(), text.size()};
-}
-
 std::string header(const RequestMessage& message, std::string_view name) {
-  return text_of(message[boost::core::string_view(name.data(), name.size())]);
+  const auto value = message[boost::core::string_view(name.data(), name.size())];
+  return {value.data(), value.size()};
 }
 
 bool accepts_gzip(const RequestMessage& message) {
@@ -46,35 +48,17 @@ bool accepts_gzip(const RequestMessage& message) {
   return false;
 }
 
-}  // namespace
-
-bool HostNames::has(std::string_view host) const {
-  if (names_.empty()) return true;
-  if (host.starts_with('[')) {
-    const std::size_t end = host.find(']');
-    return end != std::string_view::npos && names_.contains(host.substr(1, end - 1));
-  }
-  return names_.contains(host.substr(0, host.find(':')));
-}
-
-void set_limits(RequestParser& parser) {
-  parser.header_limit(most_head_bytes);
-  parser.body_limit(most_body_bytes);
-}
-
-std::optional<HttpResponse> refusal_of(const boost::system::error_code& error) {
-  if (error == http::error::header_limit || error == http::error::buffer_overflow)
+/// The answer to a request that cannot be read.
+HttpResponse refusal_of(const boost::system::error_code& error) {
+  if (error == http::error::header_limit)
     return problem(431, "head_too_large", "the head of a request has at most 8 KiB");
   if (error == http::error::body_limit)
     return problem(413, "body_too_large", "the body of a request has at most 4 KiB");
-  if (error.category() == make_error_code(http::error::bad_method).category() &&
-      error != http::error::end_of_stream && error != http::error::partial_message)
-    return problem(400, "malformed", "this is no request of HTTP/1.1: " + error.message());
-  return std::nullopt;
+  return problem(400, "malformed", "this is no request of HTTP/1.1: " + error.message());
 }
 
-std::optional<HttpResponse> refusal_of(const RequestParser& parser, const HostNames& names) {
-  const auto& head = parser.get();
+/// The answer to a head that is refused; absent where it is not.
+std::optional<HttpResponse> refusal_of(const RequestMessage& head, const HostNames& names) {
   const bool is_post = head.method() == http::verb::post;
   if (!is_post && head.method() != http::verb::get && head.method() != http::verb::head)
     return problem(405, "method", "GET, HEAD and POST are answered");
@@ -94,8 +78,63 @@ std::optional<HttpResponse> refusal_of(const RequestParser& parser, const HostNa
   return std::nullopt;
 }
 
-std::variant<HttpRequest, HttpResponse> read_request(const RequestMessage& message,
-                                                     const std::string& user_header) {
+void add(std::string& head, const NamedValue& one) {
+  head.append(one.first).append(": ").append(one.second).append("\r\n");
+}
+
+void add_headers_of_all(std::string& head, bool is_secure) {
+  for (const NamedValue& one : headers_of_all) add(head, one);
+  if (is_secure) add(head, header_of_tls);
+}
+
+}  // namespace
+
+bool HostNames::has(std::string_view host) const {
+  if (names_.empty()) return true;
+  if (host.starts_with('[')) {
+    const std::size_t end = host.find(']');
+    return end != std::string_view::npos && names_.contains(host.substr(1, end - 1));
+  }
+  return names_.contains(host.substr(0, host.find(':')));
+}
+
+struct RequestReader::Parser : http::request_parser<http::string_body> {};
+
+RequestReader::RequestReader(const HostNames& names)
+    : names_(&names), parser_(std::make_unique<Parser>()) {
+  parser_->header_limit(most_head_bytes);
+  parser_->body_limit(most_body_bytes);
+}
+
+RequestReader::~RequestReader() = default;
+
+bool RequestReader::take(std::string& bytes) {
+  while (!refusal_ && !parser_->is_done()) {
+    if (bytes.empty()) return false;
+    const bool had_head = parser_->is_header_done();
+    boost::system::error_code error;
+    bytes.erase(0, parser_->put(boost::asio::buffer(bytes), error));
+    if (error == http::error::need_more) return false;
+    if (error)
+      refusal_ = refusal_of(error);
+    else if (!had_head && parser_->is_header_done())
+      refusal_ = refusal_of(parser_->get(), *names_);
+  }
+  return true;
+}
+
+bool RequestReader::is_head_only() const {
+  return parser_->get().method() == http::verb::head;
+}
+
+bool RequestReader::keeps_alive() const {
+  return parser_->get().keep_alive();
+}
+
+std::variant<HttpRequest, HttpResponse> RequestReader::request(
+    const std::string& user_header) const {
+  if (refusal_) return *refusal_;
+  const RequestMessage& message = parser_->get();
   const auto url = boost::urls::parse_origin_form(message.target());
   if (!url) return problem(400, "address", "the address cannot be read: begin it with /");
   HttpRequest request;
@@ -116,29 +155,30 @@ std::variant<HttpRequest, HttpResponse> read_request(const RequestMessage& messa
   return request;
 }
 
-ResponseMessage message_of(const HttpResponse& response, bool is_secure) {
-  ResponseMessage message{http::int_to_status(static_cast<unsigned>(response.status)), 11};
-  for (const auto& [name, value] : headers_of_all)
-    message.set(std::string(name), std::string(value));
-  if (is_secure) message.set(std::string(header_of_tls.first), std::string(header_of_tls.second));
-  message.set(http::field::cache_control, "no-store");
-  message.set(http::field::content_type, response.content_type);
-  if (response.is_gzip) message.set(http::field::content_encoding, "gzip");
-  for (const auto& [name, value] : response.headers) message.set(name, value);
-  message.body() = response.body;
-  message.prepare_payload();
-  return message;
+std::string head_of(const HttpResponse& response, bool is_secure, bool keeps_alive) {
+  const auto reason =
+      http::obsolete_reason(http::int_to_status(static_cast<unsigned>(response.status)));
+  std::string head = fmt::format("HTTP/1.1 {} {}\r\n", response.status,
+                                 std::string_view(reason.data(), reason.size()));
+  add_headers_of_all(head, is_secure);
+  for (const auto& [name, value] : response.headers) add(head, {name, value});
+  if (std::none_of(response.headers.begin(), response.headers.end(),
+                   [](const auto& header) { return header.first == "Cache-Control"; }))
+    add(head, {"Cache-Control", "no-store"});
+  if (response.is_gzip) add(head, {"Content-Encoding", "gzip"});
+  if (response.status != 304) {
+    add(head, {"Content-Type", response.content_type});
+    add(head, {"Content-Length", std::to_string(response.body.size())});
+  }
+  if (!keeps_alive) add(head, {"Connection", "close"});
+  return head + "\r\n";
 }
 
 std::string event_stream_head(bool is_secure) {
   std::string head =
       "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\n"
       "X-Accel-Buffering: no\r\nConnection: close\r\n";
-  const auto add = [&head](const NamedValue& one) {
-    head.append(one.first).append(": ").append(one.second).append("\r\n");
-  };
-  for (const NamedValue& one : headers_of_all) add(one);
-  if (is_secure) add(header_of_tls);
+  add_headers_of_all(head, is_secure);
   return head + "\r\nretry: 2000\n\n";
 }
 

@@ -1,7 +1,8 @@
-// Between the protocol's library and HttpRequest and HttpResponse: what is refused, what is read,
-// what every answer carries. Private to the server.
+// Between the bytes of HTTP/1.1 and HttpRequest and HttpResponse: what is refused, what is read,
+// what every answer carries. Knows no socket; private to the server.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,20 +10,12 @@
 #include <variant>
 #include <vector>
 
-#include <boost/beast/http/message.hpp>
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
-
 #include "service/web/http.hpp"
 
 namespace reident::web {
 
 inline constexpr std::size_t most_head_bytes = 8 << 10;
 inline constexpr std::size_t most_body_bytes = 4 << 10;
-
-using RequestParser = boost::beast::http::request_parser<boost::beast::http::string_body>;
-using RequestMessage = boost::beast::http::request<boost::beast::http::string_body>;
-using ResponseMessage = boost::beast::http::response<boost::beast::http::string_body>;
 
 /// The names by which clients may ask; none given: any, for a proxy has checked it.
 class HostNames {
@@ -36,16 +29,30 @@ class HostNames {
   std::set<std::string, std::less<>> names_;
 };
 
-void set_limits(RequestParser& parser);
-/// The answer to a request that could not be read; absent where the connection just ended.
-std::optional<HttpResponse> refusal_of(const boost::system::error_code& error);
-/// The answer to a head that is refused; absent where it is not.
-std::optional<HttpResponse> refusal_of(const RequestParser& parser, const HostNames& names);
-/// The request, or the answer to one whose address cannot be read. `user_header`: a trusted
-/// proxy's, or empty.
-std::variant<HttpRequest, HttpResponse> read_request(const RequestMessage& message,
-                                                     const std::string& user_header);
-ResponseMessage message_of(const HttpResponse& response, bool is_secure);
+/// One request, from its bytes as they come.
+class RequestReader {
+ public:
+  explicit RequestReader(const HostNames& names);  // which has to outlive it
+  ~RequestReader();
+
+  /// Takes what is the request's from the front of `bytes`; the rest belongs to the next one. False
+  /// while it needs more. A head is refused before its body is there.
+  bool take(std::string& bytes);
+  /// Once it has all: the request, or the answer to one that is refused. `user_header`: a trusted
+  /// proxy's, or empty.
+  std::variant<HttpRequest, HttpResponse> request(const std::string& user_header) const;
+  bool is_head_only() const;
+  bool keeps_alive() const;
+
+ private:
+  struct Parser;
+  const HostNames* names_;
+  std::unique_ptr<Parser> parser_;
+  std::optional<HttpResponse> refusal_;
+};
+
+/// The head of an answer with a body of known length, and its last line end.
+std::string head_of(const HttpResponse& response, bool is_secure, bool keeps_alive);
 /// The head of an answer that ends with its connection.
 std::string event_stream_head(bool is_secure);
 

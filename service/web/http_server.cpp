@@ -1,5 +1,6 @@
 #include "service/web/http_server.hpp"
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -12,72 +13,38 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http/read.hpp>
-#include <boost/beast/http/serializer.hpp>
-#include <boost/beast/http/write.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 
 #include "service/support/log.hpp"
+#include "service/web/http_connection.hpp"
 #include "service/web/http_messages.hpp"
 
 namespace reident::web {
 namespace {
 
 namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
 namespace ssl = boost::asio::ssl;
 using asio::awaitable;
 using Tcp = asio::ip::tcp;
 using Local = asio::local::stream_protocol;
-using TcpStream = beast::tcp_stream;
-using LocalStream = beast::basic_stream<Local>;
-using TlsStream = beast::ssl_stream<TcpStream>;
 using namespace std::chrono_literals;
 
-constexpr auto deadline = 10s;             // of a head, a body, an answer
-constexpr auto quiet_interval = 15s;       // a stream without events shows that it lives
-constexpr int kept_by_system = 128 << 10;  // of an answer to a client that reads slowly
-constexpr auto last_wait = 1s;             // for what a refused client still sends
-constexpr std::size_t most_thrown_away = 64 << 10;
+constexpr auto deadline = 10s;              // of a handshake, a request, an answer
+constexpr auto quiet_interval = 15s;        // a stream without events shows that it lives
+constexpr int kept_by_system = 128 << 10;   // of an answer to a client that reads slowly
 constexpr auto accept_again_after = 100ms;  // where no descriptor is left
 constexpr auto as_tuple = asio::as_tuple(asio::use_awaitable);
 
 /// Who is at the other end of a connection.
 struct Peer {
-  std::string address;
-  std::string user;
+  std::string address;  // "unix" of a Unix socket
   bool is_secure = false;
 };
-
-/// The common name of the client's certificate; empty where it sent none.
-std::string common_name(SSL* handle) {
-  const std::unique_ptr<X509, decltype(&X509_free)> certificate(SSL_get1_peer_certificate(handle),
-                                                                X509_free);
-  if (!certificate) return "";
-  X509_NAME* subject = X509_get_subject_name(certificate.get());
-  const int at = X509_NAME_get_index_by_NID(subject, NID_commonName, -1);
-  if (at < 0) return "";
-  unsigned char* text = nullptr;
-  const int length =
-      ASN1_STRING_to_UTF8(&text, X509_NAME_ENTRY_get_data(X509_NAME_get_entry(subject, at)));
-  if (length < 0) return "";
-  const std::string name(reinterpret_cast<char*>(text), static_cast<std::size_t>(length));
-  OPENSSL_free(text);
-  return name;
-}
 
 /// Makes way for a socket: removes one that nobody listens on any more.
 void remove_stale_socket(const std::string& path) {
@@ -107,19 +74,13 @@ struct HttpServer::Impl {
   awaitable<void> accept(Acceptor& acceptor);
   void begin(Tcp::socket socket);
   void begin(Local::socket socket);
-  awaitable<void> serve_tls(Tcp::socket socket, std::string address);
-  template <typename Stream>
-  awaitable<void> serve(Stream& stream, Peer peer);
-  /// Ends a connection whose client may still send: a reset would take the answer from it.
-  template <typename Stream>
-  awaitable<void> end(Stream& stream, beast::flat_buffer& buffer);
-  template <typename Stream>
-  awaitable<bool> answer_request(Stream& stream, RequestParser& parser, const Peer& peer);
-  template <typename Stream>
-  awaitable<bool> write(Stream& stream, const HttpResponse& response, bool head_only,
-                        bool keep_alive);
-  template <typename Stream>
-  awaitable<void> stream_events(Stream& stream, std::uint64_t after);
+  awaitable<void> serve(std::unique_ptr<Connection> connection, Peer peer);
+  /// False where the connection ended first.
+  awaitable<bool> read(Connection& connection, RequestReader& reader, std::string& unread);
+  /// Whether the connection goes on.
+  awaitable<bool> answer(Connection& connection, const RequestReader& reader, const Peer& peer);
+  awaitable<bool> write(Connection& connection, std::string_view text);
+  awaitable<void> stream_events(Connection& connection, std::uint64_t after);
   awaitable<Answer> ask(HttpRequest request);
 
   /// Holds a place among the connections while it exists.
@@ -254,19 +215,10 @@ void HttpServer::Impl::begin(Tcp::socket socket) {
   }
   socket.set_option(Tcp::no_delay(true), error);
   socket.set_option(asio::socket_base::send_buffer_size(kept_by_system), error);
-  if (tls) {
-    asio::co_spawn(context, serve_tls(std::move(socket), address), asio::detached);
-    return;
-  }
-  asio::co_spawn(
-      context,
-      [](Impl& server, Tcp::socket connection, std::string from) -> awaitable<void> {
-        const Place place(server, from);
-        TcpStream stream(std::move(connection));
-        Peer peer{from, "", false};  // g++ 12 destroys a temporary in a co_await twice
-        co_await server.serve(stream, std::move(peer));
-      }(*this, std::move(socket), address),
-      asio::detached);
+  auto connection =
+      tls ? tls_connection_over(std::move(socket), *tls) : connection_over(std::move(socket));
+  asio::co_spawn(context, serve(std::move(connection), Peer{address, tls.has_value()}),
+                 asio::detached);
 }
 
 void HttpServer::Impl::begin(Local::socket socket) {
@@ -274,85 +226,66 @@ void HttpServer::Impl::begin(Local::socket socket) {
     ++refused;
     return;
   }
-  asio::co_spawn(
-      context,
-      [](Impl& server, Local::socket connection) -> awaitable<void> {
-        const Place place(server, "unix");
-        LocalStream stream(std::move(connection));
-        Peer peer{"unix", "", false};
-        co_await server.serve(stream, std::move(peer));
-      }(*this, std::move(socket)),
-      asio::detached);
+  asio::co_spawn(context, serve(connection_over(std::move(socket)), Peer{"unix"}), asio::detached);
 }
 
-awaitable<void> HttpServer::Impl::serve_tls(Tcp::socket socket, std::string address) {
-  const Place place(*this, address);
-  TlsStream stream(TcpStream(std::move(socket)), *tls);
-  beast::get_lowest_layer(stream).expires_after(deadline);
-  const auto [error] = co_await stream.async_handshake(ssl::stream_base::server, as_tuple);
-  if (error) co_return;
-  Peer peer{address, common_name(stream.native_handle()), true};
-  co_await serve(stream, std::move(peer));
-}
-
-template <typename Stream>
-awaitable<void> HttpServer::Impl::serve(Stream& stream, Peer peer) {
-  beast::flat_buffer buffer(most_head_bytes + most_body_bytes);
+awaitable<void> HttpServer::Impl::serve(std::unique_ptr<Connection> connection, Peer peer) {
+  const Place place(*this, peer.address);
+  connection->expires_after(deadline);
+  if (!co_await connection->begin()) co_return;
+  std::string unread;
   for (bool go_on = true; go_on;) {
-    RequestParser parser;
-    set_limits(parser);
-    beast::get_lowest_layer(stream).expires_after(deadline);
-    const auto [error, bytes] = co_await http::async_read_header(stream, buffer, parser, as_tuple);
-    auto refusal = error ? refusal_of(error) : refusal_of(parser, names);
-    if (error && !refusal) co_return;
-    if (!refusal) {
-      beast::get_lowest_layer(stream).expires_after(deadline);
-      const auto [body_error, body_bytes] =
-          co_await http::async_read(stream, buffer, parser, as_tuple);
-      if (body_error) refusal = refusal_of(body_error);
-      if (body_error && !refusal) co_return;
-    }
-    if (refusal) {
-      if (co_await write(stream, *refusal, false, false)) co_await end(stream, buffer);
-      co_return;
-    }
-    go_on = co_await answer_request(stream, parser, peer);
+    RequestReader reader(names);
+    connection->expires_after(deadline);
+    if (!co_await read(*connection, reader, unread)) co_return;
+    go_on = co_await answer(*connection, reader, peer);
   }
+  co_await connection->end();
 }
 
-template <typename Stream>
-awaitable<void> HttpServer::Impl::end(Stream& stream, beast::flat_buffer& buffer) {
-  auto& below = beast::get_lowest_layer(stream);
-  boost::system::error_code failure;
-  below.socket().shutdown(asio::socket_base::shutdown_send, failure);
-  below.expires_after(last_wait);
-  for (std::size_t taken = 0; !failure && taken < most_thrown_away;) {
-    buffer.clear();
-    const auto [error, bytes] = co_await below.async_read_some(buffer.prepare(4096), as_tuple);
-    failure = error;
-    taken += bytes;
+awaitable<bool> HttpServer::Impl::read(Connection& connection, RequestReader& reader,
+                                       std::string& unread) {
+  std::array<char, 4096> room;
+  while (!reader.take(unread)) {
+    const std::size_t bytes = co_await connection.read_some(room);
+    if (bytes == 0) co_return false;
+    unread.append(room.data(), bytes);
   }
+  co_return true;
 }
 
-template <typename Stream>
-awaitable<bool> HttpServer::Impl::answer_request(Stream& stream, RequestParser& parser,
-                                                 const Peer& peer) {
-  const bool keep_alive = parser.get().keep_alive();
-  const bool head_only = parser.get().method() == http::verb::head;
-  auto read = read_request(parser.get(), local ? options.user_header : "");
-  if (auto* refusal = std::get_if<HttpResponse>(&read)) {
-    co_await write(stream, *refusal, head_only, false);
+awaitable<bool> HttpServer::Impl::answer(Connection& connection, const RequestReader& reader,
+                                         const Peer& peer) {
+  auto read = reader.request(local ? options.user_header : "");
+  auto* request = std::get_if<HttpRequest>(&read);
+  Answer result;
+  if (request != nullptr) {
+    request->peer = peer.address;
+    request->is_secure = peer.is_secure;
+    if (const std::string user = connection.common_name(); !user.empty()) request->user = user;
+    result = co_await ask(std::move(*request));
+  } else {
+    result = std::get<HttpResponse>(std::move(read));
+  }
+  if (const auto* begins = std::get_if<EventStream>(&result)) {
+    co_await stream_events(connection, begins->after);
     co_return false;
   }
-  auto& request = std::get<HttpRequest>(read);
-  request.peer = peer.address;
-  request.is_secure = peer.is_secure;
-  if (!peer.user.empty()) request.user = peer.user;
-  const Answer answer = co_await ask(std::move(request));
-  if (const auto* response = std::get_if<HttpResponse>(&answer))
-    co_return co_await write(stream, *response, head_only, keep_alive) && keep_alive;
-  co_await stream_events(stream, std::get<EventStream>(answer).after);
-  co_return false;
+  const auto& response = std::get<HttpResponse>(result);
+  const bool keeps_alive = request != nullptr && reader.keeps_alive();
+  std::string text = head_of(response, peer.is_secure, keeps_alive);
+  if (!reader.is_head_only()) text += response.body;
+  connection.expires_after(deadline);
+  co_return co_await write(connection, text) && keeps_alive;
+}
+
+awaitable<bool> HttpServer::Impl::write(Connection& connection, std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t bytes = co_await connection.write_some(text);
+    if (bytes == 0) co_return false;
+    text.remove_prefix(bytes);
+  }
+  co_return true;
 }
 
 awaitable<Answer> HttpServer::Impl::ask(HttpRequest request) {
@@ -374,23 +307,7 @@ awaitable<Answer> HttpServer::Impl::ask(HttpRequest request) {
   co_return *std::move(pending->answer);
 }
 
-template <typename Stream>
-awaitable<bool> HttpServer::Impl::write(Stream& stream, const HttpResponse& response,
-                                        bool head_only, bool keep_alive) {
-  auto message = message_of(response, tls.has_value());
-  message.keep_alive(keep_alive);
-  http::response_serializer<http::string_body> serializer(message);
-  beast::get_lowest_layer(stream).expires_after(deadline);
-  if (head_only) {
-    const auto [error, bytes] = co_await http::async_write_header(stream, serializer, as_tuple);
-    co_return !error;
-  }
-  const auto [error, bytes] = co_await http::async_write(stream, serializer, as_tuple);
-  co_return !error;
-}
-
-template <typename Stream>
-awaitable<void> HttpServer::Impl::stream_events(Stream& stream, std::uint64_t after) {
+awaitable<void> HttpServer::Impl::stream_events(Connection& connection, std::uint64_t after) {
   asio::steady_timer wake(context);
   struct Entry {
     Entry(Impl& of, asio::steady_timer& timer) : server(of), wakes(timer) {
@@ -416,9 +333,8 @@ awaitable<void> HttpServer::Impl::stream_events(Stream& stream, std::uint64_t af
       if (woken) continue;
       text = ": nothing new\n\n";
     }
-    beast::get_lowest_layer(stream).expires_after(deadline);
-    const auto [error, bytes] = co_await asio::async_write(stream, asio::buffer(text), as_tuple);
-    if (error) co_return;
+    connection.expires_after(deadline);
+    if (!co_await write(connection, text)) co_return;
     text.clear();
   }
 }

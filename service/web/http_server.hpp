@@ -1,7 +1,8 @@
 // The page's server: HTTP/1.1 on one thread, with bounds on all that a client may cost.
 //
-//   head of a request     8 KiB, within 10 s of the connection or of the answer before
-//   body                  4 KiB, of POST alone, with one Content-Length; every Transfer-Encoding is
+//   request               within 10 s of the connection or of the answer before
+//   its head              8 KiB
+//   its body              4 KiB, of POST alone, with one Content-Length; every Transfer-Encoding is
 //                         refused, so that no two programs read one request in two ways
 //   answer                taken within 10 s, or the connection ends; so is each server-sent event
 //   connections           in all and by address; one more is closed at once

@@ -2,28 +2,40 @@
 
 #include <string>
 
-#include <boost/asio/buffer.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace reident::web {
 namespace {
 
-namespace http = boost::beast::http;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
-/// What the server answers to the bytes of a request without asking anything; 0: it is taken.
+const HostNames any_name({});
+
+/// What is answered to the bytes of a request without asking anything; 0: it is taken; -1: it is
+/// incomplete. Where they come one by one they are taken alike, and refused alike or later.
 int status_of(const std::string& text, const std::vector<std::string>& names = {}) {
-  RequestParser parser;
-  set_limits(parser);
-  parser.eager(true);
-  boost::system::error_code error;
-  parser.put(boost::asio::buffer(text), error);
-  if (error == http::error::need_more) return -1;
-  if (error) {
-    const auto refusal = refusal_of(error);
-    return refusal ? refusal->status : -1;
-  }
-  const auto refusal = refusal_of(parser, HostNames(names));
-  return refusal ? refusal->status : 0;
+  const HostNames known(names);
+  const auto status = [&](std::size_t step) {
+    RequestReader reader(known);
+    std::string unread;
+    bool has_all = false;
+    for (std::size_t at = 0; at < text.size() && !has_all; at += step) {
+      unread += text.substr(at, step);
+      has_all = reader.take(unread);
+    }
+    if (!has_all) return -1;
+    const auto request = reader.request("");
+    const auto* refusal = std::get_if<HttpResponse>(&request);
+    return refusal != nullptr ? refusal->status : 0;
+  };
+  const int at_once = status(text.size());
+  const int one_by_one = status(1);
+  EXPECT_TRUE(one_by_one == at_once || (at_once > 0 && one_by_one == -1)) << text;
+  return at_once;
 }
 
 std::string get(const std::string& target, const std::string& more = "") {
@@ -72,40 +84,69 @@ TEST(HttpMessages, AnswerToTheirOwnNamesAlone) {
     EXPECT_EQ(asked_by(host), 421) << host;
 }
 
-RequestMessage message(const std::string& target, const std::string& user = "") {
-  RequestMessage request{http::verb::get, target, 11};
-  if (!user.empty()) request.set("X-User", user);
-  return request;
+std::variant<HttpRequest, HttpResponse> read(const std::string& target,
+                                             const std::string& user_header = "") {
+  RequestReader reader(any_name);
+  std::string bytes = get(target, "X-User: Ana\r\n");
+  EXPECT_TRUE(reader.take(bytes));
+  return reader.request(user_header);
 }
 
 TEST(HttpMessages, ReadTheAddressAndItsParameters) {
-  const auto read =
-      read_request(message("/api/v1/x?spacecraft=A%2FB&equipment=%C3%84&empty=&last"), "");
-  ASSERT_TRUE(std::holds_alternative<HttpRequest>(read));
-  const auto& request = std::get<HttpRequest>(read);
+  const auto answer = read("/api/v1/x?spacecraft=A%2FB&equipment=%C3%84&empty=&last");
+  ASSERT_TRUE(std::holds_alternative<HttpRequest>(answer));
+  const auto& request = std::get<HttpRequest>(answer);
   EXPECT_EQ(request.path, "/api/v1/x");
   EXPECT_EQ(request.parameter("spacecraft"), "A/B");
   EXPECT_EQ(request.parameter("equipment"), "\xc3\x84");
   EXPECT_EQ(request.parameter("empty"), "");
   EXPECT_EQ(request.parameter("absent"), "");
-  EXPECT_TRUE(std::holds_alternative<HttpResponse>(read_request(message("no-slash"), "")));
-  EXPECT_TRUE(std::holds_alternative<HttpResponse>(read_request(message("/?a=%zz"), "")));
+  EXPECT_TRUE(std::holds_alternative<HttpResponse>(read("no-slash")));
+  EXPECT_TRUE(std::holds_alternative<HttpResponse>(read("/?a=%zz")));
 }
 
 TEST(HttpMessages, TrustTheHeaderOfAUserOnlyFromAProxy) {
-  EXPECT_EQ(std::get<HttpRequest>(read_request(message("/", "Ana"), "")).user, "");
-  EXPECT_EQ(std::get<HttpRequest>(read_request(message("/", "Ana"), "X-User")).user, "Ana");
+  EXPECT_EQ(std::get<HttpRequest>(read("/")).user, "");
+  EXPECT_EQ(std::get<HttpRequest>(read("/", "X-User")).user, "Ana");
+}
+
+TEST(HttpMessages, LeaveToTheNextRequestWhatIsItsOwn) {
+  std::string bytes =
+      "POST /a HTTP/1.1\r\nHost: a\r\nContent-Length: 2\r\n\r\n{}HEAD /b HTTP/1.1\r\nHost: a\r\n"
+      "Connection: close\r\n\r\nGET /c";
+  RequestReader first(any_name), second(any_name), third(any_name);
+  ASSERT_TRUE(first.take(bytes));
+  EXPECT_EQ(std::get<HttpRequest>(first.request("")).body, "{}");
+  EXPECT_TRUE(first.keeps_alive());
+  ASSERT_TRUE(second.take(bytes));
+  EXPECT_EQ(std::get<HttpRequest>(second.request("")).path, "/b");
+  EXPECT_TRUE(second.is_head_only());
+  EXPECT_FALSE(second.keeps_alive());
+  EXPECT_FALSE(third.take(bytes));
 }
 
 TEST(HttpMessages, CarryThePolicyOfContent) {
   HttpResponse response;
   response.body = "{}";
-  const auto message = message_of(response, false);
-  const std::string policy(message["Content-Security-Policy"]);
-  EXPECT_NE(policy.find("default-src 'none'"), std::string::npos);
-  EXPECT_EQ(policy.find("unsafe"), std::string::npos);
-  EXPECT_EQ(message["Strict-Transport-Security"], "");
-  EXPECT_NE(message_of(response, true)["Strict-Transport-Security"], "");
+  const std::string head = head_of(response, false, true);
+  EXPECT_THAT(head, StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_THAT(head, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(head, Not(HasSubstr("unsafe")));
+  EXPECT_THAT(head, Not(HasSubstr("Strict-Transport-Security")));
+  EXPECT_THAT(head, HasSubstr("\r\nCache-Control: no-store\r\n"));
+  EXPECT_THAT(head, HasSubstr("\r\nContent-Length: 2\r\n"));
+  EXPECT_THAT(head_of(response, true, true), HasSubstr("Strict-Transport-Security"));
+}
+
+TEST(HttpMessages, SayNothingOfABodyThatHasNotChanged) {
+  HttpResponse response;
+  response.status = 304;
+  response.headers = {{"Cache-Control", "no-cache"}};
+  const std::string head = head_of(response, false, false);
+  EXPECT_THAT(head, StartsWith("HTTP/1.1 304 Not Modified\r\n"));
+  EXPECT_THAT(head, Not(AnyOf(HasSubstr("\r\nContent-Type"), HasSubstr("Content-Length"),
+                              HasSubstr("no-store"))));
+  EXPECT_THAT(head, HasSubstr("\r\nConnection: close\r\n"));
 }
 
 }  // namespace
