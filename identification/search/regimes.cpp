@@ -102,23 +102,29 @@ IdentifyResult identify_with_regimes(const Record& record, RowRange rows,
   // Rows for choices alone may all be of one regime: folds are of all rows.
   IdentifyOptions in_folds = options;
   in_folds.tune_rows = 0;
+  std::optional<IdentifyResult> result;
   if (wide.size() > plain.size()) {
-    const IdentifyResult rich = with(wide, in_folds), poor = with(plain, in_folds);
+    IdentifyResult rich = with(wide, in_folds), poor = with(plain, in_folds);
     choice.error_with = error_of(rich);
     choice.error_without = error_of(poor);
     choice.are_used =
         std::holds_alternative<Identified>(rich) &&
         (std::holds_alternative<Verdict>(poor) || !choice.error_with || !choice.error_without ||
          *choice.error_with < worthwhile * *choice.error_without);
+    if (options.tune_rows == 0) {  // these are the models
+      IdentifyResult& chosen = choice.are_used ? rich : poor;
+      if (const auto* found = std::get_if<Identified>(&chosen)) work -= found->search_work;
+      result = std::move(chosen);
+    }
   }
   const Places& places = choice.are_used ? wide : plain;
-  IdentifyResult result = with(places, options);
-  if (auto* found = std::get_if<Identified>(&result)) {
+  if (!result) result = with(places, options);
+  if (auto* found = std::get_if<Identified>(&*result)) {
     found->regimes = choice;
     found->search_work += work;
     widen(*found, places, record, rows);
   }
-  return result;
+  return *std::move(result);
 }
 
 }  // namespace reident::identification

@@ -33,7 +33,7 @@ std::variant<Service, Refusal> service_of(const HistoryAccessOptions& options) {
   Service service;
   service.endpoint.security = security::folder_of_environment();
   if (const auto& config = std::get<std::optional<Config>>(chosen))
-    service = {endpoint_of(*config), config->service_name};
+    service = {endpoint_of(*config), addressee(*config)};
   else if (!options.domain && !options.partition)
     return Refusal{
         fmt::format("there is no {} here; name the service's configuration with --config FILE, or "
@@ -113,7 +113,7 @@ int with_readers(const HistoryAccessOptions& options,
   auto chosen =
       chosen_service(service.endpoint, options.service, service.name, timeout_of(options));
   if (const auto* refusal = std::get_if<Refusal>(&chosen)) return refuse(*refusal);
-  service.name = std::get<std::string>(std::move(chosen));
+  service.name = std::get<ServiceStatus>(std::move(chosen)).service;
   return with_service(service, options, work);
 }
 

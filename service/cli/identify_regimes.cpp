@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -17,15 +16,15 @@ constexpr std::size_t most_values = 8;
 /// How often each column has a value. What cannot be read is for whoever reads the rows.
 using Counts = std::map<std::string, std::map<double, std::size_t>>;
 
-Counts count_values(TelemetryFile& file, const std::set<std::string>& columns) {
+Counts count_values(TelemetryFile& file, const std::map<std::string, std::size_t>& columns) {
   Counts counts;
   for (auto step = file.next(); step != TelemetryFile::Step::end; step = file.next()) {
     if (step == TelemetryFile::Step::error) {
       if (file.damage() == telemetry_file::Damage::none) break;
       continue;
     }
-    for (const std::string& name : columns) {
-      const auto cell = file.cell(std::get<std::size_t>(file.find(name)));
+    for (const auto& [name, place] : columns) {
+      const auto cell = file.cell(place);
       auto& values = counts[name];
       if (cell.kind == telemetry_file::Cell::Kind::number && std::isfinite(cell.value) &&
           values.size() <= most_values)
@@ -39,9 +38,11 @@ Counts count_values(TelemetryFile& file, const std::set<std::string>& columns) {
 
 std::variant<std::vector<std::string>, Refusal> regimes_of(
     TelemetryFile& file, const std::vector<std::string>& regimes) {
-  std::set<std::string> columns;
-  for (const std::string& regime : regimes)
-    if (std::holds_alternative<std::size_t>(file.find(regime))) columns.insert(regime);
+  std::map<std::string, std::size_t> columns;
+  for (const std::string& regime : regimes) {
+    const auto found = file.find(regime);
+    if (const auto* place = std::get_if<std::size_t>(&found)) columns.emplace(regime, *place);
+  }
   if (columns.empty()) return regimes;
   const Counts counts = count_values(file, columns);
   std::vector<std::string> conditions;
@@ -57,7 +58,7 @@ std::variant<std::vector<std::string>, Refusal> regimes_of(
           "--regime {0}: the column has more than {1} values; write a condition, such as "
           "\"{0} > {2:g}\"",
           regime, most_values, std::next(values.begin(), most_values / 2)->first)};
-    if (values.size() <= 2 && values.contains(0)) {
+    if (values.size() <= 1 || (values.size() == 2 && values.contains(0))) {
       conditions.push_back(regime);
       continue;
     }

@@ -32,14 +32,14 @@ using storage::CommandOutcome;
 constexpr auto turn = std::chrono::milliseconds(300);
 /// Without an answer for so long a terminal shows how long it is waited.
 constexpr auto quiet_wait = std::chrono::seconds(2);
-/// A service says once a second that it is there.
-constexpr auto heartbeat_wait = std::chrono::milliseconds(1500);
 
 struct Target {
   std::optional<std::filesystem::path> database;
   dds::Endpoint endpoint;
-  std::string service;
+  std::string service;  // addressee() of the configuration
+  bool is_pair = false;
   CommandContext context;
+  std::string actor;  // who the certificate says, on a secured domain
 };
 
 std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
@@ -51,10 +51,8 @@ std::variant<Target, Refusal> target_of(const OperatorOptions& options) {
     auto chosen = chosen_config(options.database.config);
     if (auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
     if (const auto& config = std::get<std::optional<Config>>(chosen)) {
-      target = {config->database,
-                endpoint_of(*config),
-                config->service_name,
-                {equipment_of(*config), {}}};
+      target = {config->database,      endpoint_of(*config),        addressee(*config),
+                !config->pair.empty(), {equipment_of(*config), {}}, {}};
     } else if (!options.domain && !options.partition) {
       return Refusal{
           fmt::format("there is no {} here; name the service's configuration with "
@@ -87,13 +85,15 @@ std::optional<Asked> execute_on_file(const Target& target, const Command& comman
   try {
     storage::Database database(*target.database, storage::Database::Mode::read_write);
     storage::Registry registry(database);
-    if (!registry.journal().terms().empty()) {
+    if (target.is_pair || !registry.journal().is_of(target.service)) {
       why = fmt::format(
           "{} is the database of a pair of services, whose leader alone carries out commands",
           target.database->string());
       return std::nullopt;
     }
-    return Answer{execute(command, registry, target.context, utc_now()), false};
+    Command own = command;
+    if (!target.actor.empty()) own.actor = target.actor;
+    return Answer{execute(own, registry, target.context, utc_now()), false};
   } catch (const storage::Error& failure) {
     why = failure.what();
     using Kind = storage::Error::Kind;
@@ -143,7 +143,7 @@ std::optional<Asked> ask(const Target& target, const OperatorOptions& options,
       const auto service =
           chosen_service(target.endpoint, options.service, target.service, heartbeat_wait);
       if (const auto* refusal = std::get_if<Refusal>(&service)) return *refusal;
-      if (const std::string& name = std::get<std::string>(service); !name.empty())
+      if (const std::string& name = addressee(std::get<ServiceStatus>(service)); !name.empty())
         sender.emplace(target.endpoint, CommandRequest{command, name});
     }
     if (sender)
@@ -165,7 +165,7 @@ int report_timeout(const Target& target, const OperatorOptions& options, const s
 
 /// On a secured domain the actor is who the certificate says, also where the file itself is worked
 /// on. Refused where the files are wrong, or of a role that may not order.
-std::optional<Refusal> sign_off(const Target& target, Command& command) {
+std::optional<Refusal> name_the_actor(Target& target, const Command& command) {
   if (target.endpoint.security.empty()) return std::nullopt;
   const auto read = security::read_material(target.endpoint.security, utc_now());
   if (const auto* mistakes = std::get_if<std::vector<std::string>>(&read))
@@ -173,13 +173,13 @@ std::optional<Refusal> sign_off(const Target& target, Command& command) {
   const auto& material = std::get<security::Material>(read);
   CommandRequest request{command, target.service};
   security::sign(request, material);
-  const auto actor = security::actor_of(request, material, utc_now());
+  auto actor = security::actor_of(request, material, utc_now());
   if (const auto* why = std::get_if<std::string>(&actor)) return Refusal{*why};
-  command.actor = std::get<security::Actor>(actor).name;
+  target.actor = std::get<security::Actor>(std::move(actor)).name;
   return std::nullopt;
 }
 
-void print_json(const Command& command, const Answer& answer) {
+void print_json(const Command& command, const std::string& actor, const Answer& answer) {
   const nlohmann::ordered_json object = {
       {"ok", answer.outcome.ok},
       {"reply", answer.outcome.reply},
@@ -189,7 +189,7 @@ void print_json(const Command& command, const Answer& answer) {
       {"equipment", command.equipment},
       {"version",
        command.version == 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(command.version)},
-      {"actor", command.actor},
+      {"actor", actor},
       {"reason", command.reason}};
   fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
@@ -204,9 +204,9 @@ std::string login_name() {
 }
 
 int operate(const OperatorOptions& options, const OperatorOrder& order) {
-  const auto found = target_of(options);
+  auto found = target_of(options);
   if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
-  const Target& target = std::get<Target>(found);
+  Target& target = std::get<Target>(found);
   Command command{unique_program_name("reident"),
                   1,
                   order.action,
@@ -216,14 +216,14 @@ int operate(const OperatorOptions& options, const OperatorOrder& order) {
                   options.actor,
                   options.reason};
   name_the_version(target, command);
-  if (const auto refusal = sign_off(target, command)) return refuse(*refusal);
+  if (const auto refusal = name_the_actor(target, command)) return refuse(*refusal);
   std::string why;
   const auto asked = ask(target, options, command, why);
   if (!asked) return report_timeout(target, options, why);
   if (const auto* refusal = std::get_if<Refusal>(&*asked)) return refuse(*refusal);
   const Answer& answer = std::get<Answer>(*asked);
   if (options.json) {
-    print_json(command, answer);
+    print_json(command, target.actor.empty() ? command.actor : target.actor, answer);
     return answer.outcome.ok ? exit_done : exit_impossible;
   }
   if (!answer.outcome.ok) return refuse({answer.outcome.reply});

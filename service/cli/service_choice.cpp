@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -34,13 +33,14 @@ bool has_double(const ServiceStatus& service, const std::vector<ServiceStatus>& 
   });
 }
 
-/// Leaves the leader alone of each pair that has one.
-void leave_out_standbys(std::vector<ServiceStatus>& services) {
-  std::set<std::string> led;
-  for (const ServiceStatus& service : services)
-    if (service.role == "leads") led.insert(service.pair);
-  std::erase_if(services, [&](const ServiceStatus& service) {
-    return service.role != "leads" && led.contains(service.pair);
+/// Leaves one of each pair: its leader, where it has one. Two of one name stay.
+void keep_one_of_each_pair(std::vector<ServiceStatus>& services) {
+  std::stable_partition(services.begin(), services.end(),
+                        [](const ServiceStatus& one) { return one.role == "leads"; });
+  std::map<std::string, std::string> kept;
+  std::erase_if(services, [&](const ServiceStatus& one) {
+    return !one.pair.empty() &&
+           kept.try_emplace(one.pair, one.service).first->second != one.service;
   });
 }
 
@@ -72,21 +72,23 @@ void add_service_option(CLI::App& command, std::optional<std::string>& service) 
   command.add_option("--service", service, "the service of this name, where there are several");
 }
 
-std::variant<std::string, Refusal> chosen_service(const dds::Endpoint& endpoint,
-                                                  const std::optional<std::string>& named,
-                                                  const std::string& configured,
-                                                  std::chrono::milliseconds timeout) {
-  if (named) return *named;
+std::variant<ServiceStatus, Refusal> chosen_service(const dds::Endpoint& endpoint,
+                                                    const std::optional<std::string>& named,
+                                                    const std::string& configured,
+                                                    std::chrono::milliseconds timeout) {
+  ServiceStatus nobody;
+  nobody.service = named.value_or("");
+  if (named) return nobody;
   auto heard = heard_services(endpoint, timeout);
   if (const auto* refusal = std::get_if<Refusal>(&heard)) return *refusal;
   auto services = std::get<std::vector<ServiceStatus>>(std::move(heard));
-  leave_out_standbys(services);
-  if (services.empty()) return std::string();
-  if (services.size() == 1) return services.front().service;
+  keep_one_of_each_pair(services);
+  if (services.empty()) return nobody;
+  if (services.size() == 1) return services.front();
   std::vector<std::string> names;
   for (const ServiceStatus& service : services) {
-    if (service.service == configured && !has_double(service, services)) return configured;
-    names.push_back(service.service);
+    if (addressee(service) == configured && !has_double(service, services)) return service;
+    names.push_back(addressee(service));
   }
   return Refusal{
       fmt::format("{} services are on domain {}, partition {}: {}; say which one with "

@@ -79,6 +79,15 @@ std::string equipment_in(const history::HistoryReader& history) {
   return names.empty() ? "nothing yet" : joined(names);
 }
 
+ordered_json alarm_json(const storage::Alarm& alarm) {
+  return {{"code", alarm.code},
+          {"spacecraft", alarm.about.spacecraft},
+          {"equipment", alarm.about.equipment},
+          {"since", time_text(alarm.since)},
+          {"seen_by", alarm.acknowledged_by},
+          {"text", alarm.text}};
+}
+
 ordered_json hold_json(const storage::Hold& hold) {
   return {{"actor", hold.actor}, {"reason", hold.reason}, {"since", time_text(hold.since)}};
 }

@@ -41,6 +41,9 @@ int with_writable_database(const DatabaseOptions& options,
 /// The equipment of the database for messages, such as "CBERS-4/BDR, CBERS-4/MEA".
 std::string equipment_in(const history::HistoryReader& history);
 
+/// Returns an alarm as `reident overview` and `reident fleet status` have it.
+nlohmann::ordered_json alarm_json(const storage::Alarm& alarm);
+
 nlohmann::ordered_json hold_json(const storage::Hold& hold);
 nlohmann::ordered_json decisions_json(const std::vector<storage::Decision>& decisions);
 

@@ -191,4 +191,13 @@ const ModelSubscriber::Verified* ModelSubscriber::newest(
   return found == newest_.end() ? nullptr : &found->second;
 }
 
+std::string ModelSubscriber::unpublished_text(const storage::EquipmentName& equipment) const {
+  const std::string name = equipment.spacecraft + "/" + equipment.equipment;
+  return versions_.matched_writers() > 0
+             ? "a service is heard, and none publishes a version of " + name +
+                   ": it has no champion yet, or the name is another ('reident overview')"
+             : "no service is heard, and so no version of " + name +
+                   ": look at the domain and the partition, and whether reidentd runs";
+}
+
 }  // namespace reident

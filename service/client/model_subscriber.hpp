@@ -1,6 +1,7 @@
 // The approved models of equipment, as they are published and once they are checked.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <optional>
@@ -29,6 +30,9 @@ struct Arrival {
   storage::Time received = 0;   // by this machine's clock; of a kept version, in the earlier run
   bool from_cache = false;      // kept from an earlier run, and not confirmed in this one
 };
+
+/// A service publishes at once: who has no version after so long is told so.
+inline constexpr std::chrono::seconds version_within{5};
 
 /// Hands each approved version over once, checked, and reports to the service what becomes of it. A
 /// version that is damaged, unstable, or older than the newest that was verified without being a
@@ -77,6 +81,9 @@ class ModelSubscriber {
   /// The newest version of an equipment that was verified; null where none came yet. Valid until
   /// the next poll().
   const Verified* newest(const storage::EquipmentName& equipment) const;
+  /// What a simulator that has no version of the equipment after `version_within` is told: whether
+  /// a service is heard in the partition, and where to look.
+  std::string unpublished_text(const storage::EquipmentName& equipment) const;
 
  private:
   struct Told {  // to the service, of one equipment

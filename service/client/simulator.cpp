@@ -12,7 +12,6 @@ constexpr std::size_t take_at_most = 256;
 // What a simulator may lag behind before it loses telemetry: it must never slow the source, which
 // the archive depends on.
 constexpr std::int32_t frames_kept = 16384;
-constexpr std::chrono::seconds version_within{5};  // of the start: the service publishes at once
 
 std::optional<ModelCache> cache_of(const SimulatorOptions& options) {
   if (!options.cache) return std::nullopt;
@@ -127,7 +126,8 @@ void Simulator::report_unpublished() const {
           return matches(spacecraft, running.first.spacecraft) &&
                  matches(equipment, running.first.equipment);
         }))
-      report_.unpublished(spacecraft, equipment);
+      report_.unpublished({spacecraft, equipment},
+                          models_.unpublished_text({spacecraft, equipment}));
 }
 
 void Simulator::report_running() {

@@ -16,9 +16,8 @@ namespace {
 using namespace std::chrono_literals;
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr auto report_period = 5s;   // of what runs, to the service
-constexpr auto version_within = 5s;  // of a run's begin: the service publishes at once
-constexpr auto soonest_look = 1ms;   // whether a run took what was posted
+constexpr auto report_period = 5s;  // of what runs, to the service
+constexpr auto soonest_look = 1ms;  // whether a run took what was posted
 constexpr auto latest_look = 250ms;
 
 storage::EquipmentName name_of(const ModelVersion& version) {
@@ -123,9 +122,7 @@ void SimulatorClient::tell_unpublished() {
     SimulatorEvent event;
     event.kind = SimulatorEvent::Kind::unpublished;
     event.equipment = name;
-    event.text = "nobody publishes a version of " + name.spacecraft + "/" + name.equipment +
-                 ": look at the names, the domain and the partition, and with 'reident overview' "
-                 "whether it has a champion";
+    event.text = models_.unpublished_text(name);
     event.time = utc_now();
     say(std::move(event));
   }

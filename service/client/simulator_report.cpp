@@ -98,17 +98,17 @@ void SimulatorReport::refused(const ModelSubscriber::Refusal& refusal) const {
                   refusal.equipment.equipment, refusal.version, refusal.reason));
 }
 
-void SimulatorReport::unpublished(const std::string& spacecraft,
-                                  const std::string& equipment) const {
+void SimulatorReport::unpublished(const storage::EquipmentName& equipment,
+                                  const std::string& text) const {
   if (json_) {
-    say(Json{{"event", "unpublished"}, {"spacecraft", spacecraft}, {"equipment", equipment}}.dump(
-        -1, ' ', false, Json::error_handler_t::replace));
+    say(Json{{"event", "unpublished"},
+             {"spacecraft", equipment.spacecraft},
+             {"equipment", equipment.equipment},
+             {"reason", text}}
+            .dump(-1, ' ', false, Json::error_handler_t::replace));
     return;
   }
-  say(
-      fmt::format("{}/{}: nobody publishes a version; look at the names, the domain and the "
-                  "partition, and with 'reident overview' whether it has a champion",
-                  spacecraft, equipment));
+  say(text);
 }
 
 void SimulatorReport::cache_fault(const CacheFault& fault) const {

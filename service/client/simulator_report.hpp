@@ -23,7 +23,7 @@ class SimulatorReport {
   /// A version was published and is not taken.
   void refused(const ModelSubscriber::Refusal& refusal) const;
   /// No version of the equipment, a name or a pattern, came in time.
-  void unpublished(const std::string& spacecraft, const std::string& equipment) const;
+  void unpublished(const storage::EquipmentName& equipment, const std::string& text) const;
   /// A file of last good versions could not be read or written.
   void cache_fault(const CacheFault& fault) const;
   /// The errors of a run so far, or what it waits for. `final`: nothing more is said about this

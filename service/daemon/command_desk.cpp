@@ -16,11 +16,12 @@ constexpr std::size_t requests_at_most = 16;
 }  // namespace
 
 CommandDesk::CommandDesk(dds::Participant& participant, std::string service, Clock clock,
-                         std::function<bool()> is_one_of_all)
+                         std::string pair, std::function<bool()> leads)
     : participant_(participant),
       service_(std::move(service)),
       clock_(std::move(clock)),
-      is_one_of_all_(std::move(is_one_of_all)),
+      pair_(std::move(pair)),
+      leads_(std::move(leads)),
       commands_(participant),
       replies_(participant),
       ready_(participant) {

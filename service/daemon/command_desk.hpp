@@ -21,11 +21,11 @@ class CommandDesk {
   using Execute =
       std::function<std::optional<storage::CommandOutcome>(const storage::Command& command)>;
 
-  /// Hears commands to `service` and those to every service, these while `is_one_of_all`
-  /// answers true (without it always). The participant must outlive it; where it is secured, signed
+  /// Hears commands to `service`, and those to every service or to `pair` while `leads` answers
+  /// true (without it always). The participant must outlive it; where it is secured, signed
   /// commands alone are executed, and the actor is the one who signed. Throws dds::Error.
   CommandDesk(dds::Participant& participant, std::string service, Clock clock,
-              std::function<bool()> is_one_of_all = {});
+              std::string pair = {}, std::function<bool()> leads = {});
 
   /// The thread's body: until stop().
   void run(const Execute& execute);
@@ -37,13 +37,14 @@ class CommandDesk {
   std::variant<storage::Command, std::string> command_of(const CommandRequest& request) const;
 
   bool is_meant(const std::string& service) const {
-    return service.empty() ? !is_one_of_all_ || is_one_of_all_() : service == service_;
+    return service == service_ || ((service.empty() || service == pair_) && (!leads_ || leads_()));
   }
 
   const dds::Participant& participant_;
   const std::string service_;
   const Clock clock_;
-  const std::function<bool()> is_one_of_all_;
+  const std::string pair_;
+  const std::function<bool()> leads_;
   dds::Reader<CommandRequest> commands_;
   dds::Writer<CommandReply> replies_;
   dds::WaitSet ready_;

@@ -127,7 +127,7 @@ Daemon::Daemon(const Config& config, Clock clock)
       publisher_(
           participant_,
           [this](const storage::Registry& registry) { return !pair_ || pair_->share(registry); }),
-      desk_(participant_, config.service_name, clock_, [this] { return leads(); }),
+      desk_(participant_, config.service_name, clock_, config.pair, [this] { return leads(); }),
       history_desk_(participant_, config.service_name, [this] { return leads(); }),
       simulators_(known_simulators(config), started_),
       ingest_(std::in_place, participant_, config, queue_, simulators_, clock_) {
@@ -141,10 +141,9 @@ Daemon::Daemon(const Config& config, Clock clock)
   if (!config.pair.empty()) {
     feed_.pause(true);
     pair_.emplace(config, clock_, participant_, writer_, pair_listener());
-  } else if (const auto terms = registry.journal().terms(); !terms.empty()) {
-    // What is recorded from now on is of no term that the other one of a former pair has.
-    writer_.post([this, next = terms.back().number + 1](storage::Registry& stored, auto&) {
-      stored.journal().begin_term(next, config_.service_name, clock_());
+  } else if (!registry.journal().is_of(config.service_name)) {
+    writer_.post([this](storage::Registry& stored, auto&) {
+      stored.journal().leave_pair(config_.service_name, clock_());
     });
   }
   watch_.emplace(ServiceWatch::Parts{config, clock_, started_, participant_, writer_, telemetry_,

@@ -11,6 +11,8 @@
 namespace reident {
 namespace {
 
+static_assert(LeadershipRule::lease == dds::leadership_lease);
+
 using namespace std::chrono_literals;
 using Step = LeadershipRule::Step;
 

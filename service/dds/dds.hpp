@@ -164,7 +164,7 @@ class Reader {
   std::size_t take(std::size_t max, const Sink& sink, const Refused& refused = {});
   std::size_t take(std::size_t max, const DatedSink& sink, const Refused& refused = {});
   /// Also calls `ended` where nobody writes a key any more: its writer disposed of it or is gone.
-  /// That message has its key alone.
+  /// Such a message has its key alone.
   std::size_t take(std::size_t max, const Sink& sink, const Refused& refused, const Sink& ended);
   /// For a clean stop, after Participant::stop_hearing(): hands out every message that was
   /// acknowledged to its writer, those included that the middleware has not handed on yet. Takes

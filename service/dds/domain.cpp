@@ -110,8 +110,7 @@ DomainUse::~DomainUse() {
   if (--found->second.users == 0) domains().erase(found);
 }
 
-Participant::Impl::Impl(const Endpoint& endpoint)
-    : domain(endpoint), partition(endpoint.partition), sessions(endpoint) {}
+Participant::Impl::Impl(const Endpoint& endpoint) : domain(endpoint), sessions(endpoint) {}
 
 Participant::Participant(const Endpoint& endpoint) : impl_(std::make_unique<Impl>(endpoint)) {}
 Participant::~Participant() = default;

@@ -53,7 +53,6 @@ struct Participant::Impl {
   explicit Impl(const Endpoint& endpoint);
 
   DomainUse domain;
-  std::string partition;
   SessionKeeper sessions;
   std::optional<Silence> silence;  // between stop_hearing() and hear_again()
 };

@@ -34,12 +34,8 @@ Instance read_instance(const fs::path& file) {
     return instance;
   }
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
-    for (const EquipmentConfig& equipment : spacecraft.equipment) {
-      const storage::EquipmentName name{spacecraft.name, equipment.name};
-      if (std::ranges::find(instance.rows, name, &history::OverviewRow::name) ==
-          instance.rows.end())
-        instance.rows.emplace_back().name = name;
-    }
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      history::add_untried({spacecraft.name, equipment.name}, instance.rows);
   history::put_worst_first(instance.rows, instance.alarms);
   return instance;
 }

@@ -157,6 +157,11 @@ bool needs_action(const OverviewRow& row, const std::vector<Alarm>& alarms) {
   });
 }
 
+void add_untried(const storage::EquipmentName& name, std::vector<OverviewRow>& rows) {
+  if (std::ranges::find(rows, name, &OverviewRow::name) == rows.end())
+    rows.emplace_back().name = name;
+}
+
 void put_worst_first(std::vector<OverviewRow>& rows, const std::vector<Alarm>& alarms) {
   std::sort(rows.begin(), rows.end(), [&](const OverviewRow& a, const OverviewRow& b) {
     return rank(a, alarms) < rank(b, alarms);

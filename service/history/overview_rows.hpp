@@ -49,6 +49,9 @@ void read_row(const Json& row, storage::SimulatorState& state);
 /// that waits.
 bool needs_action(const OverviewRow& row, const std::vector<storage::Alarm>& alarms);
 
+/// Adds a row of an equipment that no window was tried of, where it has none.
+void add_untried(const storage::EquipmentName& name, std::vector<OverviewRow>& rows);
+
 /// Orders by what needs an operator most: a champion that fails, other alarms, versions that wait,
 /// no champion; then by how much the error has grown since the approval.
 void put_worst_first(std::vector<OverviewRow>& rows, const std::vector<storage::Alarm>& alarms);

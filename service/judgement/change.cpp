@@ -12,9 +12,6 @@ namespace {
 using identification::Index;
 using identification::Vector;
 
-/// Cycles of the champion's record that a change is measured against.
-constexpr int reference_cycles = 8;
-
 double log_error_of(const storage::BlockScore& score) {
   double sum = 0;
   for (std::size_t q = 0; q < score.square.size(); ++q)
@@ -27,12 +24,10 @@ double log_error_of(const storage::BlockScore& score) {
 void ChangeFinder::add(const storage::Block& block, const storage::BlockScore& score) {
   const double log_error = log_error_of(score);
   if (!std::isfinite(log_error)) return;
-  const Duration length = block.range.end - block.range.begin;
-  const Entry entry{static_cast<std::size_t>(block.range.begin / length % blocks_of_cycle),
-                    log_error};
+  const Entry entry{phase_of(block), log_error};
   if (!detector_) {
     reference_.push_back(entry);
-    if (std::ssize(reference_) == reference_cycles * blocks_of_cycle) measure_reference();
+    if (reference_.size() == reference_blocks) measure_reference();
   } else if (detector_->add(scaled(entry))) {
     last_ = Change{calm_until_.value_or(INT64_MIN), block.range.end};
     reference_.clear();

@@ -8,7 +8,7 @@ using Code = ReasonCode;
 
 namespace {
 
-/// Its model cannot be judged by a run that is compared with one value.
+/// The name of an output that keeps one value on the validation part; empty: none does.
 std::string still_output(const PreparedWindow& prepared) {
   const identification::RowRange rows = prepared.candidate->parts.validate;
   for (identification::Index q = 0; q < prepared.data.record.y.cols(); ++q) {

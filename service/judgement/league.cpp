@@ -112,13 +112,15 @@ WithoutOffset without_offset(const League& league, const Member& member, const C
 }
 
 /// The past of the sensor `effect` is the champion's record before `since`; where that is short,
-/// its first cycles.
+/// its first cycles. Blocks from before schema 8 say nothing of it.
 SensorPast past_of(const League& league, std::size_t effect, Time since) {
   std::vector<std::size_t> phases;
   std::vector<const BlockScore*> scores;
   for_each_score(league, *league.champion, INT64_MIN, 0,
                  [&](std::size_t, const Block& block, const BlockScore& score) {
-                   if (block.range.begin >= since && scores.size() >= blocks_of_past) return;
+                   if (!has_effect(score, effect) ||
+                       (block.range.begin >= since && scores.size() >= reference_blocks))
+                     return;
                    phases.push_back(phase_of(block));
                    scores.push_back(&score);
                  });
@@ -241,7 +243,9 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
   const League& league = standard.league;
   if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty()) return std::nullopt;
   bool may_be = false;
-  for (std::size_t effect = 0; effect <= offset_effects(*league.champion); ++effect) {
+  for (std::size_t effect = 0; effect <= league.derived_sensors.size(); ++effect) {
+    if (effect > 0 && !std::ranges::count(league.unbound, league.derived_sensors[effect - 1]))
+      continue;
     const WithoutOffset without =
         without_offset(league, member, compared, effect,
                        effect > 0 ? past_of(league, effect, standard.since) : SensorPast());

@@ -28,6 +28,7 @@ struct League {
   std::vector<Member> challengers;           // ascending by number
   std::vector<storage::TimeRange> admitted;  // windows of all that ever were challengers
   std::vector<std::string> unbound;          // parameters whose sensors no relation binds
+  std::vector<std::string> derived_sensors;  // that BlockScore::bias_effects are of, in their order
 };
 
 /// What the records say of a challenger. The conditions are looked at in the order R4, R1, R2, R3,

@@ -24,29 +24,19 @@ const double* effect_in(const BlockScore& score, std::size_t effect) {
 
 }  // namespace
 
-std::size_t offset_effects(const Member& member) {
-  std::size_t most = 0;
-  for (const BlockScore& score : member.scores)
-    most = std::max(most, score.bias_effects.size() / stride(score));
-  return most;
-}
-
-std::size_t phase_of(const storage::Block& block) {
-  const storage::Time length = std::max<storage::Time>(1, block.range.end - block.range.begin);
-  const storage::Time phase = block.range.begin / length % blocks_of_cycle;
-  return static_cast<std::size_t>(phase < 0 ? phase + blocks_of_cycle : phase);
+bool has_effect(const BlockScore& score, std::size_t effect) {
+  return effect_in(score, effect) != nullptr;
 }
 
 SensorPast::SensorPast(std::size_t effect, const std::vector<std::size_t>& phases,
                        const std::vector<const BlockScore*>& scores)
     : effect_(effect) {
-  if (scores.size() < blocks_of_past) return;
+  if (scores.size() < reference_blocks) return;
   std::array<double, blocks_of_cycle> counts{};
-  for (std::size_t i = 0; i < scores.size(); ++i)
-    if (const double* mean = effect_in(*scores[i], effect)) {
-      means_[phases[i]] += *mean;
-      ++counts[phases[i]];
-    }
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    means_[phases[i]] += *effect_in(*scores[i], effect);
+    ++counts[phases[i]];
+  }
   for (std::size_t phase = 0; phase < counts.size(); ++phase) {
     if (counts[phase] == 0) return;
     means_[phase] /= counts[phase];
@@ -62,16 +52,16 @@ SensorPast::SensorPast(std::size_t effect, const std::vector<std::size_t>& phase
 }
 
 double SensorPast::departure(std::size_t phase, const BlockScore& score) const {
-  const double* mean = effect_in(score, effect_);
-  return mean ? *mean - means_[phase] : 0;
+  return *effect_in(score, effect_) - means_[phase];
 }
 
 void OffsetFit::add(std::size_t phase, const BlockScore& score) {
   sums_.resize(score.mean.size());
+  const double* effect = effect_ > 0 ? effect_in(score, effect_) : nullptr;
+  if (effect_ > 0 && !effect) return;
   const auto rows = static_cast<double>(score.rows);
   rows_ += rows;
   for (std::size_t q = 0; q < sums_.size(); ++q) sums_[q].error += rows * score.mean[q];
-  const double* effect = effect_ > 0 ? effect_in(score, effect_) : nullptr;
   if (!effect) return;
   departure_ += rows * past_->departure(phase, score);
   for (std::size_t q = 0; q < sums_.size(); ++q) {

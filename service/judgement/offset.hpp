@@ -15,28 +15,22 @@
 
 namespace reident {
 
-/// Sensors of which the record has effects of their own.
-std::size_t offset_effects(const Member& member);
-
-/// Place of the block in its cycle.
-std::size_t phase_of(const storage::Block& block);
-
-/// Blocks from which a sensor's past is known: eight cycles.
-inline constexpr std::size_t blocks_of_past = 8 * blocks_of_cycle;
+/// Whether the score says what a bias of the sensor `effect`, from 1, does.
+bool has_effect(const storage::BlockScore& score, std::size_t effect);
 
 /// The means of such a sensor's values in the cycles of which nobody doubts it.
 class SensorPast {
  public:
   /// Nothing is known.
   SensorPast() = default;
-  /// Of the sensor `effect`, from 1, in these blocks of a record; fewer than blocks_of_past say
-  /// nothing.
+  /// Measures the sensor `effect`, from 1, in these blocks of a record, which have its effect;
+  /// fewer than reference_blocks say nothing.
   SensorPast(std::size_t effect, const std::vector<std::size_t>& phases,
              const std::vector<const storage::BlockScore*>& scores);
 
-  /// How far its mean on the block is from that of its phase.
+  /// How far its mean on the block is from that of its phase. Requires the effect.
   double departure(std::size_t phase, const storage::BlockScore& score) const;
-  /// Of the departures of whole cycles; infinite where nothing is known.
+  /// Deviation of the departures of whole cycles; infinite where nothing is known.
   double spread() const { return spread_; }
 
  private:
@@ -49,11 +43,10 @@ class SensorPast {
 /// or by the effect of a sensor's offset that its past allows, within three of its spreads.
 class OffsetFit {
  public:
-  OffsetFit() = default;
   /// `past` must outlive it.
   OffsetFit(std::size_t effect, const SensorPast& past) : effect_(effect), past_(&past) {}
 
-  /// Takes in a block.
+  /// Takes in a block; one without the sensor's effect says nothing.
   void add(std::size_t phase, const storage::BlockScore& score);
   /// The mean squares of a block's errors without what is explained.
   std::vector<double> rest(const storage::BlockScore& score) const;

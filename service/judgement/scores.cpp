@@ -9,6 +9,12 @@ namespace reident {
 using storage::Block;
 using storage::BlockScore;
 
+std::size_t phase_of(const Block& block) {
+  const storage::Time length = std::max<storage::Time>(1, block.range.end - block.range.begin);
+  const storage::Time phase = block.range.begin / length % blocks_of_cycle;
+  return static_cast<std::size_t>(phase < 0 ? phase + blocks_of_cycle : phase);
+}
+
 bool counts(const Block& block) {
   return block.rows > 0 && block.believed >= least_believed;
 }

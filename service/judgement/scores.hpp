@@ -23,6 +23,12 @@ inline constexpr double least_believed = 0.5;
 /// Of an error where the sensor's noise is not known.
 inline constexpr double least_square = 1e-300;
 
+/// Blocks of a record that later ones are measured against: eight cycles.
+inline constexpr std::size_t reference_blocks = 8 * blocks_of_cycle;
+
+/// Place of the block in its cycle, from 0.
+std::size_t phase_of(const storage::Block& block);
+
 /// Whether anything is concluded from the block.
 bool counts(const storage::Block& block);
 

@@ -76,6 +76,12 @@ std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& de
   return mistakes;
 }
 
+std::vector<std::string> sensors_of(const std::vector<DerivedInput>& derived) {
+  std::vector<std::string> inputs;
+  for (const DerivedInput& one : derived) inputs.push_back(one.name);
+  return InputExpressions(inputs, derived).parameters();
+}
+
 InputExpressions::InputExpressions(const std::vector<std::string>& inputs,
                                    const std::vector<DerivedInput>& derived) {
   for (const std::string& name : inputs) {

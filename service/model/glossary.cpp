@@ -17,8 +17,9 @@ struct Glossary {
        "configured confidence. It became champion.",
        ""},
       {"bias_unverified", "waits: a sensor may be biased",
-       "The version is better than the champion but for a constant. A biased sensor would show the "
-       "same, and no relation of sensors rules that out.",
+       "The version is better than the champion but for what a biased sensor would show too, and "
+       "no "
+       "relation of sensors rules that out.",
        "Look at the sensors that the reason names; then 'reident approve' or 'reject'. A declared "
        "relation, or bias = \"approve\", decides such cases without you."},
       {"cannot_follow", "the standby cannot follow",

@@ -180,8 +180,9 @@ struct Catalogue {
       {worse_in_regime, "worse_in_regime", none,
        "Surely worse than champion {champion:d} in an operating regime that this one has served."},
       {bias_unverified, "bias_unverified", none,
-       "Better than champion {champion:d} but for a constant, which a biased sensor of {sensors} "
-       "would show too; no relation binds it. Waits for an operator's approval."},
+       "Better than champion {champion:d} but for what a biased sensor of {sensors} would show "
+       "too; "
+       "no relation binds it. Waits for an operator's approval."},
       {too_soon, "too_soon", none,
        "The window ends {since_ns:duration} after that of champion {champion:d}; versions are at "
        "least {min_interval_ns:duration} apart."},

@@ -63,7 +63,8 @@ std::string fmu_documentation(const ExportedVersion& exported, const FmuVariable
              "<table>\n<tr><th>variable</th><th></th><th>unit</th><th></th></tr>\n",
              name, xml_text(model.method), xml_text(exported.status), time_text(version.decided),
              xml_text(version.decided_by), version.digest) +
-         rows_of(variables.inputs, "input") + rows_of(variables.outputs, "output") + "</table>\n" +
+         rows_of(variables.inputs, "input") + rows_of(variables.outputs, "output") +
+         rows_of(variables.states, "state") + "</table>\n" +
          (has_expressions(model.inputs) ? about_expressions : "") +
          fmt::format(behaviour, model.dynamics.period_s, model_identifier(version)) +
          "</body>\n</html>\n";

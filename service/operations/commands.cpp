@@ -265,8 +265,9 @@ std::string alarm_text(const storage::Alarm& alarm) {
 /// that names neither means every alarm of the code.
 bool is_about(const storage::Alarm& alarm, const Command& command) {
   const auto& [spacecraft, equipment] = alarm.about;
-  if (command.equipment.empty() || (command.spacecraft.empty() && command.equipment == spacecraft))
-    return true;
+  if (command.equipment.empty())
+    return command.spacecraft.empty() || command.spacecraft == spacecraft;
+  if (command.spacecraft.empty() && command.equipment == spacecraft) return true;
   return command.equipment == equipment &&
          (command.spacecraft.empty() || command.spacecraft == spacecraft);
 }
@@ -338,7 +339,7 @@ dds::Fault fault_of_texts(const Command& command) {
   return texts.fault();
 }
 
-/// The one action that is about no equipment.
+/// About no equipment.
 constexpr std::string_view switch_over = "switch_over";
 
 CommandOutcome carry_out(const Command& command, Registry& registry, const CommandContext& context,

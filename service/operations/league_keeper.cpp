@@ -69,6 +69,7 @@ LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipm
       reader_(spacecraft_, equipment),
       judge_(equipment) {
   league_.unbound = unbound_parameters(equipment);
+  league_.derived_sensors = sensors_of(reader_.request().derived);
 }
 
 void LeagueKeeper::forget(storage::TimeRange range) {

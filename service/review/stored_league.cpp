@@ -55,6 +55,7 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
   if (!rival) return std::nullopt;
   StoredRecord record;
   record.limits = limits_of(evidence_of(story.attempt), record.league.unbound);
+  record.league.derived_sensors = sensors_of(derived_inputs(story.model.inputs));
   std::vector<storage::VersionSummary> waiting = history.summaries(equipment);
   std::erase_if(waiting, [](const auto& one) { return one.status != "waiting"; });
   storage::HistoryFilter versions;

@@ -36,4 +36,7 @@ std::string_view nearest(std::string_view name, const std::vector<std::string>& 
 /// " (did you mean X?)", or nothing where no candidate is near.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 
+/// Returns the lines of a text, without their ends.
+std::vector<std::string> lines_of(const std::string& text);
+
 }  // namespace reident

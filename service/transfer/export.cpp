@@ -114,7 +114,7 @@ class Export {
 
   bool write_long();
 
-  void write_samples(const SeriesInfo& series, const SampleColumns& batch);
+  void write_samples(const SeriesInfo& series, const std::string& unit, const SampleColumns& batch);
 
   const std::string& name_of_source(std::int64_t id) {
     // Not known: its first sample came after the last look.
@@ -169,23 +169,24 @@ bool Export::write_long() {
   text_.end_line();
   SampleColumns batch;
   for (const SeriesInfo& series : series_) {
+    const auto descriptor = telemetry_.parameter(series.spacecraft, series.name);
+    std::string unit;
+    append_text(unit, descriptor ? descriptor->unit : "");
     const auto reader = telemetry_.batches(series, options_.range, chunks_at_once, {});
     while (reader->next(batch)) {
-      write_samples(series, batch);
+      write_samples(series, unit, batch);
       if (!go_on()) return false;
     }
   }
   return true;
 }
 
-void Export::write_samples(const SeriesInfo& series, const SampleColumns& batch) {
+void Export::write_samples(const SeriesInfo& series, const std::string& unit,
+                           const SampleColumns& batch) {
   std::string before;
   append_text(before, series.spacecraft);
   append_text(before += ',', series.name);
   before.append(",").append(storage::name(series.origin)).append(",");
-  const auto descriptor = telemetry_.parameter(series.spacecraft, series.name);
-  std::string unit;
-  append_text(unit, descriptor ? descriptor->unit : "");
   std::int64_t source = 0;
   std::string source_text;
   for (std::size_t i = 0; i < batch.size(); ++i) {

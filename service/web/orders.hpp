@@ -30,7 +30,7 @@ std::optional<Role> role_for(std::string_view action);
 /// A thread of its own for what may wait: orders over DDS, and passwords, which take a while.
 class OrderDesk {
  public:
-  /// `service`: instance name of the one that is asked; empty: whoever leads the pair. Throws
+  /// `service`: instance name of the one that is asked, or the name of a pair: its leader. Throws
   /// dds::Error.
   OrderDesk(const dds::Endpoint& endpoint, std::string service);
   /// What still waits gets no answer: the page sends it again.

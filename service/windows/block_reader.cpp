@@ -39,17 +39,6 @@ std::vector<double> mean_squared_difference(const Record& one, const Record& oth
   return list(squares / static_cast<double>(rows));
 }
 
-std::vector<std::string> biasable_in_derived_inputs(const EquipmentConfig& equipment) {
-  std::vector<std::string> derived;
-  for (const DerivedInput& input : equipment.derived) {
-    const InputExpressions of({input.name}, {input});
-    derived.insert(derived.end(), of.parameters().begin(), of.parameters().end());
-  }
-  std::vector<std::string> sensors = unbound_parameters(equipment);
-  std::erase_if(sensors, [&](const auto& name) { return !std::ranges::count(derived, name); });
-  return sensors;
-}
-
 }  // namespace
 
 std::vector<double> list(const identification::Vector& values) {
@@ -67,8 +56,8 @@ Duration checked_before_block(const EquipmentConfig& equipment) {
 
 BlockReader::BlockReader(const std::string& spacecraft, const EquipmentConfig& equipment)
     : length_(block_length(equipment)),
-      biasable_(biasable_in_derived_inputs(equipment)),
-      telemetry_(request_of(spacecraft, equipment), 1, checks_of(equipment)) {}
+      telemetry_(request_of(spacecraft, equipment), 1, checks_of(equipment)),
+      derived_sensors_(sensors_of(telemetry_.request().derived)) {}
 
 std::vector<double> BlockReader::baseline(const storage::Archive& archive,
                                           const BlockSamples& samples,
@@ -92,13 +81,12 @@ BlockSamples BlockReader::read(const storage::Archive& archive, storage::Time be
   try {
     const storage::TimeRange checked{begin - cycles_checked * blocks_of_cycle * length_,
                                      begin + length_};
-    loaded = telemetry_.load(archive, checked, biasable_);
+    const auto wanted = ticks_of({begin - length_, begin + length_}, period);
+    loaded = telemetry_.load(archive, checked, {derived_sensors_, wanted});
     auto* data = std::get_if<WindowData>(&loaded);
     if (!data) return samples;
-    const auto wanted = ticks_of({begin - length_, begin + length_}, period);
     samples.record = rows_at(data->record, wanted);
-    for (const Record& effect : data->bias_effects)
-      samples.bias_effects.push_back(rows_at(effect, wanted));
+    samples.bias_effects = std::move(data->bias_effects);
     samples.first_row = first_row_at(samples.record, ticks_of(samples.block.range, period).begin);
     const Index rows = samples.record.rows() - samples.first_row;
     if (rows <= 0) return samples;

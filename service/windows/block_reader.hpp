@@ -32,8 +32,8 @@ struct BlockSamples {
   storage::Block block;
   identification::Record record;
   identification::Index first_row = 0;  // of the block
-  /// WindowData::bias_effects of the sensors that no relation binds and that derived inputs are
-  /// computed from, at the record's rows. In other inputs biases act like constants in the outputs.
+  /// WindowData::bias_effects of the sensors that derived inputs are computed from (sensors_of()),
+  /// at the record's rows. In other inputs biases act like constants in the outputs.
   std::vector<identification::Record> bias_effects;
 };
 
@@ -58,8 +58,8 @@ class BlockReader {
                                storage::TimeRange range) const;
 
   Duration length_;
-  std::vector<std::string> biasable_;  // sensors of BlockSamples::bias_effects
   WindowCache telemetry_;
+  std::vector<std::string> derived_sensors_;
 };
 
 }  // namespace reident

@@ -21,15 +21,17 @@ namespace {
 
 /// WindowData::bias_effects of the sensor, for biases of a tenth of its values up and down. Where
 /// one of them gives no input that is finite, the other counts.
-Record bias_effect(const WindowRequest& request, const Record& samples, const std::string& sensor) {
+Record bias_effect(const WindowRequest& request, const Record& all, const std::string& sensor,
+                   TickRange ticks) {
   std::vector<std::string> inputs = request.inputs;
   inputs.push_back(sensor);
   InputExpressions expressions(inputs, request.derived);
   const auto& names = expressions.parameters();
   const auto place = std::ranges::find(names, sensor) - names.begin();
-  const double values = std::sqrt(samples.u.col(place).squaredNorm() /
-                                  static_cast<double>(std::max<Index>(1, samples.rows())));
+  const double values = std::sqrt(all.u.col(place).squaredNorm() /
+                                  static_cast<double>(std::max<Index>(1, all.rows())));
   const double bias = values > 0 ? values / 10 : 1;
+  const Record samples = rows_at(all, ticks);
   Record effect = expressions.evaluate(samples);
   const Index m = effect.u.cols() - 1;
   effect.y = effect.u.col(m);
@@ -69,9 +71,9 @@ void WindowCache::make_holes(const TickSet& holes, TickRange ticks) {
   holes_ = identification::united(std::move(all));
 }
 
-std::variant<WindowData, UnknownParameter> WindowCache::load(
-    const storage::Archive& archive, storage::TimeRange window,
-    const std::vector<std::string>& sensors) {
+std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Archive& archive,
+                                                             storage::TimeRange window,
+                                                             const WantedBiases& biases) {
   const CachingReader reader(archive);
   auto described = describe_window(reader, request_);
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
@@ -98,10 +100,10 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
   data.plausibility = checks_.look(reader, data, samples, ticks);
   make_holes(inside(data.plausibility.holes, ticks), ticks);
   InputExpressions expressions(request_.inputs, request_.derived);
-  Record read = expressions.evaluate(sensors.empty() ? std::move(samples) : samples);
-  for (const std::string& sensor : sensors)
+  Record read = expressions.evaluate(biases.sensors.empty() ? std::move(samples) : samples);
+  for (const std::string& sensor : biases.sensors)
     data.bias_effects.push_back(
-        without(bias_effect(request_, samples, sensor), data.plausibility.holes));
+        without(bias_effect(request_, samples, sensor, biases.ticks), data.plausibility.holes));
   data.read_coverage = coverage_of(read, window, request_.period);
   data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);

@@ -19,6 +19,12 @@
 
 namespace reident {
 
+/// Of which sensors of derived inputs, and at which ticks, WindowData::bias_effects is wanted.
+struct WantedBiases {
+  std::vector<std::string> sensors{};
+  identification::TickRange ticks{};
+};
+
 /// For one equipment and one thread at a time. An exception leaves it usable: what was not read is
 /// read at the next load.
 class WindowCache {
@@ -30,11 +36,10 @@ class WindowCache {
   const WindowRequest& request() const { return request_; }
 
   /// Returns load_window() without what the checks exclude. What lies before the window is
-  /// forgotten: windows that go forward are the cheap ones. `sensors` are parameters of derived
-  /// inputs of which WindowData::bias_effects is wanted. Throws storage::Error.
+  /// forgotten: windows that go forward are the cheap ones. Throws storage::Error.
   std::variant<WindowData, UnknownParameter> load(const storage::Archive& archive,
                                                   storage::TimeRange window,
-                                                  const std::vector<std::string>& sensors = {});
+                                                  const WantedBiases& biases = {});
 
   /// Forgets the ticks that samples in `range` serve, since samples were stored there after the
   /// window was loaded.

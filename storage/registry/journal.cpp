@@ -167,6 +167,15 @@ void Journal::begin_term(std::int64_t number, const std::string& service, Time n
   transaction.commit();
 }
 
+bool Journal::is_of(const std::string& service) const {
+  const std::vector<Term> all = terms();
+  return all.empty() || all.back().service == service;
+}
+
+void Journal::leave_pair(const std::string& service, Time now) {
+  if (!is_of(service)) begin_term(terms().back().number + 1, service, now);
+}
+
 JournalPart Journal::part(std::int64_t after, std::size_t bytes) const {
   Connection& db = connection(database_);
   const sqlite::ReadTransaction snapshot(db);
@@ -267,7 +276,7 @@ void Journal::overrule(std::int64_t end, Time now) {
 std::optional<Journal::Overruled> Journal::overruled_since(Time time) const {
   Overruled found;
   sqlite::Query row = connection(database_).query(
-      "SELECT count(*), coalesce(max(time), 0), "
+      "SELECT count(*), "
       "coalesce(sum(kind IN ('hold', 'command') OR kind = 'decision' AND "
       "             json_extract(row_json, '$.kind') IN ('approve', 'roll_back', 'withdraw')), 0), "
       "coalesce((SELECT service FROM overruled ORDER BY term DESC LIMIT 1), '') "
@@ -275,7 +284,7 @@ std::optional<Journal::Overruled> Journal::overruled_since(Time time) const {
       time);
   row.step();
   if (row.integer(0) == 0) return std::nullopt;
-  return Overruled{row.integer(2), row.text(3), row.integer(1)};
+  return Overruled{row.integer(1), row.text(2)};
 }
 
 }  // namespace reident::storage

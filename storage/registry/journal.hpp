@@ -30,8 +30,15 @@ class Journal {
   /// Whether the registry has rows and no term.
   bool is_of_no_pair() const;
 
-  /// Begins a term, whose number is above those of all others. Returns its number again.
+  /// Begins a term, whose number is above those of all others.
   void begin_term(std::int64_t number, const std::string& service, Time now);
+
+  /// Whether `service` may record in this registry without a pair: it has no term, or the last one
+  /// is its own.
+  bool is_of(const std::string& service) const;
+  /// Begins a term of the service, where the last one is another's: what is recorded from now on is
+  /// of no term that the other one of a former pair has.
+  void leave_pair(const std::string& service, Time now);
 
   /// Rows after a position: as many as `bytes` hold, and one at least where there is one.
   JournalPart part(std::int64_t after, std::size_t bytes) const;
@@ -55,7 +62,6 @@ class Journal {
   struct Overruled {
     std::int64_t decisions = 0;  // about champions, holds, and commands
     std::string service;         // whose, of the last one
-    Time time = 0;               // when the last row was overruled
   };
   /// What was overruled since a time; absent where nothing was.
   std::optional<Overruled> overruled_since(Time time) const;

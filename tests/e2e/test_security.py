@@ -81,7 +81,7 @@ class Secured(EndToEnd):
         return json.loads(out.splitlines()[-1])
 
 
-class Loop(Secured):
+class SecuredLoop(Secured):
     def test_telemetry_versions_and_decisions_pass_encrypted(self):
         self.configure_secured(self.site.grant("service", "reident-1"))
         ana = self.site.grant("operator", "ana")

@@ -74,7 +74,7 @@ int run(const Arguments& arguments) {
   const StopSignal stop;
   return refusing_what_cannot_be([&]() -> int {
     storage::Database database(config->database, storage::Database::Mode::read_write);
-    if (!storage::Registry(database).journal().terms().empty())
+    if (!config->pair.empty() || !storage::Registry(database).journal().is_of(config->service_name))
       return refuse(
           {fmt::format("{} is the database of a pair of services, whose leader alone "
                        "records attempts: it tries what it has telemetry of by itself",

@@ -117,6 +117,8 @@ std::vector<ConfigMistake> mistakes_of_security(const Config& config) {
 void print_summary(const Config& config) {
   fmt::print("service {} on domain {}, partition {}; database {}\n", config.service_name,
              config.domain, config.partition, config.database.string());
+  if (!config.pair.empty())
+    fmt::print("one of the pair {}, strength {}\n", config.pair, config.strength);
   if (config.cut > 0) print_cut(config);
   if (!config.security.empty()) fmt::print("secured by {}\n", config.security.string());
   Table table(
@@ -178,6 +180,8 @@ void print_summary_json(const Config& config) {
               {"service", config.service_name},
               {"domain", config.domain},
               {"partition", config.partition},
+              {"pair", config.pair.empty() ? ordered_json() : ordered_json(config.pair)},
+              {"strength", config.pair.empty() ? ordered_json() : ordered_json(config.strength)},
               {"network_cut", cut},
               {"security", config.security.string()},
               {"database", config.database.string()},

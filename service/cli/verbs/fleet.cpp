@@ -9,6 +9,7 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/config/fleet_table.hpp"
 #include "service/fleet/instances.hpp"
@@ -107,13 +108,7 @@ void print_json(const std::vector<Instance>& instances) {
   for (const Instance& one : instances) {
     const auto telemetry = oldest_telemetry(one);
     ordered_json alarms = ordered_json::array();
-    for (const storage::Alarm& alarm : one.alarms)
-      alarms.push_back({{"code", alarm.code},
-                        {"spacecraft", alarm.about.spacecraft},
-                        {"equipment", alarm.about.equipment},
-                        {"since", time_text(alarm.since)},
-                        {"seen_by", alarm.acknowledged_by},
-                        {"text", alarm.text}});
+    for (const storage::Alarm& alarm : one.alarms) alarms.push_back(alarm_json(alarm));
     list.push_back({{"instance", one.name},
                     {"act", one.needs_action()},
                     {"problem", one.problem},

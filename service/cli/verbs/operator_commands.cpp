@@ -110,14 +110,9 @@ std::function<int()> declare_rollback(CLI::App& command) {
 }
 
 int run_acknowledge(const Arguments& arguments) {
-  OperatorOrder order{"acknowledge " + arguments.alarm, "", "", 0};
-  if (!arguments.subject.empty()) {
-    const auto parsed = parse_subject(arguments.subject);
-    if (const auto* refusal = std::get_if<Refusal>(&parsed)) return refuse(*refusal);
-    order.spacecraft = std::get<Subject>(parsed).spacecraft;
-    order.equipment = std::get<Subject>(parsed).equipment;
-  }
-  return operate(arguments.options, order);
+  const std::string action = "acknowledge " + arguments.alarm;
+  return arguments.subject.empty() ? operate(arguments.options, {action, "", "", 0})
+                                   : run(arguments, action);
 }
 
 std::function<int()> declare_acknowledge(CLI::App& command) {

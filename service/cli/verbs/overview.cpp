@@ -15,6 +15,7 @@
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/service_choice.hpp"
+#include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/fleet/instances.hpp"
 #include "service/operations/commands.hpp"
@@ -35,7 +36,6 @@ constexpr std::size_t width_without_terminal = 80;
 constexpr std::size_t rows_of_screen = 20;  // of a fleet
 constexpr double default_interval_s = 2;
 constexpr double max_interval_s = 86'400;
-constexpr auto heartbeat_wait = std::chrono::milliseconds(1500);
 
 struct Arguments {
   HistoryAccessOptions access;
@@ -52,24 +52,17 @@ struct Overview {
   Time now = 0;
   std::size_t rows_shown = SIZE_MAX;  // in the table
   std::vector<ServiceStatus> pair;    // its services that are heard; empty without a pair
+  std::string pair_problem;           // why they cannot be heard
 };
-
-/// The equipment of the configuration that no window was tried of are rows too.
-void add_untried(const Config& config, std::vector<OverviewRow>& rows) {
-  for (const EquipmentName& name : equipment_of(config))
-    if (std::none_of(rows.begin(), rows.end(),
-                     [&](const OverviewRow& row) { return row.name == name; }))
-      rows.emplace_back().name = name;
-}
 
 Alarm no_service(std::string text, Time now) {
   return {"no_service", {}, std::move(text), now};
 }
 
-/// Of all instances of a folder.
+/// The overview of all instances of a folder.
 Overview read_fleet(const std::string& folder) {
   WorkerPool workers(usable_cores());
-  Overview overview{{}, {}, utc_now(), rows_of_screen, {}};
+  Overview overview{{}, {}, utc_now(), rows_of_screen, {}, {}};
   for (fleet::Instance& one : fleet::read_instances(folder, workers)) {
     std::ranges::move(one.rows, std::back_inserter(overview.rows));
     std::ranges::move(one.alarms, std::back_inserter(overview.alarms));
@@ -83,10 +76,37 @@ Overview read_fleet(const std::string& folder) {
   return overview;
 }
 
+/// The services of the pair, and the alarms of those that do not lead: the database has none of
+/// them.
+void hear_pair(const Config& config, Overview& overview) {
+  try {
+    auto heard = heard_services(endpoint_of(config), heartbeat_wait);
+    if (const auto* refusal = std::get_if<Refusal>(&heard)) {
+      overview.pair_problem = refusal->message;
+      return;
+    }
+    overview.pair = std::get<std::vector<ServiceStatus>>(std::move(heard));
+  } catch (const dds::Error& error) {
+    overview.pair_problem = error.what();
+    return;
+  }
+  std::erase_if(overview.pair,
+                [&](const ServiceStatus& service) { return service.pair != config.pair; });
+  for (const ServiceStatus& service : overview.pair)
+    if (service.role != "leads")
+      for (const std::string& line : lines_of(service.alarms)) {
+        const std::string code = line.substr(0, line.find_first_of(" :"));
+        if (std::ranges::find(overview.alarms, code, &Alarm::code) == overview.alarms.end())
+          overview.alarms.push_back({code, {}, service.service + ": " + line, service.time});
+      }
+}
+
 Overview read(const Readers& readers, const std::optional<Config>& config) {
-  Overview overview{readers.history.overview(), readers.history.alarms(), utc_now(), SIZE_MAX, {}};
+  Overview overview{
+      readers.history.overview(), readers.history.alarms(), utc_now(), SIZE_MAX, {}, {}};
   if (config) {
-    add_untried(*config, overview.rows);
+    for (const EquipmentName& name : equipment_of(*config))
+      history::add_untried(name, overview.rows);
     if (!storage::Database::has_writer(config->database))
       overview.alarms.insert(
           overview.alarms.begin(),
@@ -94,13 +114,7 @@ Overview read(const Readers& readers, const std::optional<Config>& config) {
                          ": what is below is as the last one left it. Start reidentd.",
                      overview.now));
   }
-  if (config && !config->pair.empty()) {
-    auto heard = heard_services(endpoint_of(*config), heartbeat_wait);
-    if (auto* services = std::get_if<std::vector<ServiceStatus>>(&heard))
-      overview.pair = std::move(*services);
-    std::erase_if(overview.pair,
-                  [&](const ServiceStatus& service) { return service.pair != config->pair; });
-  }
+  if (config && !config->pair.empty()) hear_pair(*config, overview);
   history::put_worst_first(overview.rows, overview.alarms);
   return overview;
 }
@@ -197,6 +211,8 @@ void print_text(const Overview& overview) {
     fmt::print("\nservice {} {} in term {}{}", service.service, service.role, service.term,
                service.lag < 0 ? "" : fmt::format(", {} rows behind", service.lag));
   if (!overview.pair.empty()) fmt::print("\n");
+  if (!overview.pair_problem.empty())
+    fmt::print("\nthe pair cannot be heard: {}\n", overview.pair_problem);
 }
 
 ordered_json optional_json(const std::optional<double>& number) {
@@ -240,13 +256,7 @@ ordered_json row_json(const OverviewRow& row, const Overview& overview) {
 void print_json(const Overview& overview) {
   ordered_json rows = ordered_json::array(), alarms = ordered_json::array();
   for (const OverviewRow& row : overview.rows) rows.push_back(row_json(row, overview));
-  for (const Alarm& alarm : overview.alarms)
-    alarms.push_back({{"code", alarm.code},
-                      {"spacecraft", alarm.about.spacecraft},
-                      {"equipment", alarm.about.equipment},
-                      {"since", time_text(alarm.since)},
-                      {"seen_by", alarm.acknowledged_by},
-                      {"text", alarm.text}});
+  for (const Alarm& alarm : overview.alarms) alarms.push_back(alarm_json(alarm));
   ordered_json pair = ordered_json::array();
   for (const ServiceStatus& service : overview.pair)
     pair.push_back({{"service", service.service},
@@ -258,6 +268,7 @@ void print_json(const Overview& overview) {
                          {"equipment", std::move(rows)},
                          {"alarms", std::move(alarms)}};
   if (!overview.pair.empty()) object["pair"] = std::move(pair);
+  if (!overview.pair_problem.empty()) object["pair_problem"] = overview.pair_problem;
   fmt::print("{}\n", object.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 

@@ -138,8 +138,7 @@ std::variant<std::string, Refusal> picture_of_record(const history::HistoryReade
   return record_picture(data);
 }
 
-int write_picture(const std::string& picture, const std::string& path, bool replace) {
-  if (const auto refusal = exists_already(path, replace)) return refuse(*refusal);
+int write_picture(const std::string& picture, const std::string& path) {
   if (path == "-") {
     fmt::print("{}", picture);
     return exit_done;
@@ -159,13 +158,13 @@ int write_picture(const std::string& picture, const std::string& path, bool repl
 int run(const Arguments& arguments) {
   return with_version(
       arguments.access, arguments.subject, [&](const Readers& readers, const StoredVersion& story) {
+        const std::string path = arguments.output.value_or(
+            fmt::format("{}-v{}.svg", story.version.equipment, story.version.number));
+        if (const auto refusal = exists_already(path, arguments.replace)) return refuse(*refusal);
         const auto picture = arguments.record ? picture_of_record(readers.history, story)
                                               : picture_of(readers, story, arguments);
         if (const auto* refusal = std::get_if<Refusal>(&picture)) return refuse(*refusal);
-        return write_picture(std::get<std::string>(picture),
-                             arguments.output.value_or(fmt::format(
-                                 "{}-v{}.svg", story.version.equipment, story.version.number)),
-                             arguments.replace);
+        return write_picture(std::get<std::string>(picture), path);
       });
 }
 
@@ -181,6 +180,8 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--with", arguments->with, "number of another version, drawn too")
       ->check(above_zero());
   add_range_options(command, arguments->range, "the window of the version");
+  for (const char* option : {"--with", "--begin", "--end"})
+    command.get_option(option)->excludes("--record");
   add_access_options(command, arguments->access);
   command.footer("Example:\n  reident plot CBERS-4/BDR@3 -o bdr3.svg --config reident.toml");
   return [arguments] { return run(*arguments); };

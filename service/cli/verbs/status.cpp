@@ -86,13 +86,6 @@ std::int64_t days_left(const ServiceStatus& status) {
   return floor_divide(status.certificate_end - status.time, day);
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
 nlohmann::ordered_json json_of(const ServiceStatus& status) {
   nlohmann::ordered_json object = {{"service", status.service},
                                    {"program_version", status.program_version},

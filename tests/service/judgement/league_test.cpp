@@ -201,6 +201,7 @@ Records sensor_of_a_derived_input(double explained, double moved) {
          })
       .challenger(varying(0.01), 100)
       .unbound();
+  records.league().derived_sensors = {"y"};
   int block = 0;
   for (BlockScore& score : records.league().champion->scores) {
     const double mean = 5 + 0.1 * std::sin(block);
@@ -218,6 +219,16 @@ TEST(League, VersionThatIsBetterByASensorsEffectAloneWaits) {
 
 TEST(League, VersionIsNoBiasOfASensorThatReadsAsBefore) {
   EXPECT_EQ(sensor_of_a_derived_input(0.25, 0).obstacle(), std::nullopt);
+}
+
+TEST(League, VersionIsNoBiasOfASensorThatARelationBinds) {
+  Records records = sensor_of_a_derived_input(0.25, 1);
+  records.league().derived_sensors = {"bound", "y"};
+  for (BlockScore& score : records.league().champion->scores)
+    score.bias_effects.insert(score.bias_effects.end(), {30, 0, 0});
+  EXPECT_EQ(records.obstacle(), std::nullopt) << "the first sensor is bound, and its effect is it";
+  records.league().derived_sensors = {"y", "bound"};
+  EXPECT_EQ(records.obstacle(), Code::bias_unverified);
 }
 
 TEST(League, VersionThatIsBetterWithoutTheConstantTooIsNoBias) {

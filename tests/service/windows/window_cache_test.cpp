@@ -102,7 +102,9 @@ TEST_F(WindowCaches, SayWhatABiasOfASensorDoesToDerivedInputs) {
   equipment.derived = {{"q", "u * v", "V"}};
   kept = window_cache_of("SAT", equipment);
   archive.append(telemetry(day, 1000));
-  const auto result = kept.load(archive, {day, day + 1000 * second}, {"u", "v"});
+  const storage::TimeRange window{day, day + 1000 * second};
+  const auto result =
+      kept.load(archive, window, {{"u", "v"}, ticks_of(window, kept.request().period)});
   const WindowData& data = std::get<WindowData>(result);
   ASSERT_EQ(data.bias_effects.size(), 2U);
   for (const identification::Record& effect : data.bias_effects)
@@ -123,7 +125,8 @@ TEST_F(WindowCaches, SayWhatABiasDoesAtTheEndOfWhatAnInputIsDefinedFor) {
   equipment.derived = {{"q", "(u + 1) ^ 0.5", "V"}};
   kept = window_cache_of("SAT", equipment);
   archive.append(telemetry(day, 1000));  // u is -1, 0 and 1 in turn
-  const auto result = kept.load(archive, {day, day + 1000 * second}, {"u"});
+  const storage::TimeRange window{day, day + 1000 * second};
+  const auto result = kept.load(archive, window, {{"u"}, ticks_of(window, kept.request().period)});
   const WindowData& data = std::get<WindowData>(result);
   const double bias = 0.1 * std::sqrt(2.0 / 3);
   for (identification::Index row = 0; row < data.record.rows(); ++row) {

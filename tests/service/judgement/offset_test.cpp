@@ -1,0 +1,77 @@
+#include "service/judgement/offset.hpp"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+namespace reident::offset_test {
+namespace {
+
+using storage::BlockScore;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+
+/// A block with one output: mean and mean square of the error, the sensor's mean, the square of its
+/// effect and the product of effect and error.
+BlockScore score(double mean, double square, std::vector<double> effect) {
+  BlockScore found;
+  found.rows = 100;
+  found.mean = {mean};
+  found.square = {square};
+  found.bias_effects = std::move(effect);
+  return found;
+}
+
+/// A sensor whose mean is `mean` and its phase, in so many cycles, 1 more in each second one.
+SensorPast past(double mean, std::size_t cycles) {
+  std::vector<BlockScore> blocks;
+  std::vector<std::size_t> phases;
+  for (std::size_t i = 0; i < cycles * blocks_of_cycle; ++i) {
+    phases.push_back(i % blocks_of_cycle);
+    const double more = i / blocks_of_cycle % 2 == 0 ? 0 : 1;
+    blocks.push_back(score(0, 1, {mean + double(phases.back()) + more, 1, 0}));
+  }
+  std::vector<const BlockScore*> scores;
+  for (const BlockScore& block : blocks) scores.push_back(&block);
+  return {1, phases, scores};
+}
+
+TEST(Offset, TheSpreadOfASensorIsThatOfItsCycles) {
+  EXPECT_NEAR(past(5, 100).spread(), 0.5, 0.01);
+  EXPECT_NEAR(past(5, 100).departure(2, score(0, 1, {9, 1, 0})), 9 - 7.5, 1e-9);
+  EXPECT_TRUE(std::isinf(past(5, 7).spread())) << "less than eight cycles say nothing";
+}
+
+TEST(Offset, AConstantExplainsTheMean) {
+  const SensorPast nothing;
+  OffsetFit fit(0, nothing);
+  fit.add(0, score(2, 5, {}));
+  fit.add(1, score(4, 17, {}));
+  EXPECT_THAT(fit.rest(score(2, 5, {})), ElementsAre(DoubleNear(2, 1e-9)));
+}
+
+TEST(Offset, ASensorsEffectExplainsWhatItsPastAllows) {
+  // The error is -2 times the effect: an offset of 2 makes it.
+  for (const auto& [moved, rest] : {std::pair(2.0, 0.0), std::pair(0.0, 0.25)}) {
+    const SensorPast known = past(5, 100);
+    OffsetFit fit(1, known);
+    const BlockScore block = score(0, 4, {5.5 + moved, 1, -2});
+    fit.add(0, block);
+    EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(rest, 0.03))) << moved;
+  }
+}
+
+TEST(Offset, ABlockWithoutTheEffectSaysNothing) {
+  const SensorPast known = past(5, 100);
+  const BlockScore block = score(0, 4, {7.5, 1, -2});
+  OffsetFit fit(1, known);
+  fit.add(0, block);
+  fit.add(1, score(0, 4, {}));
+  EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(0, 0.03)));
+  EXPECT_FALSE(has_effect(score(0, 4, {}), 1));
+  EXPECT_TRUE(has_effect(block, 1));
+  EXPECT_FALSE(has_effect(block, 2));
+}
+
+}  // namespace
+}  // namespace reident::offset_test
