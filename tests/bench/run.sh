@@ -11,6 +11,12 @@
 #                                         published figures.
 #                                         The last line is one JSON object. Without SLICOT or
 #                                         Octave it says what it leaves out
+#   tests/bench/run.sh field FOLDER       free-run error on benchmark data of the identification
+#                                         literature, compared with published figures: those of
+#                                         dataBenchmark.csv (cascaded tanks), SNLS80mV.csv
+#                                         (Silverbox), WienerHammerBenchmark.csv, f-16.txt and
+#                                         cylinders.csv that FOLDER holds, as they are published.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh paper [DATA_FOLDER] [--pictures FOLDER]
 #                                         the paper's table: errors of the simulator's own model,
 #                                         the identified one, with pole placement and with integral
@@ -91,6 +97,12 @@ case $what in
     [ $# -eq 0 ] || [ -d "$1" ] || { echo "$1 is no folder of data sets" >&2; exit 2; }
     arguments=(build/release "$@")
     deploy/install_packages.sh --with-bench || echo "going on without the tools that are missing"
+    ;;
+  field)
+    [ $# -eq 1 ] || usage
+    [ -d "$1" ] || { echo "$1 is no folder of benchmark data" >&2; exit 2; }
+    arguments=(build/release "$@")
+    targets=(reident reident_identification_bench)
     ;;
   paper)
     [ $# -eq 0 ] || [[ $1 == --* ]] || [ -d "$1" ] ||

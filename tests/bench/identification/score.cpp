@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -9,6 +11,8 @@
 #include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
+#include "identification/simulation/free_run.hpp"
+#include "identification/simulation/initial_state.hpp"
 #include "identification/simulation/scores.hpp"
 #include "service/model/model_json.hpp"
 #include "tests/bench/identification/modes.hpp"
@@ -61,17 +65,32 @@ StateSpaceModel read_model(const std::filesystem::path& file, const Record& reco
   return model;
 }
 
-void run(const std::filesystem::path& file, const std::filesystem::path& model_file,
-         const std::pair<Index, Index>& rows) {
-  const Record record = read_record(file);
+struct ScoreArguments {
+  std::filesystem::path file, model;
+  std::pair<Index, Index> rows{0, 0};
+  Index state_rows = 0;  // 0: as free_run() does
+};
+
+void score_model(const ScoreArguments& arguments) {
+  const Record record = read_record(arguments.file);
+  const auto& rows = arguments.rows;
   const RowRange scored{rows.first, rows.second > 0 ? rows.second : record.rows()};
   if (scored.begin < 0 || scored.begin >= scored.end || scored.end > record.rows())
     throw std::runtime_error("--rows must lie within the " + std::to_string(record.rows()) +
                              " rows of the file");
-  const StateSpaceModel model = read_model(model_file, record);
-  const identification::Score result = score_free_run(model, record, record.all(), scored);
+  const StateSpaceModel model = read_model(arguments.model, record);
+  std::optional<Vector> x0;
+  if (arguments.state_rows > 0)
+    x0 = estimate_initial_state(model, record, segments_within(record, record.all()),
+                                arguments.state_rows);
+  const Matrix y = record.y.middleRows(scored.begin, scored.size());
+  const Matrix y_hat =
+      free_run(model, record, record.all(), x0).middleRows(scored.begin, scored.size());
+  const identification::Score result = identification::score(y, y_hat);
+  const Vector rmse = ((y - y_hat).colwise().norm() / std::sqrt(double(y.rows()))).transpose();
   const nlohmann::ordered_json text = {{"mrse_percent", result.mrse()},
                                        {"fit_percent", result.fit()},
+                                       {"rmse", std::vector<double>(rmse.begin(), rmse.end())},
                                        {"pole_moduli", pole_moduli(model.A)}};
   std::printf("%s\n", text.dump().c_str());
 }
@@ -94,19 +113,18 @@ identification::Record read_record(const std::filesystem::path& file) {
 }
 
 void add_score(CLI::App& app) {
-  struct Arguments {
-    std::filesystem::path file, model;
-    std::pair<Index, Index> rows{0, 0};
-  };
-  const auto given = std::make_shared<Arguments>();
+  const auto given = std::make_shared<ScoreArguments>();
   CLI::App* mode = app.add_subcommand(
       "score",
       "Free-run error of a model on all rows of the file, or on some of them; the initial state is "
-      "estimated from the first rows, three times the order");
+      "estimated from the first rows");
   mode->add_option("file", given->file, "file of samples")->required();
   mode->add_option("model", given->model, "JSON with A, B, C, D and the offsets")->required();
   mode->add_option("--rows", given->rows, "rows BEGIN END to score, half-open");
-  mode->callback([given] { run(given->file, given->model, given->rows); });
+  mode->add_option("--state-rows", given->state_rows,
+                   "rows that the initial state is estimated from (500)")
+      ->check(CLI::PositiveNumber);
+  mode->callback([given] { score_model(*given); });
 }
 
 }  // namespace reident::bench

@@ -56,12 +56,14 @@ class Tools:
     def slicot_identify(self, *arguments):
         return json.loads(run([self.slicot, *arguments]))
 
-    def score(self, samples, model, folder, rows=None):
-        """Free-run error of any tool's model, and its poles."""
+    def score(self, samples, model, folder, rows=None, state_rows=None):
+        """Free-run error of any tool's model, and its poles. With `state_rows` the initial state
+        comes from the first so many rows alone."""
         file = folder / "model.json"
         file.write_text(json.dumps(model))
         return json.loads(run([self.bench, "score", samples, file,
-                               *(["--rows", *rows] if rows else [])]))
+                               *(["--rows", *rows] if rows else []),
+                               *(["--state-rows", state_rows] if state_rows else [])]))
 
     def octave_identify(self, script, csv_file, inputs, order, horizon):
         text = run([self.octave, "--quiet", "--no-init-file", script, csv_file, inputs, order,
