@@ -90,12 +90,9 @@ std::vector<TrueChange> true_changes(const std::vector<satcs::reference::LifeEve
   for (const auto& event : life) {
     const std::string kind(name(event.kind));
     if (event.kind == LifeKind::safe_mode || event.kind == LifeKind::quiet) continue;
-    if (event.kind == LifeKind::redundant_charger || event.kind == LifeKind::redundant_heater) {
-      add({kind, event.begin, event.begin});
-      if (event.end > event.begin) add({kind, event.end, event.end});
-    } else {
-      add({kind, event.begin, event.end});
-    }
+    const bool is_mode = event.end > event.begin && progress(event, event.begin) == 1;
+    add({kind, event.begin, is_mode ? event.begin : event.end});
+    if (is_mode) add({kind, event.end, event.end});
   }
   std::sort(changes.begin(), changes.end(),
             [](const TrueChange& a, const TrueChange& b) { return a.begin < b.begin; });

@@ -236,8 +236,9 @@ TEST(TrueChanges, AreWhatStays) {
                                      {failed_cell, 7, 7, 1, 1},
                                      {capacity_fade, 3, 6, 0.1, 0},
                                      {efficiency_drift, 3, 8, 0.1, 0},
-                                     {redundant_charger, 20, 30, 1, 1}});
-  ASSERT_EQ(changes.size(), 4U);
+                                     {redundant_charger, 20, 30, 1, 1},
+                                     {redundant_amplifier, 40, 50, 1, 0}});
+  ASSERT_EQ(changes.size(), 6U);
   EXPECT_EQ(changes[0].kind, "capacity_fade+efficiency_drift");
   EXPECT_EQ(changes[0].end, 8);
   EXPECT_FALSE(changes[0].is_step());
@@ -245,6 +246,9 @@ TEST(TrueChanges, AreWhatStays) {
   EXPECT_TRUE(changes[1].is_step());
   EXPECT_EQ(changes[2].begin, 20);
   EXPECT_EQ(changes[3].begin, 30);
+  EXPECT_EQ(changes[4].begin, 40);
+  EXPECT_TRUE(changes[4].is_step()) << "a mode of the other family too";
+  EXPECT_EQ(changes[5].begin, 50);
 }
 
 }  // namespace
