@@ -14,7 +14,7 @@
 namespace reident::storage {
 
 struct ShardFile {
-  std::string name;  // the year and a digest of what is in it: no other content has this name
+  std::string name{};  // the year and a digest of what is in it: no other content has this name
   std::int64_t year = 0;
   Time first = 0, last = 0;
   std::uint64_t chunks = 0, samples = 0;
