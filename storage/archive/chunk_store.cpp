@@ -16,8 +16,8 @@ std::optional<double> finite_bound(const ChunkSummary& summary, double bound) {
 std::optional<ChunkRow> ChunkStore::one(std::string_view condition, std::int64_t series,
                                         Time time) {
   sqlite::Query row = connection_.query(
-      "SELECT first_time, last_time, samples, step, gap_limit, data FROM chunk WHERE series = ? "
-      "AND first_time " +
+      "SELECT first_time, last_time, samples, step, gap_limit, shard, data FROM chunk "
+      "WHERE series = ? AND first_time " +
           std::string(condition) + " LIMIT 1",
       series, time);
   if (!row.step()) return std::nullopt;
@@ -26,7 +26,7 @@ std::optional<ChunkRow> ChunkStore::one(std::string_view condition, std::int64_t
                   .last = row.integer(1),
                   .samples = row.integer<std::size_t>(2),
                   .sampling = {row.integer(3), row.integer(4)},
-                  .data = row.integer(5)};
+                  .place = {row.integer(5), row.integer(6)}};
 }
 
 std::optional<ChunkRow> ChunkStore::at_or_before(std::int64_t series, Time time) {
@@ -43,7 +43,7 @@ std::optional<ChunkRow> ChunkStore::after(std::int64_t series, Time time) {
 
 // Chunks do not overlap: a time between the first and the last of one is in no other.
 bool ChunkStore::has_decoded(std::int64_t series, Time time) const {
-  return looked_into_ != 0 && decoded_series_ == series && decoded_.time.front() <= time &&
+  return looked_into_ && decoded_series_ == series && decoded_.time.front() <= time &&
          time <= decoded_.time.back();
 }
 
@@ -51,11 +51,11 @@ std::optional<Held> ChunkStore::find(std::int64_t series, Time time) {
   if (!has_decoded(series, time)) {
     const std::optional<ChunkRow> row = at_or_before(series, time);
     if (!row || row->last < time) return std::nullopt;
-    looked_into_ = 0;
+    looked_into_.reset();
     decoded_ = {};
     take(*row, decoded_);
     if (decoded_.empty()) return std::nullopt;
-    looked_into_ = row->data;
+    looked_into_ = row->place;
     decoded_series_ = series;
   }
   const auto found = std::lower_bound(decoded_.time.begin(), decoded_.time.end(), time);
@@ -65,9 +65,7 @@ std::optional<Held> ChunkStore::find(std::int64_t series, Time time) {
 }
 
 void ChunkStore::take(const ChunkRow& row, SampleColumns& samples) {
-  sqlite::Query query = connection_.query("SELECT bytes FROM chunk_data WHERE id = ?", row.data);
-  const std::span<const std::uint8_t> bytes =
-      query.step() ? query.bytes(0) : std::span<const std::uint8_t>();
+  const std::span<const std::uint8_t> bytes = bytes_.read(row.place);
   const std::size_t before = samples.size();
   std::optional<ChunkError> error = decoder_.decode(bytes, samples.target());
   if (!error && (samples.size() - before != row.samples || samples.time[before] != row.first ||
@@ -80,10 +78,25 @@ void ChunkStore::take(const ChunkRow& row, SampleColumns& samples) {
 }
 
 void ChunkStore::remove(const ChunkRow& row) {
-  if (looked_into_ == row.data) looked_into_ = 0;
   connection_.query("DELETE FROM chunk WHERE series = ? AND first_time = ?")
       .run(row.series, row.first);
-  connection_.query("DELETE FROM chunk_data WHERE id = ?").run(row.data);
+  remove_bytes(row.place);
+}
+
+// Shards never change: what nobody refers to any more goes with the last chunk of its shard.
+void ChunkStore::remove_bytes(ChunkPlace place) {
+  if (looked_into_ == place) looked_into_.reset();
+  if (place.shard == 0)
+    connection_.query("DELETE FROM chunk_data WHERE id = ?").run(place.data);
+  else
+    connection_.query("UPDATE shard SET chunks = chunks - 1 WHERE id = ?").run(place.shard);
+}
+
+void ChunkStore::move(const ChunkRow& row, ChunkPlace to) {
+  connection_.query("UPDATE chunk SET shard = ?, data = ? WHERE series = ? AND first_time = ?")
+      .run(to.shard, to.data, row.series, row.first);
+  connection_.query("UPDATE shard SET chunks = chunks + 1 WHERE id = ?").run(to.shard);
+  remove_bytes(row.place);
 }
 
 Sampling ChunkStore::insert(std::int64_t series, const SampleColumns& samples, std::size_t begin,

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "storage/archive/chunk_bytes.hpp"
 #include "storage/chunks/chunk.hpp"
 #include "storage/chunks/sample_gaps.hpp"
 #include "storage/database/sqlite.hpp"
@@ -22,12 +23,13 @@ struct ChunkRow {
   Time last = 0;
   std::size_t samples = 0;
   Sampling sampling;
-  std::int64_t data = 0;
+  ChunkPlace place;
 };
 
 class ChunkStore {
  public:
-  explicit ChunkStore(sqlite::Connection& connection) : connection_(connection) {}
+  explicit ChunkStore(sqlite::Connection& connection)
+      : connection_(connection), bytes_(connection) {}
 
   /// The chunk with the greatest first time not above, or below, `time`.
   std::optional<ChunkRow> at_or_before(std::int64_t series, Time time);
@@ -48,6 +50,9 @@ class ChunkStore {
   void replace(std::int64_t series, std::span<const ChunkRow> old, const SampleColumns& samples,
                std::span<const std::size_t> piece_ends);
 
+  /// Says that the bytes of a chunk, which are the same, are in a shard now.
+  void move(const ChunkRow& row, ChunkPlace to);
+
   /// Removes a chunk with its samples. Where it was there is a gap, if its neighbours say so.
   void discard(const ChunkRow& row);
 
@@ -56,13 +61,15 @@ class ChunkStore {
   Sampling insert(std::int64_t series, const SampleColumns& samples, std::size_t begin,
                   std::size_t end);
   void remove(const ChunkRow& row);
+  void remove_bytes(ChunkPlace place);
   bool has_decoded(std::int64_t series, Time time) const;
 
   sqlite::Connection& connection_;
+  ChunkBytes bytes_;
   ChunkEncoder encoder_;
   ChunkDecoder decoder_;
   SamplingMeter meter_;
-  std::int64_t looked_into_ = 0;  // id of the data that `decoded_` holds
+  std::optional<ChunkPlace> looked_into_;  // of the chunk that `decoded_` holds
   std::int64_t decoded_series_ = 0;
   SampleColumns decoded_;
 };

@@ -20,8 +20,7 @@ constexpr std::int64_t most_batches = 1 << 24;
 
 // Chunks do not overlap: the one that `begin` may lie in is the last that starts no later.
 constexpr std::string_view chunks_in_range =
-    "SELECT first_time, last_time, samples, bytes FROM chunk "
-    "JOIN chunk_data ON chunk_data.id = chunk.data "
+    "SELECT first_time, last_time, samples, shard, data FROM chunk "
     "WHERE series = ?1 AND first_time <= ?3 AND last_time >= ?2 AND first_time >= "
     "coalesce((SELECT max(first_time) FROM chunk WHERE series = ?1 AND first_time <= ?2), ?2) "
     "ORDER BY first_time";
@@ -89,7 +88,8 @@ SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedCol
     while (row.step()) {
       const SampleRange chunk = range_of(series, row);
       if (samples.empty()) samples.reserve(samples_expected(chunk, range.begin, last), wanted);
-      if (const auto error = decoder_.decode(row.bytes(3), range, samples.target(wanted)))
+      const auto bytes = bytes_.read({row.integer(3), row.integer(4)});
+      if (const auto error = decoder_.decode(bytes, range, samples.target(wanted)))
         throw damage(connection_, chunk, *error);
     }
   }

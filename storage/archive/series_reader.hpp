@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "storage/archive/chunk_bytes.hpp"
 #include "storage/database/sqlite.hpp"
 #include "storage/types/sample_columns.hpp"
 
@@ -12,7 +13,8 @@ namespace reident::storage {
 /// Every call sees one snapshot. Throws Error (corrupt) where samples cannot be decoded.
 class SeriesReader {
  public:
-  explicit SeriesReader(sqlite::Connection& connection) : connection_(connection) {}
+  explicit SeriesReader(sqlite::Connection& connection)
+      : connection_(connection), bytes_(connection) {}
 
   std::optional<std::int64_t> find(std::string_view spacecraft, Origin origin,
                                    std::uint32_t parameter);
@@ -30,6 +32,7 @@ class SeriesReader {
   void each_recent(std::int64_t series, Time first, Time last, const Use& use);
 
   sqlite::Connection& connection_;
+  ChunkBytes bytes_;
   ChunkDecoder decoder_;
 };
 

@@ -3,9 +3,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <vector>
 
-#include <sys/stat.h>
-
+#include "storage/archive/chunk_bytes.hpp"
 #include "storage/database/connection.hpp"
 #include "storage/database/partial_file.hpp"
 #include "storage/database/writer_lock.hpp"
@@ -64,11 +65,6 @@ void refuse_target(const fs::path& source, const fs::path& copy, bool replace) {
   refuse_foreign_log(copy);
 }
 
-mode_t permissions_of(const fs::path& file) {
-  struct stat status {};
-  return ::stat(file.c_str(), &status) == 0 ? (status.st_mode & 0777U) | 0600U : 0600U;
-}
-
 std::string schema_text(Connection& connection) {
   std::string text;
   sqlite::Query row =
@@ -107,6 +103,37 @@ bool copy_pages(Connection& source, Connection& target, std::uint32_t pages_of_s
   }
   const int code = sqlite3_backup_finish(backup.release());
   if (code != SQLITE_OK) sqlite::fail(target.handle(), code);
+  return true;
+}
+
+/// Shards of the copy in its own folder. One that is there is of that content by its name. False
+/// when it was stopped; what was copied by then is of use to the next backup.
+bool copy_shards(Connection& source, const fs::path& copy, BackupReport& report,
+                 const std::function<bool()>& go_on) {
+  std::vector<std::pair<std::int64_t, std::string>> shards;
+  {
+    sqlite::Query row = source.query("SELECT id, file FROM shard WHERE chunks > 0 AND id <> 0");
+    while (row.step()) shards.emplace_back(row.integer(0), row.text(1));
+  }
+  ChunkBytes bytes(source);
+  for (const auto& [id, file] : shards) {
+    if (!go_on()) return false;
+    bytes.shard(id);  // throws where it is not the one
+    const fs::path from = shard_path(source.path(), file), to = shard_path(copy, file);
+    ++report.shards;
+    std::error_code error;
+    if (fs::file_size(to, error) == fs::file_size(from) && !error) continue;
+    make_folder_of(to, copy.parent_path());
+    PartialFile partial(to, permissions_of(from));
+    fs::copy_file(from, partial.path(), fs::copy_options::overwrite_existing, error);
+    if (error)
+      throw Error(
+          error == std::errc::no_space_on_device ? Error::Kind::full : Error::Kind::cannot_open,
+          "shard " + from.string() + " cannot be copied to " + to.string() + " (" +
+              error.message() + "): check the disk, its room and the permissions");
+    partial.publish(true);
+    report.shard_bytes += fs::file_size(to);
+  }
   return true;
 }
 
@@ -174,6 +201,8 @@ std::optional<BackupReport> back_up(Database& source, const fs::path& named,
     if (!copy_pages(from, target, options.pages_of_step, go_on)) return std::nullopt;
   }
   BackupReport report = checked(source.path(), copy, partial.path(), schema, pages);
+  const auto still = [&] { return go_on({report.bytes, report.bytes}); };
+  if (!copy_shards(from, copy, report, still)) return std::nullopt;
   partial.publish(options.replace);
   return report;
 }

@@ -7,6 +7,9 @@
 // It is written to "<copy>.partial", forced to the disk, looked at, and then takes its name in one
 // step: a file of that name is always whole. What a killed backup leaves is "<copy>.partial", which
 // the next one replaces.
+//
+// Shards of the source are copied into "<copy>.shards" before that. They never change, so that one
+// which is there already is not copied again.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +37,9 @@ struct BackupProgress {
 /// What the copy holds.
 struct BackupReport {
   std::filesystem::path copy{};
-  std::uint64_t bytes = 0;
+  std::uint64_t bytes = 0;        // of the copy itself
+  std::uint64_t shards = 0;       // that it refers to, in "<copy>.shards"
+  std::uint64_t shard_bytes = 0;  // of those that were not there yet
   std::uint64_t samples = 0;
   std::uint64_t versions = 0;
   std::optional<Time> newest{};  // generation time of the newest sample

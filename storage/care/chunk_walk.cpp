@@ -84,9 +84,11 @@ void ChunkWalk::find_next(Place& place) {
   while (place.from) {
     {
       sqlite::Query row = connection_.query(
-          "SELECT first_time, last_time, samples, step, gap_limit, data, "
-          "coalesce(length(bytes), 0) FROM chunk LEFT JOIN chunk_data ON id = data "
-          "WHERE series = ? AND first_time >= ? ORDER BY first_time LIMIT 1",
+          "SELECT chunk.first_time, chunk.last_time, samples, step, gap_limit, chunk.shard, data, "
+          "coalesce(length(chunk_data.bytes), shard.bytes / all_chunks, 0) FROM chunk "
+          "LEFT JOIN chunk_data ON chunk.shard = 0 AND chunk_data.id = data "
+          "LEFT JOIN shard ON shard.id = chunk.shard "
+          "WHERE series = ? AND chunk.first_time >= ? ORDER BY chunk.first_time LIMIT 1",
           place.series, *place.from);
       if (!row.step()) return;
       place.next = Step{{place.series,
@@ -94,8 +96,8 @@ void ChunkWalk::find_next(Place& place) {
                          row.integer(1),
                          row.integer<std::size_t>(2),
                          {row.integer(3), row.integer(4)},
-                         row.integer(5)},
-                        row.integer<std::uint64_t>(6),
+                         {row.integer(5), row.integer(6)}},
+                        row.integer<std::uint64_t>(7),
                         place.cutoff && row.integer(1) < *place.cutoff ? Cause::age : Cause::size};
     }
     if (place.next->cause == Cause::size && !by_size_) return place.next.reset();

@@ -21,7 +21,7 @@ double distance(Time from, Time to) {
 struct Piece {
   Time first = 0;
   Time last = 0;
-  std::int64_t data = 0;  // of the one chunk that it is; 0 where recent samples lie in it
+  std::optional<ChunkPlace> place{};  // of the one chunk that it is; none with recent samples
   std::size_t samples = 0;
   Sampling sampling{};
 };
@@ -31,6 +31,7 @@ class Counter {
   Counter(const Database& database, const SeriesInfo& series, const TimeBins& bins)
       : impl_(database.impl()),
         access_(archive_access(database)),
+        bytes_(*impl_.connection),
         series_(series),
         bins_(bins),
         counts_(bins.count()) {}
@@ -62,6 +63,7 @@ class Counter {
 
   Database::Impl& impl_;
   ArchiveAccess& access_;
+  ChunkBytes bytes_;
   const SeriesInfo& series_;
   const TimeBins& bins_;
   std::vector<BinCounts> counts_;
@@ -74,7 +76,7 @@ class Counter {
 std::vector<BinCounts> Counter::run(Time until) {
   const sqlite::ReadTransaction snapshot(*impl_.connection);
   for (const Piece& piece : pieces()) {
-    if (piece.data != 0)
+    if (piece.place)
       count_chunk(piece);
     else
       count_decoded(piece);
@@ -86,7 +88,8 @@ std::vector<BinCounts> Counter::run(Time until) {
 std::vector<Piece> Counter::pieces() {
   std::vector<Piece> found = recent();
   sqlite::Query row = impl_.connection->query(
-      "SELECT first_time, last_time, data, samples, step, gap_limit FROM chunk WHERE series = ?1 "
+      "SELECT first_time, last_time, shard, data, samples, step, gap_limit FROM chunk "
+      "WHERE series = ?1 "
       "AND first_time >= coalesce((SELECT max(first_time) FROM chunk WHERE series = ?1 AND "
       "last_time < ?2 AND first_time < ?2), ?4) AND first_time <= coalesce((SELECT "
       "min(first_time) FROM chunk WHERE series = ?1 AND first_time >= ?3), ?3)",
@@ -94,9 +97,9 @@ std::vector<Piece> Counter::pieces() {
   while (row.step())
     found.push_back({row.integer(0),
                      row.integer(1),
-                     row.integer(2),
-                     row.integer<std::size_t>(3),
-                     {row.integer(4), row.integer(5)}});
+                     ChunkPlace{row.integer(2), row.integer(3)},
+                     row.integer<std::size_t>(4),
+                     {row.integer(5), row.integer(6)}});
   std::sort(found.begin(), found.end(),
             [](const Piece& a, const Piece& b) { return a.first < b.first; });
   std::vector<Piece> joined;
@@ -105,7 +108,7 @@ std::vector<Piece> Counter::pieces() {
       joined.push_back(piece);
     } else {
       joined.back().last = std::max(joined.back().last, piece.last);
-      joined.back().data = 0;
+      joined.back().place.reset();
     }
   }
   return joined;
@@ -151,10 +154,7 @@ void Counter::count_chunk(const Piece& chunk) {
 
 std::vector<Time> Counter::times_of(const Piece& chunk) {
   std::vector<Time> times;
-  sqlite::Query row =
-      impl_.connection->query("SELECT bytes FROM chunk_data WHERE id = ?", chunk.data);
-  const auto bytes = row.step() ? row.bytes(0) : std::span<const std::uint8_t>();
-  if (const auto error = decoder_.decode(bytes, {.time = &times}))
+  if (const auto error = decoder_.decode(bytes_.read(*chunk.place), {.time = &times}))
     throw damage(*impl_.connection, {series_.id, chunk.first, chunk.last, chunk.samples}, *error);
   return times;
 }

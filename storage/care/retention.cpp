@@ -8,6 +8,7 @@
 #include "storage/archive/archive_access.hpp"
 #include "storage/archive/series_ends.hpp"
 #include "storage/care/chunk_walk.hpp"
+#include "storage/care/split.hpp"
 #include "storage/database/connection.hpp"
 
 namespace reident::storage {
@@ -20,7 +21,12 @@ std::uint64_t bytes_in_use(sqlite::Connection& connection) {
     sqlite::Query row = connection.query(std::string("PRAGMA ") + name);
     return row.step() ? row.integer<std::uint64_t>(0) : 0;
   };
-  return (pragma("page_count") - pragma("freelist_count")) * pragma("page_size");
+  const std::uint64_t pages = pragma("page_count") - pragma("freelist_count");
+  // Of a shard the share of what is still read from it.
+  sqlite::Query row =
+      connection.query("SELECT coalesce(sum(bytes / all_chunks * chunks), 0) FROM shard");
+  row.step();
+  return pages * pragma("page_size") + row.integer<std::uint64_t>(0);
 }
 
 void count(RetentionReport& report, const ChunkWalk::Step& step) {
@@ -101,7 +107,9 @@ Retention::Retention(Archive& archive, const RetentionRule& rule,
     : archive_(archive),
       rule_(rule),
       now_(now),
-      walk_(std::make_unique<ChunkWalk>(connection(archive.database()), rule, protection, now)) {}
+      walk_(std::make_unique<ChunkWalk>(connection(archive.database()), rule, protection, now)) {
+  remove_empty_shards(archive);
+}
 
 Retention::~Retention() = default;
 

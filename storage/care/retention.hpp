@@ -3,6 +3,7 @@
 // What is removed are whole chunks, the oldest first, of every series. Chunks that hold time of a
 // protected range stay, and so do samples that are not in chunks yet. What was removed is
 // recorded in the table `removal`. Pages that become free are used again; the file does not shrink.
+// A shard of which nothing is left is removed when the next retention begins.
 // What has to be protected is the caller's to say: storage cannot read models.
 #pragma once
 

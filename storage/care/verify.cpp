@@ -65,7 +65,7 @@ void verify_data_rows(Connection& connection, const DataReferences& references,
   const sqlite::ReadTransaction snapshot(connection);
   std::multiset<std::int64_t> referred;
   {
-    sqlite::Query row = connection.query("SELECT data FROM chunk");
+    sqlite::Query row = connection.query("SELECT data FROM chunk WHERE shard = 0");
     while (row.step())
       if (doubtful.contains(row.integer(0))) referred.insert(row.integer(0));
   }
@@ -79,6 +79,41 @@ void verify_data_rows(Connection& connection, const DataReferences& references,
                 .remedy = chunks == 0 ? "no sample is missing by it; it may be what is left of one "
                                         "that another finding names"
                                       : "restore the samples of these chunks from a backup"});
+  }
+}
+
+/// What cannot be opened is one finding, however many chunks are in it.
+void verify_shards(Connection& connection, VerifyReport& report) {
+  struct Shard {
+    std::int64_t id;
+    std::string file;
+    std::int64_t said, found;
+  };
+  std::vector<Shard> shards;
+  const sqlite::ReadTransaction snapshot(connection);
+  {
+    sqlite::Query row = connection.query(
+        "SELECT shard, file, chunks, count(*) FROM chunk LEFT JOIN shard ON shard.id = chunk.shard "
+        "WHERE chunk.shard <> 0 GROUP BY chunk.shard");
+    while (row.step())
+      shards.push_back({row.integer(0), row.text(1), row.integer(2), row.integer(3)});
+  }
+  ChunkBytes bytes(connection);
+  for (const Shard& shard : shards) {
+    try {
+      bytes.shard(shard.id);
+      if (shard.said != shard.found)
+        report.add({.check = "shard",
+                    .what = "the row of the shard " + shard.file + " says " +
+                            std::to_string(shard.said) + " chunks, there are " +
+                            std::to_string(shard.found),
+                    .remedy = "the samples are sound; report it with the file"});
+    } catch (const Error& error) {
+      report.unreadable_shards.insert(shard.id);
+      report.add({.check = "shard",
+                  .what = error.what(),
+                  .remedy = "restore the shard; its chunks were not looked at"});
+    }
   }
 }
 
@@ -128,6 +163,7 @@ VerifyReport verify(Database& database, const VerifyOptions& options,
   look("source", report, [&] { verify_sources(connection, report); });
   look("rows", report, [&] { verify_rows(connection, report); });
   look("versions", report, [&] { verify_versions(database, options, report); });
+  look("shard", report, [&] { verify_shards(connection, report); });
   look("series", report,
        [&] { report.complete = verify_all_series(connection, options, report, go_on); });
   return report;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -31,7 +32,7 @@ struct Finding {
   std::string remedy;  // what an operator can do
 };
 
-/// Chunks in which nothing was found: XXH64 of their bytes, by the row of chunk_data.
+/// Chunks in which nothing was found: XXH64 of their bytes, by the row of chunk_data and the shard.
 using SoundChunks = std::unordered_map<std::int64_t, std::uint64_t>;
 
 /// How thoroughly to look.
@@ -65,6 +66,7 @@ struct VerifyReport {
   bool complete = true;     // false when it was stopped
   std::uint64_t known = 0;  // chunks that were not decoded since they are as they were
   SoundChunks sound;        // those and what was decoded; none where it looked quickly
+  std::set<std::int64_t> unreadable_shards{};  // whose chunks were not looked at
 
   static constexpr std::size_t most_findings = 1000;
   /// Counts a finding, and keeps it where fewer than most_findings are kept.

@@ -33,6 +33,13 @@ std::optional<double> bound(const ChunkSummary& summary, double value) {
   return summary.least > summary.greatest ? std::nullopt : std::optional(value);
 }
 
+/// Rows of a database and of its shards have numbers of their own.
+std::int64_t key_of(ChunkPlace place) {
+  constexpr int bits_of_row = 44;
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(place.shard) << bits_of_row) +
+         place.data;
+}
+
 std::string than(const char* what, std::uint64_t row, std::uint64_t found) {
   return std::string("its row says ") + std::to_string(row) + " " + what + ", there are " +
          std::to_string(found);
@@ -57,7 +64,8 @@ SeriesVerifier::SeriesVerifier(sqlite::Connection& connection, const VerifyOptio
       options_(options),
       report_(report),
       references_(references),
-      advanced_(std::move(advanced)) {}
+      advanced_(std::move(advanced)),
+      bytes_(connection) {}
 
 void SeriesVerifier::add(const char* check, std::optional<Time> first, std::optional<Time> last,
                          std::string what, const char* remedy) {
@@ -154,9 +162,8 @@ void SeriesVerifier::read_recent(std::int64_t series) {
 
 bool SeriesVerifier::read_chunks(std::int64_t series) {
   sqlite::Query chunk = connection_.query(
-      "SELECT first_time, last_time, samples, step, gap_limit, least, greatest, data, bytes "
-      "FROM chunk LEFT JOIN chunk_data ON chunk_data.id = chunk.data WHERE series = ? "
-      "ORDER BY first_time",
+      "SELECT first_time, last_time, samples, step, gap_limit, least, greatest, shard, data "
+      "FROM chunk WHERE series = ? ORDER BY first_time",
       series);
   while (chunk.step()) {
     const Row row{chunk.integer(0),
@@ -166,18 +173,15 @@ bool SeriesVerifier::read_chunks(std::int64_t series) {
                   real(chunk, 5),
                   real(chunk, 6)};
     ++report_.chunks;
-    references_.add(chunk.integer(7));
+    const ChunkPlace place{chunk.integer(7), chunk.integer(8)};
+    if (place.shard == 0) references_.add(place.data);
     if (seen_.previous && row.first <= seen_.previous->last)
       add("chunk", row.first, row.last, "it begins before the chunk before it ends",
           restore_samples);
-    if (chunk.is_null(8)) {
+    if (report_.unreadable_shards.contains(place.shard))
       seen_.undecodable = true;
-      add("chunk", row.first, row.last,
-          "its data (row " + std::to_string(chunk.integer(7)) + " of chunk_data) are missing",
-          restore_samples);
-    } else {
-      look_at_chunk(row, chunk.integer(7), chunk.bytes(8));
-    }
+    else
+      look_at_chunk(row, place);
     seen_.samples += row.samples;
     seen_.first = std::min(seen_.first.value_or(row.first), row.first);
     seen_.last = std::max(seen_.last.value_or(row.last), row.last);
@@ -187,18 +191,25 @@ bool SeriesVerifier::read_chunks(std::int64_t series) {
   return true;
 }
 
-bool SeriesVerifier::is_known(const Row& row, std::int64_t data, std::uint64_t digest) const {
+bool SeriesVerifier::is_known(const Row& row, std::int64_t key, std::uint64_t digest) const {
   if (options_.known == nullptr) return false;
-  const auto found = options_.known->find(data);
+  const auto found = options_.known->find(key);
   if (found == options_.known->end() || found->second != digest) return false;
   // What is recent too is counted by the times of its chunk.
   const auto recent = std::ranges::lower_bound(recent_, row.first);
   return recent == recent_.end() || *recent > row.last;
 }
 
-void SeriesVerifier::look_at_chunk(const Row& row, std::int64_t data,
-                                   std::span<const std::uint8_t> bytes) {
+void SeriesVerifier::look_at_chunk(const Row& row, ChunkPlace place) {
   const std::uint64_t found_before = report_.found;
+  const std::span<const std::uint8_t> bytes = bytes_.read(place);
+  if (bytes.empty()) {
+    seen_.undecodable = true;
+    add("chunk", row.first, row.last,
+        "its data (row " + std::to_string(place.data) + " of chunk_data) are missing",
+        restore_samples);
+    return;
+  }
   const auto summary = read_summary(bytes);
   std::optional<ChunkError> error;
   if (const auto* wrong = std::get_if<ChunkError>(&summary)) {
@@ -207,17 +218,17 @@ void SeriesVerifier::look_at_chunk(const Row& row, std::int64_t data,
     compare_with_summary(row, std::get<ChunkSummary>(summary));
     if (options_.quick) return;
     const std::uint64_t digest = xxh64(bytes);
-    if (is_known(row, data, digest)) {
+    if (is_known(row, key_of(place), digest)) {
       seen_.known = true;
       ++report_.known;
-      report_.sound.emplace(data, digest);
+      report_.sound.emplace(key_of(place), digest);
       return;
     }
     samples_ = {};
     error = decoder_.decode(bytes, samples_.target());
     if (!error) {
       look_at_samples(row);
-      if (report_.found == found_before) report_.sound.emplace(data, digest);
+      if (report_.found == found_before) report_.sound.emplace(key_of(place), digest);
       return;
     }
   }

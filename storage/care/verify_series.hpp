@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "storage/archive/chunk_bytes.hpp"
 #include "storage/care/verify.hpp"
 #include "storage/chunks/chunk.hpp"
 #include "storage/chunks/sample_gaps.hpp"
@@ -18,7 +19,8 @@
 
 namespace reident::storage {
 
-/// Which rows of chunk_data chunks refer to, by id: a bit each. A damaged id may be any number.
+/// Which rows of chunk_data in the database itself chunks refer to, by id: a bit each. A damaged id
+/// may be any number.
 class DataReferences {
  public:
   void add(std::int64_t id);
@@ -63,9 +65,9 @@ class SeriesVerifier {
   bool begin(std::int64_t series);
   void read_recent(std::int64_t series);
   bool read_chunks(std::int64_t series);
-  void look_at_chunk(const Row& row, std::int64_t data, std::span<const std::uint8_t> bytes);
+  void look_at_chunk(const Row& row, ChunkPlace place);
   /// Whether it need not be decoded.
-  bool is_known(const Row& row, std::int64_t data, std::uint64_t digest) const;
+  bool is_known(const Row& row, std::int64_t key, std::uint64_t digest) const;
   void compare_with_summary(const Row& row, const ChunkSummary& summary);
   void look_at_samples(const Row& row);
   void look_at_values(Time first, Time last);
@@ -82,6 +84,7 @@ class SeriesVerifier {
   VerifyReport& report_;
   DataReferences& references_;
   const std::function<bool(std::uint64_t)> advanced_;
+  ChunkBytes bytes_;
   ChunkDecoder decoder_;
   SamplingMeter meter_;
   SampleColumns samples_;

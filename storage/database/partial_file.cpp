@@ -52,7 +52,28 @@ bool take_name(const std::filesystem::path& from, const std::filesystem::path& t
   return ::rename(from.c_str(), to.c_str()) == 0;
 }
 
+// EINVAL: a file system whose folders need no flush.
+void flush_folder(const std::filesystem::path& folder, const std::filesystem::path& entry) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool flushed = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const int system_error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!flushed && system_error != EINVAL) fail(entry, "forced to the disk", system_error);
+}
+
 }  // namespace
+
+mode_t permissions_of(const std::filesystem::path& file) {
+  struct stat status {};
+  return ::stat(file.c_str(), &status) == 0 ? (status.st_mode & 0777U) | 0600U : 0600U;
+}
+
+void make_folder_of(const std::filesystem::path& file, const std::filesystem::path& like) {
+  const std::filesystem::path folder = file.parent_path();
+  std::error_code error;
+  if (std::filesystem::create_directory(folder, like, error)) flush_folder(like, folder);
+  if (error) fail(folder, "made", error.value());
+}
 
 PartialFile::PartialFile(const std::filesystem::path& target, mode_t mode)
     : target_(target), path_(target.string() + ".partial") {
@@ -99,12 +120,7 @@ void PartialFile::publish(bool replace) {
   if (!take_name(path_, target_, replace))
     fail(path_, "renamed to " + target_.filename().string(), errno);
   published_ = true;
-  const int folder = ::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = folder >= 0 && ::fsync(folder) == 0;
-  const int system_error = errno;
-  if (folder >= 0) ::close(folder);
-  // EINVAL: a file system whose folders need no flush.
-  if (!synced && system_error != EINVAL) fail(target_, "forced to the disk", system_error);
+  flush_folder(target_.parent_path(), target_);
 }
 
 }  // namespace reident::storage

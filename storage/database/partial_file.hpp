@@ -7,6 +7,13 @@
 
 namespace reident::storage {
 
+/// Permissions of a file that is to have those of `file`, and can be written by its owner.
+mode_t permissions_of(const std::filesystem::path& file);
+
+/// Makes the folder that `file` is in where there is none, with the permissions of the folder
+/// `like`, which it is in. It is on the disk when this returns. Throws Error as PartialFile does.
+void make_folder_of(const std::filesystem::path& file, const std::filesystem::path& like);
+
 /// "<target>.partial": made empty, removed when this ends, unless it took the target's name. One
 /// process at a time has it; what a killed one left is replaced.
 class PartialFile {

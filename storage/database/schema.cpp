@@ -53,13 +53,13 @@ CREATE TABLE recent (
 
 CREATE TABLE chunk_data (id INTEGER PRIMARY KEY, bytes BLOB NOT NULL);
 
--- Data is the id of a chunk_data. Declared as a reference it would cost a scan of this table for
--- each chunk that is rewritten.
+-- Data is the id of a chunk_data, in the shard or (0) in this file. Declared as a reference it
+-- would cost a scan of this table for each chunk that is rewritten.
 CREATE TABLE chunk (
   series INTEGER NOT NULL REFERENCES series, first_time INTEGER NOT NULL,
   last_time INTEGER NOT NULL, samples INTEGER NOT NULL,
   step INTEGER NOT NULL, gap_limit INTEGER NOT NULL, least, greatest,
-  data INTEGER NOT NULL,
+  data INTEGER NOT NULL, shard INTEGER NOT NULL DEFAULT 0,
   PRIMARY KEY (series, first_time)) WITHOUT ROWID;
 
 CREATE TABLE sample_gap (
@@ -255,7 +255,8 @@ std::string creation() {
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
                      "equipment = NEW.equipment AND number = NEW.number)") +
          append_only_decisions() + append_only_scores() + append_only_notices() + from_7_to_8() +
-         "PRAGMA application_id = " + std::to_string(application_id) + ";" + user_version();
+         shards_of_9() + "PRAGMA application_id = " + std::to_string(application_id) + ";" +
+         user_version();
 }
 
 // A CHECK cannot be altered, so the decisions move to a new table. Dropping the old one drops its
@@ -307,6 +308,19 @@ std::string from_6_to_7() {
 
 std::string bias_effects_of_8() {
   return "ALTER TABLE score ADD COLUMN bias_effects BLOB NOT NULL DEFAULT x'';";
+}
+
+std::string shards_of_9() {
+  return R"sql(
+CREATE TABLE shard (
+  id INTEGER PRIMARY KEY AUTOINCREMENT, file TEXT NOT NULL UNIQUE,
+  first_time INTEGER NOT NULL, last_time INTEGER NOT NULL,
+  chunks INTEGER NOT NULL, all_chunks INTEGER NOT NULL, bytes INTEGER NOT NULL);
+)sql";
+}
+
+std::string chunks_of_9() {
+  return "ALTER TABLE chunk ADD COLUMN shard INTEGER NOT NULL DEFAULT 0;";
 }
 
 std::string user_version() {

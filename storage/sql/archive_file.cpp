@@ -28,7 +28,7 @@ ORDER BY series.id
 )sql";
 
 constexpr std::string_view chunk_columns =
-    "SELECT first_time, last_time, samples, least, greatest, data FROM main.chunk "
+    "SELECT first_time, last_time, samples, least, greatest, shard, data FROM main.chunk "
     "WHERE series = ?1 AND first_time ";
 
 std::string archive_name(sqlite3* connection) {
@@ -62,7 +62,7 @@ std::string_view NamePool::keep(std::string_view text) {
 }
 
 ArchiveFile::ArchiveFile(sqlite3* connection, NamePool& names)
-    : connection_(connection), names_(names) {
+    : connection_(connection), names_(names), shards_(connection) {
   refuse_others();
 }
 
@@ -130,7 +130,8 @@ std::optional<ChunkEntry> ArchiveFile::one_chunk(Statement& rows) {
                    .samples = static_cast<std::uint64_t>(rows.integer(2)),
                    .least = std::numeric_limits<double>::infinity(),
                    .greatest = -std::numeric_limits<double>::infinity(),
-                   .data = rows.integer(5)};
+                   .shard = rows.integer(5),
+                   .data = rows.integer(6)};
   if (!rows.is_null(3) && !rows.is_null(4)) {
     chunk.least = rows.real(3);
     chunk.greatest = rows.real(4);
@@ -157,7 +158,9 @@ std::optional<ChunkEntry> ArchiveFile::chunk_to(std::int64_t series, Time time) 
 
 void ArchiveFile::decode(const SeriesName& series, const ChunkEntry& chunk, TimeBounds bounds,
                          const ChunkTarget& target) {
-  Statement& rows = prepared(bytes_, "SELECT bytes FROM main.chunk_data WHERE id = ?1");
+  Statement& rows = chunk.shard == 0
+                        ? prepared(bytes_, "SELECT bytes FROM main.chunk_data WHERE id = ?1")
+                        : shards_.bytes_of(chunk.shard);
   const std::span<const std::uint8_t> bytes =
       rows.bind(chunk.data).step() ? rows.blob(0) : std::span<const std::uint8_t>();
   const TimeBounds of{chunk.first_time, chunk.last_time};

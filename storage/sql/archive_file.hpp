@@ -14,6 +14,7 @@
 
 #include "storage/chunks/chunk.hpp"
 #include "storage/sql/selection.hpp"
+#include "storage/sql/shard_files.hpp"
 #include "storage/sql/sqlite_api.hpp"
 #include "storage/types/sample_columns.hpp"
 #include "storage/types/telemetry.hpp"
@@ -44,7 +45,7 @@ struct ChunkEntry {
   std::uint64_t samples = 0;
   double least = 0;
   double greatest = 0;
-  std::int64_t data = 0;
+  std::int64_t shard = 0, data = 0;  // where its bytes are
 };
 
 class ArchiveFile {
@@ -95,6 +96,7 @@ class ArchiveFile {
       batches_, fragment_, fragment_bytes_, source_;
   std::unordered_map<std::int64_t, std::vector<Fragment>> fragments_;  // by series
   std::unordered_map<std::int64_t, std::string_view> sources_;
+  ShardFiles shards_;
   ChunkDecoder decoder_;
 };
 

@@ -30,6 +30,8 @@ void print(const storage::BackupReport& report, bool json) {
   if (json) {
     nlohmann::ordered_json object = {{"copy", report.copy.string()},
                                      {"bytes", report.bytes},
+                                     {"shards", report.shards},
+                                     {"shard_bytes", report.shard_bytes},
                                      {"samples", report.samples},
                                      {"versions", report.versions},
                                      {"newest", nullptr}};
@@ -39,6 +41,9 @@ void print(const storage::BackupReport& report, bool json) {
   }
   fmt::print("{}: {} bytes, {} samples{}, {} versions of models\n", report.copy.string(),
              report.bytes, report.samples, newest ? " up to " + *newest : "", report.versions);
+  if (report.shards > 0)
+    fmt::print("{}.shards: {} shards, {} bytes of them new\n", report.copy.string(), report.shards,
+               report.shard_bytes);
 }
 
 int run(Arguments& arguments) {

@@ -149,8 +149,9 @@ INSERT INTO decision VALUES
 }
 
 // Version 5 differs from 4 in the qualities that a file may hold, 6 has the records of versions,
-// 7 what the service noticed, and 8 what two services of a pair share and the effects of biases.
-TEST(MigrationFrom4To7, AddsTheRecordsAndChangesNothingElse) {
+// 7 what the service noticed, 8 what two services of a pair share and the effects of biases, and 9
+// shards.
+TEST(MigrationFrom4To8, AddsTheRecordsAndChangesNothingElse) {
   const TemporaryFolder folder;
   const auto path = folder / "old.db";
   const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
@@ -176,9 +177,13 @@ TEST(MigrationFrom4To7, AddsTheRecordsAndChangesNothingElse) {
                             "simulator", "block", "score"})
     without_pairs += "DROP TRIGGER " + std::string(table) + "_journal; ";
   const std::string without_effects = "ALTER TABLE score DROP COLUMN bias_effects; ";
-  for (const std::string old : {"4", "5", "6", "7"}) {
-    rows(path, without_pairs + (old >= "6" ? without_effects : without_records) +
-                   (old == "7" ? "" : without_notices) + "PRAGMA user_version = " + old);
+  const std::string without_shards = "DROP TABLE shard; ALTER TABLE chunk DROP COLUMN shard; ";
+  for (const std::string old : {"4", "5", "6", "7", "8"}) {
+    rows(path, without_shards + (old == "8" ? "" : without_pairs) +
+                   (old == "8"   ? ""
+                    : old >= "6" ? without_effects
+                                 : without_records) +
+                   (old >= "7" ? "" : without_notices) + "PRAGMA user_version = " + old);
     Database migrated(path, Mode::read_write);
     EXPECT_THAT(rows(path, schema), ElementsAreArray(before));
     EXPECT_THAT(rows(path, "PRAGMA user_version"), ElementsAre(std::to_string(schema::version)));

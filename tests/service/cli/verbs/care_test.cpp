@@ -125,6 +125,21 @@ TEST_F(Care, VerifyOfWhatIsNoDatabaseIsRefused) {
   EXPECT_THAT(refusal_of({"verify", "text.db"}), HasSubstr("is not a database"));
 }
 
+TEST_F(Care, SplitMovesClosedYearsAndEverythingIsReadAsBefore) {
+  EXPECT_EQ(json_of({"archive", "split", "reident.db"})["chunks"], 0) << "the year goes on";
+  const test::Ran before = reident({"export", "reident.db"});
+  const json done = json_of({"archive", "split", "reident.db", "--before", "2024"});
+  EXPECT_EQ(done["chunks"], 2);
+  EXPECT_EQ(done["shards"][0]["samples"], 1200);
+  EXPECT_EQ(reident({"export", "reident.db"}).out, before.out);
+  EXPECT_EQ(json_of({"verify", "reident.db"})["sound"], true);
+  EXPECT_EQ(json_of({"backup", "reident.db", "copy.db"})["shards"], 1);
+  std::filesystem::remove_all(folder() / "reident.db.shards");
+  EXPECT_THAT(refusal_of({"export", "reident.db"}), HasSubstr("reident.db.shards"));
+  const storage::Database service(path(), storage::Database::Mode::read_write);
+  EXPECT_THAT(refusal_of({"archive", "split", "reident.db"}), HasSubstr("stop the service"));
+}
+
 TEST_F(Care, RetainRemovesByAgeAndSaysSoBeforehand) {
   append(600, 20000);  // a chunk and a part of a second
   const json plan = json_of({"retain", "reident.db", "--keep", "1h", "--dry-run"});
