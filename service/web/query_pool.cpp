@@ -48,10 +48,10 @@ void QueryPool::run() {
   }
 }
 
-HttpResponse QueryPool::answer(const Question& question) const {
+HttpResponse QueryPool::answer(const Question& question) {
   try {
     storage::Database database(database_, storage::Database::Mode::read_only);
-    return question(Stored(database, SteadyClock::now() + longest_answer));
+    return question(Stored(database, pieces_, SteadyClock::now() + longest_answer));
   } catch (const BadRequest& mistake) {
     return problem(mistake.status, mistake.status == 404 ? "not_found" : "question",
                    mistake.what());

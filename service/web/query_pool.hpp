@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "service/history/stored_readers.hpp"
+#include "service/history/summary.hpp"
 #include "service/web/http.hpp"
 #include "service/web/work_queue.hpp"
 
@@ -19,8 +20,10 @@ namespace reident::web {
 /// of a reader is a snapshot of its own, so that no question keeps the log from being folded.
 class Stored {
  public:
-  Stored(storage::Database& file, std::chrono::steady_clock::time_point deadline)
+  Stored(storage::Database& file, history::PieceMemory& memory,
+         std::chrono::steady_clock::time_point deadline)
       : database(file),
+        pieces(memory),
         registry(file),
         history_(file),
         telemetry_(file),
@@ -34,6 +37,7 @@ class Stored {
   void check_time() const;
 
   storage::Database& database;
+  history::PieceMemory& pieces;  // of all questions
   const storage::Registry registry;
 
  private:
@@ -86,9 +90,10 @@ class QueryPool {
   };
 
   void run();
-  HttpResponse answer(const Question& question) const;
+  HttpResponse answer(const Question& question);
 
   const std::filesystem::path database_;
+  history::PieceMemory pieces_;
   WorkQueue<Waiting> waiting_;
   std::vector<std::thread> threads_;
 };
