@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "service/history/row_values.hpp"
+#include "service/support/text.hpp"
 
 namespace reident::history {
 namespace {
@@ -160,6 +161,26 @@ bool needs_action(const OverviewRow& row, const std::vector<Alarm>& alarms) {
 void add_untried(const storage::EquipmentName& name, std::vector<OverviewRow>& rows) {
   if (std::ranges::find(rows, name, &OverviewRow::name) == rows.end())
     rows.emplace_back().name = name;
+}
+
+Alarm no_service_alarm(const std::filesystem::path& database, storage::Time now) {
+  return {"no_service",
+          {},
+          "No service runs on " + database.string() +
+              ": what is below is as the last one left it. Start reidentd.",
+          now};
+}
+
+void add_alarms_of(const std::vector<ServiceStatus>& services, std::vector<Alarm>& alarms) {
+  for (const ServiceStatus& service : services) {
+    if (service.pair.empty() || service.role == "leads") continue;
+    for (const std::string& line : lines_of(service.alarms)) {
+      const std::string code = line.substr(0, line.find_first_of(" :"));
+      if (std::none_of(alarms.begin(), alarms.end(),
+                       [&code](const Alarm& alarm) { return alarm.code == code; }))
+        alarms.push_back({code, {}, service.service + ": " + line, service.time});
+    }
+  }
 }
 
 void put_worst_first(std::vector<OverviewRow>& rows, const std::vector<Alarm>& alarms) {

@@ -1,10 +1,12 @@
 // How the models of all equipment are now: the rows that the console, the page and programs show.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "service/history/rows.hpp"
+#include "service/model/messages.hpp"
 
 namespace reident::history {
 
@@ -51,6 +53,12 @@ bool needs_action(const OverviewRow& row, const std::vector<storage::Alarm>& ala
 
 /// Adds a row of an equipment that no window was tried of, where it has none.
 void add_untried(const storage::EquipmentName& name, std::vector<OverviewRow>& rows);
+
+/// The alarm of a configured database that no service has open.
+storage::Alarm no_service_alarm(const std::filesystem::path& database, storage::Time now);
+
+/// Adds the alarms of those that are of a pair and do not lead it: the database has none of them.
+void add_alarms_of(const std::vector<ServiceStatus>& services, std::vector<storage::Alarm>& alarms);
 
 /// Orders by what needs an operator most: a champion that fails, other alarms, versions that wait,
 /// no champion; then by how much the error has grown since the approval.

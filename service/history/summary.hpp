@@ -1,11 +1,19 @@
 // Many samples of one series in few figures, for whoever draws or prints a long range.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <unordered_map>
 #include <vector>
 
-#include "service/history/readers.hpp"
+#include "service/support/mutex.hpp"
+#include "storage/archive/chunk_outline.hpp"
+#include "storage/database/database.hpp"
+#include "storage/types/quality.hpp"
+#include "storage/types/series.hpp"
+#include "storage/types/time_bins.hpp"
 
 namespace reident::history {
 
@@ -29,9 +37,37 @@ struct SeriesSummary {
   std::vector<storage::TimeRange> gaps;
 };
 
-/// Reads the samples of a series in the range of `bins` once, whatever their number. `go_on` is
-/// called between batches of samples, and may throw.
-SeriesSummary summarise(const TelemetryReader& telemetry, const storage::SeriesInfo& series,
-                        const storage::TimeBins& bins, const std::function<void()>& go_on = {});
+/// What pieces of chunks came to, so that whoever asks about them again need not decode them. A
+/// chunk that was written again is another one: what is kept stays right. Any thread.
+class PieceMemory {
+ public:
+  /// `most`: pieces that are kept, of about 160 bytes each; beyond that all are forgotten.
+  explicit PieceMemory(std::size_t most = 100'000) : most_(most) {}
+
+  /// The part of a chunk in `range`; absent where it is not known.
+  std::optional<BinSummary> find(const storage::ChunkOutline& chunk,
+                                 storage::TimeRange range) const;
+  void keep(const storage::ChunkOutline& chunk, const BinSummary& piece);
+
+ private:
+  struct Key {
+    std::uint64_t chunk = 0;
+    storage::TimeRange range;
+    bool operator==(const Key&) const = default;
+  };
+  struct Hash {
+    std::size_t operator()(const Key& key) const;
+  };
+  const std::size_t most_;
+  mutable Mutex mutex_;
+  std::unordered_map<Key, BinSummary, Hash> pieces_ REIDENT_GUARDED_BY(mutex_);
+};
+
+/// Summarises the samples of a series in the range of `bins`. Chunks that are spread over few bins
+/// are decoded once for all questions with one memory. `go_on` is called in between, and may throw.
+/// Throws storage::Error.
+SeriesSummary summarise(const storage::Database& database, const storage::SeriesInfo& series,
+                        const storage::TimeBins& bins, PieceMemory& memory,
+                        const std::function<void()>& go_on = {});
 
 }  // namespace reident::history

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "service/model/status_json.hpp"
 #include "service/support/utc_clock.hpp"
 #include "storage/registry/registry.hpp"
 
@@ -28,20 +29,9 @@ Json registry_value(const storage::Registry& registry, const storage::EquipmentN
 }  // namespace
 
 Json status_value(const HeardStatus& heard) {
-  const ServiceStatus& status = heard.status;
   const std::chrono::duration<double> age = SteadyClock::now() - heard.heard;
-  Json value = {{"service", status.service},
-                {"program_version", status.program_version},
-                {"started", time_value(status.started)},
-                {"time", time_value(status.time)},
-                {"age_s", std::round(age.count() * 10) / 10}};
-  for (const auto& [name, count] : counts(status)) value[name] = count;
-  value["newest_telemetry"] =
-      status.newest_telemetry == 0 ? Json() : time_value(status.newest_telemetry);
-  value["certificate_end"] =
-      status.certificate_end == 0 ? Json() : time_value(status.certificate_end);
-  value["last_error"] = status.last_error;
-  value["failing_champions"] = status.failing_champions;
+  Json value = status_json(heard.status);
+  value["age_s"] = std::round(age.count() * 10) / 10;
   return value;
 }
 

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "service/support/version.hpp"
-#include "service/web/views.hpp"
 
 namespace reident::web {
 namespace {
@@ -121,7 +120,8 @@ void put_service(MetricsText& text, const std::optional<HeardStatus>& heard) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - heard->heard).count();
   };
   text.begin("reident_service_up", "gauge", "Whether the service's heartbeat is fresh.");
-  text.add(heard && age() <= fresh_heartbeat_s ? 1 : 0);
+  const bool is_up = heard && age() <= fresh_heartbeat_s;
+  text.add(is_up ? 1 : 0);
   if (!heard) return;
   const ServiceStatus& status = heard->status;
   text.begin("reident_service_failing", "gauge", "Whether the service reports an error.");
@@ -158,6 +158,20 @@ void put_service(MetricsText& text, const std::optional<HeardStatus>& heard) {
   count("reident_windows_pending", "Windows that are due or tried.", status.windows_pending,
         "gauge");
   count("reident_attempts_total", "Windows that were tried.", status.attempts);
+  if (status.pair.empty()) return;
+  const auto of_pair = [&](std::string_view name, std::string_view help, double value) {
+    text.begin(name, "gauge", help);
+    text.add(value, {{"pair", status.pair}});
+  };
+  of_pair("reident_pair_leads", "Whether the service leads its pair, while it is heard.",
+          is_up && status.role == "leads");
+  of_pair("reident_pair_term", "The last term of the pair that the service knows.",
+          static_cast<double>(status.term));
+  of_pair("reident_pair_partner_heard", "Whether it hears the other service.",
+          !status.partner.empty());
+  if (status.lag >= 0)
+    of_pair("reident_pair_lag_rows", "Rows of the registry that one of the two lacks.",
+            static_cast<double>(status.lag));
 }
 
 void put_server(MetricsText& text, const ServerCounts& counts) {
@@ -185,7 +199,8 @@ void put_files(MetricsText& text, const std::filesystem::path& database) {
   text.add(size(database.string() + "-wal"));
 }
 
-void put_registry(MetricsText& text, const Stored& stored, const DecisionCounts& decisions) {
+void put_registry(MetricsText& text, const Stored& stored, const Json& overview,
+                  const DecisionCounts& decisions) {
   text.begin("reident_decisions_total", "counter", "Decisions, by kind and by whom.");
   for (const auto& [key, count] : decisions)
     text.add(static_cast<double>(count),
@@ -198,7 +213,6 @@ void put_registry(MetricsText& text, const Stored& stored, const DecisionCounts&
              "Generation time of the newest sample.");
   for (const auto& [spacecraft, time] : newest)
     text.add(seconds_of(time), {{"spacecraft", spacecraft}});
-  const Json overview = overview_view(stored, {});
   const auto each = [&](std::string_view name, std::string_view help, const auto& value) {
     text.begin(name, "gauge", help);
     for (const Json& line : overview["equipment"])

@@ -54,7 +54,8 @@ class RequestCounts {
 void put_service(MetricsText& text, const std::optional<HeardStatus>& heard);
 void put_server(MetricsText& text, const ServerCounts& counts);
 void put_files(MetricsText& text, const std::filesystem::path& database);
-/// The equipment of the registry, and decisions so far.
-void put_registry(MetricsText& text, const Stored& stored, const DecisionCounts& decisions);
+/// The equipment of the registry, and decisions so far. `overview`: the page's answer.
+void put_registry(MetricsText& text, const Stored& stored, const Json& overview,
+                  const DecisionCounts& decisions);
 
 }  // namespace reident::web

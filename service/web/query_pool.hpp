@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "service/history/stored_readers.hpp"
+#include "service/history/summary.hpp"
+#include "service/support/mutex.hpp"
 #include "service/web/http.hpp"
 #include "service/web/work_queue.hpp"
 
@@ -19,8 +21,10 @@ namespace reident::web {
 /// of a reader is a snapshot of its own, so that no question keeps the log from being folded.
 class Stored {
  public:
-  Stored(storage::Database& file, std::chrono::steady_clock::time_point deadline)
+  Stored(storage::Database& file, history::PieceMemory& memory,
+         std::chrono::steady_clock::time_point deadline)
       : database(file),
+        pieces(memory),
         registry(file),
         history_(file),
         telemetry_(file),
@@ -34,6 +38,7 @@ class Stored {
   void check_time() const;
 
   storage::Database& database;
+  history::PieceMemory& pieces;  // of all questions
   const storage::Registry registry;
 
  private:
@@ -63,11 +68,29 @@ class TooSlow : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Processor time that questions may have before the service's own work: a burst, and a small share
+/// in the long run. Any thread.
+class Allowance {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double burst_s = 2, share = 0.05;
+
+  explicit Allowance(Clock::time_point now) : counted_(now) {}
+  bool is_left(Clock::time_point now);
+  void take(double seconds);
+
+ private:
+  Mutex mutex_;
+  double left_s_ REIDENT_GUARDED_BY(mutex_) = burst_s;
+  Clock::time_point counted_ REIDENT_GUARDED_BY(mutex_);
+};
+
 class QueryPool {
  public:
   using Question = std::function<HttpResponse(const Stored& stored)>;
 
   /// The database is opened for each question: whatever became of the file in between is seen.
+  /// `threads` and `queue`: within the allowance, and as many beyond it.
   QueryPool(std::filesystem::path database, unsigned threads, std::size_t queue);
   /// Ends the threads; questions that wait get no answer.
   ~QueryPool();
@@ -75,7 +98,8 @@ class QueryPool {
   QueryPool& operator=(const QueryPool&) = delete;
 
   /// Answers on another thread; what is thrown becomes an answer that says so. `compressed`: where
-  /// it is worth it. A full queue answers at once with 503.
+  /// it is worth it. A full queue answers at once with 503. Whoever asks without end gets what the
+  /// service leaves of the processor: beyond the allowance other threads answer, of least priority.
   void ask(Question question, bool compressed, Respond respond);
 
  private:
@@ -85,12 +109,19 @@ class QueryPool {
     Respond respond;
   };
 
-  void run();
-  HttpResponse answer(const Question& question) const;
+  struct Lane {
+    explicit Lane(std::size_t queue) : waiting(queue) {}
+    WorkQueue<Waiting> waiting;
+    std::vector<std::thread> threads;
+  };
+
+  void run(Lane& lane, int niceness);
+  HttpResponse answer(const Question& question);
 
   const std::filesystem::path database_;
-  WorkQueue<Waiting> waiting_;
-  std::vector<std::thread> threads_;
+  history::PieceMemory pieces_;
+  Allowance allowance_;
+  Lane usual_, last_;
 };
 
 }  // namespace reident::web

@@ -18,27 +18,23 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr double fresh_s = 5;  // heartbeats come each second
+constexpr std::chrono::seconds fresh(5);  // heartbeats come each second
 
 struct Route {
   std::string_view path;
   Json (*view)(const Stored& stored, const HttpRequest& request);
 };
-constexpr std::array routes{Route{"/api/v1/overview", overview_view},
-                            Route{"/api/v1/waiting", waiting_view},
-                            Route{"/api/v1/equipment", equipment_view},
-                            Route{"/api/v1/version", version_view},
-                            Route{"/api/v1/timeline", timeline_view},
-                            Route{"/api/v1/telemetry", telemetry_view},
-                            Route{"/api/v1/run", run_view},
-                            Route{"/api/v1/events", events_view},
-                            Route{"/api/v1/simulators", simulators_view},
-                            Route{"/api/v1/series", series_view},
-                            Route{"/api/v1/completeness", completeness_view}};
+constexpr std::array routes{
+    Route{"/api/v1/waiting", waiting_view},     Route{"/api/v1/equipment", equipment_view},
+    Route{"/api/v1/version", version_view},     Route{"/api/v1/timeline", timeline_view},
+    Route{"/api/v1/telemetry", telemetry_view}, Route{"/api/v1/run", run_view},
+    Route{"/api/v1/events", events_view},       Route{"/api/v1/simulators", simulators_view},
+    Route{"/api/v1/series", series_view},       Route{"/api/v1/completeness", completeness_view}};
 
-constexpr std::array<std::string_view, 10> others = {
-    "/page.js",        "/page.css",      "/api/v1/service",  "/api/v1/session", "/api/v1/orders",
-    "/api/v1/changes", "/api/v1/stream", "/api/v1/refusals", "/api/v1/login",   "/api/v1/logout"};
+constexpr std::array<std::string_view, 11> others = {
+    "/page.js",         "/page.css",      "/api/v1/overview", "/api/v1/service",
+    "/api/v1/session",  "/api/v1/orders", "/api/v1/changes",  "/api/v1/stream",
+    "/api/v1/refusals", "/api/v1/login",  "/api/v1/logout"};
 
 std::uint64_t revision_in(std::string_view text) {
   std::uint64_t revision = 0;
@@ -89,6 +85,12 @@ void Site::get(HttpRequest&& request, const Respond& respond) {
   if (request.path == "/readyz") return respond(readiness(request));
   if (request.path == "/metrics") return metrics(request.accepts_gzip, respond);
   if (request.path == "/api/v1/service") return respond(service());
+  if (request.path == "/api/v1/overview")
+    return parts_.pool.ask(
+        [this](const Stored& stored) {
+          return json_response(overview_view(stored, parts_.config, configured_services()));
+        },
+        request.accepts_gzip, respond);
   if (request.path == "/api/v1/session") return respond(session(request));
   if (request.path == "/api/v1/refusals") return respond(json_response(parts_.audit.last()));
   if (request.path == "/api/v1/stream")
@@ -218,7 +220,8 @@ void Site::metrics(bool compressed, const Respond& respond) {
         const auto heard = services.find(parts_.config.service_name);
         put_service(text, heard == services.end() ? std::nullopt : std::optional(heard->second));
         put_files(text, parts_.config.database);
-        put_registry(text, stored, parts_.live.decisions());
+        put_registry(text, stored, overview_view(stored, parts_.config, configured_services()),
+                     parts_.live.decisions());
         put_server(text, parts_.counts());
         answered_.put(text);
         HttpResponse response = text_response(200, std::move(text).take());
@@ -226,6 +229,17 @@ void Site::metrics(bool compressed, const Respond& respond) {
         return response;
       },
       compressed, respond);
+}
+
+std::vector<ServiceStatus> Site::configured_services() const {
+  const Config& config = parts_.config;
+  std::vector<ServiceStatus> services;
+  for (const auto& [name, one] : parts_.live.services()) {
+    const bool is_configured =
+        config.pair.empty() ? name == config.service_name : one.status.pair == config.pair;
+    if (is_configured && one.heard >= SteadyClock::now() - fresh) services.push_back(one.status);
+  }
+  return services;
 }
 
 HttpResponse Site::service() const {
@@ -255,7 +269,8 @@ HttpResponse Site::readiness(const HttpRequest& request) const {
   const auto services = parts_.live.services();
   const auto heard = services.find(parts_.config.service_name);
   const Json status = heard == services.end() ? Json() : status_value(heard->second);
-  const bool is_fresh = status.is_object() && status["age_s"].get<double>() <= fresh_s;
+  const bool is_fresh =
+      heard != services.end() && heard->second.heard >= SteadyClock::now() - fresh;
   const std::string database = parts_.live.database_error();
   const std::string failure = is_fresh ? status["last_error"].get<std::string>() : "";
   const bool is_ready = is_fresh && failure.empty() && database.empty();

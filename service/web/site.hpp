@@ -38,6 +38,8 @@ class Site {
   void order(const HttpRequest& request, const Respond& respond);
   void log_in(const HttpRequest& request, const Respond& respond);
   HttpResponse session(const HttpRequest& request) const;
+  /// The configured service, or those of its pair, as far as they are heard now.
+  std::vector<ServiceStatus> configured_services() const;
   HttpResponse service() const;
   HttpResponse readiness(const HttpRequest& request) const;
   void metrics(bool compressed, const Respond& respond);

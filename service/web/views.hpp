@@ -1,6 +1,8 @@
 // What each address of the page's API answers. openapi.json describes the members.
 #pragma once
 
+#include "service/config/config.hpp"
+#include "service/model/messages.hpp"
 #include "service/web/json.hpp"
 #include "service/web/query_pool.hpp"
 
@@ -8,8 +10,11 @@ namespace reident::web {
 
 // Each throws BadRequest for a question that cannot be answered, and what readers throw.
 
-/// Each equipment, worst first: its champion, errors, what waits, who holds it; and alarms.
-Json overview_view(const Stored& stored, const HttpRequest& request);
+/// Each equipment, worst first: its champion, errors, what waits, who holds it; alarms, and the
+/// services of the pair. `heard`: the configured service, or those of its pair, as far as they are
+/// heard now.
+Json overview_view(const Stored& stored, const Config& config,
+                   const std::vector<ServiceStatus>& heard);
 /// The versions that wait for an operator, with their verdicts.
 Json waiting_view(const Stored& stored, const HttpRequest& request);
 /// Who runs which version.

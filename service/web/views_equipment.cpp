@@ -1,8 +1,10 @@
 #include <algorithm>
 
 #include "service/model/derived_inputs.hpp"
+#include "service/model/status_json.hpp"
 #include "service/review/evidence.hpp"
 #include "service/review/verdict.hpp"
+#include "service/support/utc_clock.hpp"
 #include "service/web/questions.hpp"
 #include "service/web/views.hpp"
 
@@ -106,13 +108,23 @@ Json version_line(const storage::Attempt& attempt, const std::string& status,
 
 }  // namespace
 
-Json overview_view(const Stored& stored, const HttpRequest&) {
-  const auto alarms = stored.history.alarms();
+Json overview_view(const Stored& stored, const Config& config,
+                   const std::vector<ServiceStatus>& heard) {
+  auto alarms = stored.history.alarms();
+  if (heard.empty() && !storage::Database::has_writer(config.database))
+    alarms.insert(alarms.begin(), history::no_service_alarm(config.database, utc_now()));
+  history::add_alarms_of(heard, alarms);
   auto rows = stored.history.overview();
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment)
+      history::add_untried({spacecraft.name, equipment.name}, rows);
   history::put_worst_first(rows, alarms);
-  Json lines = Json::array();
+  Json lines = Json::array(), pair = Json::array();
   for (const history::OverviewRow& row : rows) lines.push_back(overview_line(stored, row, alarms));
-  return {{"equipment", std::move(lines)}, {"alarms", alarm_values(alarms)}};
+  for (const ServiceStatus& service : heard)
+    if (!service.pair.empty()) pair.push_back(pair_json(service));
+  return {
+      {"equipment", std::move(lines)}, {"alarms", alarm_values(alarms)}, {"pair", std::move(pair)}};
 }
 
 Json waiting_view(const Stored& stored, const HttpRequest&) {

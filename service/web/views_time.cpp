@@ -248,8 +248,8 @@ Json telemetry_view(const Stored& stored, const HttpRequest& request) {
   const storage::SeriesInfo series = series_of(stored, request);
   const TimeRange range = range_of(request, {series.first, series.last + 1});
   const storage::TimeBins bins = bins_of(request, range);
-  const auto summary =
-      history::summarise(stored.telemetry, series, bins, [&stored] { stored.check_time(); });
+  const auto summary = history::summarise(stored.database, series, bins, stored.pieces,
+                                          [&stored] { stored.check_time(); });
   BinColumns columns(range.begin);
   Json flagged = Json::array();  // bins with samples that are not good
   for (const history::BinSummary& bin : summary.bins) {

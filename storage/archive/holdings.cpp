@@ -67,6 +67,16 @@ std::map<std::int64_t, std::string> source_names(const Database& database) {
   return names;
 }
 
+std::vector<ChunkOutline> chunk_outlines(const Database& database, std::int64_t series,
+                                         TimeRange range) {
+  return archive_access(database).reader().outlines(series, range);
+}
+
+bool read_chunk(const Database& database, const ChunkOutline& chunk, WantedColumns wanted,
+                SampleColumns& samples) {
+  return archive_access(database).reader().read(chunk, wanted, samples);
+}
+
 SeriesBatches::SeriesBatches(const Database& database, std::int64_t series, TimeRange range,
                              std::size_t chunks, WantedColumns wanted)
     : database_(&database), series_(series), range_(range), chunks_(chunks), wanted_(wanted) {}

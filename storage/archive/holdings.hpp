@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "storage/archive/chunk_outline.hpp"
 #include "storage/database/database.hpp"
 #include "storage/types/sample_columns.hpp"
 #include "storage/types/series.hpp"
@@ -33,6 +34,15 @@ std::size_t damaged_chunks(const Database& database);
 
 /// Names of all sources by the ids that samples have (SampleColumns::source).
 std::map<std::int64_t, std::string> source_names(const Database& database);
+
+/// The chunks that lie in `range` and hold all that the series has between their ends, ascending.
+/// What is recent, or in a chunk that reaches out of the range, is in none of them.
+std::vector<ChunkOutline> chunk_outlines(const Database& database, std::int64_t series,
+                                         TimeRange range);
+/// Puts the samples of a chunk in the place of those that `samples` held. False, with none, where
+/// it was written again since. Throws Error (corrupt) where it cannot be decoded.
+bool read_chunk(const Database& database, const ChunkOutline& chunk, WantedColumns wanted,
+                SampleColumns& samples);
 
 /// Reads one series forward, a batch at a time. Each batch is a snapshot of its own, so that a
 /// long reading does not keep the log from being folded. What lands before the place that it has

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "storage/archive/damage.hpp"
@@ -24,6 +25,20 @@ constexpr std::string_view chunks_in_range =
     "WHERE series = ?1 AND first_time <= ?3 AND last_time >= ?2 AND first_time >= "
     "coalesce((SELECT max(first_time) FROM chunk WHERE series = ?1 AND first_time <= ?2), ?2) "
     "ORDER BY first_time";
+
+constexpr std::string_view chunks_within =
+    "SELECT first_time, last_time, samples, step, gap_limit, shard, data FROM chunk "
+    "WHERE series = ? AND first_time BETWEEN ? AND ?3 AND last_time <= ?3 ORDER BY first_time";
+
+/// Of a chunk's bytes the checksum of its summary, which has one of the rest (CHUNK.md); 0 where
+/// there are too few.
+std::uint64_t identity_of(std::span<const std::uint8_t> chunk) {
+  constexpr std::size_t begin = 72, length = 8;
+  std::uint64_t identity = 0;
+  if (chunk.size() < begin + length) return identity;
+  for (const std::uint8_t byte : chunk.subspan(begin, length)) identity = identity << 8 | byte;
+  return identity;
+}
 
 TimeRange from_to(Time first, Time last) {
   return {first, last == latest ? latest : last + 1};
@@ -104,6 +119,50 @@ SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedCol
   overlay(samples, newer);
   if (as_of) undo_revisions(connection_, decoder_, series, *as_of, range, wanted, samples);
   return samples;
+}
+
+std::vector<ChunkOutline> SeriesReader::outlines(std::int64_t series, TimeRange range) {
+  std::vector<ChunkOutline> found;
+  if (range.begin >= range.end) return found;
+  const Time last = range.end - 1;
+  sqlite::ReadTransaction snapshot(connection_);
+  std::vector<std::pair<Time, Time>> recent;
+  each_recent(series, range.begin, last, [&recent](const sqlite::Query& row) {
+    recent.emplace_back(row.integer(0), row.integer(1));
+  });
+  const auto lies_in = [&recent](Time from, Time to) {
+    return std::any_of(recent.begin(), recent.end(), [from, to](const auto& fragment) {
+      return fragment.first <= to && fragment.second >= from;
+    });
+  };
+  sqlite::Query row = connection_.query(chunks_within, series, range.begin, last);
+  bool follows = false;
+  for (Time before = range.begin; row.step(); before = row.integer(1)) {
+    const Time chunk_first = row.integer(0), chunk_last = row.integer(1);
+    follows = follows && !lies_in(before, chunk_first);
+    const bool is_whole = !lies_in(chunk_first, chunk_last);
+    if (is_whole)
+      found.push_back({.first = chunk_first,
+                       .last = chunk_last,
+                       .samples = row.integer<std::size_t>(2),
+                       .sampling = {row.integer(3), row.integer(4)},
+                       .identity = identity_of(bytes_.read({row.integer(5), row.integer(6)})),
+                       .follows = follows,
+                       .series = series,
+                       .shard = row.integer(5),
+                       .data = row.integer(6)});
+    follows = is_whole;
+  }
+  return found;
+}
+
+bool SeriesReader::read(const ChunkOutline& chunk, WantedColumns wanted, SampleColumns& samples) {
+  samples = {};
+  const std::span<const std::uint8_t> bytes = bytes_.read({chunk.shard, chunk.data});
+  if (bytes.empty() || identity_of(bytes) != chunk.identity) return false;
+  if (const auto error = decoder_.decode(bytes, samples.target(wanted)))
+    throw damage(connection_, {chunk.series, chunk.first, chunk.last, chunk.samples}, *error);
+  return true;
 }
 
 std::optional<Time> SeriesReader::first_at_or_after(std::int64_t series, Time time) {

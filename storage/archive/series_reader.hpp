@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "storage/archive/chunk_bytes.hpp"
+#include "storage/archive/chunk_outline.hpp"
 #include "storage/database/sqlite.hpp"
 #include "storage/types/sample_columns.hpp"
 
@@ -22,6 +24,12 @@ class SeriesReader {
   /// Samples with a time in `range`; with a batch, as it was after that one.
   SampleColumns read(std::int64_t series, TimeRange range, WantedColumns wanted = {},
                      std::optional<std::int64_t> as_of = std::nullopt);
+
+  /// The chunks that lie in `range` and within which nothing recent lies, ascending.
+  std::vector<ChunkOutline> outlines(std::int64_t series, TimeRange range);
+  /// Puts the samples of a chunk in the place of those that `samples` held. False where the chunk
+  /// is not there any more as it was.
+  bool read(const ChunkOutline& chunk, WantedColumns wanted, SampleColumns& samples);
 
   std::optional<Time> first_at_or_after(std::int64_t series, Time time);
   std::optional<Time> last_at_or_before(std::int64_t series, Time time);

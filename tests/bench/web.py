@@ -2,8 +2,8 @@
 
     web.py BUILD [--days N] [--repetitions N] [--archive FILE] [--only year|live]
 
-Two databases: a year of five signals at 1 Hz with twenty equipment, which is made here, and one that a
-real service writes meanwhile. The browser is Debian's Chromium. Prints what was measured and, as the
+Three databases: a year of five signals at 1 Hz with twenty equipment, and a day with a hundred, which are
+made here, and one that a real service writes meanwhile. The browser is Debian's Chromium. Prints what was measured and, as the
 last line, one JSON object of the figures.
 """
 
@@ -140,13 +140,17 @@ def browser(url, *arguments):
     return json.loads(done.stdout.splitlines()[-1])
 
 
+def make(build, database, days, equipment):
+    subprocess.run([build / "tests/bench/web/reident_web_archive", database, str(days),
+                    str(equipment)], check=True)
+
+
 def year(build, folder, days, repetitions, archive):
     """What is measured on a year that nobody writes any more."""
     if archive:
         (folder / "year.db").symlink_to(archive.resolve())
     else:
-        subprocess.run([build / "tests/bench/web/reident_web_archive", folder / "year.db",
-                        str(days)], check=True)
+        make(build, folder / "year.db", days, 20)
     page = Page(build, folder, config_of(folder, "year.db", 1 + os.getpid() % 200))
     try:
         path = "/api/v1/telemetry?spacecraft=BENCH&parameter=P1&bins=500"
@@ -160,11 +164,23 @@ def year(build, folder, days, repetitions, archive):
         figures["year_processor_ms"] = 1000 * (page.processor_s() - used) / 5
         figures |= browser(page.url, "first", repetitions)
         figures |= browser(page.url, "plot", repetitions)
-        scrapes = [page.get("/metrics") for _ in range(repetitions)]
-        figures["scrape_ms"] = p95([took for *_, took in scrapes])
     finally:
         page.stop()
     return figures
+
+
+def scrape(build, folder, repetitions):
+    """What a monitoring system waits for, and gets, of a hundred equipment."""
+    make(build, folder / "hundred.db", 1, 100)
+    page = Page(build, folder, config_of(folder, "hundred.db", 1 + os.getpid() % 200))
+    try:
+        used = page.processor_s()
+        scrapes = [page.get("/metrics") for _ in range(repetitions)]
+        return {"scrape_ms": p95([took for *_, took in scrapes]),
+                "scrape_bytes": max(len(body) for _, body, _ in scrapes),
+                "scrape_processor_ms": 1000 * (page.processor_s() - used) / repetitions}
+    finally:
+        page.stop()
 
 
 def slow(page, repetitions):
@@ -300,6 +316,7 @@ def main():
         if arguments.only != "live":
             figures |= year(arguments.build, folder, arguments.days, arguments.repetitions,
                             arguments.archive)
+            figures |= scrape(arguments.build, folder, arguments.repetitions)
         if arguments.only != "year":
             figures |= live(arguments.build, folder, arguments.repetitions)
     figures = {key: round(value, 4) if isinstance(value, float) else value

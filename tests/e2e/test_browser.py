@@ -35,6 +35,24 @@ class Browser(test_web.WebCase):
         self.assertEqual(self.query("SELECT kind, actor, reason FROM decision WHERE actor != 'gate'"),
                          [("approve", "Ana", "seen on two passes")])
 
+    def test_open_mct_has_the_telemetry_versions_and_decisions_as_they_come(self):
+        self.flown(approval="by_hand")
+        self.start_web()
+        version = self.query("SELECT min(version) FROM model_version WHERE status = 'waiting'")[0][0]
+        with subprocess.Popen(
+                ["node", str(BROWSER / "openmct.mjs"), f"http://127.0.0.1:{self.port}/", "SAT",
+                 "PLANT", "out", str(PAGE.parent / "openmct-reident.js")],
+                stdout=subprocess.PIPE, text=True) as look:
+            self.addCleanup(look.kill)
+            self.assertEqual(look.stdout.readline(), "listening\n")
+            csv = plant.write(self.folder / "more.csv", plant.rows(first=1900, count=20))
+            self.replay_all(csv, "--wait-readers", 1)
+            status, text = self.reident("approve", "PLANT", version, "--reason", "seen in Open MCT",
+                                        "--actor", "Ana", *self.endpoint())
+            self.assertEqual(status, 0, text)
+            report = json.loads(look.stdout.readline())
+        self.assertEqual((report["failures"], report["errors"]), ([], []))
+
     def test_the_bundle_is_that_of_its_sources(self):
         subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=PAGE, check=True,
                        capture_output=True, timeout=4 * DEADLINE_S)

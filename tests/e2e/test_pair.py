@@ -6,11 +6,12 @@ import subprocess
 import time
 import unittest
 
+import test_web
 from harness import wait_until
 from pair import PairOfServices, can_make_hosts, make_hosts
 
 
-class Pair(PairOfServices):
+class Pair(PairOfServices, test_web.WebCase):
     def setUp(self):
         super().setUp()
         self.configure_pair()
@@ -18,9 +19,23 @@ class Pair(PairOfServices):
     def test_the_standby_has_every_row_and_takes_over_when_the_leader_is_killed(self):
         self.start_both()
         _, text = self.reident("overview", "--json", "--config", self.folder / "2.toml")
-        self.assertEqual({one["service"]: (one["role"], one["term"], one["lag"])
-                          for one in json.loads(text)["pair"]},
-                         {"reident-2": ("leads", 2, 0), "reident-1": ("follows", 2, 0)})
+        roles = {"reident-2": ("leads", 2, 0), "reident-1": ("follows", 2, 0)}
+
+        def told(pair):
+            return {one["service"]: (one["role"], one["term"], one["lag"]) for one in pair}
+
+        self.assertEqual(told(json.loads(text)["pair"]), roles)
+        page = self.start_web(config="1.toml")
+        wait_until(lambda: told(self.api("overview")["pair"]) == roles, "the page shows both")
+        self.assertEqual([(one["service"], one["pair"]["name"], one["pair"]["role"],
+                           one["pair"]["partner"]) for one in self.api("service")["services"]],
+                         [("reident-1", "reident", "follows", "reident-2"),
+                          ("reident-2", "reident", "leads", "reident-1")])
+        metrics = self.request("/metrics")[2].decode()
+        for line in ("leads 0", "term 2", "lag_rows 0", "partner_heard 1"):
+            name, value = line.split()
+            self.assertIn(f'\nreident_pair_{name}{{pair="reident"}} {value}\n', metrics)
+        page.terminate()
         simulator = self.start_simulator("trainer")
         self.replay_flight("first", 3, count=1300)
         first = self.wait_for_champion(2, [simulator])
@@ -110,6 +125,9 @@ class Pair(PairOfServices):
         self.start_side(1)
         wait_until(lambda: any("cannot_follow" in alarm
                                for alarm in self.statuses()[1]["alarms"]), "it says so")
+        self.start_web(config="2.toml")
+        wait_until(lambda: any(alarm["code"] == "cannot_follow" and "reident-1" in alarm["text"]
+                               for alarm in self.api("overview")["alarms"]), "and so does the page")
         before = self.ask(1, "SELECT * FROM hold")
         self.sides[2].kill()
         wait_until(lambda: list(self.statuses()) == [1], "it is alone")

@@ -23,9 +23,9 @@ from harness import BIN, DEADLINE_S, EndToEnd, wait_until
 class WebCase(EndToEnd):
     """A service, the page's server, and requests to it."""
 
-    def start_web(self, *options, name="web", user=None):
-        web = self.start("reident-web", "--config", self.folder / "reident.toml", "--port", 0,
-                         *options, name=name, user=user)
+    def start_web(self, *options, name="web", user=None, config="reident.toml"):
+        web = self.start("reident-web", "--config", self.folder / config, "--port", 0, *options,
+                         name=name, user=user)
         wait_until(lambda: "url=" in web.text() or not web.running(), "reident-web serves")
         self.assertTrue(web.running(), web.text())
         self.port = int(re.search(r"url=\S*:(\d+)/", web.text())[1])

@@ -18,6 +18,7 @@
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/fleet/instances.hpp"
+#include "service/model/status_json.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
@@ -92,13 +93,7 @@ void hear_pair(const Config& config, Overview& overview) {
   }
   std::erase_if(overview.pair,
                 [&](const ServiceStatus& service) { return service.pair != config.pair; });
-  for (const ServiceStatus& service : overview.pair)
-    if (service.role != "leads")
-      for (const std::string& line : lines_of(service.alarms)) {
-        const std::string code = line.substr(0, line.find_first_of(" :"));
-        if (std::ranges::find(overview.alarms, code, &Alarm::code) == overview.alarms.end())
-          overview.alarms.push_back({code, {}, service.service + ": " + line, service.time});
-      }
+  history::add_alarms_of(overview.pair, overview.alarms);
 }
 
 Overview read(const Readers& readers, const std::optional<Config>& config) {
@@ -108,11 +103,8 @@ Overview read(const Readers& readers, const std::optional<Config>& config) {
     for (const EquipmentName& name : equipment_of(*config))
       history::add_untried(name, overview.rows);
     if (!storage::Database::has_writer(config->database))
-      overview.alarms.insert(
-          overview.alarms.begin(),
-          no_service("No service runs on " + config->database.string() +
-                         ": what is below is as the last one left it. Start reidentd.",
-                     overview.now));
+      overview.alarms.insert(overview.alarms.begin(),
+                             history::no_service_alarm(config->database, overview.now));
   }
   if (config && !config->pair.empty()) hear_pair(*config, overview);
   history::put_worst_first(overview.rows, overview.alarms);
@@ -258,11 +250,7 @@ void print_json(const Overview& overview) {
   for (const OverviewRow& row : overview.rows) rows.push_back(row_json(row, overview));
   for (const Alarm& alarm : overview.alarms) alarms.push_back(alarm_json(alarm));
   ordered_json pair = ordered_json::array();
-  for (const ServiceStatus& service : overview.pair)
-    pair.push_back({{"service", service.service},
-                    {"role", service.role},
-                    {"term", service.term},
-                    {"lag", service.lag < 0 ? ordered_json() : ordered_json(service.lag)}});
+  for (const ServiceStatus& service : overview.pair) pair.push_back(pair_json(service));
   ordered_json object = {{"time", time_text(overview.now)},
                          {"act", needs_action(overview)},
                          {"equipment", std::move(rows)},

@@ -10,7 +10,7 @@
 #include "service/cli/output/table.hpp"
 #include "service/cli/verb.hpp"
 #include "service/dds/dds.hpp"
-#include "service/support/floor_divide.hpp"
+#include "service/model/status_json.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
@@ -32,10 +32,6 @@ struct Arguments {
   double timeout_s = default_timeout_s;
   bool json = false;
 };
-
-bool is_idle(const ServiceStatus& status) {
-  return status.queue_length == 0 && status.windows_pending == 0;
-}
 
 /// Idle in two heartbeats, and nothing came in between them.
 bool stayed_idle(const ServiceStatus& before, const ServiceStatus& now) {
@@ -80,46 +76,10 @@ std::string newest_text(const ServiceStatus& status) {
   return status.newest_telemetry == 0 ? "none" : time_text(status.newest_telemetry);
 }
 
-/// Until the service's certificate ends, by the service's clock; below 0 once it has ended.
-std::int64_t days_left(const ServiceStatus& status) {
-  constexpr std::int64_t day = 86'400'000'000'000;
-  return floor_divide(status.certificate_end - status.time, day);
-}
-
-nlohmann::ordered_json json_of(const ServiceStatus& status) {
-  nlohmann::ordered_json object = {{"service", status.service},
-                                   {"program_version", status.program_version},
-                                   {"started", time_text(status.started)},
-                                   {"time", time_text(status.time)},
-                                   {"idle", is_idle(status)}};
-  for (const auto& [name, count] : counts(status)) object[name] = count;
-  object["newest_telemetry"] = status.newest_telemetry == 0
-                                   ? nlohmann::ordered_json()
-                                   : nlohmann::ordered_json(time_text(status.newest_telemetry));
-  object["certificate_end"] = status.certificate_end == 0
-                                  ? nlohmann::ordered_json()
-                                  : nlohmann::ordered_json(time_text(status.certificate_end));
-  object["certificate_days"] = status.certificate_end == 0
-                                   ? nlohmann::ordered_json()
-                                   : nlohmann::ordered_json(days_left(status));
-  object["last_error"] = status.last_error;
-  object["failing_champions"] = status.failing_champions;
-  object["alarms"] = lines_of(status.alarms);
-  object["equipment"] = split_names(status.equipment);
-  if (!status.pair.empty())
-    object["pair"] = {
-        {"name", status.pair},
-        {"role", status.role},
-        {"term", status.term},
-        {"partner", status.partner},
-        {"lag", status.lag < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(status.lag)}};
-  return object;
-}
-
 void print_json(const ServiceStatus& status, const Heard& others) {
-  nlohmann::ordered_json object = json_of(status);
+  nlohmann::ordered_json object = status_json(status);
   object["others"] = nlohmann::ordered_json::array();
-  for (const auto& [key, other] : others) object["others"].push_back(json_of(other));
+  for (const auto& [key, other] : others) object["others"].push_back(status_json(other));
   fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
@@ -131,9 +91,8 @@ void print_text(const ServiceStatus& status) {
                status.partner.empty() ? "nobody" : status.partner,
                status.lag < 0 ? "" : fmt::format(", {} rows of the registry behind", status.lag));
   fmt::print("newest telemetry {}\n", newest_text(status));
-  if (status.certificate_end != 0)
-    fmt::print("certificate until {} ({} days)\n", time_text(status.certificate_end),
-               days_left(status));
+  if (const auto days = certificate_days(status))
+    fmt::print("certificate until {} ({} days)\n", time_text(status.certificate_end), *days);
   Table table({{"count"}, {"", Table::Align::right}});
   for (const auto& [name, count] : counts(status)) table.add({name, fmt::format("{}", count)});
   fmt::print("{}", table.text(0));

@@ -1,7 +1,7 @@
-// Makes what the page is measured on: a year of five signals at 1 Hz, with a gap each day, and
-// twenty equipment with a champion, of which the first has the signals.
+// Makes what the page is measured on: five signals at 1 Hz, with a gap each day, and equipment with
+// a champion, of which the first has the signals.
 //
-//   reident_web_archive DATABASE DAYS
+//   reident_web_archive DATABASE DAYS EQUIPMENT
 
 #include "storage/archive/archive.hpp"
 
@@ -24,7 +24,7 @@ constexpr storage::Time day = 86'400 * storage::second_ns;
 constexpr storage::Time begin = 20'000 * day;
 constexpr std::int64_t gap_begins_s = 40'000, gap_ends_s = 41'000;
 constexpr std::size_t frames_at_once = 4096;
-constexpr int signals = 5, equipment = 20, decisions = 50;
+constexpr int signals = 5, decisions = 50;
 
 void fill(storage::Archive& archive, std::int64_t days) {
   std::vector<storage::ParameterDescriptor> descriptors;
@@ -84,8 +84,8 @@ EquipmentModel model(const std::string& name) {
   return made;
 }
 
-void decide(storage::Registry& registry, std::int64_t days) {
-  for (int i = 1; i <= equipment; ++i) {
+void decide(storage::Registry& registry, std::int64_t days, std::int64_t equipment) {
+  for (std::int64_t i = 1; i <= equipment; ++i) {
     const std::string name = "E" + std::to_string(i);
     const std::string text = to_json(model(name)).dump();
     const int versions = i == 1 ? decisions : 3;
@@ -107,8 +107,8 @@ void decide(storage::Registry& registry, std::int64_t days) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fputs("usage: reident_web_archive DATABASE DAYS\n", stderr);
+  if (argc != 4) {
+    std::fputs("usage: reident_web_archive DATABASE DAYS EQUIPMENT\n", stderr);
     return 2;
   }
   const std::int64_t days = std::strtoll(argv[2], nullptr, 10);
@@ -117,5 +117,5 @@ int main(int argc, char** argv) {
   storage::Archive archive(database);
   fill(archive, days);
   storage::Registry registry(database);
-  decide(registry, days);
+  decide(registry, days, std::strtoll(argv[3], nullptr, 10));
 }

@@ -65,7 +65,7 @@ async function everyView(theme, width) {
       report.axe.push(`${name} ${theme} ${width}: ${id} ${nodes.map((node) => `${node.html.slice(0, 120)} ${node.any[0]?.message ?? ""}`).join(" | ")}`);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
     check(wide <= 0, `${name} at ${width} is ${wide} pixels wider than the window`);
-    if (folder) await page.screenshot({ path: `${folder}/${name}-${theme}-${width}.png`, fullPage: true });
+    if (folder) await page.screenshot({ path: `${folder}/${name}-${theme}-${width}.png`, fullPage: true, timeout: 0 });
   }
   await page.context().close();
 }

@@ -5,116 +5,137 @@
 
 #include <gtest/gtest.h>
 
+#include "storage/archive/archive.hpp"
+#include "storage/archive/holdings.hpp"
+#include "tests/storage/fixture.hpp"
+
 namespace reident::history {
 namespace {
 
 using storage::Quality;
 using storage::Time;
 
-/// Samples in memory, handed out in batches.
-class Samples final : public TelemetryReader {
- public:
-  explicit Samples(storage::SampleColumns columns, std::size_t batch)
-      : columns_(std::move(columns)), batch_(batch) {}
-
-  std::unique_ptr<SampleBatches> batches(const storage::SeriesInfo&, storage::TimeRange range,
-                                         std::size_t, storage::WantedColumns) const override {
-    struct Some final : SampleBatches {
-      bool next(storage::SampleColumns& out) override {
-        out = {};
-        for (; at < of->columns_.size() && out.size() < of->batch_; ++at)
-          if (of->columns_.time[at] >= range.begin && of->columns_.time[at] < range.end)
-            out.append(of->columns_, at, at + 1);
-        return !out.empty();
-      }
-      const Samples* of = nullptr;
-      storage::TimeRange range;
-      std::size_t at = 0;
-    };
-    auto some = std::make_unique<Some>();
-    some->of = this;
-    some->range = range;
-    return some;
-  }
-  std::optional<storage::ParameterDescriptor> parameter(const std::string&,
-                                                        const std::string&) const override {
-    return std::nullopt;
-  }
-  storage::Series read(const std::string&, storage::Origin, std::uint32_t,
-                       storage::TimeRange) const override {
-    return {};
-  }
-  std::vector<storage::SeriesInfo> series() const override { return {}; }
-  std::map<std::int64_t, std::string> source_names() const override { return {}; }
-  std::vector<storage::BinCounts> completeness(const storage::SeriesInfo&, const storage::TimeBins&,
-                                               Time) const override {
-    return {};
-  }
-  std::vector<storage::SequenceGap> sequence_gaps() const override { return {}; }
-
- private:
-  storage::SampleColumns columns_;
-  std::size_t batch_;
-};
-
 constexpr Time second = storage::second_ns;
 
-// A naive summary of each bin is the oracle.
-TEST(Summary, HasTheExtremesOfEachBinAtTheirTimes) {
+class Summary : public ::testing::Test {
+ protected:
+  storage::test::TemporaryFolder folder;
+  storage::Database database{folder / "archive.db", storage::Database::Mode::read_write};
+  storage::Archive archive{database, {.chunk_samples = 128}};
+  PieceMemory memory;
+
+  void store(Time time, double value, Quality quality = Quality::good) {
+    frames_.push_back(storage::test::frame(++sequence_, time, {{1, quality, value}}));
+  }
+  void commit() {
+    archive.append(frames_);
+    frames_.clear();
+  }
+  storage::SeriesInfo series() const { return storage::all_series(database).front(); }
+
+  /// Against a naive summary of each bin.
+  void expect_right(const storage::TimeBins& bins) {
+    const storage::Series all =
+        archive.read("CB4", storage::Origin::real, 1, {bins.range().begin, bins.range().end});
+    std::vector<BinSummary> expected;
+    for (std::size_t i = 0; i < all.time.size(); ++i) {
+      const Time time = all.time[i];
+      const double value = all.value[i];
+      const storage::TimeRange bin = bins.at(bins.of(time));
+      if (expected.empty() || expected.back().bin != bin) {
+        expected.emplace_back().bin = bin;
+        expected.back().first = time;
+      }
+      BinSummary& one = expected.back();
+      one.last = time;
+      ++one.samples;
+      one.numbers += !std::isnan(value);
+      if (value < one.least) {
+        one.least = value;
+        one.least_time = time;
+      }
+      if (value > one.greatest) {
+        one.greatest = value;
+        one.greatest_time = time;
+      }
+      if (storage::is_better(one.worst, all.quality[i])) one.worst = all.quality[i];
+    }
+    const SeriesSummary found = summarise(database, series(), bins, memory);
+    ASSERT_EQ(found.bins.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const BinSummary &is = found.bins[i], &should = expected[i];
+      ASSERT_EQ(is.bin, should.bin) << i;
+      ASSERT_EQ(
+          (std::tuple(is.first, is.last, is.samples, is.numbers, is.worst)),
+          (std::tuple(should.first, should.last, should.samples, should.numbers, should.worst)))
+          << i;
+      ASSERT_EQ(
+          (std::tuple(is.least, is.greatest, is.least_time, is.greatest_time)),
+          (std::tuple(should.least, should.greatest, should.least_time, should.greatest_time)))
+          << i;
+    }
+  }
+
+ private:
+  std::vector<storage::TelemetryFrame> frames_;
+  std::uint64_t sequence_ = 0;
+};
+
+TEST_F(Summary, HasTheExtremesOfEachBinAtTheirTimesWhateverIsKeptInChunksAndInMemory) {
   std::mt19937 random(20261126);
-  storage::SampleColumns columns;
+  std::normal_distribution<> values(3, 1);
   Time time = 0;
   for (int i = 0; i < 5000; ++i) {
-    time += second * (1 + (random() % 50 == 0 ? 40 : 0));
-    const double value = random() % 90 == 0 ? NAN : std::normal_distribution<>(3, 1)(random);
-    columns.push_back(time, {value, random() % 100 == 0 ? Quality::suspect : Quality::good, 1});
+    time += 10 * second * (1 + (random() % 50 == 0 ? 40 : 0));
+    if (random() % 90 == 0)
+      store(time, NAN, Quality::invalid);
+    else
+      store(time, std::round(values(random) * 10) / 10,
+            random() % 100 == 0 ? Quality::suspect : Quality::good);
   }
-  const storage::TimeBins bins({100 * second + 5, 4000 * second}, 37 * second);
-  const SeriesSummary summary = summarise(Samples(columns, 333), {}, bins);
-  std::size_t samples = 0;
-  for (const BinSummary& bin : summary.bins) {
-    double least = INFINITY, greatest = -INFINITY;
-    std::uint64_t count = 0;
-    Quality worst = Quality::good;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (columns.time[i] < bin.bin.begin || columns.time[i] >= bin.bin.end) continue;
-      ++count;
-      if (columns.value[i] < least) least = columns.value[i];
-      if (columns.value[i] > greatest) greatest = columns.value[i];
-      if (columns.quality[i] == Quality::suspect) worst = Quality::suspect;
-      if (columns.time[i] == bin.least_time) {
-        EXPECT_EQ(columns.value[i], bin.least);
+  commit();
+  const auto expect_all_right = [&] {
+    for (const Time length : {37, 700, 2000, 30'000, 1'000'000})
+      for (const Time begin : {-5, 1005, 20'000}) {
+        expect_right({{begin * second + 5, time - 300 * second}, length * second});
+        if (HasFatalFailure()) FAIL() << length << " " << begin;
       }
-      if (columns.time[i] == bin.greatest_time) {
-        EXPECT_EQ(columns.value[i], bin.greatest);
-      }
-    }
-    ASSERT_EQ(bin.samples, count);
-    EXPECT_EQ(bin.least, least);
-    EXPECT_EQ(bin.greatest, greatest);
-    EXPECT_EQ(bin.worst, worst);
-    samples += bin.samples;
-  }
-  std::size_t in_range = 0;
-  for (const Time at : columns.time) in_range += at >= bins.range().begin && at < bins.range().end;
-  EXPECT_EQ(samples, in_range);
+  };
+  expect_all_right();  // recent samples alone
+  archive.compact();
+  expect_all_right();
+  expect_all_right();  // from memory
+  for (int i = 0; i < 300; ++i)
+    store(1 + static_cast<Time>(random() % 50'000) * second, values(random) * 3);
+  commit();
+  expect_all_right();  // late ones over chunks
+  archive.compact();
+  expect_all_right();
+  PieceMemory small(3);
+  const storage::TimeBins bins({0, time}, 2000 * second);
+  EXPECT_EQ(summarise(database, series(), bins, small).bins.size(),
+            summarise(database, series(), bins, memory).bins.size());
 }
 
-TEST(Summary, NamesTheGapsThatAreNotShorterThanABin) {
-  storage::SampleColumns columns;
+TEST_F(Summary, NamesTheGapsThatAreNotShorterThanABin) {
   for (Time at = 0; at < 1000; ++at)
-    if ((at < 300 || at >= 400) && (at < 600 || at >= 605))
-      columns.push_back(at * second, {1, Quality::good, 1});
-  const storage::TimeBins bins({0, 1000 * second}, 10 * second);
-  for (const std::size_t batch : {7U, 300U, 5000U}) {
-    const auto gaps = summarise(Samples(columns, batch), {}, bins).gaps;
-    ASSERT_EQ(gaps.size(), 1U) << batch;
+    if ((at < 300 || at >= 400) && (at < 600 || at >= 605)) store(at * second, 1);
+  commit();
+  const auto expect_one_gap = [&](Time length) {
+    const auto gaps =
+        summarise(database, series(), {{0, 1000 * second}, length * second}, memory).gaps;
+    ASSERT_EQ(gaps.size(), 1U) << length;
     EXPECT_EQ(gaps[0], (storage::TimeRange{299 * second, 400 * second}));
-  }
+  };
+  for (const Time length : {10, 70, 90}) expect_one_gap(length);
+  archive.compact();
+  for (const Time length : {10, 70, 90, 90}) expect_one_gap(length);
 }
 
-TEST(Summary, OfNothingIsEmpty) {
-  const SeriesSummary summary = summarise(Samples({}, 10), {}, storage::TimeBins({0, 100}, 10));
+TEST_F(Summary, OfNothingIsEmpty) {
+  store(1000 * second, 1);
+  commit();
+  const SeriesSummary summary = summarise(database, series(), {{0, 100}, 10}, memory);
   EXPECT_TRUE(summary.bins.empty());
   EXPECT_TRUE(summary.gaps.empty());
 }
