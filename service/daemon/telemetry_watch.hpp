@@ -20,11 +20,13 @@ namespace reident {
 class TelemetryWatch : public ArchiveListener {
  public:
   /// Configuration and listener must outlive it.
-  TelemetryWatch(const Config& config, Clock clock, ArchiveListener& next);
+  TelemetryWatch(const Config& config, Clock clock, Clock uptime, ArchiveListener& next);
 
   /// Takes up the parameters that earlier runs heard of, and when they wrote their last entry [ns];
   /// 0 where there is none. Call once, before the threads start.
   void recover(const storage::Archive& archive, storage::Time last_entry);
+  /// A window was tried at a time, by this service or the other one of its pair.
+  void tried(storage::Time time);
 
   void stored(const std::vector<storage::TelemetryFrame>& frames,
               const storage::AppendReport& report) override;
@@ -42,11 +44,12 @@ class TelemetryWatch : public ArchiveListener {
     storage::EquipmentName name;
     const EquipmentConfig* config;
     std::vector<std::string> parameters;
-    storage::Time heard;  // when telemetry of it came last, or the service started
+    storage::Time heard;       // when telemetry of it came last, or the service started
+    storage::Time heard_at{};  // the same, of the uptime
   };
   struct Spacecraft {
     std::map<std::uint32_t, std::string> names;  // of parameters, by id
-    storage::Time described = 0;                 // when a new name came last
+    storage::Time described = 0;                 // when a new name came last, of the uptime
     bool is_settled = false;                     // the log has had what nobody uses
     std::optional<Duration> lead;                // of the clock; absent where it is not ahead
   };
@@ -59,10 +62,10 @@ class TelemetryWatch : public ArchiveListener {
       REIDENT_REQUIRES(mutex_);
 
   const Config& config_;
-  const Clock clock_;
+  const Clock clock_, uptime_;
   ArchiveListener& next_;
-  storage::Time last_entry_ = 0;
   mutable Mutex mutex_;
+  storage::Time last_entry_ REIDENT_GUARDED_BY(mutex_) = 0;
   std::vector<Equipment> equipment_ REIDENT_GUARDED_BY(mutex_);
   std::map<std::string, Spacecraft> spacecraft_ REIDENT_GUARDED_BY(mutex_);
 };
