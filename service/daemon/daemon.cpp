@@ -61,9 +61,16 @@ std::string damage_of(const storage::Database& database) {
       count);
 }
 
+/// As many as a status has room for.
 std::string equipment_text(const Config& config) {
+  constexpr std::size_t most_bytes = 60'000;
   std::vector<std::string> names;
-  for (const storage::EquipmentName& name : equipment_of(config)) names.push_back(full_name(name));
+  std::size_t bytes = 0;
+  for (const storage::EquipmentName& name : equipment_of(config)) {
+    bytes += full_name(name).size() + 2;
+    if (bytes > most_bytes) break;
+    names.push_back(full_name(name));
+  }
   return joined(names);
 }
 

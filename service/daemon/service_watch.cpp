@@ -24,6 +24,7 @@ constexpr storage::Time second = 1'000'000'000;
 constexpr storage::Time heartbeats_missed = 5 * second;  // then a service has ended
 constexpr storage::Time swap_time = 30 * second;         // that a simulator may take
 constexpr std::uint64_t least_room = std::uint64_t{256} << 20;
+constexpr std::size_t most_text = 60'000;  // bytes: a status with more is refused by its readers
 constexpr std::string_view of_the_league = "champion_failed";  // raised and cleared there
 
 auto contents(const Alarm& alarm) {
@@ -226,10 +227,15 @@ void ServiceWatch::keep(std::vector<storage::SimulatorState> changes) {
 
 std::string ServiceWatch::text() const {
   std::string text;
-  for (const Alarm& alarm : alarms_) {
+  for (std::size_t i = 0; i < alarms_.size(); ++i) {
+    const Alarm& alarm = alarms_[i];
     const std::string about = name_of(alarm.about);
-    text += fmt::format("{}{}{}{}: {}", text.empty() ? "" : "\n", alarm.code,
-                        about.empty() ? "" : " ", about, alarm.text);
+    const std::string line = fmt::format("{}{}{}{}: {}", text.empty() ? "" : "\n", alarm.code,
+                                         about.empty() ? "" : " ", about, alarm.text);
+    if (text.size() + line.size() > most_text)
+      return text + fmt::format("{}and {} more: 'reident overview' has them",
+                                text.empty() ? "" : "\n", alarms_.size() - i);
+    text += line;
   }
   return text;
 }

@@ -40,7 +40,8 @@ class ServiceWatch {
   /// on a full disk, is tried again at the next look.
   void look();
 
-  /// What look() found, one alarm a line: "code SPACECRAFT/EQUIPMENT: text".
+  /// What look() found, one alarm a line: "code SPACECRAFT/EQUIPMENT: text"; as many as a status
+  /// has room for, and how many more there are.
   std::string text() const;
 
  private:

@@ -17,6 +17,10 @@ using storage::Alarm;
 /// So long after the last new name all of a source's descriptors have come.
 constexpr Duration descriptors_settle = 10'000'000'000;
 
+/// Spacecraft that are not configured have alarms of their own up to so many: a name costs whoever
+/// sends nothing.
+constexpr std::size_t most_strangers = 10;
+
 constexpr Duration minute = 60'000'000'000;
 
 std::vector<std::string> names_of(const std::map<std::uint32_t, std::string>& by_id) {
@@ -157,8 +161,9 @@ std::vector<Alarm> TelemetryWatch::alarms() {
                         now});
   std::vector<std::string> configured;
   for (const SpacecraftConfig& one : config_.spacecraft) configured.push_back(one.name);
+  std::size_t strangers = 0;
   for (auto& [name, spacecraft] : spacecraft_) {
-    if (spacecraft.lead)
+    if (spacecraft.lead && is_configured(name))
       alarms.push_back(
           {"clock",
            {name, ""},
@@ -169,6 +174,7 @@ std::vector<Alarm> TelemetryWatch::alarms() {
            now});
     if (spacecraft.names.empty() || uptime - spacecraft.described < descriptors_settle) continue;
     if (!is_configured(name)) {
+      if (++strangers > most_strangers) continue;
       alarms.push_back({"unknown_names",
                         {name, ""},
                         fmt::format("Telemetry of {} comes, which is not configured{}.", name,
@@ -182,6 +188,13 @@ std::vector<Alarm> TelemetryWatch::alarms() {
         if (std::string text = unknown_text(equipment, spacecraft); !text.empty())
           alarms.push_back({"unknown_names", equipment.name, std::move(text), now});
   }
+  if (strangers > most_strangers)
+    alarms.push_back({"unknown_names",
+                      {},
+                      fmt::format("Telemetry of more than {} spacecraft comes that are not "
+                                  "configured. Look for who sends it.",
+                                  most_strangers),
+                      now});
   return alarms;
 }
 

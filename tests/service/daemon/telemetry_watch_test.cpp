@@ -98,6 +98,18 @@ TEST_F(Watch, ASpacecraftThatIsNotConfiguredIsAnAlarm) {
   EXPECT_THAT(alarms[0].text, HasSubstr("(did you mean SAT?)"));
 }
 
+TEST_F(Watch, AFloodOfSpacecraftThatAreNotConfiguredIsAFewAlarms) {
+  auto others = descriptors();
+  for (int i = 0; i < 1000; ++i) {
+    for (auto& one : others) one.spacecraft = "STRANGE-" + std::to_string(i);
+    watch.described(others, archive);
+  }
+  now += 10 * second;
+  const auto found = codes();
+  EXPECT_THAT(found, SizeIs(11));
+  EXPECT_THAT(found, ::testing::Contains("unknown_names /"));
+}
+
 TEST_F(Watch, TelemetryAheadOfTheClockIsAnAlarmUntilItIsNot) {
   describe(descriptors());
   store(telemetry(now + 180 * minute, 2));
