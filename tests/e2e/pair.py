@@ -6,6 +6,7 @@ import shutil
 import sqlite3
 import subprocess
 import threading
+import time
 
 import plant
 from harness import DEADLINE_S, EndToEnd, wait_until
@@ -72,9 +73,9 @@ def make_hosts(test):
 class Operator(threading.Thread):
     """Gives one command after the other to whoever leads, under a new name each."""
 
-    def __init__(self, run, equipment, host=None):
+    def __init__(self, run, equipment, host=None, pause_s=0):
         super().__init__()
-        self.run_of, self.equipment, self.host = run, equipment, host
+        self.run_of, self.equipment, self.host, self.pause_s = run, equipment, host, pause_s
         self.answered = []  # names whose command was carried out
         self.stopping = False
 
@@ -89,6 +90,7 @@ class Operator(threading.Thread):
                                             host=self.host)
             if status == 0:
                 self.answered.append(actor)
+            time.sleep(self.pause_s)
 
 
 class PairOfServices(EndToEnd):
