@@ -21,7 +21,7 @@ for option in "$@"; do
       command -v npm >/dev/null || packages+=(nodejs npm)
       ;;
     --with-packages)  # what makes Debian packages, and tries them
-      packages+=(dpkg-dev file help2man lintian debootstrap systemd-container nftables iproute2)
+      packages+=(dpkg-dev file help2man lintian debootstrap systemd-container nftables iproute2 faketime)
       ;;
     --with-bench)  # what identification is compared with
       packages+=(libslicot-dev libopenblas0 octave-control)

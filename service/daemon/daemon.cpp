@@ -3,6 +3,8 @@
 #include <chrono>
 #include <limits>
 #include <pthread.h>
+#include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -59,9 +61,16 @@ std::string damage_of(const storage::Database& database) {
       count);
 }
 
+/// As many as a status has room for.
 std::string equipment_text(const Config& config) {
+  constexpr std::size_t most_bytes = 60'000;
   std::vector<std::string> names;
-  for (const storage::EquipmentName& name : equipment_of(config)) names.push_back(full_name(name));
+  std::size_t bytes = 0;
+  for (const storage::EquipmentName& name : equipment_of(config)) {
+    bytes += full_name(name).size() + 2;
+    if (bytes > most_bytes) break;
+    names.push_back(full_name(name));
+  }
   return joined(names);
 }
 
@@ -111,14 +120,15 @@ void log_attempt(const IdentificationReport& report) {
 
 }  // namespace
 
-Daemon::Daemon(const Config& config, Clock clock)
+Daemon::Daemon(const Config& config, Clock clock, Clock uptime)
     : config_(config),
       clock_(std::move(clock)),
+      uptime_(std::move(uptime)),
       started_(clock_()),
       queue_({config.queue_frames, config.queue_mib << 20}),
       search_(usable_cores()),
-      feed_(config, clock_),
-      telemetry_(config, clock_, feed_),
+      feed_(config, clock_, uptime_),
+      telemetry_(config, clock_, uptime_, feed_),
       leagues_(config, feed_),
       writer_(open_for_writing(config), {.recent_samples = config.recent_samples}, queue_,
               config.batch_frames, config.batch_delay, telemetry_),
@@ -146,8 +156,8 @@ Daemon::Daemon(const Config& config, Clock clock)
       stored.journal().leave_pair(config_.service_name, clock_());
     });
   }
-  watch_.emplace(ServiceWatch::Parts{config, clock_, started_, participant_, writer_, telemetry_,
-                                     simulators_, publisher_, damage_of(database),
+  watch_.emplace(ServiceWatch::Parts{config, clock_, uptime_, started_, participant_, writer_,
+                                     telemetry_, simulators_, publisher_, damage_of(database),
                                      pair_ ? &*pair_ : nullptr});
   const std::size_t published = pair_ ? 0 : publisher_.publish_champions(registry);
   log::info("service", "started",
@@ -175,7 +185,7 @@ void Daemon::start() {
   if (pair_) pair_thread_ = spawn("pair", [this] { pair_->run(); });
 }
 
-std::thread Daemon::spawn(const char* name, std::function<void()> body) {
+std::thread Daemon::spawn(const char* name, std::function<void()> body) try {
   return std::thread([this, name, body = std::move(body)] {
     pthread_setname_np(pthread_self(), name);  // for top, perf and debuggers
     try {
@@ -185,6 +195,11 @@ std::thread Daemon::spawn(const char* name, std::function<void()> body) {
       failed_ = true;
     }
   });
+} catch (const std::system_error& error) {
+  throw std::runtime_error(
+      fmt::format("the thread {} cannot be started ({}): raise the limits of tasks and memory "
+                  "(TasksMax, MemoryMax, ulimit -u -v)",
+                  name, error.what()));
 }
 
 void Daemon::identify_windows() {
@@ -247,6 +262,7 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
 void Daemon::publish(const RecordedAttempt& attempt) {
   const RefreshResult& result = attempt.result;
   ++attempts_;
+  telemetry_.tried(result.attempt.time);
   IdentificationReport report = report_of(result);
   report.version = attempt.version;
   publisher_.report(report);
@@ -284,6 +300,7 @@ Pair::Listener Daemon::pair_listener() {
              storage::Archive& archive) {
         for (const std::int64_t id : attempts) {
           const auto attempt = registry.attempt(id);
+          telemetry_.tried(attempt->time);
           archive.seal(attempt->spacecraft, attempt->window.end);
           feed_.tried_elsewhere({attempt->spacecraft, attempt->equipment}, attempt->window);
           feed_.forget_settled(attempt->spacecraft, archive);

@@ -45,7 +45,7 @@ class Daemon {
  public:
   /// Opens the database for writing, joins the domain, publishes every champion and takes up what
   /// an earlier run left. Throws storage::Error or dds::Error. The configuration must outlive it.
-  Daemon(const Config& config, Clock clock);
+  Daemon(const Config& config, Clock clock, Clock uptime);
   /// Stops.
   ~Daemon();
 
@@ -85,7 +85,7 @@ class Daemon {
   void watch_champions();
 
   const Config& config_;
-  const Clock clock_;
+  const Clock clock_, uptime_;
   const storage::Time started_;
   BoundedQueue<TelemetryEvent> queue_;
   WorkerPool search_;  // shared by the identification threads

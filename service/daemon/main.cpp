@@ -6,10 +6,12 @@
 #include <cstring>
 #include <iostream>
 #include <mutex>
+#include <stdexcept>
 #include <stop_token>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "service/config/config.hpp"
 #include "service/daemon/daemon.hpp"
@@ -63,9 +65,21 @@ void reload(const std::string& path) {
   reident::log::set_level(config.log_level);
 }
 
+/// Where there are too few, what fails is anything that opens a file, and its error names that.
+void require_files(const reident::Config& config) {
+  const rlim_t needed = 64 + 8 * config.workers;
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < needed)
+    throw std::runtime_error(
+        fmt::format("this process may open {} files and needs {}: raise the limit "
+                    "(LimitNOFILE, ulimit -n)",
+                    files.rlim_cur, needed));
+}
+
 int serve(const reident::Config& config, const std::string& path,
           const reident::StopSignal& signal) {
-  reident::Daemon daemon(config, reident::utc_now);
+  require_files(config);
+  reident::Daemon daemon(config, reident::utc_now, reident::steady_now);
   daemon.start();
   reident::notify_service_manager("READY=1");
   while (!signal.token().stop_requested() && !daemon.failed()) {
@@ -88,6 +102,7 @@ int main(int argc, char** argv) {
   const sigset_t reloading = reload_signal();
   pthread_sigmask(SIG_BLOCK, &reloading, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);  // beyond a file size limit a write fails, as on a full disk
+  std::signal(SIGPIPE, SIG_IGN);  // who reads the log may end; the service goes on
   const reident::StopSignal signal;
   CLI::App app(
       "Identifies the equipment models of a satellite simulator again and again from telemetry,\n"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <tuple>
@@ -23,6 +24,7 @@ constexpr storage::Time second = 1'000'000'000;
 constexpr storage::Time heartbeats_missed = 5 * second;  // then a service has ended
 constexpr storage::Time swap_time = 30 * second;         // that a simulator may take
 constexpr std::uint64_t least_room = std::uint64_t{256} << 20;
+constexpr std::size_t most_text = 60'000;  // bytes: a status with more is refused by its readers
 constexpr std::string_view of_the_league = "champion_failed";  // raised and cleared there
 
 auto contents(const Alarm& alarm) {
@@ -58,9 +60,19 @@ void write(storage::Registry& registry, const std::vector<Alarm>& alarms, storag
 
 ServiceWatch::ServiceWatch(Parts parts) : parts_(std::move(parts)), statuses_(parts_.participant) {}
 
+void ServiceWatch::log_a_set_clock() {
+  constexpr storage::Time adjusted = 10 * second;  // at most, and not set
+  const storage::Time booted = parts_.clock() - parts_.uptime();
+  const storage::Time by = booted - booted_.value_or(booted);
+  booted_ = booted;
+  if (std::abs(by) > adjusted)
+    log::warning("service", "the clock of this machine was set",
+                 {{"by_s", by / second}, {"now", time_text(parts_.clock())}});
+}
+
 void ServiceWatch::hear_services() {
   constexpr std::size_t at_most = 256;
-  const storage::Time now = parts_.clock();
+  const storage::Time now = parts_.uptime();
   statuses_.take(at_most, [&](ServiceStatus&& status) {
     const auto key = std::pair(status.service, status.started);
     if (key != std::pair(parts_.config.service_name, parts_.started))
@@ -128,7 +140,7 @@ std::vector<Alarm> ServiceWatch::certificate() const {
 }
 
 std::vector<Alarm> ServiceWatch::old_simulators() {
-  const storage::Time now = parts_.clock();
+  const storage::Time now = parts_.uptime();
   const std::map<storage::EquipmentName, std::int64_t> champions = parts_.publisher.published();
   std::map<storage::EquipmentName, std::vector<std::string>> old;
   auto old_since = std::exchange(old_since_, {});
@@ -150,11 +162,12 @@ std::vector<Alarm> ServiceWatch::old_simulators() {
                       fmt::format("Not the champion, version {}, runs in {}. 'reident simulators "
                                   "--old' says why.",
                                   champions.at(equipment), joined(names)),
-                      now});
+                      parts_.clock()});
   return alarms;
 }
 
 void ServiceWatch::look() {
+  log_a_set_clock();
   hear_services();
   std::vector<Alarm> now = parts_.telemetry.alarms();
   const auto of_pair = parts_.pair ? parts_.pair->alarms() : std::vector<Alarm>();
@@ -214,10 +227,15 @@ void ServiceWatch::keep(std::vector<storage::SimulatorState> changes) {
 
 std::string ServiceWatch::text() const {
   std::string text;
-  for (const Alarm& alarm : alarms_) {
+  for (std::size_t i = 0; i < alarms_.size(); ++i) {
+    const Alarm& alarm = alarms_[i];
     const std::string about = name_of(alarm.about);
-    text += fmt::format("{}{}{}{}: {}", text.empty() ? "" : "\n", alarm.code,
-                        about.empty() ? "" : " ", about, alarm.text);
+    const std::string line = fmt::format("{}{}{}{}: {}", text.empty() ? "" : "\n", alarm.code,
+                                         about.empty() ? "" : " ", about, alarm.text);
+    if (text.size() + line.size() > most_text)
+      return text + fmt::format("{}and {} more: 'reident overview' has them",
+                                text.empty() ? "" : "\n", alarms_.size() - i);
+    text += line;
   }
   return text;
 }

@@ -23,7 +23,7 @@ class ServiceWatch {
  public:
   struct Parts {
     const Config& config;
-    Clock clock;
+    Clock clock, uptime;
     storage::Time started;
     dds::Participant& participant;
     ArchiveWriter& writer;
@@ -40,10 +40,12 @@ class ServiceWatch {
   /// on a full disk, is tried again at the next look.
   void look();
 
-  /// What look() found, one alarm a line: "code SPACECRAFT/EQUIPMENT: text".
+  /// What look() found, one alarm a line: "code SPACECRAFT/EQUIPMENT: text"; as many as a status
+  /// has room for, and how many more there are.
   std::string text() const;
 
  private:
+  void log_a_set_clock();
   void hear_services();
   std::vector<storage::Alarm> services() const;
   std::vector<storage::Alarm> disk_and_damage() const;
@@ -54,12 +56,13 @@ class ServiceWatch {
 
   Parts parts_;
   dds::Reader<ServiceStatus> statuses_;
+  std::optional<storage::Time> booted_;  // UTC at which the uptime is 0
   struct Other {
     ServiceStatus status;
-    storage::Time heard = 0;
+    storage::Time heard = 0;  // of the uptime
   };
   std::map<std::pair<std::string, storage::Time>, Other> others_;  // by name and start
-  /// Since when a simulator runs another version than the champion.
+  /// Since when, of the uptime, a simulator runs another version than the champion.
   std::map<std::pair<std::string, storage::EquipmentName>, storage::Time> old_since_;
   std::vector<storage::Alarm> alarms_;
   std::optional<std::vector<storage::Alarm>> kept_;  // those that the registry has, once known

@@ -17,6 +17,10 @@ using storage::Alarm;
 /// So long after the last new name all of a source's descriptors have come.
 constexpr Duration descriptors_settle = 10'000'000'000;
 
+/// Spacecraft that are not configured have alarms of their own up to so many: a name costs whoever
+/// sends nothing.
+constexpr std::size_t most_strangers = 10;
+
 constexpr Duration minute = 60'000'000'000;
 
 std::vector<std::string> names_of(const std::map<std::uint32_t, std::string>& by_id) {
@@ -31,27 +35,36 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-TelemetryWatch::TelemetryWatch(const Config& config, Clock clock, ArchiveListener& next)
-    : config_(config), clock_(std::move(clock)), next_(next) {
+TelemetryWatch::TelemetryWatch(const Config& config, Clock clock, Clock uptime,
+                               ArchiveListener& next)
+    : config_(config), clock_(std::move(clock)), uptime_(std::move(uptime)), next_(next) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      equipment_.push_back(
-          {{spacecraft.name, equipment.name}, &equipment, parameters_of(equipment), clock_()});
+      equipment_.push_back({{spacecraft.name, equipment.name},
+                            &equipment,
+                            parameters_of(equipment),
+                            clock_(),
+                            uptime_()});
 }
 
 void TelemetryWatch::note(const storage::ParameterDescriptor& descriptor) {
   Spacecraft& spacecraft = spacecraft_[descriptor.spacecraft];
   if (std::exchange(spacecraft.names[descriptor.id], descriptor.name) == descriptor.name) return;
-  spacecraft.described = clock_();
+  spacecraft.described = uptime_();
   spacecraft.is_settled = false;
 }
 
 void TelemetryWatch::recover(const storage::Archive& archive, storage::Time last_entry) {
-  last_entry_ = last_entry;
+  tried(last_entry);
   const MutexLock lock(mutex_);
   for (const std::string& spacecraft : archive.spacecraft())
     for (const storage::ParameterDescriptor& descriptor : archive.parameters(spacecraft))
       note(descriptor);
+}
+
+void TelemetryWatch::tried(storage::Time time) {
+  const MutexLock lock(mutex_);
+  last_entry_ = std::max(last_entry_, time);
 }
 
 void TelemetryWatch::described(const std::vector<storage::ParameterDescriptor>& descriptors,
@@ -77,7 +90,7 @@ void TelemetryWatch::stored(const std::vector<storage::TelemetryFrame>& frames,
       for (Equipment& equipment : equipment_)
         if (equipment.name.spacecraft == touched.spacecraft &&
             contains(equipment.parameters, name->second))
-          equipment.heard = now;
+          equipment.heard = now, equipment.heard_at = uptime_();
     }
     for (const storage::TelemetryFrame& frame : frames) {
       if (frame.origin != storage::Origin::real) continue;
@@ -127,17 +140,18 @@ void TelemetryWatch::log_unused(const std::string& name, const Spacecraft& space
 
 std::vector<Alarm> TelemetryWatch::alarms() {
   const MutexLock lock(mutex_);
-  const storage::Time now = clock_();
+  const storage::Time now = clock_(), uptime = uptime_();
   std::vector<Alarm> alarms;
   if (now < last_entry_ - minute)
     alarms.push_back({"clock",
                       {},
                       fmt::format("This machine's clock is before the last window that was tried, "
-                                  "at {}. Correct the clock.",
+                                  "at {}. Correct the clock. If it is right now, it was ahead "
+                                  "then: acknowledge this alarm.",
                                   time_text(last_entry_ / 1'000'000'000 * 1'000'000'000)),
                       now});
   for (const Equipment& equipment : equipment_)
-    if (now - equipment.heard > equipment.config->slide)
+    if (uptime - equipment.heard_at > equipment.config->slide)
       alarms.push_back({"no_telemetry", equipment.name,
                         fmt::format("No telemetry has come since {}, which is more than the slide "
                                     "of {}. Look for the source; 'reident completeness' shows what "
@@ -147,8 +161,9 @@ std::vector<Alarm> TelemetryWatch::alarms() {
                         now});
   std::vector<std::string> configured;
   for (const SpacecraftConfig& one : config_.spacecraft) configured.push_back(one.name);
+  std::size_t strangers = 0;
   for (auto& [name, spacecraft] : spacecraft_) {
-    if (spacecraft.lead)
+    if (spacecraft.lead && is_configured(name))
       alarms.push_back(
           {"clock",
            {name, ""},
@@ -157,8 +172,9 @@ std::vector<Alarm> TelemetryWatch::alarms() {
                        duration_text(std::max(*spacecraft.lead / minute, Duration{1}) * minute),
                        duration_text(config_.max_clock_lead)),
            now});
-    if (spacecraft.names.empty() || now - spacecraft.described < descriptors_settle) continue;
+    if (spacecraft.names.empty() || uptime - spacecraft.described < descriptors_settle) continue;
     if (!is_configured(name)) {
+      if (++strangers > most_strangers) continue;
       alarms.push_back({"unknown_names",
                         {name, ""},
                         fmt::format("Telemetry of {} comes, which is not configured{}.", name,
@@ -172,6 +188,13 @@ std::vector<Alarm> TelemetryWatch::alarms() {
         if (std::string text = unknown_text(equipment, spacecraft); !text.empty())
           alarms.push_back({"unknown_names", equipment.name, std::move(text), now});
   }
+  if (strangers > most_strangers)
+    alarms.push_back({"unknown_names",
+                      {},
+                      fmt::format("Telemetry of more than {} spacecraft comes that are not "
+                                  "configured. Look for who sends it.",
+                                  most_strangers),
+                      now});
   return alarms;
 }
 

@@ -27,8 +27,9 @@ bool contains(const std::vector<T>& all, const T& one) {
 
 }  // namespace
 
-WindowFeed::WindowFeed(const Config& config, Clock clock)
+WindowFeed::WindowFeed(const Config& config, Clock clock, Clock uptime)
     : clock_(std::move(clock)),
+      uptime_(std::move(uptime)),
       max_clock_lead_(config.max_clock_lead),
       scheduler_(plans(config), config.settle) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
@@ -75,10 +76,10 @@ void WindowFeed::touch_stored(std::size_t equipment, const std::string& spacecra
 void WindowFeed::touch_each_slide(std::size_t equipment, const std::string& spacecraft,
                                   std::uint32_t parameter, storage::TimeRange range,
                                   const storage::Archive& archive) {
-  const storage::Time now = clock_();
+  const storage::Time now = uptime_();
   const Duration slide = equipment_[equipment].config->slide;
   const auto last = archive.last_at_or_before(spacecraft, storage::Origin::real, parameter,
-                                              std::min(range.end - 1, now + max_clock_lead_));
+                                              std::min(range.end - 1, clock_() + max_clock_lead_));
   if (!last) return;
   scheduler_.reached(equipment, *last);
   // First, because what lies before may be damaged.
@@ -141,7 +142,7 @@ void WindowFeed::forget_settled(const std::string& spacecraft, storage::Archive&
 
 void WindowFeed::stored(const std::vector<storage::TelemetryFrame>& frames,
                         const storage::AppendReport& report) {
-  const storage::Time now = clock_();
+  const storage::Time utc = clock_(), now = uptime_();
   MutexLock lock(mutex_);
   // Where nothing new was stored nothing is touched: a frame sent twice starts no work.
   std::map<std::size_t, std::vector<storage::TimeRange>> news;
@@ -155,7 +156,7 @@ void WindowFeed::stored(const std::vector<storage::TelemetryFrame>& frames,
 
   std::set<std::size_t> equipment;
   for (const storage::TelemetryFrame& frame : frames) {
-    if (is_jump(frame.generation_time, now)) {
+    if (is_jump(frame.generation_time, utc)) {
       ++clock_jumps_;
       continue;
     }
@@ -211,9 +212,9 @@ std::optional<storage::Time> WindowFeed::ask(const std::string& spacecraft,
     const storage::Time reached = scheduler_.reached(i);
     if (reached == INT64_MIN) return std::nullopt;
     if (window)
-      scheduler_.ask(i, window->end, cause, clock_(), window->begin);
+      scheduler_.ask(i, window->end, cause, uptime_(), window->begin);
     else
-      scheduler_.ask(i, reached, cause, clock_());
+      scheduler_.ask(i, reached, cause, uptime_());
     changed_.notify_all();
     return window ? window->end : reached;
   }
@@ -242,7 +243,7 @@ std::optional<WindowFeed::Job> WindowFeed::take_due(storage::Time now) {
 
 std::optional<WindowFeed::Job> WindowFeed::next_due() {
   MutexLock lock(mutex_);
-  return take_due(clock_());
+  return take_due(uptime_());
 }
 
 std::optional<WindowFeed::Job> WindowFeed::next() {
@@ -252,7 +253,7 @@ std::optional<WindowFeed::Job> WindowFeed::next() {
       changed_.wait(mutex_);
       continue;
     }
-    const storage::Time now = clock_();
+    const storage::Time now = uptime_();
     if (auto job = take_due(now)) return job;
     if (const auto due = scheduler_.next_due())
       changed_.wait_for(mutex_, std::chrono::nanoseconds(std::max<Duration>(*due - now, 1)));
@@ -264,7 +265,7 @@ std::optional<WindowFeed::Job> WindowFeed::next() {
 
 void WindowFeed::finished(const Job& job, bool completed) {
   MutexLock lock(mutex_);
-  scheduler_.finished(job.window, completed, clock_());
+  scheduler_.finished(job.window, completed, uptime_());
   changed_.notify_all();
 }
 

@@ -19,7 +19,8 @@
 
 namespace reident {
 
-/// UTC, nanoseconds since 1970; given in from outside so that tests own it.
+/// Nanoseconds; given in from outside so that tests own it. A service has two: UTC, nanoseconds
+/// since 1970, which may be set forward and back, and `uptime`, by which it waits.
 using Clock = std::function<storage::Time()>;
 
 class WindowFeed : public ArchiveListener {
@@ -33,7 +34,7 @@ class WindowFeed : public ArchiveListener {
   };
 
   /// The configuration must outlive the feed.
-  WindowFeed(const Config& config, Clock clock);
+  WindowFeed(const Config& config, Clock clock, Clock uptime);
 
   /// Takes up what an earlier run left: windows that were never tried although their telemetry is
   /// stored, and those that late telemetry has touched since. Call once, before the threads start.
@@ -110,7 +111,7 @@ class WindowFeed : public ArchiveListener {
     return time > now && time - now > max_clock_lead_;
   }
 
-  const Clock clock_;
+  const Clock clock_, uptime_;
   const Duration max_clock_lead_;
   std::vector<Equipment> equipment_;
   std::atomic<std::uint64_t> clock_jumps_ = 0;

@@ -5,14 +5,14 @@
 //   - its last `slide` holds a new sample of the equipment, or it was tried before and a late
 //     sample fell into it,
 //   - telemetry has reached its end, and
-//   - nothing has fallen into it for the time `settle` of the service's clock.
+//   - nothing has fallen into it for the time `settle`.
 // Others are asked for: by an operator, or because the champion drifts. They may end at any time,
 // and are due as soon as telemetry has reached it; one that has a begin of its own keeps it when
 // late telemetry falls into it, and settles as others do.
 // One window of an equipment runs at a time, the oldest due first, so that a candidate meets the
 // champion of the windows before it. A window that keeps receiving late telemetry holds nothing up.
 //
-// Not thread-safe; the clock is the argument `now`.
+// Not thread-safe; the clock, which never goes back, is the argument `now`.
 #pragma once
 
 #include <cstdint>

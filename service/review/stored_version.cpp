@@ -1,10 +1,12 @@
 #include "service/review/stored_version.hpp"
 
+#include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "service/model/model_json.hpp"
+#include "storage/types/error.hpp"
 
 namespace reident {
 
@@ -14,7 +16,14 @@ std::optional<StoredVersion> stored_version(const history::HistoryReader& histor
   auto version = history.version(equipment, number);
   if (!version) return std::nullopt;
   StoredVersion story;
-  story.attempt = history.attempt(equipment, number).value();
+  auto attempt = history.attempt(equipment, number);
+  if (!attempt)
+    throw storage::Error(storage::Error::Kind::corrupt,
+                         "version " + std::to_string(number) + " of " + equipment.spacecraft + "/" +
+                             equipment.equipment +
+                             " has lost its attempt: the registry is damaged; 'reident verify' "
+                             "lists all damage, restore a backup");
+  story.attempt = *std::move(attempt);
   story.decisions = history.decisions(equipment, number);
   story.hold = history.hold(equipment);
   story.model = equipment_model_from_json(version->model_json);

@@ -112,9 +112,15 @@ constexpr Rule rules[] = {
      "v.spacecraft AND d.equipment = v.equipment AND d.version = v.number)",
      as_backup},
     {"versions",
+     // Services of a pair leave out numbers, each those of the other one.
      "SELECT spacecraft, equipment, NULL, NULL, NULL, 'its ' || count(*) || ' versions are "
      "numbered up to ' || max(number) FROM version GROUP BY spacecraft, equipment "
-     "HAVING max(number) <> count(*) OR min(number) <> 1",
+     "HAVING (max(number) <> count(*) OR min(number) <> 1) AND NOT EXISTS (SELECT 1 FROM term)",
+     as_backup},
+    {"journal",
+     "SELECT '', '', NULL, NULL, NULL, 'its ' || count(*) || ' rows are numbered up to ' || "
+     "max(id) "
+     "FROM journal HAVING max(id) <> count(*)",
      as_backup},
     {"versions",
      "SELECT v.spacecraft, v.equipment, NULL, window_begin, window_end, 'version ' || number || "

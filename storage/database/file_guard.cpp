@@ -113,7 +113,7 @@ void refuse_damaged_files(const sqlite::Connection& connection, const fs::path& 
 
 FileGuard::FileGuard(const fs::path& database) {
   auto file = files_.begin();
-  for (const char* suffix : {"", "-wal", "-shm"}) {
+  for (const char* suffix : {"", "-wal", "-shm", ".lock"}) {
     struct stat found {};
     file->path = database.string() + suffix;
     if (::stat(file->path.c_str(), &found) == 0) {

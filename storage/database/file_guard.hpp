@@ -33,7 +33,7 @@ void refuse_damaged_files(const sqlite::Connection& connection,
 
 class FileGuard {
  public:
-  /// `database` is open in WAL mode, so that all of its files exist.
+  /// `database` is open in WAL mode for its one writer, so that all of its files exist.
   explicit FileGuard(const std::filesystem::path& database);
 
   /// Throws Error displaced where one of the files is not the one that was opened, and corrupt
@@ -47,7 +47,7 @@ class FileGuard {
     dev_t device = 0;
     ino_t inode = 0;
   };
-  std::array<File, 3> files_;
+  std::array<File, 4> files_;  // the writer's lock too: without it there may be a second writer
   /// A file that is shorter than it says while the log has the rest.
   struct Short {
     std::uint64_t pages = 0;

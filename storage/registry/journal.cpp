@@ -68,6 +68,14 @@ void insert_row(Connection& connection, const JournalRow& row) {
       .run(row.values);
 }
 
+std::int64_t integer_in(const JournalRow& row, std::size_t column) {
+  if (const auto* integer = std::get_if<std::int64_t>(&row.values[column])) return *integer;
+  throw Error(Error::Kind::corrupt, "a row of the table '" + row.table +
+                                        "' has no whole number in column " +
+                                        std::to_string(column + 1) +
+                                        ": both services of a pair have to be of one version");
+}
+
 /// What people and programs read of a row that was overruled.
 void insert_overruled(Connection& connection, const JournalRow& row, std::int64_t term,
                       std::int64_t position, const std::string& service, Time now) {
@@ -212,9 +220,8 @@ std::vector<std::int64_t> Journal::apply(const JournalPart& part) {
     insert_row(db, row);
     if (row.table == overruled_table)
       db.query("INSERT INTO journal (kind, key) VALUES (?, json_array(?, ?))")
-          .run(row.table, std::get<std::int64_t>(row.values[0]),
-               std::get<std::int64_t>(row.values[1]));
-    if (row.table == "attempt") attempts.push_back(std::get<std::int64_t>(row.values[0]));
+          .run(row.table, integer_in(row, 0), integer_in(row, 1));
+    if (row.table == "attempt") attempts.push_back(integer_in(row, 0));
     if (last() != position)
       throw Error(Error::Kind::failed, "row " + std::to_string(position) +
                                            " of the journal was recorded at " +

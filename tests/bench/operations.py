@@ -1,9 +1,11 @@
 """Operation in a failing and hostile world: packages under a real systemd, networks that are cut, a
-pair of services whose leader is killed or hangs.
+pair of services whose leader is killed or hangs, intruders, and a soak.
 
     operations.py BUILD [PART...] [--quick]
+    operations.py BUILD PART OPTION...
 
 Runs the parts (the programs in the folder operations, all of them by default) one after the other.
+Options but `--quick` are those of one part.
 Each prints one JSON object as its last line. What a part cannot measure on this machine it names in
 `left_out`, with the reason. The last line here is the union of all.
 """
@@ -30,8 +32,10 @@ def run(part, arguments):
 
 def main():
     build, *rest = sys.argv[1:]
-    wanted = [word for word in rest if not word.startswith("-")]
-    options = [word for word in rest if word.startswith("-")]
+    count = next((i for i, word in enumerate(rest) if word.startswith("-")), len(rest))
+    wanted, options = rest[:count], rest[count:]
+    if options not in ([], ["--quick"]) and len(wanted) != 1:
+        sys.exit(f"{' '.join(options)}: options but --quick are those of one part; name that one")
     parts = sorted(path.stem for path in FOLDER.glob("[a-z]*.py"))
     if unknown := set(wanted) - set(parts):
         sys.exit(f"no such part: {', '.join(unknown)}; there are {', '.join(parts)}")

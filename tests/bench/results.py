@@ -463,7 +463,10 @@ def operations(figures):
              "loss_5_missing": "frames missing, 5 % of packets lost",
              "loss_5_frames_per_s": "frames a second then",
              "loss_20_missing": "frames missing, 20 % of packets lost",
-             "loss_20_frames_per_s": "frames a second then"}
+             "loss_20_frames_per_s": "frames a second then",
+             "intruder_seen": "samples that seven kinds of intruders saw, on twelve topics",
+             "intruder_taken": "samples of theirs that were taken",
+             "secured_ratio": "frames of 629 samples, sender to archive: secured over plain"}
     rows = [[label, figure(figures[key]) + (" s" if key.endswith("_s") and "frames" not in key else "")]
             for key, label in names.items() if key in figures]
     steps = [[name.replace("_", " "), "passed" if passed else "failed"]
@@ -476,10 +479,49 @@ def operations(figures):
         tables.append(table(["step of a package's life, and of the image's", "its test"], steps))
     if "takeovers" in figures:
         tables += pair_tables(figures)
+    if "soak_minutes" in figures:
+        tables += soak(figures)
     if figures["left_out"]:
         tables.append("\n".join(fill(f"Left out: {what}: {why}.", "- ")
                                 for what, why in figures["left_out"].items()))
     return tables
+
+
+@section("soak", "A soak",
+         "Two services of a pair on machines of their own (network namespaces with disks in memory "
+         "and clocks of their own) took telemetry at 300 times real time. An operator gave one "
+         "command after the other, and a simulator followed. One thing after the other failed at "
+         "random: a service was killed, stopped or hung, a disk was full, a clock was set, a "
+         "network was cut.",
+         "At the end the archives of both services were compared with what was sent, and their "
+         "registries with each other and with all that was ever committed, answered or published.")
+def soak(figures):
+    failures = ", ".join(f"{name.replace('_', ' ')} {count}"
+                         for name, count in figures["soak_failures"].items())
+    names = {"samples": "samples sent", "samples_missing": "samples missing or doubled in an archive",
+             "decisions_committed": "decisions that were ever committed",
+             "decisions_lost": "of them gone", "decisions_overruled": "of them overruled and visible",
+             "commands_answered": "commands answered", "commands_lost": "of them gone",
+             "numbers_doubled": "numbers of versions with two contents",
+             "publications": "publications heard",
+             "publications_undecided": "of them of a version that was not decided",
+             "memory_growth_mib": "growth of a process's memory after its first minute, at most, MiB",
+             "files_growth": "growth of its open files, at most"}
+    rows = [["telemetry, days", figure(figures["soak_days_of_telemetry"])],
+            ["wall time, minutes", figure(figures["soak_minutes"])],
+            ["failures", failures], ["seed", figures["soak_seed"]],
+            *([label, figures[f"soak_{key}"]] for key, label in names.items())]
+    return [table(["what", "figure"], rows)]
+
+
+@section("fuzz", "Fuzzing",
+         "libFuzzer with the address and undefined-behaviour sanitizers. Every target goes on from "
+         "what earlier runs found worth keeping. What was found before has tests.")
+def fuzz(figures):
+    rows = [[f"`{name}`", millions(one["inputs"]), one["kept"], one["found"],
+             figure(Decimal(one["wall_s"]) / 60, 2)]
+            for name, one in figures["targets"].items()]
+    return [table(["target", "million inputs", "inputs kept", "finds", "minutes"], rows)]
 
 
 def parse(text):

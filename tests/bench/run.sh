@@ -47,11 +47,17 @@
 #                                         ingest loses by them.
 #                                         The last line is one JSON object
 #   tests/bench/run.sh operations [PART...] [--quick]
+#   tests/bench/run.sh operations soak [--minutes N] [--seed N]
 #                                         operation in a failing and hostile world: packages under a
 #                                         real systemd, networks that are cut, a pair of services whose
 #                                         leader is killed or hangs, what seven kinds of intruders see
-#                                         and reach, and what security costs. Needs root; says what it
-#                                         leaves out. The last line is one JSON object
+#                                         and reach, and what security costs; and a soak: telemetry
+#                                         at 300 times real time while services, disks, clocks and
+#                                         networks fail at random. Needs root; says what it leaves
+#                                         out. The last line is one JSON object
+#   tests/bench/run.sh fuzz [TARGET...] [--runs N] [--seconds N]
+#                                         libFuzzer's targets of tests/fuzz, 10 million inputs each
+#                                         or for an hour. The last line is one JSON object
 #   tests/bench/run.sh scale [--services N] [--spacecraft N] [--days N] [--folder FOLDER]
 #                                         a hundred services and simulators on this machine: until
 #                                         all have found each other, what they take when idle, and
@@ -83,6 +89,12 @@ case $what in
   build)
     deploy/install_packages.sh --with-tests
     exec python3 tests/bench/build.py . "$@"
+    ;;
+  fuzz)
+    deploy/install_packages.sh --with-tests
+    cmake --preset fuzz >/dev/null
+    cmake --build --preset fuzz --target fuzz_targets >/dev/null
+    exec python3 tests/bench/fuzz.py build/fuzz "$@"
     ;;
   record)
     [ $# -gt 0 ] || usage
@@ -136,7 +148,7 @@ case $what in
     ;;
   operations)
     arguments=(build/release "$@")
-    targets=(reidentd reident satcs-reference e2e_programs forge_permissions lax_access_control
+    targets=(reidentd reident satcs-reference reident-simulator e2e_programs forge_permissions lax_access_control
              reident_bench_publisher)
     deploy/install_packages.sh --with-packages || echo "going on without the tools that are missing"
     ;;

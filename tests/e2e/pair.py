@@ -5,6 +5,8 @@ import os
 import shutil
 import sqlite3
 import subprocess
+import threading
+import time
 
 import plant
 from harness import DEADLINE_S, EndToEnd, wait_until
@@ -22,25 +24,29 @@ def can_make_hosts():
 
 
 class Host:
-    """One of two machines: a network namespace with an address and a cable to the other one."""
+    """A machine: a network namespace with an address and a cable to others."""
 
-    def __init__(self, name, address, other_address):
-        self.name, self.address, self.other_address = name, address, other_address
+    def __init__(self, name, address, others):
+        """`others`: their addresses."""
+        self.name, self.address, self.others = name, address, others
         self.prefix = ["ip", "netns", "exec", name]
         self.uri = (
             f'<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface address="{address}"'
             ' multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General>'
             "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>12"
-            f'</MaxAutoParticipantIndex><Peers><Peer address="{address}"/><Peer address='
-            f'"{other_address}"/></Peers></Discovery></Domain></CycloneDDS>')
+            "</MaxAutoParticipantIndex><Peers>"
+            + "".join(f'<Peer address="{one}"/>' for one in [address, *others])
+            + "</Peers></Discovery></Domain></CycloneDDS>")
 
     def run(self, *command, text=None):
         subprocess.run([*self.prefix, *command], check=True, input=text, text=True,
                        capture_output=True)
 
-    def cut(self):
+    def cut(self, others=None):
+        """Hears these no more; all by default."""
+        addresses = ", ".join(others or self.others)
         self.run("nft", "-f", "-", text="table inet cut { chain input { type filter hook input "
-                                        f"priority 0; ip saddr {self.other_address} drop; }}; }}")
+                                        f"priority 0; ip saddr {{ {addresses} }} drop; }}; }}")
 
     def heal(self):
         self.run("nft", "delete", "table", "inet", "cut")
@@ -57,11 +63,34 @@ def make_hosts(test):
                     "cable", "netns", names[1]], check=True)
     hosts = {}
     for i, strength in enumerate((2, 1)):
-        host = hosts[strength] = Host(names[i], addresses[i], addresses[1 - i])
+        host = hosts[strength] = Host(names[i], addresses[i], [addresses[1 - i]])
         host.run("ip", "address", "add", f"{host.address}/24", "dev", "cable")
         for link in "lo", "cable":
             host.run("ip", "link", "set", link, "up")
     return hosts
+
+
+class Operator(threading.Thread):
+    """Gives one command after the other to whoever leads, under a new name each."""
+
+    def __init__(self, run, equipment, host=None, pause_s=0):
+        super().__init__()
+        self.run_of, self.equipment, self.host, self.pause_s = run, equipment, host, pause_s
+        self.answered = []  # names whose command was carried out
+        self.stopping = False
+
+    def run(self):
+        for count in range(10**9):
+            if self.stopping:
+                return
+            actor = f"operator-{count}"
+            action = ("hold", "identify-now", "release", "identify-now", "rollback")[count % 5]
+            status, _ = self.run_of.reident(action, self.equipment, "--actor", actor, "--json",
+                                            "--timeout", 20, *self.run_of.endpoint(),
+                                            host=self.host)
+            if status == 0:
+                self.answered.append(actor)
+            time.sleep(self.pause_s)
 
 
 class PairOfServices(EndToEnd):
@@ -107,8 +136,11 @@ class PairOfServices(EndToEnd):
             self.start_side(strength)
         wait_until(lambda: self.leads(2, follower=1), "2 leads and 1 follows")
 
+    def database_of(self, strength):
+        return self.folder / f"{strength}.db"
+
     def ask(self, strength, sql, *values):
-        connection = sqlite3.connect(f"file:{self.folder}/{strength}.db?mode=ro", uri=True,
+        connection = sqlite3.connect(f"file:{self.database_of(strength)}?mode=ro", uri=True,
                                      timeout=10)
         try:
             return connection.execute(sql, values).fetchall()
@@ -134,10 +166,10 @@ class PairOfServices(EndToEnd):
         rows = self.ask(strength, "SELECT version FROM champion")
         return rows[0][0] if rows else None
 
-    def replay_flight(self, name, readers, host=None, **keywords):
+    def replay_flight(self, name, readers, *options, host=None, **keywords):
         csv = plant.write(self.folder / f"{name}.csv", plant.rows(**keywords))
         replay = self.start("satcs-replay", csv, "--spacecraft", "SAT", *self.endpoint(), "--speed",
-                            "max", "--wait-readers", readers, host=host)
+                            "max", "--wait-readers", readers, *options, host=host)
         self.assertEqual(replay.wait(), 0, replay.text())
 
     def wait_for_champion(self, strength, simulators, above=0):

@@ -1,6 +1,7 @@
 """Two services of a pair: what one decided the other has, and takes over when that is gone."""
 
 import json
+import os
 import signal
 import subprocess
 import time
@@ -9,6 +10,7 @@ import unittest
 import test_web
 from harness import wait_until
 from pair import PairOfServices, can_make_hosts, make_hosts
+from secured_site import Site
 
 
 class Pair(PairOfServices, test_web.WebCase):
@@ -16,7 +18,20 @@ class Pair(PairOfServices, test_web.WebCase):
         super().setUp()
         self.configure_pair()
 
+    def secure(self):
+        """Every program has a certificate of its own; commands are ana's."""
+        site = Site(self.folder / "site")
+        for side in 2, 1:
+            path = self.folder / f"{side}.toml"
+            member = site.grant("service", f"reident-{side}")
+            path.write_text(path.read_text().replace("[dds]", f'[dds]\nsecurity = "{member}"'))
+        os.environ["REIDENT_SECURITY"] = str(site.grant("operator", "ana"))
+        self.addCleanup(os.environ.pop, "REIDENT_SECURITY")
+        return site
+
     def test_the_standby_has_every_row_and_takes_over_when_the_leader_is_killed(self):
+        site = self.secure()
+        station = "--security", site.grant("gateway", "station")
         self.start_both()
         _, text = self.reident("overview", "--json", "--config", self.folder / "2.toml")
         roles = {"reident-2": ("leads", 2, 0), "reident-1": ("follows", 2, 0)}
@@ -36,8 +51,9 @@ class Pair(PairOfServices, test_web.WebCase):
             name, value = line.split()
             self.assertIn(f'\nreident_pair_{name}{{pair="reident"}} {value}\n', metrics)
         page.terminate()
-        simulator = self.start_simulator("trainer")
-        self.replay_flight("first", 3, count=1300)
+        simulator = self.start_simulator("trainer", "--security",
+                                         site.grant("simulator", "trainer"))
+        self.replay_flight("first", 3, *station, count=1300)
         first = self.wait_for_champion(2, [simulator])
         self.assertEqual(first % 2, 0, "the leader's terms are even, and so are its versions")
         self.assert_same_rows()
@@ -46,7 +62,7 @@ class Pair(PairOfServices, test_web.WebCase):
 
         self.sides[2].kill()
         wait_until(lambda: self.leads(1), "the standby leads")
-        self.replay_flight("second", 2, count=1300, first=1300, gain=2.0)
+        self.replay_flight("second", 2, *station, count=1300, first=1300, gain=2.0)
         second = self.wait_for_champion(1, [simulator], above=first)
         self.assertEqual(second % 2, 1)
 

@@ -9,7 +9,8 @@ import unittest
 from pathlib import Path
 
 import plant
-from harness import BIN, DEADLINE_S, EndToEnd, wait_until
+from harness import DEADLINE_S, EndToEnd, wait_until
+from secured_site import Site
 
 BUILD = Path(os.environ["REIDENT_BUILD"])
 PARTY = BUILD / "tests/service/dds/domain_party"
@@ -17,34 +18,10 @@ LOOPBACK = Path(__file__).resolve().parents[2] / "service/dds/loopback.xml"
 TOPICS = ["satcs/TelemetryFrame", "satcs/ParameterDescriptor", "reident/ModelVersion",
           "reident/IdentificationReport", "reident/ModelAcknowledgement", "reident/ServiceStatus",
           "reident/HistoryRequest", "reident/HistoryReply", "reident/Command",
-          "reident/CommandReply"]
+          "reident/CommandReply", "reident/Leadership", "reident/Replica"]
 # What the role of the intruders that are simulators may do (service/security/roles.cpp).
 MAY_SEE = {"satcs/TelemetryFrame", "satcs/ParameterDescriptor", "reident/ModelVersion"}
 MAY_WRITE = {"reident/ModelAcknowledgement"}
-
-
-class Site:
-    """A site's folder, and members of it."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        self.call("init", folder)
-
-    def call(self, action, *arguments):
-        done = subprocess.run([str(BIN / "reident"), "security", action, *map(str, arguments)],
-                              capture_output=True, text=True, timeout=DEADLINE_S, check=False)
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout
-
-    def member(self, name):
-        return self.folder / "members" / name
-
-    def grant(self, role, name, *options):
-        self.call("grant", self.folder, role, name, "--partition", "*", *options)
-        return self.member(name)
-
-    def renew(self, name, *options):
-        self.call("renew", self.folder, name, *options)
 
 
 class Secured(EndToEnd):

@@ -3,11 +3,12 @@
 import ctypes
 import os
 import socket
+import subprocess
 import unittest
 from pathlib import Path
 
 import plant
-from harness import DEADLINE_S, EndToEnd, wait_until
+from harness import BIN, DEADLINE_S, EndToEnd, wait_until
 
 SEIZE, INTERRUPT, DETACH, ALL_THREADS = 0x4206, 0x4207, 17, 0x40000000
 SILENCE_S = 5  # of a watchdog that is fed each second, and by the archive's thread twice a second
@@ -67,6 +68,28 @@ class Supervision(EndToEnd):
                     wait_until(self.falls_silent, f"a hang of the thread {thread} shows")
                 self.assertEqual(self.notice(DEADLINE_S), "WATCHDOG=1", "it goes on again")
         self.assertEqual(daemon.terminate()[0], 0)
+
+    def test_it_goes_on_when_nobody_reads_its_log_any_more(self):
+        path = self.configure([plant.equipment()])
+        with subprocess.Popen([str(BIN / "reidentd"), "--config", path], stderr=subprocess.PIPE,
+                              text=True) as daemon:
+            self.addCleanup(lambda: daemon.poll() is None and daemon.kill())
+            while "service: started" not in daemon.stderr.readline():
+                self.assertIsNone(daemon.poll())
+            daemon.stderr.close()
+            status, text = self.reident("hold", "PLANT", "--actor", "Ana", *self.endpoint())
+            self.assertEqual(status, 0, text)
+            status, text = self.reident("status", *self.endpoint())
+            self.assertEqual(status, 0, text)
+            daemon.terminate()
+            self.assertEqual(daemon.wait(DEADLINE_S), 0)
+
+    def test_too_few_files_are_named_with_the_limit(self):
+        path = self.configure([plant.equipment()])
+        done = subprocess.run(["prlimit", "--nofile=20", str(BIN / "reidentd"), "--config", path],
+                              capture_output=True, text=True, timeout=DEADLINE_S, check=False)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("LimitNOFILE", done.stderr)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 // satcs-gateway: CCSDS space packets as SATCS telemetry, by an XTCE database.
 
 #include <algorithm>
+#include <csignal>
 #include <limits>
 #include <memory>
 #include <string>
@@ -171,6 +172,7 @@ int run(Arguments& arguments, const Sender& sender, const PublisherOptions& publ
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // who reads the log may end; the gateway goes on
   CLI::App app(about, "satcs-gateway");
   Arguments arguments;
   Sender sender{.source = "gateway"};

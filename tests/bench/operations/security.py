@@ -62,7 +62,7 @@ def intruders(build):
     if not lines:
         raise SystemExit(done.stdout + done.stderr)
     figures = json.loads(lines[-1])
-    print(f"Seven intruders by ten topics, {figures['cells']} cells: {figures['intruder_seen']} "
+    print(f"Seven intruders by twelve topics, {figures['cells']} cells: {figures['intruder_seen']} "
           f"samples seen, {figures['intruder_taken']} of theirs taken")
     return {"intruder_seen": figures["intruder_seen"], "intruder_taken": figures["intruder_taken"]}
 

@@ -12,9 +12,7 @@ import os
 import random
 import signal
 import statistics
-import subprocess
 import sys
-import threading
 import time
 import unittest
 from pathlib import Path
@@ -23,7 +21,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "e2e"))
 
 SEED = 37
-COMMAND_S = 20  # that an operator waits for an answer
 
 
 def other(strength):
@@ -44,31 +41,8 @@ def parsed():
 
 ARGUMENTS = parsed()
 
-from harness import BIN, wait_until  # noqa: E402: found in the folder above
-from pair import PairOfServices  # noqa: E402
-
-
-class Operator(threading.Thread):
-    """Gives one command after the other to whoever leads, under a new name each."""
-
-    def __init__(self, run):
-        super().__init__()
-        self.run_of = run
-        self.answered = []  # names whose command was carried out
-        self.stopping = False
-
-    def run(self):
-        for count in range(10**9):
-            if self.stopping:
-                return
-            actor = f"operator-{count}"
-            action = ("hold", "identify-now", "release", "identify-now", "rollback")[count % 5]
-            done = subprocess.run(
-                [str(BIN / "reident"), action, "PLANT", "--actor", actor, "--json", "--timeout",
-                 str(COMMAND_S), *map(str, self.run_of.endpoint())],
-                capture_output=True, text=True, check=False)
-            if done.returncode == 0:
-                self.answered.append(actor)
+from harness import wait_until  # noqa: E402: found in the folder above
+from pair import Operator, PairOfServices  # noqa: E402
 
 
 class Standby(PairOfServices):
@@ -150,7 +124,7 @@ class Standby(PairOfServices):
         print(f"seed of the kills: {SEED}", flush=True)
         replay = self.start("satcs-replay", self.folder / "first.csv", "--spacecraft", "SAT",
                             *self.endpoint(), "--speed", "1")
-        operator = Operator(self)
+        operator = Operator(self, "PLANT")
         operator.start()
         committed, contents, takeovers = set(), set(), 0
         try:

@@ -174,6 +174,9 @@ TEST_F(Cache, SetsAsideAFileThatIsDamagedAndStartsWithoutIt) {
   for (const auto& [content, says] :
        {Damage{good.substr(0, good.size() / 2), "truncated"}, Damage{"", "truncated"},
         Damage{"[1, 2]", "JSON"}, Damage{"{}", "format"}, Damage{std::string(5000, '['), "JSON"},
+        Damage{R"({"format": 1, "sha256": "", "kept": )" + std::string(1'000'000, '[') +
+                   std::string(1'000'000, ']') + "}",
+               "SHA-256"},
         Damage{flipped, "SHA-256"},
         Damage{kept_version_text(kept(5), "training"), "another partition"},
         Damage{kept_version_text(kept(5, "CBERS4", "MEA"), "operations"), "CBERS4/MEA"},

@@ -47,7 +47,8 @@ class Watch : public DaemonTest {
   storage::Database database = open();
   storage::Archive archive{database};
   Nobody next;
-  TelemetryWatch watch{config_, [this] { return now; }, next};
+  storage::Time set_by = 0;  // the clock of the machine, and not the uptime
+  TelemetryWatch watch{config_, [this] { return now + set_by; }, [this] { return now; }, next};
 };
 
 TEST_F(Watch, PassesOnWhatItHears) {
@@ -74,7 +75,7 @@ TEST_F(Watch, TelemetryThatStaysAwayForASlideIsAnAlarmUntilItComesAgain) {
 TEST_F(Watch, ANameThatNoTelemetryHasIsAnAlarmOnceAllWereDescribed) {
   config_.spacecraft[0].equipment[0].inputs = {"u", "vv", "temperature"};
   TelemetryWatch misspelt(
-      config_, [this] { return now; }, next);
+      config_, [this] { return now; }, [this] { return now; }, next);
   archive.describe(descriptors());
   misspelt.described(descriptors(), archive);
   EXPECT_THAT(misspelt.alarms(), IsEmpty());
@@ -95,6 +96,18 @@ TEST_F(Watch, ASpacecraftThatIsNotConfiguredIsAnAlarm) {
   ASSERT_THAT(alarms, SizeIs(1));
   EXPECT_EQ(alarms[0].about.spacecraft, "SAT1");
   EXPECT_THAT(alarms[0].text, HasSubstr("(did you mean SAT?)"));
+}
+
+TEST_F(Watch, AFloodOfSpacecraftThatAreNotConfiguredIsAFewAlarms) {
+  auto others = descriptors();
+  for (int i = 0; i < 1000; ++i) {
+    for (auto& one : others) one.spacecraft = "STRANGE-" + std::to_string(i);
+    watch.described(others, archive);
+  }
+  now += 10 * second;
+  const auto found = codes();
+  EXPECT_THAT(found, SizeIs(11));
+  EXPECT_THAT(found, ::testing::Contains("unknown_names /"));
 }
 
 TEST_F(Watch, TelemetryAheadOfTheClockIsAnAlarmUntilItIsNot) {
@@ -119,12 +132,29 @@ TEST_F(Watch, AClockBeforeTheLastEntryIsAnAlarmUntilItIsCorrected) {
   EXPECT_THAT(codes(), ::testing::Not(::testing::Contains("clock /")));
 }
 
+TEST_F(Watch, AClockThatIsSetWhileItRunsNeitherRaisesNorHidesThatTelemetryStaysAway) {
+  describe(descriptors());
+  store(telemetry(day, 5));
+  set_by = 1000 * minute;
+  EXPECT_THAT(codes(), IsEmpty());
+  set_by = -1000 * minute;
+  now += 5 * minute + second;
+  EXPECT_THAT(codes(), ElementsAre("no_telemetry SAT/PLANT"));
+}
+
+TEST_F(Watch, AClockThatIsSetBeforeAWindowOfThisRunIsAnAlarm) {
+  watch.tried(now);
+  EXPECT_THAT(codes(), IsEmpty());
+  set_by = -2 * minute;
+  EXPECT_THAT(codes(), ElementsAre("clock /"));
+}
+
 TEST_F(Watch, KnowsWhatEarlierRunsWereTold) {
   archive.describe(descriptors());
   Config misspelt = config();
   misspelt.spacecraft[0].equipment[0].outputs = {"z"};
   TelemetryWatch again(
-      misspelt, [this] { return now; }, next);
+      misspelt, [this] { return now; }, [this] { return now; }, next);
   again.recover(archive, 0);
   now += 10 * second;
   EXPECT_THAT(again.alarms(), SizeIs(1));

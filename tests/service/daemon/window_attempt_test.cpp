@@ -35,7 +35,7 @@ class WindowAttempt : public DaemonTest {
   const Config all = config();
   const std::string& spacecraft = all.spacecraft[0].name;
   const EquipmentConfig& equipment = all.spacecraft[0].equipment[0];
-  WindowFeed feed{all, [] { return day; }};
+  WindowFeed feed{all, [] { return day; }, [] { return day; }};
   LeagueWatch leagues{all, feed};
   storage::Database database = open();
   storage::Archive archive{database};

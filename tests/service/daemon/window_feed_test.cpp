@@ -10,7 +10,8 @@ namespace {
 class Feed : public DaemonTest {
  protected:
   std::unique_ptr<WindowFeed> make_feed() {
-    return std::make_unique<WindowFeed>(config_, [this] { return now; });
+    return std::make_unique<WindowFeed>(
+        config_, [this] { return now + set_by; }, [this] { return now; });
   }
   /// Stores the frames and notifies the feed, as the archive's writer does.
   void store(WindowFeed& feed, const std::vector<storage::TelemetryFrame>& frames) {
@@ -38,6 +39,7 @@ class Feed : public DaemonTest {
 
   const Config config_ = config();
   storage::Time now = day + 1000 * minute;
+  storage::Time set_by = 0;  // the clock of the machine, and not the uptime
   storage::Database database = open();
   storage::Archive archive{database};
   storage::Registry registry{database};
@@ -56,13 +58,23 @@ TEST_F(Feed, GivesTheWindowsOfTheParametersOfADerivedInput) {
   Config derived = config();
   derived.spacecraft[0].equipment[0].inputs = {"w"};
   derived.spacecraft[0].equipment[0].derived = {{"w", "u + v", "V"}};
-  WindowFeed feed(derived, [this] { return now; });
+  WindowFeed feed(
+      derived, [this] { return now; }, [this] { return now; });
   archive.describe(descriptors());
   feed.described(descriptors(), archive);
   auto frames = telemetry(day, 601);
   for (auto& frame : frames) frame.samples.resize(2);  // the parameters of the expression alone
   store(feed, frames);
   EXPECT_EQ(try_all(feed), (std::vector{day + 5 * minute, day + 10 * minute}));
+}
+
+TEST_F(Feed, GivesThemInTimeAlsoWhereTheClockOfTheMachineIsSetBack) {
+  auto feed = make_feed();
+  archive.describe(descriptors());
+  feed->described(descriptors(), archive);
+  store(*feed, telemetry(day, 901));
+  set_by = -1440 * minute;
+  EXPECT_EQ(try_all(*feed).size(), 3U);
 }
 
 TEST_F(Feed, GivesThemTooWhenTheDescriptorsComeAfterTheFrames) {

@@ -1,5 +1,5 @@
-// One that takes part in all ten topics of a domain as far as it can, by the middleware alone and
-// without any check of its own: an honest member of some role, or an intruder.
+// One that takes part in all twelve topics of a domain as far as it can, by the middleware alone
+// and without any check of its own: an honest member of some role, or an intruder.
 //
 //   domain_party FOLDER|none DOMAIN PARTITION MARK [ACCESS_LIBRARY]
 //
@@ -77,7 +77,11 @@ std::vector<Topic> all_topics() {
           topic<reident_Command, &reident_Command::requester>("reident/Command",
                                                               reident_Command_desc, false),
           topic<reident_CommandReply, &reident_CommandReply::requester>(
-              "reident/CommandReply", reident_CommandReply_desc, false)};
+              "reident/CommandReply", reident_CommandReply_desc, false),
+          topic<reident_Leadership, &reident_Leadership::service>("reident/Leadership",
+                                                                  reident_Leadership_desc, true),
+          topic<reident_Replica, &reident_Replica::sender>("reident/Replica", reident_Replica_desc,
+                                                           false)};
 }
 
 Qos participant_qos(const std::string& folder, const char* access_library) {

@@ -255,6 +255,22 @@ TEST_F(Verify, FindsWhatContradictsItselfInOtherTables) {
   }
 }
 
+TEST_F(Verify, FindsNothingWrongInTheRegistryOfAPairUnlessItsJournalHasAHole) {
+  {
+    Database database(path, Mode::read_write);
+    Registry registry(database);
+    registry.journal().begin_term(2, "a", 5);
+    NewAttempt attempt;
+    attempt.spacecraft = "CB4";
+    attempt.equipment = "BDR";
+    attempt.evidence_json = "{}";
+    for (int i = 0; i < 2; ++i)  // the versions 2 and 4
+      registry.record(attempt, {"{}", "digest"}, {DecisionKind::wait, "gate", "Good."});
+  }
+  EXPECT_THAT(texts(report()), IsEmpty());
+  EXPECT_THAT(after("DELETE FROM journal WHERE id = 2"), Contains(HasSubstr("numbered up to")));
+}
+
 TEST_F(Verify, AsksForTheModelsThatStorageCannotRead) {
   Database database(path, Mode::read_only);
   const VerifyReport found =

@@ -2,6 +2,7 @@
 // seen.
 #include "storage/registry/journal.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "tests/storage/registry/registry_fixture.hpp"
@@ -117,6 +118,15 @@ TEST_F(JournalTest, RowsThatDoNotFollowOrAreNoneAreRefusedAndChangeNothing) {
   JournalPart foreign{0, 1, {3, 'a', 'b', 'c', 0}};
   EXPECT_THAT(error_of([&] { theirs.apply(foreign); }),
               AllOf(StartsWith("failed: "), HasSubstr("'abc'"), HasSubstr("of one version")));
+  JournalPart nameless = ours.part(0, everything);  // its first attempt has no id
+  const std::string row = {7, 'a', 't', 't', 'e', 'm', 'p', 't'};
+  const auto name = std::search(nameless.rows.begin(), nameless.rows.end(), row.begin(), row.end());
+  ASSERT_NE(name, nameless.rows.end());
+  const auto id = name + static_cast<std::ptrdiff_t>(row.size()) + 1;
+  *id = 'n';
+  nameless.rows.erase(id + 1, id + 9);
+  EXPECT_THAT(error_of([&] { theirs.apply(nameless); }),
+              AllOf(StartsWith("corrupt: "), HasSubstr("'attempt'")));
   EXPECT_THAT(rows(other_path, all_rows), ::testing::ElementsAreArray(before));
   other_registry.record(attempt(1));
   EXPECT_THAT(error_of([&] { theirs.apply(ours.part(0, everything)); }),
