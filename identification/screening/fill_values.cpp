@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace reident::identification {
 namespace {
@@ -67,7 +68,14 @@ double median_size(const std::vector<Plateau>& plateaus) {
 
 std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self) {
   const Channel& channel = channels[self];
-  for (const double value : {channel.low, channel.high}) {
+  std::size_t at_low = 0, at_high = 0;  // a look that costs little: as a rule neither is repeated
+  for (const Plateau& plateau : channel.plateaus) {
+    at_low += plateau.value == channel.low ? 1U : 0U;
+    at_high += plateau.value == channel.high ? 1U : 0U;
+  }
+  for (const auto& [value, count] : {std::pair(channel.low, at_low), {channel.high, at_high}}) {
+    const double share = double(count) / double(channel.plateaus.size());
+    if (count < least_scattered || share > most_scattered) continue;
     std::vector<Plateau> fills, others;
     double low = channel.high, high = channel.low;
     for (const Plateau& plateau : channel.plateaus) {
@@ -77,9 +85,8 @@ std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::
       high = std::max(high, plateau.value);
     }
     const double gap = std::max(low - value, value - high);
-    if (fills.size() < least_scattered || others.empty() || !(high > low) || gap <= high - low ||
-        double(fills.size()) > most_scattered * double(channel.plateaus.size()) ||
-        median_size(fills) > 2 * median_size(others) || another_jumps(channels, self, fills))
+    if (!(high > low) || gap <= high - low || median_size(fills) > 2 * median_size(others) ||
+        another_jumps(channels, self, fills))
       continue;
     return fills;
   }

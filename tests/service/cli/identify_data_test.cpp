@@ -54,7 +54,7 @@ struct Dress {
   std::int64_t hold_s = 30;
 };
 
-class IdentifyData : public test::CliTest {
+class IdentifyRows : public test::CliTest {
  protected:
   identification::Record of_file(const Dress& dress, const std::string& file,
                                  const std::string& time) const {
@@ -87,7 +87,7 @@ class IdentifyData : public test::CliTest {
   }
 };
 
-TEST_F(IdentifyData, HasTheRowsOfTheServiceInEachDress) {
+TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
   const Dress dresses[] = {
       {"plain", "time,u,y\n", [](const Row& r) { return r.date + "Z," + r.u + "," + r.y + "\n"; }},
       {"european", "Export\n\ntime;u;y\n;A;V\n",
