@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace reident::identification {
 namespace {
@@ -10,6 +11,10 @@ namespace {
 // equipment that switches on may well draw a hundred times the noise of its current before.
 constexpr double far = 10, absurd = 1e4;
 constexpr Index least_fills = 2;
+// Of any value that is scattered over the rows, such as 0: plateaus, their share of all, and the
+// share of them at which another channel may jump by chance.
+constexpr std::size_t least_scattered = 3;
+constexpr double most_scattered = 0.25, jumps_together = 0.5;
 
 bool is_of_nines(double magnitude) {
   for (double nines = 99; nines < 1e16; nines = 10 * nines + 9)
@@ -38,7 +43,55 @@ bool stands_for_none(double value, const std::vector<double>& sorted, std::size_
          (is_of_nines(std::abs(value)) || is_end_of_integers(value));
 }
 
+/// Whether another channel jumps at most of these plateaus: they may be what the equipment does.
+bool another_jumps(const std::vector<Channel>& channels, std::size_t self,
+                   const std::vector<Plateau>& plateaus) {
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (c == self) continue;
+    const Vector& values = channels[c].values;
+    const auto jumps = std::count_if(plateaus.begin(), plateaus.end(), [&](const Plateau& at) {
+      return movement(values, std::max<Index>(at.begin - 1, 0),
+                      std::min<Index>(at.end + 1, values.size())) > channels[c].least_jump;
+    });
+    if (double(jumps) > jumps_together * double(plateaus.size())) return true;
+  }
+  return false;
+}
+
+double median_size(const std::vector<Plateau>& plateaus) {
+  std::vector<double> sizes;
+  for (const Plateau& plateau : plateaus) sizes.push_back(double(plateau.size()));
+  return quantile(std::move(sizes), 0.5);
+}
+
 }  // namespace
+
+std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self) {
+  const Channel& channel = channels[self];
+  std::size_t at_low = 0, at_high = 0;  // a look that costs little: as a rule neither is repeated
+  for (const Plateau& plateau : channel.plateaus) {
+    at_low += plateau.value == channel.low ? 1U : 0U;
+    at_high += plateau.value == channel.high ? 1U : 0U;
+  }
+  for (const auto& [value, count] : {std::pair(channel.low, at_low), {channel.high, at_high}}) {
+    const double share = double(count) / double(channel.plateaus.size());
+    if (count < least_scattered || share > most_scattered) continue;
+    std::vector<Plateau> fills, others;
+    double low = channel.high, high = channel.low;
+    for (const Plateau& plateau : channel.plateaus) {
+      (plateau.value == value ? fills : others).push_back(plateau);
+      if (plateau.value == value) continue;
+      low = std::min(low, plateau.value);
+      high = std::max(high, plateau.value);
+    }
+    const double gap = std::max(low - value, value - high);
+    if (!(high > low) || gap <= high - low || median_size(fills) > 2 * median_size(others) ||
+        another_jumps(channels, self, fills))
+      continue;
+    return fills;
+  }
+  return {};
+}
 
 std::vector<double> fill_values(const Vector& values) {
   std::vector<double> sorted(values.begin(), values.end());

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "identification/samples/record.hpp"
+#include "identification/screening/channels.hpp"
 
 namespace reident::identification {
 
@@ -13,5 +13,11 @@ namespace reident::identification {
 /// bits, ten times the greatest magnitude of others that have another sign, and ten thousand times
 /// that of any.
 std::vector<double> fill_values(const Vector& values);
+
+/// Returns the rows of one channel that hold a value which stands for none by where it stands: the
+/// least or the greatest one, exactly repeated in at least three short stretches that are at most a
+/// quarter of all, further outside of the others than these are apart, while no other channel
+/// jumps there as a rule.
+std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self);
 
 }  // namespace reident::identification

@@ -40,6 +40,24 @@ std::vector<SensorFault> fills_of(const Record& record) {
   return faults;
 }
 
+std::vector<SensorFault> scattered_fills_of(const std::vector<Channel>& channels,
+                                            const Record& record) {
+  std::vector<SensorFault> faults;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (!channels[c].is_analog) continue;
+    for (const Plateau& fill : scattered_fills(channels, c))
+      faults.push_back({SensorFaultKind::fill, static_cast<Index>(c),
+                        ticks_of(record, fill.segment, fill.begin, fill.end)});
+  }
+  return faults;
+}
+
+Record without_faults(const Record& record, const std::vector<SensorFault>& faults) {
+  std::vector<TickRange> ticks;
+  for (const SensorFault& fault : faults) ticks.push_back(fault.ticks);
+  return without(record, united(std::move(ticks)));
+}
+
 }  // namespace
 
 std::string_view name(SensorFaultKind kind) {
@@ -59,14 +77,18 @@ std::string_view name(SensorFaultKind kind) {
 std::vector<SensorFault> sensor_faults(const Record& whole, const std::vector<bool>& analog) {
   assert(static_cast<Index>(analog.size()) == whole.u.cols() + whole.y.cols());
   std::vector<SensorFault> faults = fills_of(whole);
-  std::vector<TickRange> filled;
-  for (const SensorFault& fault : faults) filled.push_back(fault.ticks);
   // What stands for no sample would hide what is unusual in the others.
-  const Record rest = filled.empty() ? Record{} : without(whole, united(std::move(filled)));
+  Record rest;
+  if (!faults.empty()) rest = without_faults(whole, faults);
+  const Record& filled = faults.empty() ? whole : rest;
+  if (filled.rows() == 0) return faults;
+  std::vector<Channel> channels = channels_of(filled, analog);
+  if (const auto scattered = scattered_fills_of(channels, filled); !scattered.empty()) {
+    faults.insert(faults.end(), scattered.begin(), scattered.end());
+    rest = without_faults(whole, faults);
+    channels = channels_of(rest, analog);
+  }
   const Record& record = faults.empty() ? whole : rest;
-  if (record.rows() == 0) return faults;
-
-  const std::vector<Channel> channels = channels_of(record, analog);
   const auto bursts = noise_bursts(channels, record);
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (!channels[c].is_analog) continue;

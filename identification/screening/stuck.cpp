@@ -48,9 +48,20 @@ bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& 
   });
 }
 
-bool is_at_end_of_range(const Channel& channel, const Plateau& plateau) {
+/// Whether the channel rests at an end of its range, and does not vary there at other times.
+bool rests_at_end_of_range(const Channel& channel, const Plateau& plateau) {
   const double near = end_share * channel.range();
-  return plateau.value <= channel.low + near || plateau.value >= channel.high - near;
+  const bool is_low = plateau.value <= channel.low + near;
+  if (!is_low && plateau.value < channel.high - near) return false;
+  Index rows = 0, longest = 0;
+  for (const Plateau& other : channel.plateaus) {
+    const bool is_near =
+        is_low ? other.value <= channel.low + near : other.value >= channel.high - near;
+    if (!is_near || (other.begin == plateau.begin && other.segment == plateau.segment)) continue;
+    rows += other.size();
+    longest = std::max(longest, other.size());
+  }
+  return rows < plateau.size() || double(longest) >= repeated_share * double(plateau.size());
 }
 
 /// The longest plateaus, as many as chance does not explain: each sample of the rest of the channel
@@ -85,7 +96,7 @@ std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::s
   const Channel& channel = channels[self];
   std::vector<Plateau> stuck;
   for (const Plateau& plateau : unusually_long(channel.plateaus))
-    if (!is_at_end_of_range(channel, plateau) &&
+    if (!rests_at_end_of_range(channel, plateau) &&
         !is_repeated_elsewhere(channel.plateaus, plateau) && another_moves(channels, self, plateau))
       stuck.push_back(plateau);
   std::sort(stuck.begin(), stuck.end(),

@@ -14,6 +14,7 @@
 #include "service/cli/identify_table.hpp"
 #include "service/model/regime_inputs.hpp"
 #include "service/support/text.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 
 namespace reident::cli {
 namespace {
@@ -94,12 +95,13 @@ std::variant<TelemetryFile, Refusal> open_file(const DataRequest& request) {
     return Refusal{
         fmt::format("{} can be read only once; save it to a file first", request.file.string())};
   telemetry_file::ReadingOptions reading = request.reading;
-  reading.force_times = true;  // nothing is stored
+  reading.any_epoch = true;                         // nothing is stored
+  if (request.segment) reading.force_times = true;  // records may go on side by side
   reading.clock_may_go_back = true;
   for (const auto* names : {&request.inputs, &request.outputs})
     for (const std::string& name : *names)
       if (name.find(',') == std::string::npos) reading.dialect.wanted.push_back(name);
-  auto opened = TelemetryFile::open(request.file, reading);
+  auto opened = telemetry_file::open_as_table(request.file, reading);
   if (const auto* error = std::get_if<csv::Error>(&opened)) return Refusal{error->message};
   return std::get<TelemetryFile>(std::move(opened));
 }
@@ -219,8 +221,8 @@ void warn_of_held_rows(IdentifyData& data) {
   const Index rows = rows_per_sample(data.record);
   if (rows > 1)
     data.warnings.push_back(fmt::format(
-        "each value stands for {0} rows in every column: --period {1:g} takes every {0}th row, "
-        "which is all that the file holds",
+        "each value stands for {} rows in every column: --period {:g} takes one row of each, which "
+        "is all that the file holds",
         rows, static_cast<double>(rows) * data.record.period_s));
 }
 
@@ -280,8 +282,15 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   const std::size_t inputs = columns.size();
   columns.insert(columns.end(), request.outputs.begin(), request.outputs.end());
   const bool has_time = request.reading.time.column.has_value();
-  auto read = read_identify_table(file, columns, has_time, request.skip_bad_lines,
-                                  request.reading.clock_may_go_back);
+  TableRequest wanted{
+      columns, {}, has_time, request.skip_bad_lines, request.reading.clock_may_go_back};
+  if (request.segment) {
+    const auto position = file.find(*request.segment);
+    if (const auto* error = std::get_if<csv::Error>(&position))
+      return Refusal{"--segment: " + error->message};
+    wanted.segment = std::get<std::size_t>(position);
+  }
+  auto read = read_identify_table(file, wanted);
   if (const auto* refusal = std::get_if<Refusal>(&read)) return *refusal;
   const auto& table = std::get<IdentifyTable>(read);
   const auto ranges = parse_ranges(request, static_cast<Index>(table.rows));
@@ -296,9 +305,9 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
     data.warnings.push_back(
         "the validation rows overlap the identification rows: the validation error is not an error "
         "on unseen data");
-  auto gridded = put_on_grid(
-      table, inputs,
-      {request.period_s, request.hold_ns, has_time ? *request.reading.time.column : ""});
+  auto gridded = put_on_grid(table, inputs,
+                             {request.period_s, request.hold_ns, request.phase_ns,
+                              has_time ? *request.reading.time.column : ""});
   if (const auto* refusal = std::get_if<Refusal>(&gridded)) return *refusal;
   auto& grid = std::get<GridRecord>(gridded);
   data.record = std::move(grid.record);

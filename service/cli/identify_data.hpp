@@ -25,9 +25,11 @@ struct DataRequest {
   /// How the file is read. Without a time column rows are one period apart.
   telemetry_file::ReadingOptions reading;
   bool skip_bad_lines = false;
-  std::optional<double> period_s;       // default: 1, or the median step of the slowest column
-  std::optional<std::int64_t> hold_ns;  // how long a value serves; default: 3 periods
-  std::optional<std::string> identify;  // "A:B", rows of the file
+  std::optional<std::string> segment;    // column whose words say which rows are one record
+  std::optional<double> period_s;        // default: 1, or the usual step of the slowest column
+  std::optional<std::int64_t> hold_ns;   // how long a value serves; default: 3 periods
+  std::optional<std::int64_t> phase_ns;  // of ticks behind the multiples; default: what suits
+  std::optional<std::string> identify;   // "A:B", rows of the file
   std::optional<std::string> validate;
   bool screening = true;  // leave out rows at which a column shows a fault
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "identification/samples/grid.hpp"
+#include "service/cli/identify_ticks.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/support/time_text.hpp"
 
@@ -17,30 +18,40 @@ using identification::Record;
 
 // The daemon's default: a sample serves this many periods.
 constexpr std::int64_t sample_hold_periods = 3;
-constexpr double complete_enough = 0.5;  // of the ticks, below which the gaps are worth a word
-constexpr std::size_t phases_tried = 200;
+constexpr double held_worth_a_word = 0.01;  // of the samples
+constexpr double complete_enough = 0.5;     // of the ticks, below which the gaps are worth a word
+// Between parts, more than a run goes on through however many rows there are (hole_bridging.hpp).
+std::int64_t ticks_apart(const IdentifyTable& table) {
+  return static_cast<std::int64_t>(table.rows) / 100 + 100;
+}
 
 /// What a column says: its samples without the blanks.
 struct Samples {
   std::vector<std::int64_t> time_ns;
   std::vector<double> value;
+  std::vector<std::size_t> part;
 };
 
-std::vector<Samples> samples_of(const IdentifyTable& table, std::int64_t phase_ns) {
+/// `time_ns` are those of the rows.
+std::vector<Samples> samples_of(const IdentifyTable& table,
+                                const std::vector<std::int64_t>& time_ns) {
   std::vector<Samples> samples(table.columns.size());
   for (std::size_t c = 0; c < samples.size(); ++c)
     for (std::size_t row = 0; row < table.rows; ++row) {
       if (table.columns[c].is_blank[row] != 0) continue;
-      samples[c].time_ns.push_back(table.time_ns[row] - phase_ns);
+      samples[c].time_ns.push_back(time_ns[row]);
       samples[c].value.push_back(table.columns[c].value[row]);
+      samples[c].part.push_back(table.part[row]);
     }
   return samples;
 }
 
-std::vector<std::int64_t> steps_of(const std::vector<std::int64_t>& time_ns) {
+std::vector<std::int64_t> steps_of(const std::vector<std::int64_t>& time_ns,
+                                   const std::vector<std::size_t>& part) {
   std::vector<std::int64_t> steps;
   for (std::size_t i = 1; i < time_ns.size(); ++i)
-    if (time_ns[i] > time_ns[i - 1]) steps.push_back(time_ns[i] - time_ns[i - 1]);
+    if (part[i] == part[i - 1] && time_ns[i] > time_ns[i - 1])
+      steps.push_back(time_ns[i] - time_ns[i - 1]);
   return steps;
 }
 
@@ -50,12 +61,6 @@ std::int64_t quantile(std::vector<std::int64_t> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-std::int64_t median(std::vector<std::int64_t> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The column that comes most seldom, and its usual step.
 struct Slowest {
   std::string name;  // that of the time column where all come equally often
@@ -63,18 +68,18 @@ struct Slowest {
 };
 
 std::variant<Slowest, Refusal> slowest_of(const IdentifyTable& table, const GridRequest& request) {
-  if (steps_of(table.time_ns).empty())
+  if (steps_of(table.time_ns, table.part).empty())
     return Refusal{fmt::format(
         "--time {} never moves; name a column that holds the time of each row", request.time_name)};
-  const auto samples = samples_of(table, 0);
+  const auto samples = samples_of(table, table.time_ns);
   Slowest slowest;
   bool differ = false;
   for (std::size_t c = 0; c < samples.size(); ++c) {
-    const auto steps = steps_of(samples[c].time_ns);
+    const auto steps = steps_of(samples[c].time_ns, samples[c].part);
     if (steps.empty())
       return Refusal{fmt::format("column {} has {} samples at different times; a model needs many",
                                  table.names[c], samples[c].time_ns.empty() ? 0 : 1)};
-    const std::int64_t step = median(steps);
+    const std::int64_t step = usual_step(steps);
     differ = differ || (c > 0 && step != slowest.step_ns);
     if (step > slowest.step_ns) slowest = {table.names[c], step};
   }
@@ -82,12 +87,17 @@ std::variant<Slowest, Refusal> slowest_of(const IdentifyTable& table, const Grid
   return slowest;
 }
 
+std::string hold_text(std::int64_t ns) {
+  const std::int64_t second = 1'000'000'000;
+  return ns < second ? duration_text(ns) : duration_text((ns + second - 1) / second * second);
+}
+
 std::variant<std::int64_t, Refusal> period_of(const GridRequest& request, const Slowest& slowest,
                                               std::string_view hold_advice,
                                               std::vector<std::string>& warnings) {
   if (!request.period_s) {
     warnings.push_back(fmt::format(
-        "the rows were put on a grid of {}, the median step of {}{}; --period chooses another",
+        "the rows were put on a grid of {}, the usual step of {}{}; --period chooses another",
         duration_text(slowest.step_ns), slowest.name,
         slowest.name == request.time_name
             ? ""
@@ -98,50 +108,43 @@ std::variant<std::int64_t, Refusal> period_of(const GridRequest& request, const 
   const std::int64_t least = (slowest.step_ns + sample_hold_periods - 1) / sample_hold_periods;
   if (period < least && !request.hold_ns)
     return Refusal{
-        fmt::format("--period {} is too short for {}, whose median step is {}: a sample serves {} "
+        fmt::format("--period {} is too short for {}, whose usual step is {}: a sample serves {} "
                     "periods; make it at "
                     "least {}{}",
                     *request.period_s, slowest.name, duration_text(slowest.step_ns),
-                    sample_hold_periods, duration_text(least), hold_advice)};
+                    sample_hold_periods, hold_text(least), hold_advice)};
   return period;
 }
 
-/// How far behind the multiples of a period ticks stand best: so that the values at a tick are as
-/// young as possible. 0 where all columns speak at the same times.
-std::int64_t phase_of(const IdentifyTable& table, std::int64_t period_ns) {
-  bool apart = false;
-  for (const auto& column : table.columns)
-    apart = apart || column.is_blank != table.columns.front().is_blank;
-  if (!apart) return 0;
-  const auto samples = samples_of(table, 0);
-  std::vector<std::vector<std::int64_t>> phases(samples.size());
-  for (std::size_t c = 0; c < samples.size(); ++c) {
-    const std::size_t every = std::max<std::size_t>(1, samples[c].time_ns.size() / phases_tried);
-    for (std::size_t i = 0; i < samples[c].time_ns.size(); i += every)
-      phases[c].push_back(samples[c].time_ns[i] -
-                          floor_divide(samples[c].time_ns[i], period_ns) * period_ns);
+/// Times of the rows on one axis, whose ticks are the multiples of the period.
+struct Placed {
+  std::vector<std::int64_t> time_ns;
+  std::int64_t phase_ns = 0;  // of the first part: how far behind the multiples its ticks stand
+};
+
+/// Each part gets its own phase, unless one is given, and comes long behind the one before.
+Placed place_rows(const IdentifyTable& table, std::int64_t period_ns,
+                  std::optional<std::int64_t> phase_ns) {
+  Placed placed{table.time_ns, 0};
+  const std::int64_t apart_ns = ticks_apart(table) * period_ns;
+  for (std::size_t begin = 0; begin < table.rows;) {
+    std::size_t end = begin;
+    std::vector<std::vector<std::int64_t>> channels(table.columns.size());
+    for (; end < table.rows && table.part[end] == table.part[begin]; ++end)
+      for (std::size_t c = 0; c < channels.size(); ++c)
+        if (table.columns[c].is_blank[end] == 0) channels[c].push_back(table.time_ns[end]);
+    const std::int64_t phase = phase_ns.value_or(suitable_phase(channels, period_ns));
+    std::int64_t shift = -phase;
+    if (begin == 0)
+      placed.phase_ns = phase;
+    else
+      shift += floor_divide(placed.time_ns[begin - 1] + apart_ns - table.time_ns[begin] + phase,
+                            period_ns) *
+               period_ns;
+    for (std::size_t row = begin; row < end; ++row) placed.time_ns[row] += shift;
+    begin = end;
   }
-  const auto age_at = [&](std::int64_t phase) {
-    double sum = 0;
-    for (const auto& channel : phases) {
-      double age = 0;
-      for (const std::int64_t at : channel)
-        age += static_cast<double>(phase >= at ? phase - at : phase - at + period_ns);
-      sum += age / static_cast<double>(channel.size());
-    }
-    return sum;
-  };
-  std::int64_t best = 0;
-  double least = age_at(0);
-  const double worth =
-      0.1 * static_cast<double>(period_ns);  // less is not worth ticks that stand elsewhere
-  for (const auto& channel : phases)
-    for (const std::int64_t phase : channel)
-      if (const double age = age_at(phase); age < least - (best == 0 ? worth : 0)) {
-        best = phase;
-        least = age;
-      }
-  return best;
+  return placed;
 }
 
 /// Gaps of the column whose values reach least far.
@@ -151,12 +154,13 @@ struct Gaps {
 };
 
 Gaps gaps_of(const IdentifyTable& table) {
-  const auto samples = samples_of(table, 0);
+  const auto samples = samples_of(table, table.time_ns);
   Gaps worst;
   for (std::size_t c = 0; c < samples.size(); ++c) {
-    auto gaps = steps_of(samples[c].time_ns);
+    auto gaps = steps_of(samples[c].time_ns, samples[c].part);
     if (gaps.empty()) continue;
-    gaps.push_back(table.time_ns.back() - samples[c].time_ns.back() + 1);
+    if (samples[c].part.back() == table.part.back())
+      gaps.push_back(table.time_ns.back() - samples[c].time_ns.back() + 1);
     const std::int64_t longest = *std::max_element(gaps.begin(), gaps.end());
     if (longest <= worst.longest_ns) continue;
     // A gap that is far longer than the others is lost telemetry.
@@ -164,11 +168,6 @@ Gaps gaps_of(const IdentifyTable& table) {
     worst = {table.names[c], longest, longest > 10 * usual ? quantile(gaps, 0.98) : longest};
   }
   return worst;
-}
-
-std::string hold_text(std::int64_t ns) {
-  const std::int64_t second = 1'000'000'000;
-  return ns < second ? duration_text(ns) : duration_text((ns + second - 1) / second * second);
 }
 
 /// Rows one period apart; a row with a cell that holds no number is a hole.
@@ -181,26 +180,30 @@ GridRecord rows_as_ticks(const IdentifyTable& asked, std::size_t inputs,
         static_cast<std::size_t>(static_cast<double>(*request.hold_ns) * 1e-9 / period_s);
     for (auto& column : table.columns)
       for (std::size_t row = 1, age = 0; row < table.rows; ++row) {
-        age = column.is_blank[row] != 0 ? age + 1 : 0;
+        age = column.is_blank[row] != 0 && table.part[row] == table.part[row - 1] ? age + 1 : 0;
         if (age > 0 && age < held) column.value[row] = column.value[row - 1];
       }
   }
   std::vector<std::size_t> kept;
+  const auto tick_of = [&](std::size_t row) {
+    return static_cast<std::int64_t>(row) +
+           static_cast<std::int64_t>(table.part[row]) * ticks_apart(table);
+  };
   GridRecord made;
   Record& record = made.record;
   record.period_s = period_s;
   for (std::size_t row = 0; row < table.rows; ++row) {
-    made.tick_of_row.push_back(static_cast<std::int64_t>(row));
+    made.tick_of_row.push_back(tick_of(row));
     if (!std::all_of(table.columns.begin(), table.columns.end(),
                      [row](const auto& column) { return std::isfinite(column.value[row]); }))
       continue;
     const auto at = static_cast<Index>(kept.size());
-    if (kept.empty() || kept.back() + 1 != row)
-      record.segments.push_back({at, at, static_cast<std::int64_t>(row)});
+    if (kept.empty() || kept.back() + 1 != row || table.part[row] != table.part[row - 1])
+      record.segments.push_back({at, at, tick_of(row)});
     record.segments.back().end = at + 1;
     kept.push_back(row);
   }
-  made.tick_of_row.push_back(static_cast<std::int64_t>(table.rows));
+  made.tick_of_row.push_back(tick_of(table.rows - 1) + 1);
   const auto rows = static_cast<Index>(kept.size());
   record.u.resize(rows, static_cast<Index>(inputs));
   record.y.resize(rows, static_cast<Index>(table.columns.size() - inputs));
@@ -218,6 +221,35 @@ GridRecord rows_as_ticks(const IdentifyTable& asked, std::size_t inputs,
                     "record is split there",
                     lost, table.rows));
   return made;
+}
+
+/// The ticks from the first row of each part to its last.
+std::int64_t ticks_of_parts(const IdentifyTable& table,
+                            const std::vector<std::int64_t>& tick_of_row) {
+  std::int64_t ticks = 0;
+  for (std::size_t row = 0; row < table.rows; ++row) {
+    if (row + 1 == table.rows || table.part[row + 1] != table.part[row])
+      ticks += tick_of_row[row] + 1;
+    if (row == 0 || table.part[row - 1] != table.part[row]) ticks -= tick_of_row[row];
+  }
+  return ticks;
+}
+
+/// Says of each column that speaks at every tick how often an older value serves in its place.
+void warn_of_held_values(const IdentifyTable& table, const std::vector<Samples>& samples,
+                         std::int64_t period_ns, std::vector<std::string>& warnings) {
+  for (std::size_t c = 0; c < samples.size(); ++c) {
+    const auto steps = steps_of(samples[c].time_ns, samples[c].part);
+    if (quantile(steps, 0.5) > period_ns) continue;
+    const auto late = std::count_if(steps.begin(), steps.end(), [&](std::int64_t step) {
+      return step > period_ns + period_ns / 2;
+    });
+    if (static_cast<double>(late) > held_worth_a_word * static_cast<double>(steps.size()))
+      warnings.push_back(fmt::format(
+          "column {} is silent {} times where its next sample was due, and the value before "
+          "serves on; --hold {} leaves such ticks out",
+          table.names[c], late, duration_text(period_ns)));
+  }
 }
 
 }  // namespace
@@ -238,35 +270,35 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
   if (const auto* refusal = std::get_if<Refusal>(&period)) return *refusal;
   const auto period_ns = std::get<std::int64_t>(period);
   const std::int64_t hold_ns = request.hold_ns.value_or(sample_hold_periods * period_ns);
-  const std::int64_t phase_ns = phase_of(table, period_ns);
-  if (phase_ns != 0)
+  const Placed placed = place_rows(table, period_ns, request.phase_ns);
+  made.phase_ns = placed.phase_ns;
+  if (placed.phase_ns != 0 && !request.phase_ns)
     made.warnings.push_back(
-        fmt::format("the columns have rows of their own: ticks stand {} behind the multiples of "
-                    "{}, where the last of them has come",
-                    duration_text(phase_ns), duration_text(period_ns)));
-  const auto samples = samples_of(table, phase_ns);
+        fmt::format("ticks stand {0} behind the multiples of {1}, where all columns have come "
+                    "(--phase 0s puts them on the multiples, as a service does)",
+                    duration_text(placed.phase_ns), duration_text(period_ns)));
+  const auto samples = samples_of(table, placed.time_ns);
   const std::vector<std::uint8_t> usable(table.rows, 1);
   std::vector<identification::ChannelSamples> channels;
   for (const Samples& column : samples)
     channels.push_back(
         {column.time_ns, column.value, std::span(usable).first(column.value.size())});
   const std::span all(channels);
-  const std::int64_t begin = table.time_ns.front() - phase_ns,
-                     end = table.time_ns.back() - phase_ns + 1;
+  const std::int64_t begin = placed.time_ns.front(), end = placed.time_ns.back() + 1;
   made.record =
       make_record(all.first(inputs), all.subspan(inputs), begin, end, {period_ns, hold_ns});
   const auto tick_at_or_after = [&](std::int64_t time) { return -floor_divide(-time, period_ns); };
-  for (const std::int64_t time : table.time_ns)
-    made.tick_of_row.push_back(tick_at_or_after(time - phase_ns));
+  for (const std::int64_t time : placed.time_ns) made.tick_of_row.push_back(tick_at_or_after(time));
   made.tick_of_row.push_back(tick_at_or_after(end));
-  const auto ticks = static_cast<double>(made.tick_of_row.back() - made.tick_of_row.front());
+  const auto ticks = static_cast<double>(ticks_of_parts(table, made.tick_of_row));
   const auto complete = static_cast<double>(made.record.rows());
-  if (gaps.longest_ns > hold_ns && complete < complete_enough * ticks)
+  if (gaps.mends_ns > hold_ns && complete < complete_enough * ticks)
     made.advice = fmt::format(
         "{} of {} ticks of {} are complete: {} has gaps of up to {}, and a sample serves {}; "
         "{} reaches across them",
         complete, ticks, duration_text(period_ns), gaps.name, hold_text(gaps.longest_ns),
         duration_text(hold_ns), mend);
+  if (!request.hold_ns) warn_of_held_values(table, samples, period_ns, made.warnings);
   std::size_t lost = 0;
   for (std::size_t row = 0; row < table.rows; ++row)
     lost += std::any_of(table.columns.begin(), table.columns.end(),

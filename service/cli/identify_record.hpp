@@ -9,9 +9,10 @@
 namespace reident::cli {
 
 struct GridRequest {
-  std::optional<double> period_s;       // default: 1, or the median step of the slowest column
-  std::optional<std::int64_t> hold_ns;  // how long a value serves; default: 3 periods
-  std::string time_name;                // of the time column, for messages
+  std::optional<double> period_s;        // default: 1, or the usual step of the slowest column
+  std::optional<std::int64_t> hold_ns;   // how long a value serves; default: 3 periods
+  std::optional<std::int64_t> phase_ns;  // of ticks behind the multiples; default: what suits
+  std::string time_name;                 // of the time column, for messages
 };
 
 struct GridRecord {
@@ -21,6 +22,7 @@ struct GridRecord {
   /// Which column has gaps that its values do not reach across, how long they are and which --hold
   /// would mend it; empty where ticks are complete.
   std::string advice;
+  std::int64_t phase_ns = 0;  // how far behind the multiples of the period ticks stand
   std::vector<std::string> warnings;
 };
 

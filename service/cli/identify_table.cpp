@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -87,6 +88,11 @@ std::optional<Refusal> refuse_words(const TelemetryFile& file, const std::string
   if (format.kind == CellFormat::Kind::empty)
     return Refusal{fmt::format("column {} holds no number; name a column of numbers", name)};
   if (format.kind != CellFormat::Kind::text) return std::nullopt;
+  if (!format.may_be_states)
+    return Refusal{fmt::format(
+        "column {} holds no number, the first cell is {}; name a column of numbers, or write its "
+        "cells as plain numbers",
+        name, file.first_word(position))};
   std::string states;
   for (std::size_t i = 0; i < format.words.size(); ++i)
     states += fmt::format("{}{}={}", i == 0 ? "" : ",", format.words[i], i);
@@ -96,19 +102,39 @@ std::optional<Refusal> refuse_words(const TelemetryFile& file, const std::string
       name, file.first_word(position), name, states)};
 }
 
-/// Times of rows whose clock was set back, going on where it left off.
-class Unrolled {
+/// The part of each row by the words of a column, and its time where the clock was set back: each
+/// part has a clock of its own.
+class Parts {
  public:
-  explicit Unrolled(bool is_absolute) : is_absolute_(is_absolute) {}
+  explicit Parts(bool is_absolute) : is_absolute_(is_absolute) {}
 
-  std::int64_t next(const TelemetryFile& file, std::vector<std::string>& warnings) {
+  /// Returns the part of the row that was read, and adds its time to the table where it has one.
+  std::size_t add(const TelemetryFile& file, const TableRequest& request, IdentifyTable& table) {
+    const std::string word =
+        request.segment ? std::string(trimmed(file.cells()[*request.segment])) : std::string();
+    Clock& clock = clocks_.try_emplace(word, Clock{next_part_}).first->second;
+    if (clock.part == next_part_) ++next_part_;
+    if (request.has_time) table.time_ns.push_back(next(clock, file, table.warnings));
+    return clock.part;
+  }
+
+ private:
+  struct Clock {
+    std::size_t part;
+    std::optional<std::int64_t> last_ns = {};
+    std::int64_t ahead_ns = 0;
+  };
+
+  std::int64_t next(Clock& clock, const TelemetryFile& file, std::vector<std::string>& warnings) {
     const std::int64_t time = file.time_ns();
-    if (const auto& step = file.clock_step()) {
+    const auto& step = file.clock_step();
+    // A step from one part to another is none of a clock.
+    if (clock.last_ns && time < *clock.last_ns && step) {
       const bool is_sorted = step->kind == ClockStep::Kind::out_of_order && is_absolute_;
       if (step->missing_ns != 0)
-        ahead_ns_ += step->missing_ns;
+        clock.ahead_ns += step->missing_ns;
       else if (!is_sorted)
-        ahead_ns_ += step->back_ns + gap_steps * std::max<std::int64_t>(usual_ns_, 1);
+        clock = {next_part_++};
       if (warnings_++ < examples)
         warnings.push_back(
             file.error_here(fmt::format("{}; {}", step->what,
@@ -117,36 +143,34 @@ class Unrolled {
                                         : is_sorted ? "rows are put in the order of time"
                                                     : "the rows behind it are a new segment"))
                 .message);
-    } else if (has_last_ && time > last_ns_) {
-      usual_ns_ = time - last_ns_;
     }
-    last_ns_ = time;
-    has_last_ = true;
-    return time + ahead_ns_;
+    clock.last_ns = time;
+    return time + clock.ahead_ns;
   }
 
- private:
-  static constexpr std::int64_t gap_steps = 100;  // longer than a sample is held
   bool is_absolute_;
-  bool has_last_ = false;
-  std::int64_t last_ns_ = 0, ahead_ns_ = 0, usual_ns_ = 0;
-  std::size_t warnings_ = 0;
+  std::size_t next_part_ = 0, warnings_ = 0;
+  std::map<std::string, Clock, std::less<>> clocks_;
 };
 
-/// Puts the rows in the order of time.
+/// Puts the rows of each part together, in the order of time.
 void sort_rows(IdentifyTable& table) {
-  if (std::is_sorted(table.time_ns.begin(), table.time_ns.end())) return;
   std::vector<std::size_t> order(table.rows);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return table.time_ns[a] < table.time_ns[b];
-  });
+  const auto comes_before = [&](std::size_t a, std::size_t b) {
+    if (table.part[a] != table.part[b]) return table.part[a] < table.part[b];
+    return !table.time_ns.empty() && table.time_ns[a] < table.time_ns[b];
+  };
+  if (std::is_sorted(order.begin(), order.end(), comes_before)) return;
+  std::stable_sort(order.begin(), order.end(), comes_before);
   const auto put = [&](auto& values) {
+    if (values.empty()) return;
     auto sorted = values;
     for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = values[order[i]];
     values = std::move(sorted);
   };
   put(table.time_ns);
+  put(table.part);
   for (IdentifyTable::Column& column : table.columns) {
     put(column.value);
     put(column.is_blank);
@@ -156,9 +180,8 @@ void sort_rows(IdentifyTable& table) {
 }  // namespace
 
 std::variant<IdentifyTable, Refusal> read_identify_table(TelemetryFile& file,
-                                                         const std::vector<std::string>& names,
-                                                         bool has_time, bool skip_bad_lines,
-                                                         bool clock_may_go_back) {
+                                                         const TableRequest& request) {
+  const auto& names = request.columns;
   IdentifyTable table;
   table.names = names;
   table.columns.resize(names.size());
@@ -170,29 +193,28 @@ std::variant<IdentifyTable, Refusal> read_identify_table(TelemetryFile& file,
   }
   std::vector<BadCells> bad(names.size());
   telemetry_file::LeftOut left_out;
-  Unrolled clock(has_time && file.clock().is_absolute());
+  Parts parts(request.has_time && file.clock().is_absolute());
   for (auto step = file.next(); step != TelemetryFile::Step::end; step = file.next()) {
     std::optional<csv::Error> error;
     Damage damage = Damage::value;
     if (step == TelemetryFile::Step::error) {
       error = file.error();
       damage = file.damage();
-    } else if (skip_bad_lines) {
+    } else if (request.skip_bad_lines) {
       for (std::size_t c = 0; c < positions.size() && !error; ++c)
         if (file.cell(positions[c]).kind == Cell::Kind::bad)
           error = file.cell_error(positions[c], "is no number");
     }
-    if (error && (!skip_bad_lines || damage == Damage::none)) return Refusal{error->message};
+    if (error && (!request.skip_bad_lines || damage == Damage::none))
+      return Refusal{error->message};
     if (error) {
       left_out.add(damage, *error);
       continue;
     }
-    if (has_time) {
-      if (file.clock_step() && !clock_may_go_back)
-        return Refusal{
-            file.error_here(file.clock_step()->what + "; go on with --clock-back go-on").message};
-      table.time_ns.push_back(clock.next(file, table.warnings));
-    }
+    if (file.clock_step() && !request.clock_may_go_back && !request.segment)
+      return Refusal{
+          file.error_here(file.clock_step()->what + "; go on with --clock-back go-on").message};
+    table.part.push_back(parts.add(file, request, table));
     for (std::size_t c = 0; c < positions.size(); ++c) {
       const Cell cell = file.cell(positions[c]);
       const bool is_number = cell.kind == Cell::Kind::number && std::isfinite(cell.value);

@@ -18,18 +18,27 @@ struct IdentifyTable {
   };
   std::vector<std::string> names;
   std::vector<Column> columns;
-  std::vector<std::int64_t> time_ns;  // ascending; empty without a time column
+  std::vector<std::int64_t> time_ns;  // ascending in each part; empty without a time column
+  /// Part of each row, from 0 and ascending: of the column that names it, and one more where a
+  /// clock was started again. No value of one part serves another.
+  std::vector<std::size_t> part;
   std::size_t rows = 0;
   std::vector<std::string> warnings;  // cells that are no numbers, rows left out, clocks set back
 };
 
-/// Reads `names` of a file whose time is found where `has_time`; rows that are not in the order of
-/// time are put there, and a clock that was set back goes on where it left off. Refuses columns
+struct TableRequest {
+  std::vector<std::string> columns;
+  std::optional<std::size_t> segment;  // position of the column whose words name parts
+  bool has_time = false;               // the time of the file is found
+  bool skip_bad_lines = false;
+  bool clock_may_go_back = false;
+};
+
+/// Reads columns of a file. Rows of one part are put together, and those that are not in the order
+/// of time are put there; a clock that was set back goes on where it left off. Refuses columns
 /// without a number, and cells that are neither numbers nor missing values where they are many or
 /// lie all at one end of the values.
 std::variant<IdentifyTable, Refusal> read_identify_table(telemetry_file::TelemetryFile& file,
-                                                         const std::vector<std::string>& names,
-                                                         bool has_time, bool skip_bad_lines,
-                                                         bool clock_may_go_back);
+                                                         const TableRequest& request);
 
 }  // namespace reident::cli

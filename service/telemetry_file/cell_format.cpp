@@ -116,7 +116,7 @@ StateMap states_of(const std::set<std::string>& words, const StateMap* given) {
 }
 
 struct Counts {
-  std::size_t all = 0, point = 0, comma = 0, point_or = 0, comma_or = 0, bare = 0;
+  std::size_t all = 0, point = 0, comma = 0, point_or = 0, comma_or = 0, bare = 0, short_bare = 0;
   std::string_view first_point, first_comma, first_ambiguous;
 };
 
@@ -151,6 +151,8 @@ std::variant<NumberStyle, std::string> find_style(
   char apart = '\0';
   std::optional<NumberStyle> certain;
   std::size_t whole_columns = 0;  // of cells that all could be either
+  std::size_t mixed_columns =
+      0;  // of such cells and others without a mark, of three digits at most
   for (const auto& cells : columns) {
     Counts here;
     for (const std::string_view cell : cells) {
@@ -161,6 +163,7 @@ std::variant<NumberStyle, std::string> find_style(
       switch (evidence->mark) {
         case Mark::none:
           ++here.bare;
+          if (trimmed(cell).size() <= 4) ++here.short_bare;  // with a sign
           break;
         case Mark::point:
           if (all.point++ == 0) all.first_point = cell;
@@ -186,6 +189,7 @@ std::variant<NumberStyle, std::string> find_style(
       }
     }
     if (here.all >= 5 && here.comma_or == here.all) ++whole_columns;
+    if (here.comma_or > 0 && here.bare > 0 && here.bare == here.short_bare) ++mixed_columns;
   }
   if (certain && (certain->decimal == '.' ? all.comma == 0 : all.point == 0)) return *certain;
   if (all.point > 0 && all.comma > 0)
@@ -196,7 +200,9 @@ std::variant<NumberStyle, std::string> find_style(
   if (all.comma > 0) return NumberStyle{',', all.point_or > 0 ? '.' : apart};
   if (all.comma_or == 0) return NumberStyle{'.', apart};
   if (all.point > 0 || all.point_or > 0) return NumberStyle{'.', ','};
-  // Every comma stands before three digits. Thousands of all cells would be never below 1,000.
+  // Every comma stands before three digits: decimals would be cut off nowhere but in whole numbers.
+  if (mixed_columns > 0) return NumberStyle{'.', ','};
+  // Thousands of all cells would be never below 1,000.
   if (separator != ',' || whole_columns >= 2) return NumberStyle{',', '\0'};
   return fmt::format(
       "'{}' may be a decimal comma or thousands; say --decimal comma or --thousands "
@@ -236,6 +242,7 @@ CellFormat find_format(std::span<const std::string_view> cells, const std::strin
     format.states =
         words.size() < most_states ? states_of(words, given_states(options, column)) : StateMap{};
     format.kind = format.states.empty() ? CellFormat::Kind::text : CellFormat::Kind::state;
+    format.may_be_states = words.size() < most_states;
     for (const std::string& word : words)
       if (format.words.size() < words_shown) format.words.push_back(word);
     return format;
@@ -289,6 +296,7 @@ std::string describe(const CellFormat& format) {
   add((format.spelling & hexadecimal) != 0, "hexadecimal");
   add((format.spelling & fortran) != 0, "exponents with D");
   add((format.spelling & true_minus) != 0, "U+2212 is minus");
+  add((format.spelling & in_formula) != 0, "numbers as formulas");
   add(!format.unit.empty(), fmt::format("in {}", format.unit));
   add((format.spelling & with_suffix) != 0 && format.unit.empty(),
       "flags of limits behind numbers");

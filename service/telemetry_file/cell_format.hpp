@@ -53,6 +53,7 @@ struct CellFormat {
   StateMap states;
   std::vector<std::string> missing;
   std::vector<std::string> words;  // of a column of text: the first different ones, at most 5
+  bool may_be_states = false;      // of a column of text: so few words that they may be states
 };
 
 /// Finds the style in which the numbers of a table are written from its cells, column by column;

@@ -16,20 +16,38 @@ struct FormatName {
   std::string_view name;
   TimeFormat format;
 };
-constexpr std::array<FormatName, 9> formats = {{{"text", TimeFormat::text},
-                                                {"unix", TimeFormat::unix},
-                                                {"elapsed", TimeFormat::elapsed},
-                                                {"excel", TimeFormat::excel},
-                                                {"mjd", TimeFormat::mjd},
-                                                {"jd", TimeFormat::jd},
-                                                {"matlab", TimeFormat::matlab},
-                                                {"filetime", TimeFormat::filetime},
-                                                {"gps", TimeFormat::gps}}};
+constexpr std::array<FormatName, 10> formats = {{{"text", TimeFormat::text},
+                                                 {"unix", TimeFormat::unix},
+                                                 {"elapsed", TimeFormat::elapsed},
+                                                 {"excel", TimeFormat::excel},
+                                                 {"mjd", TimeFormat::mjd},
+                                                 {"jd", TimeFormat::jd},
+                                                 {"matlab", TimeFormat::matlab},
+                                                 {"filetime", TimeFormat::filetime},
+                                                 {"dotnet", TimeFormat::dotnet},
+                                                 {"gps", TimeFormat::gps}}};
 
 std::optional<std::int64_t> rounded(std::optional<std::int64_t> time, std::int64_t quantum) {
   if (!time || quantum <= 1) return time;
   const std::int64_t rest = ((*time % quantum) + quantum) % quantum;
   return *time - rest + (rest * 2 >= quantum ? quantum : 0);
+}
+
+/// The number of "1,709,157,600.5" with a decimal point.
+std::string without_thousands(std::string_view cell, char decimal) {
+  std::string plain;
+  for (const char c : cell)
+    if (c == decimal)
+      plain += '.';
+    else if (c != '.' && c != ',')
+      plain += c;
+  return plain;
+}
+
+/// The number of "10 sec".
+std::string_view without_unit(std::string_view cell) {
+  const auto last = cell.find_last_of("0123456789.");
+  return cell.substr(0, last == std::string_view::npos ? 0 : last + 1);
 }
 
 bool all_digits(std::string_view text) {
@@ -74,9 +92,8 @@ std::optional<std::int64_t> Clock::absolute(const DateText& text) {
 
 std::optional<std::int64_t> Clock::read_number_of(std::string_view cell) const {
   std::string with_point;
-  if (has_decimal_comma_) {
-    with_point = cell;
-    std::replace(with_point.begin(), with_point.end(), ',', '.');
+  if (cell.find(',') != std::string_view::npos || std::count(cell.begin(), cell.end(), '.') > 1) {
+    with_point = without_thousands(cell, has_decimal_comma_ ? ',' : '.');
     cell = with_point;
   }
   const auto serial = [&](std::int64_t origin_days, std::int64_t half_days = 0) {
@@ -94,6 +111,8 @@ std::optional<std::int64_t> Clock::read_number_of(std::string_view cell) const {
       return serial(719'529);
     case TimeFormat::filetime:
       return parse_count(cell, 100, 11'644'473'600);
+    case TimeFormat::dotnet:
+      return parse_count(cell, 100, 62'135'596'800);
     case TimeFormat::gps: {
       const auto time = parse_count(cell, unit_ns_);
       return time ? std::optional(utc_of_gps(*time)) : std::nullopt;
@@ -104,7 +123,8 @@ std::optional<std::int64_t> Clock::read_number_of(std::string_view cell) const {
     case TimeFormat::elapsed:
       break;
   }
-  const auto time = parse_count(cell, unit_ns_);
+  if (has_unit_behind_) cell = without_unit(cell);
+  const auto time = rounded(parse_count(cell, unit_ns_), quantum_ns_);
   std::int64_t sum = 0;
   if (!time || __builtin_add_overflow(*time, epoch_ns_, &sum)) return std::nullopt;
   return sum;
@@ -131,9 +151,11 @@ std::optional<std::int64_t> Clock::read_one(std::string_view cell) {
 
 std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> cells) {
   if (parts_ == Parts::joined) {
-    const std::string both =
-        std::string(trimmed(cells[columns_[0]])) + " " + std::string(trimmed(cells[columns_[1]]));
-    const auto text = read_date_text(both, order_);
+    std::string clock(trimmed(cells[columns_[1]]));
+    if (clock_digits_ != 0 && clock.size() < clock_digits_)
+      clock.insert(0, clock_digits_ - clock.size(), '0');
+    const auto text =
+        read_date_text(std::string(trimmed(cells[columns_[0]])) + " " + clock, order_);
     return text ? absolute(*text) : std::nullopt;
   }
   const auto number = [&](std::size_t part, std::int64_t unit) {
@@ -145,8 +167,17 @@ std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> 
     return utc_of_gps(*week + *of_week);
   }
   const bool is_ordinal = parts_ == Parts::day_of_year;
+  std::string_view second = trimmed(cells[columns_[1]]);
+  std::int64_t of_day_ns = 0;
+  if (const auto point = second.find(has_decimal_comma_ ? ',' : '.');
+      is_ordinal && point != std::string_view::npos) {  // 59.9166667
+    const auto fraction = parse_count("0." + std::string(second.substr(point + 1)), day_ns);
+    if (!fraction) return std::nullopt;
+    of_day_ns = *rounded(fraction, quantum_ns_);
+    second = second.substr(0, point);
+  }
   const std::string date =
-      std::string(trimmed(cells[columns_[0]])) + "/" + std::string(trimmed(cells[columns_[1]])) +
+      std::string(trimmed(cells[columns_[0]])) + "/" + std::string(second) +
       (is_ordinal ? std::string() : "/" + std::string(trimmed(cells[columns_[2]])));
   std::string ordinal = date;
   // 9 is the day 009 of the year.
@@ -155,6 +186,7 @@ std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> 
   const auto day = read_date_text(ordinal, order_);
   if (!day) return std::nullopt;
   DateText time = *day;
+  time.clock_ns += of_day_ns;
   const std::size_t first = is_ordinal ? 2 : 3;
   for (std::size_t part = first; part < columns_.size(); ++part) {
     if (part_unit_ns_[part - first] == 0) {  // a time of day as text

@@ -26,6 +26,7 @@ enum class TimeFormat {
   jd,        // Julian days
   matlab,    // days of datenum
   filetime,  // 100 ns since 1601
+  dotnet,    // 100 ns since the year 1
   gps,       // seconds since 1980-01-06, leap seconds not left out
 };
 std::optional<TimeFormat> parse_time_format(std::string_view text);
@@ -98,8 +99,10 @@ class Clock {
   std::int64_t unit_ns_ = 1'000'000'000;
   std::vector<std::int64_t> part_unit_ns_;  // of hours, minutes, seconds behind the date's parts
   std::int64_t epoch_ns_ = 0;
-  std::int64_t quantum_ns_ = 1;  // what serial days are rounded to
+  std::int64_t quantum_ns_ = 1;   // what days, hours and minutes are rounded to
+  std::size_t clock_digits_ = 0;  // of a time of day as a number, as 93000; 0: it is no number
   bool has_decimal_comma_ = false;
+  bool has_unit_behind_ = false;  // numbers are as "10 sec"
   bool is_absolute_ = true, may_be_local_ = false;
   std::optional<TimeZone> zone_;
   std::string description_;

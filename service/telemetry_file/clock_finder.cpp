@@ -1,3 +1,5 @@
+#include "service/telemetry_file/clock_finder.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -6,8 +8,6 @@
 
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
-#include "service/telemetry_file/clock.hpp"
-#include "service/telemetry_file/clock_names.hpp"
 #include "service/telemetry_file/clock_words.hpp"
 #include "service/telemetry_file/time_units.hpp"
 
@@ -16,7 +16,8 @@ namespace {
 
 constexpr double seconds_a_day = 86'400;
 constexpr double earliest_s = 631'152'000;  // 1990
-constexpr double min_serial_decimals = 4;
+constexpr int min_serial_decimals = 4;
+constexpr std::int64_t coarsest_quantum_ns = 10 * second_ns;
 
 using Problem = Clock::Problem;
 
@@ -37,6 +38,8 @@ double seconds_of(double value, TimeFormat format, std::int64_t unit_ns) {
       return (value - 719'529) * seconds_a_day;
     case TimeFormat::filetime:
       return value * 1e-7 - 11'644'473'600.0;
+    case TimeFormat::dotnet:
+      return value * 1e-7 - 62'135'596'800.0;
     case TimeFormat::gps:
       return value * static_cast<double>(unit_ns) * 1e-9 + 315'964'800;
     case TimeFormat::mixed:
@@ -48,46 +51,23 @@ double seconds_of(double value, TimeFormat format, std::int64_t unit_ns) {
   return value * static_cast<double>(unit_ns) * 1e-9;
 }
 
+/// The power of ten [ns] that numbers of a unit are rounded to: they have so many decimals, and
+/// were doubles near `value`. 1 where they do not resolve ten seconds.
+std::int64_t quantum_of(std::int64_t unit_ns, int decimals, double value) {
+  const double spacing = std::nextafter(value, 1e300) - value;
+  const double resolution_ns = static_cast<double>(unit_ns) * (std::pow(10.0, -decimals) + spacing);
+  std::int64_t quantum = 1;
+  while (static_cast<double>(quantum) < resolution_ns)
+    if ((quantum *= 10) > coarsest_quantum_ns) return 1;
+  return quantum;
+}
+
+int decimals_of(std::string_view cell, char mark) {
+  const auto point = cell.find(mark);
+  return point == std::string_view::npos ? 0 : static_cast<int>(cell.size() - point) - 1;
+}
+
 }  // namespace
-
-/// Looks at the columns of a head.
-class ClockFinder {
- public:
-  ClockFinder(const HeadCells& head, const TimeOptions& options, std::int64_t latest_ns)
-      : head_(head), options_(options), latest_s_(static_cast<double>(latest_ns) * 1e-9) {}
-
-  std::variant<Clock, Problem> run();
-
- private:
-  std::optional<std::size_t> column(std::string_view name) const;
-  std::optional<std::size_t> part(TimePart part) const;
-  std::pair<std::string_view, std::uint64_t> first_cell(std::size_t c) const;
-  bool set_parts(Clock::Parts parts, std::vector<std::size_t> columns,
-                 std::vector<std::int64_t> units);
-  bool find_calendar();
-  bool find_date_and_clock();
-  bool find_gps_week();
-  bool find_set();
-  std::string_view unit(std::size_t c) const;
-  bool holds_time(std::size_t c) const;
-  std::optional<Problem> choose_columns();
-  std::optional<Problem> choose(std::vector<std::size_t> columns);
-  std::optional<Problem> choose_named(const std::string& asked);
-  std::optional<Problem> decide_parts();
-  std::optional<Problem> decide_order(std::size_t c);
-  std::optional<Problem> decide_one(std::size_t c);
-  bool in_window(const std::vector<double>& values, TimeFormat format, std::int64_t unit_ns) const;
-  std::optional<std::int64_t> unit_by_size(const std::vector<double>& values) const;
-  bool is_absolute_number(const std::vector<double>& values) const;
-  void take(TimeFormat format, std::int64_t unit_ns, int decimals, std::string_view evidence);
-  std::optional<Problem> decide_number(std::size_t c, const std::vector<double>& values,
-                                       int decimals);
-
-  const HeadCells& head_;
-  const TimeOptions& options_;
-  const double latest_s_;
-  Clock clock_;
-};
 
 std::variant<Clock, Problem> ClockFinder::run() {
   if (options_.zone) {
@@ -107,157 +87,6 @@ std::variant<Clock, Problem> ClockFinder::run() {
   return std::move(clock_);
 }
 
-std::optional<std::size_t> ClockFinder::column(std::string_view name) const {
-  const auto found = std::find(head_.names.begin(), head_.names.end(), name);
-  return found == head_.names.end()
-             ? std::nullopt
-             : std::optional(static_cast<std::size_t>(found - head_.names.begin()));
-}
-
-std::optional<std::size_t> ClockFinder::part(TimePart part) const {
-  for (std::size_t c = 0; c < head_.names.size(); ++c)
-    if (part_of(head_.names[c]) == part) return c;
-  return std::nullopt;
-}
-
-/// The first cell of a column that holds something, and its line.
-std::pair<std::string_view, std::uint64_t> ClockFinder::first_cell(std::size_t c) const {
-  for (std::size_t row = 0; row < head_.columns[c].size(); ++row)
-    if (!trimmed(head_.columns[c][row]).empty())
-      return {trimmed(head_.columns[c][row]), head_.lines[row]};
-  return {{}, head_.lines.empty() ? 0 : head_.lines.front()};
-}
-
-bool ClockFinder::set_parts(Clock::Parts parts, std::vector<std::size_t> columns,
-                            std::vector<std::int64_t> units) {
-  clock_.parts_ = parts;
-  clock_.columns_ = std::move(columns);
-  clock_.part_unit_ns_ = std::move(units);
-  return true;
-}
-
-/// Year with month and day, or day of the year, and the time of day.
-bool ClockFinder::find_calendar() {
-  const auto year = part(TimePart::year), month = part(TimePart::month), day = part(TimePart::day);
-  auto of_year = part(TimePart::day_of_year);
-  if (year && !of_year && day && !month) of_year = day;
-  if (!year || (!of_year && (!month || !day))) return false;
-  std::vector<std::size_t> columns =
-      of_year ? std::vector{*year, *of_year} : std::vector{*year, *month, *day};
-  std::vector<std::int64_t> units;
-  const auto add = [&](TimePart wanted, std::int64_t unit) {
-    const auto at = part(wanted);
-    if (!at || std::find(columns.begin(), columns.end(), *at) != columns.end()) return false;
-    columns.push_back(*at);
-    units.push_back(unit);
-    return true;
-  };
-  const bool of_day = add(TimePart::second_of_day, second_ns) ||
-                      add(TimePart::millisecond_of_day, 1'000'000) || add(TimePart::clock, 0);
-  if (!of_day && add(TimePart::hour, 3600 * second_ns) && add(TimePart::minute, 60 * second_ns))
-    add(TimePart::second, second_ns);
-  else if (!of_day)
-    add(TimePart::second, second_ns);
-  return set_parts(of_year ? Clock::Parts::day_of_year : Clock::Parts::calendar, std::move(columns),
-                   std::move(units));
-}
-
-/// A date and a time of day side by side.
-bool ClockFinder::find_date_and_clock() {
-  const auto date = part(TimePart::date), clock = part(TimePart::clock);
-  if (!date || !clock) return false;
-  const auto day = read_date_text(first_cell(*date).first, clock_.order_);
-  const auto of_day = read_date_text(first_cell(*clock).first, clock_.order_);
-  if (!day || !day->has_date || !of_day || of_day->has_date) return false;
-  return set_parts(Clock::Parts::joined, {*date, *clock}, {});
-}
-
-bool ClockFinder::find_gps_week() {
-  const auto week = part(TimePart::gps_week), second = part(TimePart::week_second);
-  if (!week || !second || !plain_number(first_cell(*week).first)) return false;
-  clock_.unit_ns_ = options_.unit_ns.value_or(
-      hint_of(head_.names[*second], unit(*second)).unit_ns.value_or(second_ns));
-  return set_parts(Clock::Parts::gps_week, {*week, *second}, {});
-}
-
-bool ClockFinder::find_set() {
-  return find_calendar() || find_date_and_clock() || find_gps_week();
-}
-
-std::string_view ClockFinder::unit(std::size_t c) const {
-  return head_.units.empty() ? std::string_view() : head_.units[c];
-}
-
-bool ClockFinder::holds_time(std::size_t c) const {
-  const auto cell = first_cell(c).first;
-  return read_number(cell, head_.style).has_value() ||
-         read_date_text(cell, clock_.order_).has_value();
-}
-
-std::optional<Problem> ClockFinder::choose_columns() {
-  if (options_.column) return choose_named(*options_.column);
-  if (find_set()) return std::nullopt;
-  for (std::size_t c = 0; c < head_.names.size(); ++c)
-    if (is_named_like_a_time(head_.names[c]) && holds_time(c)) return choose({c});
-  for (std::size_t c = 0; c < head_.names.size(); ++c)
-    if (!read_number(first_cell(c).first, head_.style) &&
-        read_date_text(first_cell(c).first, clock_.order_))
-      return choose({c});
-  return Problem{head_.lines.empty() ? 0 : head_.lines.front(),
-                 "no column looks like a time; name it with --time (the columns are: " +
-                     joined(head_.names) + ")"};
-}
-
-std::optional<Problem> ClockFinder::choose(std::vector<std::size_t> columns) {
-  clock_.columns_ = std::move(columns);
-  return std::nullopt;
-}
-
-std::optional<Problem> ClockFinder::choose_named(const std::string& asked) {
-  const auto no_column = [&](const std::string& name) {
-    std::string text = "there is no column '" + name + "'; ";
-    if (find_set()) {
-      text += "the time is in the columns ";
-      std::string all;
-      for (const std::size_t c : clock_.columns_) all += (all.empty() ? "" : ",") + head_.names[c];
-      text += all + ": --time " + all + "; ";
-    }
-    return Problem{0, text + "the columns are: " + joined(head_.names)};
-  };
-  if (const auto one = column(asked)) {
-    const auto cell = first_cell(*one).first;
-    const auto text = read_date_text(cell, clock_.order_);
-    const bool is_part =
-        part_of(asked) != TimePart::none && !options_.format && (text ? cell.size() <= 12 : true);
-    if (is_part && find_set() &&
-        std::find(clock_.columns_.begin(), clock_.columns_.end(), *one) != clock_.columns_.end())
-      return std::nullopt;
-    clock_.parts_ = Clock::Parts::one;
-    return choose({*one});
-  }
-  std::vector<std::size_t> columns;
-  for (std::size_t at = 0; at <= asked.size();) {
-    const std::size_t end = std::min(asked.find(',', at), asked.size());
-    const std::string name(trimmed(std::string_view(asked).substr(at, end - at)));
-    const auto found = column(name);
-    if (!found) return no_column(name);
-    columns.push_back(*found);
-    at = end + 1;
-  }
-  if (columns.size() == 1) return choose(std::move(columns));
-  if (find_set() && clock_.columns_.size() == columns.size() &&
-      std::is_permutation(columns.begin(), columns.end(), clock_.columns_.begin()))
-    return std::nullopt;
-  if (columns.size() == 2) {
-    set_parts(Clock::Parts::joined, std::move(columns), {});
-    return std::nullopt;
-  }
-  return Problem{
-      0, "--time " + asked +
-             " are no columns of one time: a date and a time of day; year, month and day, or year "
-             "and doy, with hour, minute and second or sec_of_day; week and tow"};
-}
-
 std::optional<Problem> ClockFinder::decide_parts() {
   clock_.may_be_local_ = clock_.parts_ != Clock::Parts::gps_week && !clock_.zone_;
   switch (clock_.parts_) {
@@ -269,6 +98,9 @@ std::optional<Problem> ClockFinder::decide_parts() {
       break;
     case Clock::Parts::day_of_year:
       clock_.description_ = "year, day of year";
+      for (const std::string_view cell : head_.columns[clock_.columns_[1]])
+        if (const int decimals = decimals_of(trimmed(cell), head_.style.decimal); decimals > 0)
+          clock_.quantum_ns_ = quantum_of(day_ns, std::max(decimals, min_serial_decimals), 366);
       break;
     default:
       clock_.description_ = "GPS week and " + unit_name(clock_.unit_ns_);
@@ -334,12 +166,13 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
     ++filled;
     const auto number = read_number(cell, head_.style);
     const auto text = read_date_text(cell, clock_.order_);
-    if (number && number->suffix.empty() && std::isfinite(number->value)) {
+    const auto unit_behind = number && !text ? hint_of({}, number->suffix).unit_ns : std::nullopt;
+    if (number && (number->suffix.empty() || unit_behind) && std::isfinite(number->value)) {
+      clock_.has_unit_behind_ = unit_behind.has_value();
+      unit_behind_ = unit_behind;
       ++numbers;
       values.push_back(number->value);
-      const auto point = cell.find(head_.style.decimal);
-      if (point != std::string_view::npos)
-        decimals = std::max(decimals, static_cast<int>(cell.size() - point) - 1);
+      decimals = std::max(decimals, decimals_of(cell, head_.style.decimal));
     }
     if (!text) continue;
     ++texts;
@@ -396,7 +229,7 @@ bool ClockFinder::is_absolute_number(const std::vector<double>& values) const {
   return unit_by_size(values).has_value();
 }
 
-void ClockFinder::take(TimeFormat format, std::int64_t unit_ns, int decimals,
+void ClockFinder::take(TimeFormat format, std::int64_t unit_ns, int decimals, double value,
                        std::string_view evidence) {
   clock_.format_ = format;
   clock_.unit_ns_ = unit_ns;
@@ -404,30 +237,29 @@ void ClockFinder::take(TimeFormat format, std::int64_t unit_ns, int decimals,
   clock_.description_ = describe_format(format, unit_ns) + std::string(evidence);
   const bool is_serial = format == TimeFormat::excel || format == TimeFormat::mjd ||
                          format == TimeFormat::jd || format == TimeFormat::matlab;
-  // So many decimals of a day are exact to half of this.
-  for (int d = std::max(decimals, 4); is_serial && d < 14; ++d) {
-    if (clock_.quantum_ns_ == 1)
-      clock_.quantum_ns_ = 10;
-    else
-      clock_.quantum_ns_ *= 10;
-  }
+  if (is_serial)
+    clock_.quantum_ns_ = quantum_of(day_ns, std::max(decimals, min_serial_decimals), value);
+  else if (unit_ns > second_ns && decimals > 0)
+    clock_.quantum_ns_ = quantum_of(unit_ns, decimals, value);
 }
 
 std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vector<double>& values,
                                                   int decimals) {
-  const NameHint hint = hint_of(head_.names[c], unit(c));
+  NameHint hint = hint_of(head_.names[c], unit(c));
+  if (unit_behind_) hint.unit_ns = unit_behind_;
   const std::int64_t unit = options_.unit_ns.value_or(hint.unit_ns.value_or(second_ns));
   const auto by_size = unit_by_size(values);
+  const double value = values.empty() ? 0 : values.front();
   if (options_.format) {
     take(*options_.format,
          *options_.format == TimeFormat::unix && !options_.unit_ns && !hint.unit_ns
              ? by_size.value_or(unit)
              : unit,
-         decimals, "");
+         decimals, value, "");
     return std::nullopt;
   }
   if (options_.epoch_ns || options_.unit_ns) {
-    take(options_.epoch_ns ? TimeFormat::elapsed : TimeFormat::unix, unit, decimals, "");
+    take(options_.epoch_ns ? TimeFormat::elapsed : TimeFormat::unix, unit, decimals, value, "");
     if (!options_.epoch_ns && !in_window(values, TimeFormat::unix, unit))
       clock_.is_absolute_ = false;
     return std::nullopt;
@@ -436,7 +268,7 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
     const bool plausible =
         *hint.format == TimeFormat::elapsed || in_window(values, *hint.format, unit);
     if (plausible) {
-      take(*hint.format, unit, decimals, " by the name");
+      take(*hint.format, unit, decimals, value, " by the name");
       return std::nullopt;
     }
   }
@@ -449,23 +281,26 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
                             "is one in {}; say with --time-unit which is right",
                             shown(cell), head_.names[c], unit_name(unit), unit_name(*by_size))};
     }
-    take(fits ? TimeFormat::unix : TimeFormat::elapsed, unit, decimals, " by the name");
+    take(fits ? TimeFormat::unix : TimeFormat::elapsed, unit, decimals, value, " by the name");
     return std::nullopt;
   }
   if (by_size) {
-    take(TimeFormat::unix, *by_size, decimals, *by_size == second_ns ? "" : " by their size");
+    take(TimeFormat::unix, *by_size, decimals, value,
+         *by_size == second_ns ? "" : " by their size");
     return std::nullopt;
   }
-  for (const TimeFormat format : {TimeFormat::filetime, TimeFormat::jd, TimeFormat::matlab,
-                                  TimeFormat::excel, TimeFormat::mjd}) {
+  for (const TimeFormat format : {TimeFormat::filetime, TimeFormat::dotnet, TimeFormat::jd,
+                                  TimeFormat::matlab, TimeFormat::excel, TimeFormat::mjd}) {
     if (!in_window(values, format, second_ns)) continue;
     const bool is_fine = decimals >= min_serial_decimals && is_named_like_a_time(head_.names[c]);
-    if (format != TimeFormat::filetime && format != TimeFormat::jd && !is_fine) continue;
-    take(format, second_ns, decimals, " by their size");
+    if (format != TimeFormat::filetime && format != TimeFormat::dotnet &&
+        format != TimeFormat::jd && !is_fine)
+      continue;
+    take(format, second_ns, decimals, value, " by their size");
     return std::nullopt;
   }
   take(hint.format == TimeFormat::unix ? TimeFormat::unix : TimeFormat::elapsed, second_ns,
-       decimals, "");
+       decimals, value, "");
   return std::nullopt;
 }
 

@@ -49,7 +49,10 @@ std::optional<TimeFormat> format_of(const std::string& word) {
       {"posix", TimeFormat::unix},      {"met", TimeFormat::elapsed},
       {"elapsed", TimeFormat::elapsed}, {"mission", TimeFormat::elapsed},
       {"tow", TimeFormat::elapsed},     {"itow", TimeFormat::elapsed},
-      {"uptime", TimeFormat::elapsed}};
+      {"uptime", TimeFormat::elapsed},  {"obt", TimeFormat::elapsed},
+      {"scet", TimeFormat::elapsed},    {"sclk", TimeFormat::elapsed},
+      {"cuc", TimeFormat::elapsed},     {"onboard", TimeFormat::elapsed},
+      {"ticks", TimeFormat::dotnet}};
   const auto found = formats.find(word);
   return found == formats.end() ? std::nullopt : std::optional(found->second);
 }
@@ -100,6 +103,7 @@ TimePart part_of(std::string_view name) {
       {"day", TimePart::day},
       {"dayofmonth", TimePart::day},
       {"dd", TimePart::day},
+      {"mm", TimePart::month},
       {"doy", TimePart::day_of_year},
       {"dayofyear", TimePart::day_of_year},
       {"ddd", TimePart::day_of_year},
@@ -109,6 +113,8 @@ TimePart part_of(std::string_view name) {
       {"hh", TimePart::hour},
       {"hr", TimePart::hour},
       {"minute", TimePart::minute},
+      {"mi", TimePart::minute},
+      {"mn", TimePart::minute},
       {"min", TimePart::minute},
       {"minutes", TimePart::minute},
       {"second", TimePart::second},
@@ -126,12 +132,17 @@ TimePart part_of(std::string_view name) {
       {"msod", TimePart::millisecond_of_day},
       {"date", TimePart::date},
       {"datum", TimePart::date},
+      {"data", TimePart::date},
+      {"fecha", TimePart::date},
       {"utcdate", TimePart::date},
       {"dateutc", TimePart::date},
       {"time", TimePart::clock},
       {"clock", TimePart::clock},
       {"zeit", TimePart::clock},
       {"uhrzeit", TimePart::clock},
+      {"heure", TimePart::clock},
+      {"hora", TimePart::clock},
+      {"ora", TimePart::clock},
       {"utc", TimePart::clock},
       {"utctime", TimePart::clock},
       {"timeutc", TimePart::clock},
@@ -150,7 +161,12 @@ TimePart part_of(std::string_view name) {
       {"secondofweek", TimePart::week_second},
       {"timeofweek", TimePart::week_second},
       {"gpsseconds", TimePart::week_second},
-      {"secofweek", TimePart::week_second}};
+      {"secofweek", TimePart::week_second},
+      {"gpssec", TimePart::week_second},
+      {"gpss", TimePart::week_second},
+      {"gpsms", TimePart::week_second},
+      {"weekseconds", TimePart::week_second},
+      {"weeksec", TimePart::week_second}};
   std::string all;
   for (const std::string& word : words_of(name)) all += word;
   const auto found = parts.find(all);

@@ -28,12 +28,21 @@ constexpr std::array<Wrap, 8> wraps = {{{65'536, "65,536"},
 
 std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t line) {
   std::optional<ClockStep> step;
-  if (last_ns_ && time_ns < *last_ns_)
-    step = explained(time_ns, line);
-  else if (last_ns_ && time_ns > *last_ns_)
+  if (last_ns_ && time_ns < *last_ns_) step = explained(time_ns, line);
+  if (last_ns_ && time_ns > *last_ns_) {
+    if (hour_ahead_line_ == 0 && begins_daylight_saving(time_ns)) hour_ahead_line_ = line;
     usual_ns_ = time_ns - *last_ns_;
+  }
   last_ns_ = time_ns;
   return step;
+}
+
+bool ClockWatch::begins_daylight_saving(std::int64_t time_ns) const {
+  if (!may_be_local_ || !is_absolute_ || usual_ns_ == 0 || usual_ns_ > hour_ns / 4) return false;
+  const std::int64_t expected_ns = *last_ns_ + usual_ns_;
+  const std::int64_t of_day_ns = ((expected_ns % day_ns) + day_ns) % day_ns;
+  return of_day_ns < 4 * hour_ns && of_day_ns % hour_ns <= usual_ns_ &&
+         std::abs(time_ns - expected_ns - hour_ns) <= std::max(second_ns, usual_ns_ / 2);
 }
 
 ClockStep ClockWatch::explained(std::int64_t time_ns, std::uint64_t line) const {

@@ -33,14 +33,18 @@ class ClockWatch {
 
   /// Returns the step where the time is earlier than the one before.
   std::optional<ClockStep> next(std::int64_t time_ns, std::uint64_t line);
+  /// The first line before which a local clock goes ahead an hour, in the night; 0: it does not.
+  std::uint64_t hour_ahead_line() const { return hour_ahead_line_; }
 
  private:
   ClockStep explained(std::int64_t time_ns, std::uint64_t line) const;
+  bool begins_daylight_saving(std::int64_t time_ns) const;
 
   std::int64_t unit_ns_;
   bool is_absolute_, may_be_local_;
   std::optional<std::int64_t> last_ns_;
   std::int64_t usual_ns_ = 0;  // the last step ahead
+  std::uint64_t hour_ahead_line_ = 0;
 };
 
 }  // namespace reident::telemetry_file

@@ -29,6 +29,8 @@ std::string describe_format(TimeFormat format, std::int64_t unit_ns) {
       return "days of datenum";
     case TimeFormat::filetime:
       return "Windows file times";
+    case TimeFormat::dotnet:
+      return ".NET ticks";
     case TimeFormat::gps:
       return "GPS " + unit_name(unit_ns);
     case TimeFormat::unix:

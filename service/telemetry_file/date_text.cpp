@@ -11,8 +11,22 @@
 namespace reident::telemetry_file {
 namespace {
 
-constexpr std::array<std::string_view, 12> months = {"jan", "feb", "mar", "apr", "may", "jun",
-                                                     "jul", "aug", "sep", "oct", "nov", "dec"};
+/// What the names of a month begin with in English, German, French, Spanish, Portuguese, Italian.
+constexpr std::array<std::string_view, 12> months = {
+    " jan ene gen ", " feb fev ",         " mar mrz ",      " apr avr abr ",
+    " may mai mag ", " jun juin giu ",    " jul juil lug ", " aug aou ago ",
+    " sep set ",     " oct okt out ott ", " nov ",          " dec dez dic "};
+
+struct NamedOffset {
+  std::string_view name;
+  int minutes;
+};
+/// Names of zones that stand for one offset (those of RFC 822, and of Europe).
+constexpr std::array<NamedOffset, 22> named_offsets = {
+    {{"z", 0},      {"utc", 0},    {"gmt", 0},    {"ut", 0},     {"wet", 0},    {"west", 60},
+     {"cet", 60},   {"met", 60},   {"mez", 60},   {"cest", 120}, {"mest", 120}, {"mesz", 120},
+     {"eet", 120},  {"eest", 180}, {"est", -300}, {"edt", -240}, {"cst", -360}, {"cdt", -300},
+     {"mst", -420}, {"mdt", -360}, {"pst", -480}, {"pdt", -420}}};
 constexpr std::array<std::string_view, 7> weekdays = {"mon", "tue", "wed", "thu",
                                                       "fri", "sat", "sun"};
 
@@ -20,7 +34,25 @@ bool digit(char c) {
   return c >= '0' && c <= '9';
 }
 bool letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80) != 0;
+}
+
+/// The letter of U+00C0 to U+00FF without its accent, in lower case, of its second byte in UTF-8;
+/// '\0' where no month has it.
+char without_accent(char second) {
+  switch (static_cast<unsigned char>(second) | 0x20U) {
+    case 0xA4:
+      return 'a';
+    case 0xA7:
+      return 'c';
+    case 0xA8:
+    case 0xA9:
+      return 'e';
+    case 0xBB:
+      return 'u';
+    default:
+      return '\0';
+  }
 }
 
 /// Takes parts off the front of a text.
@@ -66,12 +98,13 @@ class Parts {
     }
     return any;
   }
-  /// Takes letters, as lower case.
+  /// Takes letters, as lower case and without accents.
   std::string word() {
     std::string taken;
     while (letter(front())) {
-      taken += static_cast<char>(text_.front() | 0x20);
-      text_.remove_prefix(1);
+      const bool is_accented = text_.front() == '\xC3' && text_.size() > 1;
+      taken += is_accented ? without_accent(text_[1]) : static_cast<char>(text_.front() | 0x20);
+      text_.remove_prefix(is_accented ? 2 : 1);
     }
     return taken;
   }
@@ -92,8 +125,10 @@ class Parts {
 
 std::optional<int> month_of(std::string_view word) {
   if (word.size() < 3) return std::nullopt;
+  const std::size_t letters = word.starts_with("jui") ? 4 : 3;  // juin, juillet
+  const std::string begin = " " + std::string(word.substr(0, letters)) + " ";
   for (std::size_t m = 0; m < months.size(); ++m)
-    if (word.substr(0, 3) == months[m]) return static_cast<int>(m) + 1;
+    if (months[m].find(begin) != std::string_view::npos) return static_cast<int>(m) + 1;
   return std::nullopt;
 }
 
@@ -130,6 +165,7 @@ std::optional<std::int64_t> take_year_first(Parts& text, char& separator) {
     const int rest = text.number(4);
     return days_of(year, rest / 100, rest % 100);
   }
+  if (text.digits() == 9) return days_of_ordinal(year, text.number(3));  // 2024059220000
   separator = text.take_any("-/.: ");
   if (text.front() == 'W' || text.front() == 'w') {
     text.word();
@@ -158,8 +194,14 @@ std::optional<std::int64_t> take_year_last(Parts& text, DateOrder order, char& s
     separator = text.take_any("-/. ");
     first = text.whole(1, 2);
   } else {
+    const bool is_short = text.digits() == 2;
     first = text.whole(1, 2);
     separator = text.take_any("-/. ");
+    if (is_short && (separator == '-' || separator == '/') && text.digits() == 3) {
+      const auto days = days_of_ordinal(2000 + *first, text.number(3));  // 24-059T22:00
+      return text.empty() ? std::nullopt : days;
+    }
+    text.take_blanks();  // 28. Februar
     if (letter(text.front()))
       month = month_of(text.word());
     else
@@ -168,6 +210,7 @@ std::optional<std::int64_t> take_year_last(Parts& text, DateOrder order, char& s
   if (!first || separator == '\0' || (!month && !second)) return std::nullopt;
   text.take(',');
   if (!text.take_any("-/. ")) return std::nullopt;
+  text.take_blanks();
   const std::size_t digits = text.digits();
   if (digits != 4 && digits != 2) return std::nullopt;
   const int year = digits == 4 ? text.number(4) : 2000 + text.number(2);
@@ -178,8 +221,8 @@ std::optional<std::int64_t> take_year_last(Parts& text, DateOrder order, char& s
   return day_first ? days_of(year, *second, *first) : days_of(year, *first, *second);
 }
 
-/// A time of day [ns].
-std::optional<std::int64_t> take_clock(Parts& text) {
+/// A time of day [ns]; as a time that has passed it may have more than 24 hours.
+std::optional<std::int64_t> take_clock(Parts& text, bool has_passed = false) {
   const std::size_t digits = text.digits();
   std::int64_t hour = 0, minute = 0, second = 0;
   if (digits == 6 || digits == 4) {  // 220030
@@ -190,7 +233,7 @@ std::optional<std::int64_t> take_clock(Parts& text) {
       return hour < 24 && minute < 60 ? std::optional(hour * hour_ns + minute * minute_ns)
                                       : std::nullopt;
   } else {
-    const auto hours = text.whole(1, 2);
+    const auto hours = text.whole(1, has_passed ? 3 : 2);
     const char separator = text.take_any(":.");
     const auto minutes = text.whole(2, 2);
     if (!hours || separator == '\0' || !minutes) return std::nullopt;
@@ -204,8 +247,8 @@ std::optional<std::int64_t> take_clock(Parts& text) {
   }
   std::int64_t fraction = 0;
   const Parts before = text.saved();
-  if (text.take_any(".,:")) {
-    if (text.digits() == 0)
+  if (const char mark = text.take_any(".,:")) {
+    if (text.digits() < (mark == ':' ? 3U : 1U))
       text = before;
     else
       fraction = text.fraction();
@@ -222,7 +265,7 @@ std::optional<std::int64_t> take_clock(Parts& text) {
     }
   }
   const bool midnight = hour == 24 && minute == 0 && second == 0;
-  if ((hour > 23 && !midnight) || minute > 59 || second > 60) return std::nullopt;
+  if ((hour > 23 && !midnight && !has_passed) || minute > 59 || second > 60) return std::nullopt;
   return hour * hour_ns + minute * minute_ns + second * second_ns + fraction;
 }
 
@@ -232,9 +275,12 @@ bool take_offset(Parts& text, std::optional<std::int64_t>& offset) {
   if (text.empty()) return true;
   if (letter(text.front())) {
     const std::string zone = text.word();
-    if (zone != "z" && zone != "utc" && zone != "gmt") return false;
-    offset = 0;
+    const auto* named = std::find_if(named_offsets.begin(), named_offsets.end(),
+                                     [&](const NamedOffset& one) { return one.name == zone; });
+    if (named == named_offsets.end()) return false;
+    offset = named->minutes * minute_ns;
     if (text.empty()) return true;
+    if (*offset != 0) return false;
   }
   const char sign = text.take_any("+-");
   if (sign == '\0') return false;
@@ -271,27 +317,71 @@ void take_weekday(Parts& text) {
   text = ahead;
 }
 
+/// 22:00:30, or the time that has passed: 26:03:10, 012/22:00:30, 12:22:00:30, 2 22:00:30.
+std::optional<DateText> read_clock(Parts text) {
+  DateText read{.clock_ns = 0, .offset_ns = {}, .has_date = false, .is_ordered = false};
+  Parts alone = text.saved();
+  if (const auto clock = take_clock(alone, true); clock && take_offset(alone, read.offset_ns)) {
+    read.clock_ns = *clock;
+    return read;
+  }
+  const auto days = text.whole(1, 5);
+  if (!days || !text.take_any("/ :T")) return std::nullopt;
+  const std::size_t hour_digits = text.digits();
+  const auto clock = take_clock(text);
+  if (!clock || hour_digits > 2 || !text.empty()) return std::nullopt;
+  read.offset_ns.reset();
+  read.clock_ns = *days * day_ns + *clock;
+  return read;
+}
+
+/// What Unix prints: Feb 28 22:00:30 UTC 2024.
+std::optional<DateText> read_year_at_end(Parts text) {
+  DateText read;
+  const auto month = month_of(text.word());
+  if (!month || !text.take_blanks()) return std::nullopt;
+  const auto day = text.whole(1, 2);
+  if (!day || !text.take_blanks()) return std::nullopt;
+  const auto clock = take_clock(text);
+  if (!clock || !text.take_blanks()) return std::nullopt;
+  if (letter(text.front())) {
+    const std::string name = text.word();
+    Parts alone(name);
+    if (!take_offset(alone, read.offset_ns) || !text.take_blanks()) return std::nullopt;
+  }
+  const auto year = text.whole(4, 4);
+  if (!year || !text.empty()) return std::nullopt;
+  const auto days = days_of(*year, *month, *day);
+  return days ? with_day(read, *days, *clock) : std::nullopt;
+}
+
+std::string_view without_brackets(std::string_view cell) {
+  cell = trimmed(cell);
+  const bool has_brackets = cell.size() > 2 && ((cell.front() == '[' && cell.back() == ']') ||
+                                                (cell.front() == '\'' && cell.back() == '\''));
+  return has_brackets ? trimmed(cell.substr(1, cell.size() - 2)) : cell;
+}
+
 }  // namespace
 
 std::optional<DateText> read_date_text(std::string_view cell, DateOrder order) {
-  Parts text(trimmed(cell));
+  Parts text(without_brackets(cell));
   DateText read;
-  Parts ahead = text.saved();
-  if (text.digits() <= 2 && cell.find(':') != std::string_view::npos) {
-    read.has_date = false;
-    const auto alone = take_clock(ahead);
-    if (alone && take_offset(ahead, read.offset_ns)) return DateText{*alone, read.offset_ns, false};
-    read = {};
-  }
+  if (text.digits() <= 5 && cell.find(':') != std::string_view::npos)
+    if (auto clock = read_clock(text.saved())) return clock;
   take_weekday(text);
+  if (letter(text.front()))
+    if (auto found = read_year_at_end(text.saved())) return found;
   char separator = '\0';
   const std::size_t digits = text.digits();
-  const bool year_first = digits == 4 || digits == 7 || digits == 8 || digits == 14;
+  // Thirteen digits of another begin are milliseconds since 1970.
+  const bool packed = digits == 13 && text.front() == '2';
+  const bool year_first = digits == 4 || digits == 7 || digits == 8 || packed || digits == 14;
   const auto days = year_first ? take_year_first(text, separator)
                                : take_year_last(text, order, separator, read.is_ordered);
   if (!days) return std::nullopt;
   if (text.empty()) return with_day(read, *days, 0);
-  const bool joined = digits == 14;
+  const bool joined = digits >= 13;
   if (!joined && !text.take_any("Tt_") && !text.take_blanks() &&
       !(separator != '\0' && text.take(separator)) && !text.take_any(":/-"))
     return std::nullopt;

@@ -14,17 +14,19 @@ enum class DateOrder { day_first, month_first };
 struct DateText {
   std::int64_t clock_ns = 0;              // since 1970 by the clock of the text
   std::optional<std::int64_t> offset_ns;  // of that clock, east of UTC; absent: not said
-  bool has_date = true;                   // false: a time of day alone, clock_ns since midnight
+  bool has_date = true;                   // false: a time of day, or one that has passed, alone
   bool is_ordered = false;                // the order of day and month was needed to read it
 };
 
 /// Reads any of these, with blanks around, a weekday in front, and a Z, UTC, GMT or +02:00 behind:
 ///   2024-02-28, 2024/2/28, 2024.02.28, 20240228, 2024-Feb-28, 28-Feb-2024, Feb 28 2024
 ///   28.02.2024, 28/02/2024, 02/28/2024 (by `order` where both are possible), 28.02.24
-///   2024-059, 2024:059, 2024.059, 2024/059, 2024059T (day of the year), 2024-W09-3
+///   2024-059, 2024:059, 2024.059, 2024/059, 24-059, 2024059T (day of the year), 2024-W09-3
 /// followed by a T, a blank, or what separates the date's parts, and then
 ///   22:00, 22:00:30, 22:00:30.5, 22:00:30,5, 22.00.30.500, 220030, 10:00:30 PM
-/// or a time of day alone. The second 60 is the next minute's 0. Empty where the text is none.
+/// or Feb 28 22:00:30 UTC 2024, or a time of day alone, or a time that has passed: 26:03:10,
+/// 012/22:00:30, 12:22:00:30. A zone may be named as in CET. Months may be in six languages. The
+/// second 60 is the next minute's 0. Empty where the text is none.
 std::optional<DateText> read_date_text(std::string_view text, DateOrder order);
 
 }  // namespace reident::telemetry_file

@@ -8,6 +8,7 @@
 #include "service/support/text.hpp"
 #include "service/telemetry_file/date_text.hpp"
 #include "service/telemetry_file/head_lines.hpp"
+#include "service/telemetry_file/number_text.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -124,6 +125,13 @@ bool are_units(const HeadLine& line) {
   return any;
 }
 
+/// Whether no name has a blank in it, as those of programs.
+bool are_identifiers(const HeadLine& line) {
+  return std::none_of(line.cells.begin(), line.cells.end(), [](const std::string& cell) {
+    return trimmed(cell).find(' ') != std::string_view::npos;
+  });
+}
+
 bool are_names(const HeadLine& line) {
   std::set<std::string_view> seen;
   std::size_t empty = 0;
@@ -137,7 +145,7 @@ bool are_names(const HeadLine& line) {
 }
 
 /// The header among lines of text: the one with the names that are wanted; the one above units;
-/// the upper of two, whose lower one describes.
+/// the upper of two, whose lower one describes, unless the upper one alone has blanks in its names.
 std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& block,
                       const std::vector<std::string>& wanted) {
   for (const std::size_t i : block) {
@@ -158,7 +166,9 @@ std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& bl
   const bool is_pair = names.size() == 2 && are_names(above) &&
                        above.text.find_first_of(":=") == std::string_view::npos &&
                        std::none_of(above.cells.begin(), above.cells.end(), looks_like_value);
-  return is_pair ? names.front() : last;
+  const bool describes =
+      !are_identifiers(above) && are_identifiers(lines[last]) && are_names(lines[last]);
+  return is_pair && !describes ? names.front() : last;
 }
 
 Error whole_file(const std::string& name, std::string_view what) {
@@ -170,7 +180,11 @@ Error at_line(const std::string& name, std::uint64_t line, std::string_view what
 
 std::optional<Error> take_names(Dialect& dialect, const DialectOptions& options,
                                 std::vector<std::string> cells, const std::string& name) {
-  for (std::string& cell : cells) cell = trimmed(cell);
+  for (std::string& cell : cells) {
+    for (char& c : cell)
+      if (c == '\n' || c == '\r') c = ' ';
+    cell = std::string(trimmed(cell));
+  }
   const std::size_t usual = dialect.layout.cells;
   if (!options.names.empty()) {
     if (options.names.size() != usual)
@@ -245,8 +259,33 @@ void join_cells(HeadLines& lines, Layout& layout) {
     --layout.cells;
   }
   if (rows_have_one_more(lines, layout.cells, layout.comment,
-                         [](const auto& cells) { return trimmed(cells.back()).empty(); }))
+                         [](const auto& cells) { return trimmed(cells.back()).empty(); })) {
     --layout.cells;
+    return;
+  }
+  // Rows are numbered, and no name stands above the numbers.
+  std::optional<double> before;
+  if (rows_have_one_more(lines, layout.cells, layout.comment, [&](const auto& cells) {
+        const auto number = plain_number(cells.front());
+        const bool follows = number && (!before || *number == *before + 1);
+        before = number;
+        return follows;
+      }))
+    for (HeadLine& line : lines)
+      if (line.cells.size() + 1 == layout.cells) line.cells.insert(line.cells.begin(), "");
+}
+
+/// A line right above the rows that holds names, more or less than there are cells.
+const HeadLine* names_of_other_count(const HeadLines& lines, std::size_t first_row,
+                                     const Layout& layout) {
+  for (std::size_t i = std::min(first_row, lines.size()); i-- > 0;) {
+    if (is_blank(lines[i]) || is_comment(lines[i], layout.comment)) continue;
+    const auto& cells = lines[i].cells;
+    const bool is_text = cells.size() > 1 && cells.size() != layout.cells &&
+                         std::none_of(cells.begin(), cells.end(), looks_like_value);
+    return is_text ? &lines[i] : nullptr;
+  }
+  return nullptr;
 }
 
 struct Found {
@@ -280,6 +319,13 @@ std::variant<Found, Error> find_header(HeadLines& lines, const Dialect& dialect,
         header_in_comment(lines, found.first_row, layout.separator, layout.comment, layout.cells);
     if (found.header || !options.names.empty()) return found;
     const HeadLine& line = lines[std::min(found.first_row, lines.size() - 1)];
+    if (const HeadLine* other = names_of_other_count(lines, found.first_row, layout))
+      return at_line(
+          name, other->number,
+          "the line has " + std::to_string(other->cells.size()) + " names, the rows have " +
+              std::to_string(layout.cells) +
+              " cells; name all columns with --names NAME,NAME,..., or write the file with a "
+              "separator that stands in no cell (a comma cannot separate decimal commas)");
     return at_line(name, line.number,
                    "the line holds values ('" + std::string(line.text.substr(0, 40)) +
                        "'), and no line above it names the columns; name them with --names "
@@ -316,6 +362,24 @@ std::optional<char> told_separator(const HeadLines& lines) {
   return std::nullopt;
 }
 
+/// A text whose lines are one cell each is no table, or one that something unusual separates.
+std::optional<Error> refuse_one_cell(const HeadLines& lines, const Layout& layout,
+                                     const DialectOptions& options, const std::string& name) {
+  const auto first = std::find_if_not(lines.begin(), lines.end(), [&](const HeadLine& line) {
+    return is_blank(line) || is_comment(line, layout.comment);
+  });
+  if (first == lines.end()) return std::nullopt;
+  const std::string_view text = trimmed(first->text);
+  if (text.starts_with('<') || text.starts_with('{') || text.starts_with("[{") || text == "[")
+    return at_line(name, first->number,
+                   "the text is HTML, XML or JSON and no table of cells; write it as CSV first");
+  if (layout.cells > 1 || options.separator || options.names.size() == 1 || lines.size() < 3)
+    return std::nullopt;
+  return at_line(name, first->number,
+                 "no comma, semicolon, tab, bar or blank cuts the lines into cells ('" +
+                     std::string(text.substr(0, 40)) + "'); name what does with --separator");
+}
+
 }  // namespace
 
 std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
@@ -334,7 +398,9 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
   layout.comment = options.comment ? *options.comment : find_comment(lines);
   layout.separator = separator ? *separator : find_separator(lines, layout.comment);
   split(lines, layout.separator);
+  if (layout.separator == ' ') layout.places = find_places(lines, layout.comment);
   layout.cells = usual_cells(lines, layout.comment);
+  if (auto error = refuse_one_cell(lines, layout, options, name)) return *std::move(error);
   if (!options.names.empty() && layout.cells == 0) layout.cells = options.names.size();
   join_cells(lines, layout);
   auto found = find_header(lines, dialect, options, name);
@@ -368,6 +434,7 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
   }
   if (auto error = take_names(dialect, options, std::move(cells), name)) return *std::move(error);
   layout.cells = dialect.columns.size();
+  if (layout.places.size() != layout.cells + (layout.joins_date ? 1 : 0)) layout.places.clear();
   if (units) {
     dialect.units_line = lines[*units].number;
     for (const std::string& cell : lines[*units].cells) dialect.units.emplace_back(trimmed(cell));
@@ -386,6 +453,7 @@ std::string describe(const Dialect& dialect) {
   std::string text = word == words.end()
                          ? "separated by '" + std::string(1, dialect.layout.separator) + "'"
                          : word->second;
+  if (!dialect.layout.places.empty()) text += " between columns of fixed width";
   text += dialect.header_line == 0 ? ", no header"
                                    : ", header in line " + std::to_string(dialect.header_line);
   if (dialect.units_line != 0) text += ", units in line " + std::to_string(dialect.units_line);

@@ -8,6 +8,8 @@
 namespace reident::telemetry_file {
 namespace {
 
+// Of a text: a disk or link that failed leaves NUL bytes, nothing leaves others.
+constexpr double most_nuls = 0.3, most_controls = 0.02;
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 
 unsigned at(std::string_view text, std::size_t index) {
@@ -62,10 +64,13 @@ std::string find_encoding(std::string_view head) {
 bool is_binary(std::string_view head) {
   if (head.starts_with("\x1F\x8B") || head.starts_with("PK\x03\x04")) return true;
   if (find_encoding(head).starts_with("UTF-16")) return false;
+  const auto nuls = std::count(head.begin(), head.end(), '\0');
   const auto controls = std::count_if(head.begin(), head.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
+    return static_cast<unsigned char>(c) < 0x20 && c != '\0' && c != '\n' && c != '\r' && c != '\t';
   });
-  return static_cast<double>(controls) > 0.3 * static_cast<double>(head.size());
+  const auto size = static_cast<double>(head.size());
+  return static_cast<double>(nuls) > most_nuls * size ||
+         static_cast<double>(controls) > most_controls * size;
 }
 
 std::unique_ptr<Decoder> Decoder::of(const std::string& encoding) {

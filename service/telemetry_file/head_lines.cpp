@@ -42,7 +42,7 @@ HeadLines lines_of(const RowReader::Head& head, char line_end) {
     if (end == head.text.size() && !head.is_all && !lines.empty()) break;  // a part of a line
     std::string_view text = head.text.substr(at, end - at);
     const auto ends = std::count(text.begin(), text.end(), line_end);
-    if (text.ends_with('\r')) text.remove_suffix(1);
+    while (text.ends_with('\r')) text.remove_suffix(1);
     lines.push_back({text, number, at, {}});
     number += static_cast<std::uint64_t>(ends) + 1;
     at = end + 1;
@@ -134,6 +134,72 @@ char find_separator(HeadLines& lines, const std::string& comment) {
     }
   }
   return best;
+}
+
+namespace {
+
+constexpr double lines_in_place = 0.95;
+
+std::vector<std::string_view> cells_in(std::string& text) {
+  std::vector<std::string_view> cells;
+  if (split_cells(text, ' ', cells)) cells.clear();
+  return cells;
+}
+
+/// The places that the cells of these lines take; none where two columns stand in one.
+std::vector<Place> places_of(const std::vector<const HeadLine*>& lines, std::size_t count) {
+  std::vector<Place> places(count, {std::string_view::npos, 0});
+  for (const HeadLine* line : lines) {
+    std::string text(line->text);
+    const auto cells = cells_in(text);
+    for (std::size_t c = 0; c < count && c < cells.size(); ++c) {
+      const auto begin = static_cast<std::size_t>(cells[c].data() - text.data());
+      places[c].begin = std::min(places[c].begin, begin);
+      places[c].end = std::max(places[c].end, begin + cells[c].size());
+    }
+  }
+  for (std::size_t c = 1; c < count; ++c)
+    if (places[c].begin <= places[c - 1].end) return {};
+  return places;
+}
+
+}  // namespace
+
+std::vector<Place> find_places(HeadLines& lines, const std::string& comment) {
+  std::size_t most = 0;
+  bool differ = false;
+  for (const HeadLine& line : lines) {
+    if (is_blank(line) || is_comment(line, comment) || line.cells.empty()) continue;
+    if (line.text.find('\t') != std::string_view::npos) return {};
+    differ = differ || (most != 0 && line.cells.size() != most);
+    most = std::max(most, line.cells.size());
+  }
+  if (!differ || most < 2) return {};
+  std::vector<const HeadLine*> full, rows;
+  for (const HeadLine& line : lines) {
+    if (is_blank(line) || is_comment(line, comment) || line.cells.size() != most) continue;
+    full.push_back(&line);
+    if (std::any_of(line.cells.begin(), line.cells.end(), looks_like_value)) rows.push_back(&line);
+  }
+  auto places = places_of(full, most);
+  if (places.empty()) places = places_of(rows, most);
+  if (places.empty()) return {};
+  HeadLines placed = lines;
+  std::size_t short_lines = 0, in_place = 0;
+  for (auto line = placed.begin() + (full.front() - lines.data()); line != placed.end(); ++line) {
+    if (is_blank(*line) || is_comment(*line, comment) || line->cells.size() == most) continue;
+    ++short_lines;
+    std::string text(line->text);
+    auto cells = cells_in(text);
+    if (cells.empty() || !place_cells(text, places, cells)) continue;
+    line->cells.assign(cells.begin(), cells.end());
+    ++in_place;
+  }
+  if (in_place == 0 ||
+      static_cast<double>(in_place) < lines_in_place * static_cast<double>(short_lines))
+    return {};
+  lines = std::move(placed);
+  return places;
 }
 
 bool looks_like_value(std::string_view cell) {

@@ -36,6 +36,10 @@ std::size_t usual_cells(const HeadLines& lines, const std::string& comment);
 /// many cells that hold values.
 char find_separator(HeadLines& lines, const std::string& comment);
 
+/// Where the cells of columns of fixed width stand, where lines that blanks cut have fewer cells
+/// than others; their blank cells are put in. Empty where the lines do not show it.
+std::vector<Place> find_places(HeadLines& lines, const std::string& comment);
+
 /// Whether a cell has the look of a number or a time, in whatever spelling.
 bool looks_like_value(std::string_view cell);
 /// Whether a word is that of a unit, bare or in brackets: "mV", "[A]".

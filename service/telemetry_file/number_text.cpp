@@ -114,6 +114,16 @@ bool may_be_suffix(std::string_view text) {
                       [](char at) { return at >= 0 && static_cast<unsigned char>(at) < 0x20; });
 }
 
+/// Whether another number follows, as in 28. Februar 2024; an exponent is none.
+bool is_more_than_a_suffix(std::string_view text) {
+  std::string ignored;
+  unsigned spelling = 0;
+  take_exponent(text, ignored, spelling);
+  for (std::size_t i = 1; i < text.size(); ++i)
+    if (is_digit(text[i - 1]) && is_digit(text[i])) return true;
+  return false;
+}
+
 }  // namespace
 
 std::optional<double> plain_number(std::string_view cell) {
@@ -127,6 +137,10 @@ std::optional<NumberText> read_number(std::string_view cell, NumberStyle style) 
     if (const auto value = plain_number(cell)) return NumberText{*value, 0, {}};
   std::string_view text = without_blanks(cell);
   NumberText read;
+  if (text.size() > 3 && text.starts_with("=\"") && text.ends_with('"')) {
+    read.spelling |= in_formula;
+    text = without_blanks(text.substr(2, text.size() - 3));
+  }
   bool brackets = false;
   if (text.size() > 2 && text.front() == '(' && text.back() == ')') {
     brackets = true;
@@ -195,6 +209,7 @@ std::optional<MarkEvidence> marks_in(std::string_view cell) {
   }
   if (groups[0] == 0 && (marks.empty() || groups[1] == 0)) return std::nullopt;
   if (!text.empty() && is_digit(text.front())) return std::nullopt;
+  if (is_more_than_a_suffix(text)) return std::nullopt;
   const auto apart = marks.find_first_of(" '");
   if (apart != std::string::npos) evidence.blank_group = marks[apart];
   std::erase_if(marks, [](char c) { return c == ' ' || c == '\''; });

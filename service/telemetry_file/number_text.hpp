@@ -25,6 +25,7 @@ enum Spelling : unsigned {
   fortran = 16,      // 1.5D+02
   with_suffix = 32,  // a unit or a flag behind it
   decimal_comma = 64,
+  in_formula = 128,  // ="4.2"
 };
 
 /// A number and how it is written.

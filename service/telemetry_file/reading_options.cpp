@@ -217,12 +217,13 @@ std::variant<ReadingOptions, Error> reading_options(const ReadingArguments& argu
   return options;
 }
 
-std::variant<std::vector<std::string>, Error> dry_run(const std::filesystem::path& path,
-                                                      const ReadingOptions& options,
+std::variant<std::vector<std::string>, Error> dry_run(std::variant<TelemetryFile, Error> opened,
+                                                      const std::filesystem::path& path,
                                                       bool needs_time) {
-  auto opened = TelemetryFile::open(path, options);
   if (auto* error = std::get_if<Error>(&opened)) return std::move(*error);
   auto& file = std::get<TelemetryFile>(opened);
+  if (!file.has_rows())
+    return Error{path.string() + ": the header is not followed by a row; there is nothing to show"};
   if (needs_time)
     if (auto error = file.find_time()) return *std::move(error);
   std::vector<std::string> lines = {path.string() + ": " + file.found()};
@@ -237,7 +238,7 @@ std::variant<std::vector<std::string>, Error> dry_run(const std::filesystem::pat
     std::string text = fmt::format("line {}:", file.line());
     if (needs_time) text += " " + time_text(file.time_ns());
     for (std::size_t c = 0; c < file.columns().size(); ++c) {
-      if (file.is_time(c)) continue;
+      if (file.is_time(c) || file.columns()[c].empty()) continue;
       text += fmt::format(" {}={}", file.columns()[c], shown(file.cell(c), file.cells()[c]));
       if (const std::string unit = file.unit(c);
           !unit.empty() && file.cell(c).kind == Cell::Kind::number)

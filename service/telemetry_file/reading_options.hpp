@@ -32,8 +32,8 @@ std::variant<ReadingOptions, Error> reading_options(const ReadingArguments& argu
 /// Returns the first rows of a file as they are understood, one text a line, as --dry-run shows
 /// them: the time and each column with its value. An error where the file or its time cannot be
 /// read.
-std::variant<std::vector<std::string>, Error> dry_run(const std::filesystem::path& path,
-                                                      const ReadingOptions& options,
+std::variant<std::vector<std::string>, Error> dry_run(std::variant<TelemetryFile, Error> opened,
+                                                      const std::filesystem::path& path,
                                                       bool needs_time);
 
 }  // namespace reident::telemetry_file

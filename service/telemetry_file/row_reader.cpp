@@ -33,6 +33,26 @@ std::size_t plain_end(std::span<const char> line, std::size_t at, char separator
 
 }  // namespace
 
+bool place_cells(std::string_view line, const std::vector<Place>& places,
+                 std::vector<std::string_view>& cells) {
+  std::vector<std::string_view> placed(places.size(), line.substr(0, 0));
+  for (const std::string_view cell : cells) {
+    if (cell.empty()) continue;
+    const auto begin = static_cast<std::size_t>(cell.data() - line.data());
+    const auto stands_in = [&](const Place& place) {
+      return begin < place.end && begin + cell.size() > place.begin;
+    };
+    const auto place = std::find_if(places.begin(), places.end(), stands_in);
+    if (place == places.end() || std::find_if(place + 1, places.end(), stands_in) != places.end())
+      return false;
+    std::string_view& at = placed[static_cast<std::size_t>(place - places.begin())];
+    if (!at.empty()) return false;
+    at = cell;
+  }
+  cells = std::move(placed);
+  return true;
+}
+
 void join_date(std::vector<std::string_view>& cells) {
   const char* const first = cells[0].data();
   cells[0] = {first, static_cast<std::size_t>(cells[1].data() + cells[1].size() - first)};
@@ -58,7 +78,10 @@ std::optional<std::string_view> split_cells(std::span<char> line, char separator
   };
   pass_blanks();
   while (true) {
-    if (at < line.size() && line[at] == '"') {
+    std::size_t quote = at;  // behind blanks too
+    while (quote < line.size() && blank(line[quote]) && line[quote] != separator) ++quote;
+    if (quote < line.size() && line[quote] == '"') {
+      at = quote;
       const std::size_t first = ++at;
       std::size_t last = first;
       while (true) {
@@ -171,6 +194,8 @@ RowReader::Step RowReader::find_row_end(std::size_t& row_end, bool& is_cut) {
         state = At::cell_start;
       } else if (c == '"' && state != At::plain) {
         state = At::quoted;  // opened, or the second of a doubled quote: the cell goes on
+      } else if (state == At::cell_start && blank(c)) {
+        continue;
       } else {
         state = At::plain;
       }
@@ -215,7 +240,7 @@ RowReader::Step RowReader::next() {
       return Step::end;
     }
     const std::size_t following = std::min(row_end + 1, buffer_.size());
-    if (row_end > begin_ && buffer_[row_end - 1] == '\r') --row_end;
+    while (row_end > begin_ && buffer_[row_end - 1] == '\r') --row_end;
     const std::string_view text(buffer_.data() + begin_, row_end - begin_);
     if (!is_passed_over(text)) return take_row(row_end, following, is_cut);
     next_line_ += static_cast<std::uint64_t>(
@@ -244,6 +269,8 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
     lines_ = text;  // cutting it into cells changes the text, which may be read again
   char* const from = spans_lines ? lines_.data() : buffer_.data() + begin_;
   const auto wrong = split_cells({from, row_end - begin_}, layout_.separator, cells_);
+  if (!wrong && !is_cut && cells_.size() < layout_.places.size())
+    place_cells({from, row_end - begin_}, layout_.places, cells_);
   if (layout_.joins_date && cells_.size() > 1) join_date(cells_);
   if (layout_.cells != 0 && cells_.size() == layout_.cells + 1 && trimmed(cells_.back()).empty())
     cells_.pop_back();

@@ -17,6 +17,11 @@
 
 namespace reident::telemetry_file {
 
+/// Bytes [begin, end) of a line in which the cells of a column stand.
+struct Place {
+  std::size_t begin = 0, end = 0;
+};
+
 /// How a text is cut into rows and cells.
 struct Layout {
   char separator = ',';     // a blank: any number of blanks and tabs
@@ -25,12 +30,19 @@ struct Layout {
   std::string header;       // a line of this text is no row; empty: there is none
   std::size_t cells = 0;    // of each row; 0: any number
   bool joins_date = false;  // a date and a time of day, a blank between them, are the first cell
+  /// Of the columns where blanks separate cells and a row may have fewer: the others are blank.
+  std::vector<Place> places;
 };
 
 /// Cuts a line, without its end, into cells that point into it; doubled quotes in quoted cells are
 /// undoubled in place. An error text where a quoted cell is not closed or goes on behind its quote.
 std::optional<std::string_view> split_cells(std::span<char> line, char separator,
                                             std::vector<std::string_view>& cells);
+
+/// Puts cells that point into `line` to their places, blank ones between them. False where a cell
+/// stands in none of them or in two, or two cells in one.
+bool place_cells(std::string_view line, const std::vector<Place>& places,
+                 std::vector<std::string_view>& cells);
 
 /// Makes one cell of the first two, which follow each other in one text. Requires two cells.
 void join_date(std::vector<std::string_view>& cells);

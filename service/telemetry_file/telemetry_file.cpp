@@ -14,6 +14,7 @@ constexpr std::size_t head_bytes = std::size_t{1} << 20;
 constexpr std::size_t head_rows = 20'000;
 constexpr std::int64_t earliest_ns = 631'152'000'000'000'000;  // 1990
 constexpr std::size_t cell_shown = 40;
+constexpr double most_repeated = 0.2;  // of the rows, with the time of the row before
 
 std::string quoted(std::string_view cell) {
   return "'" + std::string(cell.substr(0, cell_shown)) + "'";
@@ -28,6 +29,7 @@ struct TelemetryFile::Impl {
   ReadingOptions options;
   RowReader rows;
   Dialect dialect;
+  std::string said;  // of what was found, where it is not of this text
   NumberStyle style;
   std::vector<CellFormat> formats;
   // The head, kept for finding the time.
@@ -45,6 +47,7 @@ struct TelemetryFile::Impl {
   std::optional<Error> start();
   void keep_head();
   std::optional<Error> find_cells();
+  std::optional<Error> refuse_repeated_times() const;
   Step fail(Damage what, Error why) {
     damage = what;
     error = std::move(why);
@@ -102,6 +105,41 @@ std::optional<Error> TelemetryFile::Impl::find_cells() {
   return std::nullopt;
 }
 
+/// A row with the time of the row before and another value contradicts it. Many do where the time
+/// is cut off, or is read from a part of it, or where each row is a sample of another parameter.
+std::optional<Error> TelemetryFile::Impl::refuse_repeated_times() const {
+  Clock reading = *clock;
+  std::vector<std::string_view> cells(head_columns.size());
+  std::optional<std::int64_t> before;
+  std::size_t repeated = 0, first = 0;
+  for (std::size_t row = 0; row < head_lines.size(); ++row) {
+    const auto last = cells;
+    for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = head_columns[c][row];
+    const auto time = reading.read(cells);
+    const auto differs = [&](std::size_t c) {
+      const std::string_view now = trimmed(cells[c]), then = trimmed(last[c]);
+      const auto& of_time = reading.columns();
+      return !now.empty() && !then.empty() && now != then &&
+             std::find(of_time.begin(), of_time.end(), c) == of_time.end();
+    };
+    bool contradicts = false;
+    for (std::size_t c = 0; c < cells.size() && time && time == before && !contradicts; ++c)
+      contradicts = differs(c);
+    if (contradicts && repeated++ == 0) first = row;
+    before = time;
+  }
+  if (static_cast<double>(repeated) <= most_repeated * static_cast<double>(head_lines.size()))
+    return std::nullopt;
+  const std::size_t column = reading.columns().front();
+  return Error{fmt::format(
+      "{}:{}: {} in column '{}' is the time of the row before, and other values stand there, as in "
+      "{} of the first {} rows. Is the time cut off, or a part of it in another column (--time "
+      "DATE,CLOCK)? Is each row one sample (call the columns parameter, time and value with "
+      "--names)? --force-times takes the times as they are",
+      rows.source().name(), head_lines[first], quoted(head_columns[column][first]),
+      dialect.columns[column], repeated, head_lines.size())};
+}
+
 TelemetryFile::TelemetryFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 TelemetryFile::~TelemetryFile() = default;
 TelemetryFile::TelemetryFile(TelemetryFile&&) noexcept = default;
@@ -122,8 +160,11 @@ std::variant<TelemetryFile, Error> TelemetryFile::open(const std::filesystem::pa
 }
 
 std::variant<TelemetryFile, Error> TelemetryFile::of_text(std::string text, std::string name,
-                                                          const ReadingOptions& options) {
-  return start(TextSource::of_text(std::move(text), std::move(name)), options);
+                                                          const ReadingOptions& options,
+                                                          std::string found) {
+  auto opened = start(TextSource::of_text(std::move(text), std::move(name)), options);
+  if (auto* file = std::get_if<TelemetryFile>(&opened)) file->impl_->said = std::move(found);
+  return opened;
 }
 
 const std::vector<std::string>& TelemetryFile::columns() const {
@@ -171,6 +212,8 @@ std::optional<Error> TelemetryFile::find_time(bool is_series_after_series) {
   }
   at.clock = std::get<Clock>(std::move(found));
   at.clock_at_start = at.clock;
+  if (!is_series_after_series && !at.options.force_times)
+    if (auto error = at.refuse_repeated_times()) return error;
   at.watch.emplace(at.clock->unit_ns(), at.clock->is_absolute(), at.clock->may_be_local());
   return std::nullopt;
 }
@@ -187,6 +230,7 @@ bool TelemetryFile::is_time(std::size_t column) const {
 
 std::string TelemetryFile::found() const {
   const Impl& at = *impl_;
+  if (!at.said.empty()) return at.said;
   std::string text = describe(at.dialect);
   if (at.style.decimal == ',') text += ", decimal commas";
   if (at.style.thousands != '\0') text += fmt::format(", thousands with '{}'", at.style.thousands);
@@ -201,6 +245,19 @@ std::string TelemetryFile::found() const {
   return text;
 }
 
+bool TelemetryFile::has_samples_of_their_own() const {
+  return !impl_->said.empty();
+}
+
+std::vector<std::string> TelemetryFile::unnamed_columns() const {
+  std::vector<std::string> sentences;
+  for (std::size_t c = 0; c < columns().size(); ++c)
+    if (columns()[c].empty() && format(c).kind != CellFormat::Kind::empty && !is_time(c))
+      sentences.push_back(fmt::format(
+          "column {} has no name and is left out; --names gives each column one", c + 1));
+  return sentences;
+}
+
 std::vector<std::string> TelemetryFile::remarks() const {
   const RowReader& rows = impl_->rows;
   std::vector<std::string> remarks;
@@ -208,6 +265,11 @@ std::vector<std::string> TelemetryFile::remarks() const {
     remarks.push_back(
         fmt::format("{}:{}: the header stands here again, as where files were joined ({} in all)",
                     rows.source().name(), rows.first_repeated_header(), rows.repeated_headers()));
+  if (impl_->watch && impl_->watch->hour_ahead_line() > 0)
+    remarks.push_back(fmt::format(
+        "{}:{}: the clock goes ahead an hour: telemetry is missing, or it is a local time at the "
+        "beginning of daylight saving; --time-zone names its zone",
+        rows.source().name(), impl_->watch->hour_ahead_line()));
   if (rows.cut_line() > 0)
     remarks.push_back(fmt::format("{}:{}: the last line was cut and is left out",
                                   rows.source().name(), rows.cut_line()));
@@ -241,12 +303,16 @@ TelemetryFile::Step TelemetryFile::Impl::read_time() {
                        "); mend it, or leave such rows out with --skip-bad-lines"));
   }
   time_ns = *time;
-  if (!options.force_times && (time_ns < earliest_ns || time_ns > options.latest_ns))
+  const bool is_possible =
+      clock->is_absolute() && time_ns >= earliest_ns && time_ns <= options.latest_ns;
+  if (!options.force_times && !options.any_epoch && !is_possible)
     return fail(
         Damage::none,
         here(fmt::format("would be {}, {}: say {}, or that it is right with --force-times",
                          time_text(time_ns),
-                         time_ns < earliest_ns ? "before 1990" : "later than tomorrow",
+                         time_ns < earliest_ns         ? "before 1990"
+                         : time_ns > options.latest_ns ? "later than tomorrow"
+                                                       : "if it counted since 1970",
                          clock->is_absolute() ? "what it is with --time-format or --time-unit"
                                               : "since when it counts with --epoch, or what it is "
                                                 "with --time-format or --time-unit")));

@@ -26,7 +26,8 @@ struct ReadingOptions {
   DialectOptions dialect;
   CellOptions cells;
   TimeOptions time;
-  bool force_times = false;        // times before 1990 and behind `latest_ns` are taken
+  bool force_times = false;        // times are taken as they are, whatever speaks against them
+  bool any_epoch = false;          // nobody has to know since when times count
   bool clock_may_go_back = false;  // a clock that looks set back, restarted or wrapped is no error
   /// Times behind it are taken for mistakes: those of tomorrow.
   std::int64_t latest_ns = std::numeric_limits<std::int64_t>::max();
@@ -37,9 +38,11 @@ class TelemetryFile {
   /// Opens a file and finds all but its time. An error where it cannot be read or understood.
   static std::variant<TelemetryFile, Error> open(const std::filesystem::path& path,
                                                  const ReadingOptions& options);
-  /// Reads `text` itself; `name` stands for the file in messages.
+  /// Reads `text` itself; `name` stands for the file in messages, and `found` is what is said of
+  /// what was found, where that is about another text.
   static std::variant<TelemetryFile, Error> of_text(std::string text, std::string name,
-                                                    const ReadingOptions& options);
+                                                    const ReadingOptions& options,
+                                                    std::string found = {});
   ~TelemetryFile();
   TelemetryFile(TelemetryFile&&) noexcept;
   TelemetryFile& operator=(TelemetryFile&&) noexcept;
@@ -51,6 +54,10 @@ class TelemetryFile {
   std::string unit(std::size_t column) const;
   /// Where a column stands; the error names the columns that exist.
   std::variant<std::size_t, Error> find(std::string_view column) const;
+  /// Whether a blank is no sample, since the file held one sample a row (long_layout.hpp).
+  bool has_samples_of_their_own() const;
+  /// One sentence for each column that holds something and has no name.
+  std::vector<std::string> unnamed_columns() const;
   /// Whether the head holds a row.
   bool has_rows() const;
   /// The line of the first cell in the head that a column of text holds, and the cell.
@@ -65,7 +72,8 @@ class TelemetryFile {
   /// What was found, on one line: "semicolons, decimal commas, header in line 3, time: day of
   /// year".
   std::string found() const;
-  /// What was left out in silence by next(): headers again, a cut last line; one sentence each.
+  /// What next() passed over: headers again, a cut last line, a clock that goes ahead an hour; one
+  /// sentence each.
   std::vector<std::string> remarks() const;
 
   using Step = RowReader::Step;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/support/sha256.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 
 namespace reident::transfer {
 namespace {
@@ -128,7 +129,7 @@ std::optional<Error> Import::start(const std::function<storage::Time()>& now) {
   auto rows = import_rows(options_, reader_, archive_);
   if (auto* error = std::get_if<Error>(&rows)) return std::move(*error);
   rows_ = std::get<std::unique_ptr<ImportRows>>(std::move(rows));
-  tells_steps_back_ = !is_long_layout(reader_.columns());
+  tells_steps_back_ = !telemetry_file::find_long_layout(reader_);
   report_.found = reader_.found();
   report_.remarks = rows_->left_out();
   const std::string request = request_text(options_, reader_);

@@ -7,6 +7,7 @@
 
 #include "service/satcs/replay/replay_columns.hpp"
 #include "service/support/text.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 #include "service/transfer/parameter_book.hpp"
 
 namespace reident::transfer {
@@ -100,12 +101,9 @@ std::optional<Error> WideRows::prepare(const ImportOptions& options, Reader& rea
     const std::string file = options.file.string() + ": ";
     return error->message.starts_with(file) ? *error : Error{file + error->message};
   }
+  left_out_ = reader.unnamed_columns();
   for (const std::string& column : plan.left_out)
-    left_out_.push_back(
-        fmt::format("column '{0}' is left out, its cells are no numbers: {1}; --map-states "
-                    "{0}:STATE=NUMBER,... "
-                    "makes numbers of states",
-                    column, reader.first_word(std::get<std::size_t>(reader.find(column)))));
+    left_out_.push_back(satcs::left_out_sentence(reader, column));
   return find_parameters(reader, plan);
 }
 
@@ -149,7 +147,8 @@ std::optional<Error> WideRows::find_parameters(const Reader& reader,
 
 class LongRows : public ImportRows {
  public:
-  LongRows(const ImportOptions& options, const Reader& reader, const storage::Archive& archive);
+  LongRows(const ImportOptions& options, const Reader& reader, const storage::Archive& archive,
+           telemetry_file::LongLayout layout);
 
   bool knows_spacecraft() const { return spacecraft_ || options_.spacecraft; }
 
@@ -169,7 +168,7 @@ class LongRows : public ImportRows {
   const ImportOptions& options_;
   const storage::Archive& archive_;
   const std::string own_source_;
-  std::size_t parameter_ = 0, value_ = 0;
+  const std::size_t parameter_, value_;
   std::optional<std::size_t> spacecraft_, source_, origin_, quality_, unit_;
   std::map<std::string, ParameterBook> books_;
 
@@ -181,15 +180,17 @@ class LongRows : public ImportRows {
 };
 
 LongRows::LongRows(const ImportOptions& options, const Reader& reader,
-                   const storage::Archive& archive)
-    : options_(options), archive_(archive), own_source_(source_of(options)) {
+                   const storage::Archive& archive, telemetry_file::LongLayout layout)
+    : options_(options),
+      archive_(archive),
+      own_source_(source_of(options)),
+      parameter_(layout.parameter),
+      value_(layout.value) {
   const auto column = [&](std::string_view name, bool is_asked_for) {
     const auto found = reader.find(name);
     const auto* at = std::get_if<std::size_t>(&found);
     return at && !is_asked_for ? std::optional(*at) : std::nullopt;
   };
-  parameter_ = *column("parameter", false);
-  value_ = *column("value", false);
   spacecraft_ = column("spacecraft", options.spacecraft.has_value());
   source_ = column("source", options.source.has_value());
   origin_ = column("origin", options.origin.has_value());
@@ -311,14 +312,14 @@ std::variant<std::unique_ptr<ImportRows>, Error> import_rows(const ImportOptions
     return Error{options.file.string() +
                  ": the file does not say which spacecraft it is of; name it with --spacecraft"};
   };
-  if (is_long_layout(reader.columns())) {
-    if (options.reading.time.column || !options.mappings.empty() || !options.only.empty() ||
-        !options.leave_out.empty() || options.keep_names)
+  if (const auto layout = telemetry_file::find_long_layout(reader)) {
+    if (!options.mappings.empty() || !options.only.empty() || !options.leave_out.empty() ||
+        options.keep_names)
       return Error{options.file.string() +
-                   ": the file has one sample a row (columns parameter, time and value); --time, "
+                   ": the file has one sample a row (columns parameter, time and value); "
                    "--map, --only, --leave-out and --keep-names are for files with a column for "
                    "each parameter"};
-    auto rows = std::make_unique<LongRows>(options, reader, archive);
+    auto rows = std::make_unique<LongRows>(options, reader, archive, *layout);
     if (!rows->knows_spacecraft()) return needs_spacecraft();
     if (auto error = reader.find_time(true)) return *std::move(error);
     return rows;

@@ -10,10 +10,6 @@
 namespace reident::transfer {
 namespace {
 
-bool has(const std::vector<std::string>& columns, std::string_view column) {
-  return std::find(columns.begin(), columns.end(), column) != columns.end();
-}
-
 bool same_words(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
     return x == y || (x == '_' && y == ' ') || (x == ' ' && y == '_');
@@ -28,10 +24,6 @@ std::optional<T> by_name(std::string_view cell, const std::array<T, count>& all)
 }
 
 }  // namespace
-
-bool is_long_layout(const std::vector<std::string>& columns) {
-  return has(columns, "parameter") && has(columns, "time") && has(columns, "value");
-}
 
 std::optional<storage::Quality> parse_quality(std::string_view cell) {
   return by_name(cell, storage::qualities);

@@ -4,8 +4,8 @@
 //
 //   spacecraft,parameter,origin,source,time,value,quality,unit
 //
-// Wide layout, one time a row: a column with the time and one for each parameter. A file is long
-// when it has the columns parameter, time and value. A value that is written and read again has the
+// Wide layout, one time a row: a column with the time and one for each parameter. Which one a
+// file has is found by telemetry_file/long_layout. A value that is written and read again has the
 // same bits, but for the payload of a NaN. Nothing here throws but std::bad_alloc.
 #pragma once
 
@@ -23,9 +23,6 @@ namespace reident::transfer {
 /// In the order in which they are written.
 inline constexpr std::array<std::string_view, 8> long_columns = {
     "spacecraft", "parameter", "origin", "source", "time", "value", "quality", "unit"};
-
-/// Whether a file with these columns is long.
-bool is_long_layout(const std::vector<std::string>& columns);
 
 /// Each takes the words that storage::name gives, with '_' or a blank between them. Empty for
 /// anything else.

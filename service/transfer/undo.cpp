@@ -1,8 +1,11 @@
 #include "service/transfer/undo.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "service/telemetry_file/long_layout.hpp"
 #include "service/transfer/telemetry_csv.hpp"
 
 namespace reident::transfer {
@@ -33,7 +36,13 @@ Origins origins_of(const storage::ImportedFile& import) {
   if (request.is_object() && request.contains("columns") && request["columns"].is_array())
     for (const auto& column : request["columns"])
       if (column.is_string()) columns.push_back(column.get<std::string>());
-  origins.says_itself = is_long_layout(columns);
+  const auto names = [&](const char* column, bool is_given) {
+    return !is_given && std::find(columns.begin(), columns.end(), column) != columns.end();
+  };
+  origins.says_itself = telemetry_file::find_long_layout(columns) &&
+                        (names("source", !text("source").empty()) ||
+                         names("spacecraft", !text("spacecraft").empty()) ||
+                         names("origin", !text("origin").empty()));
   return origins;
 }
 

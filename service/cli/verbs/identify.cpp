@@ -23,6 +23,7 @@
 #include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 #include "service/telemetry_file/reading_options.hpp"
 
 namespace reident::cli::identify_verb {
@@ -40,7 +41,7 @@ constexpr std::size_t max_threads = 256;
 struct Arguments {
   DataRequest data;
   telemetry_file::ReadingArguments reading;
-  std::optional<std::string> hold;
+  std::optional<std::string> hold, phase;
   ModelRequest model;
   std::optional<std::string> threads;
   bool json = false;
@@ -161,6 +162,12 @@ std::variant<DataRequest, Refusal> complete(const Arguments& arguments) {
   request.reading = std::get<telemetry_file::ReadingOptions>(std::move(reading));
   request.reading.clock_may_go_back = arguments.reading.clock_back != "stop";
   request.skip_bad_lines = arguments.reading.skip_bad_lines;
+  if (arguments.phase) {
+    request.phase_ns = parse_duration(*arguments.phase);
+    if (!request.phase_ns || *request.phase_ns < 0)
+      return Refusal{
+          fmt::format("--phase {} is no duration; write it as 0, 180ms or 1s", *arguments.phase)};
+  }
   if (!arguments.hold) return request;
   request.hold_ns = parse_duration(*arguments.hold);
   if (!request.hold_ns || *request.hold_ns <= 0)
@@ -171,9 +178,9 @@ std::variant<DataRequest, Refusal> complete(const Arguments& arguments) {
 
 int show(const DataRequest& request) {
   auto reading = request.reading;
-  reading.force_times = true;
-  const auto shown =
-      telemetry_file::dry_run(request.file, reading, reading.time.column.has_value());
+  reading.any_epoch = true;
+  const auto shown = telemetry_file::dry_run(telemetry_file::open_as_table(request.file, reading),
+                                             request.file, reading.time.column.has_value());
   if (const auto* error = std::get_if<csv::Error>(&shown)) return refuse({error->message});
   for (const std::string& line : std::get<std::vector<std::string>>(shown))
     fmt::print("{}\n", line);
@@ -253,12 +260,23 @@ std::function<int()> declare(CLI::App& command) {
       ->allow_extra_args(false);
   command.add_option(
       "--period", arguments->data.period_s,
-      "seconds between rows, or of the grid with --time (the median step of the slowest column)");
+      "seconds between rows, or of the grid with --time (the usual step of the slowest column)");
   command
       .add_option(
           "--hold", arguments->hold,
           "how long a value serves, such as 400s, where it comes on change or seldom (3 periods)")
       ->type_name("DURATION");
+  command
+      .add_option("--phase", arguments->phase,
+                  "how far behind the multiples of the period ticks stand (0, or where all columns "
+                  "have come)")
+      ->type_name("DURATION");
+  command
+      .add_option(
+          "--segment", arguments->data.segment,
+          "column whose words say which rows belong together, as the number of a test: each "
+          "is a record with a state of its own")
+      ->type_name("COLUMN");
   command.add_option("--identify", arguments->data.identify,
                      "rows A:B of the file, 0-based and half-open (the first two thirds)");
   command.add_option("--validate", arguments->data.validate,

@@ -9,6 +9,7 @@
 #include "service/satcs/replay/replay_columns.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 
 namespace reident::satcs {
 namespace {
@@ -71,11 +72,10 @@ void say_cells(const TelemetryFile& reader, const Survey& surveyed, ReplayPlan& 
       plan.remarks.push_back(
           "column '" + reader.columns()[c] + "': " + std::to_string(surveyed.bad[c]) +
           " cells are no numbers and are sent as invalid: " + surveyed.first_bad[c]);
+  for (const auto& sentence : reader.unnamed_columns()) plan.remarks.push_back(sentence);
   for (const auto& column : plan.left_out)
-    if (const auto at = std::get<std::size_t>(reader.find(column)); surveyed.bad[at] > 0)
-      plan.remarks.push_back("column '" + column + "' is left out, its cells are no numbers: " +
-                             surveyed.first_bad[at] + "; --map-states " + column +
-                             ":STATE=NUMBER,... makes numbers of states");
+    if (surveyed.bad[std::get<std::size_t>(reader.find(column))] > 0)
+      plan.remarks.push_back(left_out_sentence(reader, column));
 }
 
 /// The range that the options ask for, in a file whose earliest and latest rows are given.
@@ -97,7 +97,7 @@ bool within(storage::TimeRange range, storage::Time time) {
 
 std::variant<TelemetryFile, Error> opened_with_time(const std::filesystem::path& file,
                                                     const telemetry_file::ReadingOptions& reading) {
-  auto opened = TelemetryFile::open(file, reading);
+  auto opened = telemetry_file::open_as_table(file, reading);
   if (auto* reader = std::get_if<TelemetryFile>(&opened); reader && reader->has_rows())
     if (auto error = reader->find_time()) return *std::move(error);
   return opened;
@@ -150,7 +150,7 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
   ReplayPlan plan;
   plan.file = options.file;
   plan.reading = options.reading;
-  plan.skip_blanks = options.skip_blanks;
+  plan.skip_blanks = options.skip_blanks || reader.has_samples_of_their_own();
   plan.skip_bad_lines = options.skip_bad_lines;
   plan.time_column = reader.columns()[reader.clock().columns().front()];
   plan.found = reader.found();

@@ -104,10 +104,21 @@ std::optional<Error> choose_columns(const ReplayOptions& options, const Telemetr
     plan.columns.push_back({c, parameter_of(options, reader, c, plan.file.filename().string())});
   }
   if (plan.columns.empty()) {
-    return Error{plan.file.string() + ": no column holds numbers besides the time '" +
-                 plan.time_column + "'; there is nothing to replay"};
+    std::string text = plan.file.string() + ": no column holds numbers besides the time '" +
+                       plan.time_column + "'; there is nothing to send or to import";
+    for (const auto& column : plan.left_out) text += "; " + left_out_sentence(reader, column);
+    return Error{std::move(text)};
   }
   return check_parameters(reader, plan);
+}
+
+std::string left_out_sentence(const TelemetryFile& reader, const std::string& column) {
+  const auto at = std::get<std::size_t>(reader.find(column));
+  std::string text =
+      "column '" + column + "' is left out, its cells are no numbers: " + reader.first_word(at);
+  if (reader.format(at).may_be_states)
+    text += "; --map-states " + column + ":STATE=NUMBER,... makes numbers of states";
+  return text;
 }
 
 NameAndUnit split_unit(std::string_view column) {

@@ -13,6 +13,10 @@ std::optional<csv::Error> choose_columns(const ReplayOptions& options,
                                          const std::vector<std::uint64_t>& numbers,
                                          ReplayPlan& plan);
 
+/// Why a column is left out, and what would bring it in where its cells may be states.
+std::string left_out_sentence(const telemetry_file::TelemetryFile& reader,
+                              const std::string& column);
+
 /// A column's name cut into the parameter's name and the unit at its end; the unit is empty where
 /// there is none that is known.
 struct NameAndUnit {

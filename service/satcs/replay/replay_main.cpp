@@ -11,6 +11,7 @@
 #include "service/satcs/replay/replay.hpp"
 #include "service/support/log.hpp"
 #include "service/support/utc_clock.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 #include "service/telemetry_file/reading_options.hpp"
 
 namespace {
@@ -95,7 +96,8 @@ std::string json_of(const ReplayPlan& plan) {
 }
 
 int show(const ReplayOptions& options) {
-  const auto shown = reident::telemetry_file::dry_run(options.file, options.reading, true);
+  const auto shown = reident::telemetry_file::dry_run(
+      reident::telemetry_file::open_as_table(options.file, options.reading), options.file, true);
   if (const auto* error = std::get_if<reident::csv::Error>(&shown))
     throw BadRequest(error->message);
   for (const auto& line : std::get<std::vector<std::string>>(shown)) fmt::print("{}\n", line);

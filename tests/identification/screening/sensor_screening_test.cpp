@@ -153,6 +153,37 @@ TEST(Screening, FindsAFillValueAtAnyShare) {
     }
 }
 
+TEST(Screening, FindsAnyFarValueThatIsScatteredOverTheRows) {
+  for (const double fill : {0.0, -1.0, 999.25})
+    for (const double share : {0.03, 0.2}) {
+      std::mt19937 random(7);
+      std::uniform_real_distribution<double> uniform;
+      Telemetry telemetry;
+      std::vector<TickRange> filled;
+      for (Index t = 0; t < 30'000; ++t)
+        if (uniform(random) < share) {
+          telemetry.channel(Telemetry::battery)(t) = fill;
+          filled.push_back({t, t + 1});
+        }
+      EXPECT_EQ(ticks_of(telemetry.faults(), SensorFaultKind::fill, Telemetry::battery),
+                united(std::move(filled)))
+          << fill << " in " << share;
+    }
+}
+
+TEST(Screening, WhatIsOffWhereAnotherSensorJumpsOrForLongIsNoFillValue) {
+  Telemetry together, long_off;
+  for (Index t = 0; t < 30'000; ++t) {
+    if (t % 40 == 7) {
+      together.channel(Telemetry::load)(t) = 0;
+      together.channel(Telemetry::battery)(t) += 6;
+    }
+    if (t / 60 % 5 == 1) long_off.channel(Telemetry::load)(t) = 0;
+  }
+  EXPECT_TRUE(together.faults().empty());
+  EXPECT_TRUE(long_off.faults().empty());
+}
+
 TEST(Screening, AnEquipmentThatIsSwitchedOnIsNoFillValue) {
   Telemetry telemetry;
   std::mt19937 random(6);
@@ -204,6 +235,21 @@ TEST(Screening, FindsSeveralFrozenStretchesOfANoisySensor) {
       EXPECT_NEAR(double(found[i].end), double(frozen[i].end), 3);
     }
   }
+}
+
+TEST(Screening, FindsAFrozenStretchAtAnEndWhereTheSensorIsNoisyAtOtherTimes) {
+  Telemetry telemetry;
+  std::mt19937 random(8);
+  std::normal_distribution<double> noise;
+  auto values = telemetry.channel(Telemetry::load);
+  for (Index t = 0; t < 30'000; ++t)
+    values(t) = quantised(5 + double(t / 431 % 3) + 0.01 * noise(random), 0.002);
+  const Index begin = 431 * 8 + 100;  // the highest of its levels
+  values.segment(begin, 40).setConstant(values(begin));
+  const TickSet found = ticks_of(telemetry.faults(), SensorFaultKind::stuck, Telemetry::load);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(double(found[0].begin), double(begin), 3);
+  EXPECT_NEAR(double(found[0].end), double(begin + 40), 3);
 }
 
 TEST(Screening, LeavesAPanelThatHasNothingToShowInEclipse) {

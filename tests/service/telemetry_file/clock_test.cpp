@@ -62,6 +62,24 @@ TEST(TelemetryClock, ReadsEveryForm) {
                 {"2024,2,28,22,0,0.5"},
                 "2024-02-28T22:00:00.5Z"},
            Case{"Date,Time", {"2024-02-28,22:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"Data,Hora", {"28/02/2024,22:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"Jour,Moment", {"28.02.2024,22:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"date,time", {"20240229,93000", "20240229,103000"}, "2024-02-29T09:30:00Z"},
+           Case{"YYYY,MM,DD,HH,MI,SS", {"2024,02,28,22,00,10"}, "2024-02-28T22:00:10Z"},
+           Case{"year,doy", {"2024,59.91666667"}, "2024-02-28T22:00:00Z"},
+           Case{"GPSWeek,GPSSec", {"2303,338418.000"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"\"1,709,157,600\"", "\"1,709,157,610\""}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"2024059220010"}, "2024-02-28T22:00:10Z"},
+           Case{"time", {"24-059T22:00:10"}, "2024-02-28T22:00:10Z"},
+           Case{"time", {"[2024-02-28 22:00:00]"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"Wed Feb 28 22:00:10 UTC 2024"}, "2024-02-28T22:00:10Z"},
+           Case{"time", {"28. Februar 2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"1 juil. 2024 22:00:00"}, "2024-07-01T22:00:00Z"},
+           Case{"time", {"28 f\xC3\xA9vr. 2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time", {"2024-10-27 02:10:00 CEST"}, "2024-10-27T00:10:00Z"},
+           Case{"datenum", {"739310.9166666667", "739310.9167824074"}, "2024-02-28T22:00:00Z"},
+           Case{"JD", {"2460369.416666667", "2460369.416782407"}, "2024-02-28T22:00:00Z"},
+           Case{"time_ticks", {"638447544000000000"}, "2024-02-28T22:00:00Z"},
        })
     EXPECT_EQ(first_time(c.names, c.cells), c.time) << c.cells[0];
 }
@@ -83,7 +101,42 @@ TEST(TelemetryClock, ReadsWhatIsSaidOfIt) {
   EXPECT_EQ(first_time("a,b", {"2024-02-28,22:00"}, columns), "2024-02-28T22:00:00Z");
 }
 
+TEST(TelemetryClock, ReadsTimesThatHavePassedAsTheyAreWritten) {
+  TimeOptions epoch;
+  epoch.epoch_ns = parse_time("2024-02-28T00:00:00Z");
+  for (const auto& [name, cell, time] : {std::tuple("MET", "001/02:00:10", "2024-02-29T02:00:10Z"),
+                                         {"elapsed", "1 02:00:10", "2024-02-29T02:00:10Z"},
+                                         {"t", "01:02:00:10", "2024-02-29T02:00:10Z"},
+                                         {"t", "26:00:10", "2024-02-29T02:00:10Z"},
+                                         {"Time", "10 sec", "2024-02-28T00:00:10Z"},
+                                         {"t (min)", "0.166667", "2024-02-28T00:00:10Z"},
+                                         {"Time [h]", "0.00277778", "2024-02-28T00:00:10Z"}})
+    EXPECT_EQ(first_time(name, {cell}, epoch), time) << cell;
+}
+
+TEST(TelemetryClock, AsksWhereManyRowsHaveTheTimeOfTheRowBefore) {
+  ReadingOptions options;
+  options.latest_ns = in_2026;
+  const std::string text =
+      "time,x\n28.02.2024 22:00,1.5\n28.02.2024 22:00,1.6\n28.02.2024 22:00,1.7\n";
+  const auto refused = [&](const std::string& of) {
+    auto opened = TelemetryFile::of_text(of, "t.csv", options);
+    const auto error = std::get<TelemetryFile>(opened).find_time();
+    return error ? error->message : std::string();
+  };
+  EXPECT_THAT(refused(text),
+              HasSubstr("t.csv:3: '28.02.2024 22:00' in column 'time' is the time of"));
+  EXPECT_EQ(refused("time,x,y\n2024-02-28T22:00:00Z,1,\n2024-02-28T22:00:00Z,,2\n"), "")
+      << "columns that take turns";
+  EXPECT_EQ(refused("time,x\n2024-02-28T22:00:00Z,1\n2024-02-28T22:00:00Z,1\n"), "")
+      << "rows that are there twice";
+  options.force_times = true;
+  EXPECT_EQ(refused(text), "");
+}
+
 TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
+  EXPECT_THAT(first_time("OBT", {"762472800.0"}), HasSubstr("--epoch"));
+  EXPECT_THAT(first_time("year,day", {"2024,28", "2024,29"}), HasSubstr("no column looks like"));
   EXPECT_THAT(first_time("time", {"03/04/2024 22:00", "03/04/2024 22:10"}),
               HasSubstr("--time-format dmy or mdy"));
   EXPECT_THAT(first_time("time_s", {"1709157600000"}), HasSubstr("--time-unit"));
@@ -118,6 +171,17 @@ TEST(TelemetryClock, SubtractsTheLeapSecondsOfGps) {
   // 2017-01-01 was 18 s behind GPS, the second before it 17.
   EXPECT_EQ(utc_of_gps(1'167'264'018 * s), *parse_time("2017-01-01T00:00:00Z"));
   EXPECT_EQ(utc_of_gps(1'167'264'016 * s), *parse_time("2016-12-31T23:59:59Z"));
+}
+
+TEST(TelemetryClockWatch, NotesAnHourThatIsLeftOutInTheNight) {
+  const auto line_of = [](std::vector<const char*> times) {
+    ClockWatch watch(1'000'000'000, true, true);
+    for (std::size_t i = 0; i < times.size(); ++i) watch.next(*parse_time(times[i]), i + 2);
+    return watch.hour_ahead_line();
+  };
+  EXPECT_EQ(line_of({"2024-03-31 01:59:40", "2024-03-31 01:59:50", "2024-03-31 03:00:00"}), 4U);
+  EXPECT_EQ(line_of({"2024-03-31 01:59:40", "2024-03-31 01:59:50", "2024-03-31 03:30:00"}), 0U);
+  EXPECT_EQ(line_of({"2024-03-31 13:59:40", "2024-03-31 13:59:50", "2024-03-31 15:00:00"}), 0U);
 }
 
 TEST(TelemetryClockWatch, SaysWhatAStepBackLooksLike) {

@@ -1,9 +1,10 @@
 // What is found of files as people have them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "service/support/time_text.hpp"
-#include "service/telemetry_file/telemetry_file.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 
 namespace reident::telemetry_file::dialect_test {
 namespace {
@@ -86,6 +87,7 @@ TEST(TelemetryDialect, IsFoundFromTheFirstRows) {
            Found{"Satellite,SAT-1,\nStart,2024-02-28,\ntime,u,v\n", ",", false, 3, 0, 4},
            Found{"time  u     v\n----- ----- -----\n", " ", false, 1, 0, 3},
            Found{"time,17,18\n", ",", false, 1, 0, 2},
+           Found{"Time of it,Load current,Bus voltage\ntime,u,v\n", ",", false, 2, 0, 3},
        }) {
     RowReader rows(TextSource::of_text(file_of(c.above, c.separator, c.decimal_commas), "t.csv"));
     const auto head = rows.head(1 << 20);
@@ -127,6 +129,75 @@ TEST(TelemetryDialect, IsTakenAsGiven) {
   EXPECT_THAT(std::get<TelemetryFile>(opened).columns(), ElementsAre("time", "u"));
 }
 
+TEST(TelemetryDialect, OfLinesThatAreNoCellsIsRefusedWithTheRemedy) {
+  for (const auto& [text, remedy] :
+       {std::pair("time^u\n2024-02-28^1.5\n2024-02-29^1.6\n", "t.csv:1: no comma"),
+        {"{\"time\":1,\"u\":2}\n{\"time\":2,\"u\":3}\n", "t.csv:1: the text is HTML"},
+        {"time,u,v\n2024-02-28,1,5,2,5\n2024-02-29,1,6,2,6\n",
+         "t.csv:1: the line has 3 names, the rows have 5 cells"}}) {
+    const auto opened = TelemetryFile::of_text(text, "t.csv", {});
+    ASSERT_TRUE(std::holds_alternative<Error>(opened)) << text;
+    EXPECT_THAT(std::get<Error>(opened).message, HasSubstr(remedy));
+  }
+}
+
+/// Rows of a file in columns of fixed width; in the odd ones u is blank.
+std::string fixed_width(int rows, const char* time_format) {
+  std::string text = fmt::format("{:<22}{:>9}{:>9}\n", "TIME", "U", "V");
+  for (int row = 0; row < rows; ++row)
+    text += fmt::format("{:<22}{:>9}{:>9.3f}\n", fmt::format(fmt::runtime(time_format), row),
+                        row % 2 == 1 ? "" : fmt::format("{}.5", row), 28.0 + row);
+  return text;
+}
+
+TEST(TelemetryDialect, OfFixedWidthKeepsBlankCellsInTheirColumns) {
+  for (const char* format : {"2024-02-28T22:00:{:02}Z", "2024-02-28 22:00:{:02}"}) {
+    auto opened = TelemetryFile::of_text(fixed_width(40, format), "t.txt", {});
+    ASSERT_TRUE(std::holds_alternative<TelemetryFile>(opened)) << std::get<Error>(opened).message;
+    auto& file = std::get<TelemetryFile>(opened);
+    ASSERT_FALSE(file.find_time());
+    EXPECT_THAT(file.columns(), ElementsAre("TIME", "U", "V"));
+    for (int row = 0; row < 40; ++row) {
+      ASSERT_EQ(file.next(), TelemetryFile::Step::row) << file.error().message;
+      EXPECT_EQ(time_text(file.time_ns()), fmt::format("2024-02-28T22:00:{:02}Z", row));
+      EXPECT_EQ(file.cell(1).kind, row % 2 == 1 ? Cell::Kind::blank : Cell::Kind::number);
+      EXPECT_EQ(file.cell(2).value, 28.0 + row);
+    }
+    EXPECT_EQ(file.next(), TelemetryFile::Step::end);
+  }
+}
+
+TEST(TelemetryDialect, LeavesNumbersOfRowsWithoutAName) {
+  auto opened = TelemetryFile::of_text(
+      "\"time\" \"u\"\n\"1\" \"2024-02-28T22:00:00Z\" 1.5\n\"2\" \"2024-02-28T22:00:10Z\" 1.6\n",
+      "t.txt", {});
+  ASSERT_TRUE(std::holds_alternative<TelemetryFile>(opened)) << std::get<Error>(opened).message;
+  auto& file = std::get<TelemetryFile>(opened);
+  EXPECT_THAT(file.columns(), ElementsAre("", "time", "u"));
+  EXPECT_EQ(file.unnamed_columns().size(), 1U);
+}
+
+TEST(TelemetryDialect, EndsLinesWithAnyNumberOfCarriageReturns) {
+  auto opened = TelemetryFile::of_text(
+      "time,u\r\r\n2024-02-28T22:00:00Z,1.5\r\r\n2024-02-28T22:00:10Z,1.6\r\r\n", "t.csv", {});
+  auto& file = std::get<TelemetryFile>(opened);
+  EXPECT_THAT(file.columns(), ElementsAre("time", "u"));
+  ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+  EXPECT_EQ(file.cell(1).value, 1.5);
+}
+
+TEST(TelemetryDialect, OfOneSampleARowIsKnownByTheNamesAndWords) {
+  const auto layout = [](const std::string& text) {
+    auto opened = TelemetryFile::of_text(text, "t.csv", {});
+    return find_long_layout(std::get<TelemetryFile>(opened)).has_value();
+  };
+  EXPECT_TRUE(layout("time,parameter,value\n2024-02-28,u,1\n"));
+  EXPECT_TRUE(layout("Zeit;Parameter;Wert\n28.02.2024;u;1,5\n"));
+  EXPECT_TRUE(layout("_time,_value,_field,_measurement\n2024-02-28,1,u,eps\n"));
+  EXPECT_FALSE(layout("time,signal,value\n2024-02-28,1.5,2.5\n")) << "two quantities";
+  EXPECT_FALSE(layout("time,u,v\n2024-02-28,1.5,2.5\n"));
+}
+
 struct Style {
   std::vector<std::string_view> cells;
   char separator;
@@ -145,6 +216,8 @@ TEST(TelemetryNumbers, HaveTheStyleThatTheyShow) {
            Style{{"1'501.8", "998.2"}, ',', ".'"},
            Style{{"1,234,567", "1,234"}, ',', ".,"},
            Style{{"0,125", "6,007"}, ',', ", "},
+           Style{{"1,501", "998", "0", "2,007", "12"}, ',', ".,"},
+           Style{{"28. Februar 2024", "6,007", "1,724"}, ';', ", "},
            Style{{"1,501", "1,502"}, ',', "--thousands"},
            Style{{"1,5", "1.25"}, ';', "--decimal"},
        }) {
@@ -178,6 +251,7 @@ TEST(TelemetryCells, AreReadWhereAColumnAgrees) {
                 -4.3,
                 ""},
            Case{{"(4.2)", "4.1"}, -4.2, ""},
+           Case{{"=\"4.2\"", "=\"4.1\""}, 4.2, ""},
            Case{{"0x1F", "0x20"}, 31, ""},
            Case{{"1.5D+02", "1.6D+02"}, 150, ""},
            Case{{"4.2 V", "4.3V"}, 4.2, "V"},

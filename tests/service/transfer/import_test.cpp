@@ -324,7 +324,8 @@ TEST_F(ImportTest, OnlyWhatTheLogKnowsIsTakenBack) {
   };
   EXPECT_THAT(refusal(options("t,u\n1700000000,1\n")),
               HasSubstr("holds no import of this file; it has none"));
-  const ImportOptions exported = options("parameter,time,value\nu,1700000000,1\n", "long.csv");
+  const ImportOptions exported =
+      options("parameter,time,value,source\nu,1700000000,1,station\n", "long.csv");
   test::import(database, exported);
   EXPECT_THAT(refusal(exported), HasSubstr("say themselves what they come from"));
   ImportOptions one = options("t,u\n1700000000,1\n", "one.csv"),

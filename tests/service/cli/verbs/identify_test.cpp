@@ -274,7 +274,7 @@ TEST_F(Identify, TakesTheMedianStepOfIsoTimesAndSplitsAtGaps) {
   write("plant.csv", csv_of(plant(900), "utc", iso));
   const json printed = json_of(command({"--time", "utc"}));
   EXPECT_EQ(printed["sample_period_s"], 10);
-  EXPECT_THAT(printed["warnings"], Contains(HasSubstr("a grid of 10s, the median step of utc")));
+  EXPECT_THAT(printed["warnings"], Contains(HasSubstr("a grid of 10s, the usual step of utc")));
   EXPECT_THAT(printed["warnings"], Contains(HasSubstr("2 stretches")));
   EXPECT_GT(printed["fit_percent"]["validate"][0], 80);
 }

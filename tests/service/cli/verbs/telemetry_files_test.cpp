@@ -106,7 +106,7 @@ TEST_F(TelemetryFiles, OfValuesOnChangeNeedAHoldThatIsNamed) {
   write("plain.csv", plain());
   write("sparse.csv", sparse);
   EXPECT_THAT(refusal_of(identify("sparse.csv", {"--period", "10"})),
-              AllOf(HasSubstr("u, whose median step is 40s"), HasSubstr("--hold 40s")));
+              AllOf(HasSubstr("u, whose usual step is 40s"), HasSubstr("--hold 40s")));
   EXPECT_EQ(pole(identify("sparse.csv", {"--period", "10", "--hold", "40s"})),
             pole(identify("plain.csv")));
   EXPECT_EQ(json_of(identify("sparse.csv"))["sample_period_s"], 40) << "that of the slowest";
@@ -131,6 +131,86 @@ TEST_F(TelemetryFiles, WithCellsThatAreNoNumbersAreRefusedOrSaid) {
   EXPECT_EQ(reident(identify("many.csv", {"--missing", "OVR"})).status, 0);
   EXPECT_THAT(json_of(identify("many.csv", {"--skip-bad-lines"}))["warnings"],
               Contains(HasSubstr("11 rows left out for no number, the first: many.csv:9:")));
+}
+
+TEST_F(TelemetryFiles, OfOneSampleARowGiveTheModelOfTheTable) {
+  write("plain.csv", plain());
+  const double expected = pole(identify("plain.csv"));
+  std::string turns = "Timestamp,Mnemonic,Value\n", series = "time;name;value\n", ys;
+  for (std::size_t row = 0; row < data_.u.size(); ++row) {
+    turns += fmt::format("{0},u,{1:.3f}\n{0},y,{2:.3f}\n", iso(row), data_.u[row], data_.y[row]);
+    std::string u = fmt::format("{};u;{:.3f}\n", iso(row), data_.u[row]),
+                y = fmt::format("{};y;{:.3f}\n", iso(row), data_.y[row]);
+    for (char& c : u) c = c == '.' ? ',' : c;
+    for (char& c : y) c = c == '.' ? ',' : c;
+    series += u;
+    ys += y;
+  }
+  write("turns.csv", turns);
+  write("series.csv", series + ys);
+  EXPECT_EQ(pole({"identify", "turns.csv", "--time", "Timestamp", "--input", "u", "--output", "y",
+                  "--order", "1"}),
+            expected);
+  EXPECT_EQ(pole(identify("series.csv")), expected);
+  EXPECT_THAT(json_of(identify("series.csv"))["found"], HasSubstr("one sample a row"));
+  const json imported = json_of(import_of("series.csv"));
+  EXPECT_EQ(imported["stored"], 480);
+  EXPECT_EQ(imported["new_parameters"], 2);
+  const test::Ran undone = reident({"import", "series.csv", "--db", "a.db", "--undo"});
+  EXPECT_EQ(undone.out, "480 samples of 2 parameters removed; the file can be imported again\n");
+}
+
+TEST_F(TelemetryFiles, WhoseTimesJitterOrAreRoundedGiveTheModelOfTheGrid) {
+  write("plain.csv", plain());
+  const double expected = pole(identify("plain.csv"));
+  std::string jitter = "time,u,y\n", rounded = "t,u,y\n";
+  std::mt19937 random(9);
+  std::uniform_int_distribution<int> late_ms(-40, 40);
+  for (std::size_t row = 0; row < data_.u.size(); ++row) {
+    const double t = 1'709'157'600.0 + 10 * double(row) + late_ms(random) / 1000.0;
+    jitter += fmt::format("{:.3f},{:.3f},{:.3f}\n", t, data_.u[row], data_.y[row]);
+    rounded += fmt::format("{:.3f},{:.3f},{:.3f}\n", double(row) / 30, data_.u[row], data_.y[row]);
+  }
+  write("jitter.csv", jitter);
+  write("rounded.csv", rounded);
+  EXPECT_EQ(pole(identify("jitter.csv", {"--period", "10"})), expected);
+  EXPECT_NE(pole(identify("jitter.csv", {"--period", "10", "--phase", "0"})), expected);
+  const json thirty = json_of(
+      {"identify", "rounded.csv", "--time", "t", "--input", "u", "--output", "y", "--order", "1"});
+  EXPECT_EQ(thirty["A"][0][0], expected);
+  EXPECT_NEAR(thirty["sample_period_s"].get<double>(), 1.0 / 30, 1e-5);
+}
+
+TEST_F(TelemetryFiles, OfSeveralRecordsFitAStateToEach) {
+  // The second record begins at a state that has nothing to do with the end of the first one.
+  const std::size_t half = data_.u.size() / 2;
+  std::string apart = "run,t,u,y\n", mixed = "run,t,u,y\n";
+  std::vector<std::string> first, second;
+  for (std::size_t row = 0; row < half; ++row) {
+    first.push_back(fmt::format("A,{},{:.3f},{:.3f}\n", 10 * row, data_.u[row], data_.y[row]));
+    second.push_back(
+        fmt::format("B,{},{:.3f},{:.3f}\n", 10 * row, data_.u[half + row], data_.y[half + row]));
+  }
+  for (const auto& line : first) apart += line;
+  for (const auto& line : second) apart += line;
+  for (std::size_t row = 0; row < half; ++row) mixed += first[row] + second[row];
+  write("apart.csv", apart);
+  write("mixed.csv", mixed);
+  const auto words = [&](const char* file) {
+    return std::vector<std::string>{"identify",  file,       "--time",     "t",       "--input",
+                                    "u",         "--output", "y",          "--order", "1",
+                                    "--segment", "run",      "--validate", "180:240"};
+  };
+  const json model = json_of(words("apart.csv"));
+  EXPECT_NEAR(model["A"][0][0].get<double>(), 0.9, 0.01);
+  EXPECT_THAT(model["warnings"], Contains(HasSubstr("2 stretches")));
+  EXPECT_EQ(json_of(words("mixed.csv"))["A"], model["A"]);
+  auto without_time = words("apart.csv");
+  without_time.erase(without_time.begin() + 2, without_time.begin() + 4);
+  EXPECT_EQ(json_of(without_time)["A"], model["A"]);
+  EXPECT_THAT(
+      refusal_of({"identify", "apart.csv", "--input", "u", "--output", "y", "--segment", "test"}),
+      HasSubstr("--segment: apart.csv: there is no column 'test'"));
 }
 
 TEST_F(TelemetryFiles, OfAClockThatWasSetBackGoOnOrStop) {

@@ -144,6 +144,13 @@ TEST_F(Replay, MakesParametersOfTheOtherColumns) {
   EXPECT_THAT(parameters(), ElementsAre("V_BUS:mV", "MODE:"));
 }
 
+TEST_F(Replay, SendsOneSampleARowAsTheTableThatItStandsFor) {
+  write("time,name,value\n10,u,1\n20,u,2\n10,v,5\n");
+  EXPECT_THAT(parameters(), ElementsAre("u:", "v:"));
+  EXPECT_EQ(plan().rows, 2U);
+  EXPECT_TRUE(plan().skip_blanks) << "v has no sample at 20";
+}
+
 TEST_F(Replay, RefusesWhatCannotBeReplayed) {
   struct Case {
     const char* text;
@@ -161,7 +168,7 @@ TEST_F(Replay, RefusesWhatCannotBeReplayed) {
                 "--time (the columns are: u1, y1)"},
            Case{"t,mode\n1,idle\n", nothing,
                 "t.csv: no column holds numbers besides the time 't'; "
-                "there is nothing to replay"},
+                "there is nothing to send or to import; column 'mode' is left out"},
            Case{"t,a\n1,2\nnoon,3\n", nothing, "t.csv:3: 'noon' in column 't' is no time"},
            Case{"t,a\n1,2\n2\n", nothing,
                 "t.csv:3: the row has 1 cells, the header has 2; mend the row"},

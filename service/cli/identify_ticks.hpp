@@ -1,0 +1,21 @@
+// Which ticks suit the times of samples: how far apart, and how far behind the multiples of that.
+// Times are in ns; those of one channel ascend. Nothing here throws but std::bad_alloc.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace reident::cli {
+
+/// Returns the step of times: the median, or where they are rounded or jitter about a grid, the
+/// roundest period of a grid that goes with all of them. Requires steps, and none below 1.
+std::int64_t usual_step(std::span<const std::int64_t> steps_ns);
+
+/// Returns how far behind the multiples of the period ticks have to stand so that the values at a
+/// tick belong together: in the widest stretch of a period in which no channel speaks. 0 where the
+/// multiples do, or no place is better.
+std::int64_t suitable_phase(const std::vector<std::vector<std::int64_t>>& channels_ns,
+                            std::int64_t period_ns);
+
+}  // namespace reident::cli

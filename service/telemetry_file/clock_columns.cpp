@@ -1,0 +1,213 @@
+#include <algorithm>
+
+#include "service/support/text.hpp"
+#include "service/telemetry_file/clock_finder.hpp"
+#include "service/telemetry_file/time_units.hpp"
+
+namespace reident::telemetry_file {
+namespace {
+
+using Problem = Clock::Problem;
+
+bool is_digits(std::string_view cell) {
+  return !cell.empty() && cell.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Whether a cell is a date that a time of day may stand behind.
+bool is_date_alone(std::string_view cell, DateOrder order) {
+  const auto date = read_date_text(cell, order);
+  const auto both = read_date_text(std::string(cell) + " 01:00", order);
+  return date && date->has_date && both && both->clock_ns == date->clock_ns + hour_ns;
+}
+
+/// Whether a cell is a time of day; digits alone are one where the name says so.
+bool is_clock_alone(std::string_view cell, bool is_named_so, DateOrder order) {
+  if (is_digits(cell)) return is_named_so && cell.size() <= 6;
+  const auto clock = read_date_text(cell, order);
+  return clock && !clock->has_date && clock->clock_ns <= day_ns;
+}
+
+}  // namespace
+
+std::optional<std::size_t> ClockFinder::column(std::string_view name) const {
+  const auto found = std::find(head_.names.begin(), head_.names.end(), name);
+  return found == head_.names.end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - head_.names.begin()));
+}
+
+std::optional<std::size_t> ClockFinder::part(TimePart part) const {
+  for (std::size_t c = 0; c < head_.names.size(); ++c)
+    if (part_of(head_.names[c]) == part) return c;
+  return std::nullopt;
+}
+
+/// The first cell of a column that holds something, and its line.
+std::pair<std::string_view, std::uint64_t> ClockFinder::first_cell(std::size_t c) const {
+  for (std::size_t row = 0; row < head_.columns[c].size(); ++row)
+    if (!trimmed(head_.columns[c][row]).empty())
+      return {trimmed(head_.columns[c][row]), head_.lines[row]};
+  return {{}, head_.lines.empty() ? 0 : head_.lines.front()};
+}
+
+bool ClockFinder::set_parts(Clock::Parts parts, std::vector<std::size_t> columns,
+                            std::vector<std::int64_t> units) {
+  clock_.parts_ = parts;
+  clock_.columns_ = std::move(columns);
+  clock_.part_unit_ns_ = std::move(units);
+  return true;
+}
+
+/// Year with month and day, or day of the year, and the time of day.
+bool ClockFinder::find_calendar() {
+  const auto year = part(TimePart::year), month = part(TimePart::month), day = part(TimePart::day);
+  auto of_year = part(TimePart::day_of_year);
+  if (year && !of_year && day && !month && (is_asked_ || counts_days_of_year(*day))) of_year = day;
+  if (!year || (!of_year && (!month || !day))) return false;
+  std::vector<std::size_t> columns =
+      of_year ? std::vector{*year, *of_year} : std::vector{*year, *month, *day};
+  std::vector<std::int64_t> units;
+  const auto add = [&](TimePart wanted, std::int64_t unit) {
+    const auto at = part(wanted);
+    if (!at || std::find(columns.begin(), columns.end(), *at) != columns.end()) return false;
+    columns.push_back(*at);
+    units.push_back(unit);
+    return true;
+  };
+  const bool of_day = add(TimePart::second_of_day, second_ns) ||
+                      add(TimePart::millisecond_of_day, 1'000'000) || add(TimePart::clock, 0);
+  if (!of_day && add(TimePart::hour, hour_ns)) {
+    if (add(TimePart::minute, minute_ns)) add(TimePart::second, second_ns);
+  } else if (!of_day) {
+    add(TimePart::second, second_ns);
+  }
+  return set_parts(of_year ? Clock::Parts::day_of_year : Clock::Parts::calendar, std::move(columns),
+                   std::move(units));
+}
+
+/// A column named day holds days of the year where one of them is behind the 31st, or has three
+/// digits.
+bool ClockFinder::counts_days_of_year(std::size_t c) const {
+  return std::any_of(head_.columns[c].begin(), head_.columns[c].end(), [](std::string_view cell) {
+    const auto day = plain_number(cell);
+    return day && (*day >= 32 || trimmed(cell).substr(0, trimmed(cell).find('.')).size() >= 3);
+  });
+}
+
+/// A date and a time of day side by side.
+bool ClockFinder::find_date_and_clock() {
+  const auto date = part(TimePart::date);
+  return date && join(*date, clock_beside(*date));
+}
+
+/// The time of day that belongs to a column of dates alone.
+std::optional<std::size_t> ClockFinder::clock_beside(std::size_t date) const {
+  const auto cell = first_cell(date).first;
+  if (!is_date_alone(cell, clock_.order_)) return std::nullopt;
+  if (is_digits(cell) && part_of(head_.names[date]) != TimePart::date) return std::nullopt;
+  for (std::size_t c = 0; c < head_.names.size(); ++c)
+    if (c != date && is_clock_alone(first_cell(c).first, part_of(head_.names[c]) == TimePart::clock,
+                                    clock_.order_))
+      return c;
+  return std::nullopt;
+}
+
+bool ClockFinder::join(std::size_t date, std::optional<std::size_t> clock) {
+  if (!clock) return false;
+  clock_.clock_digits_ = 0;
+  for (const std::string_view cell : head_.columns[*clock])
+    if (is_digits(trimmed(cell)))
+      clock_.clock_digits_ = std::max(clock_.clock_digits_, trimmed(cell).size() > 4 ? 6UL : 4UL);
+  return set_parts(Clock::Parts::joined, {date, *clock}, {});
+}
+
+bool ClockFinder::find_gps_week() {
+  const auto week = part(TimePart::gps_week), second = part(TimePart::week_second);
+  if (!week || !second || !plain_number(first_cell(*week).first)) return false;
+  clock_.unit_ns_ = options_.unit_ns.value_or(
+      hint_of(head_.names[*second], unit(*second)).unit_ns.value_or(second_ns));
+  return set_parts(Clock::Parts::gps_week, {*week, *second}, {});
+}
+
+bool ClockFinder::find_set() {
+  return find_calendar() || find_date_and_clock() || find_gps_week();
+}
+
+std::string_view ClockFinder::unit(std::size_t c) const {
+  return head_.units.empty() ? std::string_view() : head_.units[c];
+}
+
+bool ClockFinder::holds_time(std::size_t c) const {
+  const auto cell = first_cell(c).first;
+  return read_number(cell, head_.style).has_value() ||
+         read_date_text(cell, clock_.order_).has_value();
+}
+
+std::optional<Problem> ClockFinder::choose_columns() {
+  if (options_.column) return choose_named(*options_.column);
+  if (find_set()) return std::nullopt;
+  for (std::size_t c = 0; c < head_.names.size(); ++c)
+    if (is_named_like_a_time(head_.names[c]) && holds_time(c)) return choose({c});
+  for (std::size_t c = 0; c < head_.names.size(); ++c)
+    if (!read_number(first_cell(c).first, head_.style) &&
+        read_date_text(first_cell(c).first, clock_.order_))
+      return choose({c});
+  return Problem{head_.lines.empty() ? 0 : head_.lines.front(),
+                 "no column looks like a time; name it with --time (the columns are: " +
+                     joined(head_.names) + ")"};
+}
+
+std::optional<Problem> ClockFinder::choose(std::vector<std::size_t> columns) {
+  const std::size_t first = columns.front();
+  clock_.columns_ = std::move(columns);
+  if (!options_.format) join(first, clock_beside(first));
+  return std::nullopt;
+}
+
+std::optional<Problem> ClockFinder::choose_named(const std::string& asked) {
+  const auto no_column = [&](const std::string& name) {
+    std::string text = "there is no column '" + name + "'; ";
+    if (find_set()) {
+      text += "the time is in the columns ";
+      std::string all;
+      for (const std::size_t c : clock_.columns_) all += (all.empty() ? "" : ",") + head_.names[c];
+      text += all + ": --time " + all + "; ";
+    }
+    return Problem{0, text + "the columns are: " + joined(head_.names)};
+  };
+  if (const auto one = column(asked)) {
+    const auto cell = first_cell(*one).first;
+    const auto text = read_date_text(cell, clock_.order_);
+    const bool is_part =
+        part_of(asked) != TimePart::none && !options_.format && (text ? cell.size() <= 12 : true);
+    if (is_part && find_set() &&
+        std::find(clock_.columns_.begin(), clock_.columns_.end(), *one) != clock_.columns_.end())
+      return std::nullopt;
+    clock_.parts_ = Clock::Parts::one;
+    return choose({*one});
+  }
+  std::vector<std::size_t> columns;
+  for (std::size_t at = 0; at <= asked.size();) {
+    const std::size_t end = std::min(asked.find(',', at), asked.size());
+    const std::string name(trimmed(std::string_view(asked).substr(at, end - at)));
+    const auto found = column(name);
+    if (!found) return no_column(name);
+    columns.push_back(*found);
+    at = end + 1;
+  }
+  if (columns.size() == 1) return choose(std::move(columns));
+  is_asked_ = true;
+  if (find_set() && clock_.columns_.size() == columns.size() &&
+      std::is_permutation(columns.begin(), columns.end(), clock_.columns_.begin()))
+    return std::nullopt;
+  if (columns.size() == 2) {
+    join(columns[0], columns[1]);
+    return std::nullopt;
+  }
+  return Problem{
+      0, "--time " + asked +
+             " are no columns of one time: a date and a time of day; year, month and day, or year "
+             "and doy, with hour, minute and second or sec_of_day; week and tow"};
+}
+
+}  // namespace reident::telemetry_file

@@ -1,0 +1,26 @@
+// Files that hold one sample a row: its time, the name of its parameter, its value.
+#pragma once
+
+#include <optional>
+
+#include "service/telemetry_file/telemetry_file.hpp"
+
+namespace reident::telemetry_file {
+
+/// Positions of the columns.
+struct LongLayout {
+  std::size_t parameter = 0, value = 0;
+};
+
+/// By the names of the columns: value, Wert, _value beside parameter, name, Mnemonic, _field and
+/// their like. Absent where a file with these columns has one for each parameter.
+std::optional<LongLayout> find_long_layout(const std::vector<std::string>& columns);
+/// The same of a file, whose names are words where the column is not called parameter.
+std::optional<LongLayout> find_long_layout(const TelemetryFile& file);
+
+/// Opens a file; one of one sample a row as the table of a row for each time and a column for each
+/// parameter that it stands for. Lines of that are no lines of the file.
+std::variant<TelemetryFile, Error> open_as_table(const std::filesystem::path& path,
+                                                 const ReadingOptions& options);
+
+}  // namespace reident::telemetry_file

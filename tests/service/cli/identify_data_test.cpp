@@ -1,0 +1,136 @@
+// The same file gives the same rows to `identify` and, through the archive, to the service.
+#include "service/cli/identify_data.hpp"
+
+#include <random>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "service/windows/window_data.hpp"
+#include "storage/archive/archive.hpp"
+#include "tests/service/cli/cli_fixture.hpp"
+
+namespace reident::cli::identify_data_test {
+namespace {
+
+constexpr std::int64_t second = 1'000'000'000;
+constexpr std::int64_t begin_s = 1'709'157'600;  // 2024-02-28T22:00:00Z
+constexpr int rows = 120;
+
+/// A row each 10 s, u changes in every fourth; the texts have three decimals.
+struct Row {
+  std::string date, ordinal, u, y;
+  std::int64_t ms = 0;
+  bool changes = false;
+};
+
+std::vector<Row> telemetry() {
+  std::mt19937 random(34);
+  std::normal_distribution<double> normal;
+  std::vector<Row> made;
+  for (int i = 0; i < rows; ++i) {
+    const std::string clock = fmt::format("22:{:02}:{:02}", i / 6, i % 6 * 10);
+    Row row{"2024-02-28T" + clock,
+            "2024:059:" + clock,
+            {},
+            fmt::format("{:.3f}", 28 + normal(random)),
+            (begin_s + 10 * i) * 1000,
+            i % 4 == 0};
+    row.u = row.changes ? fmt::format("{:.3f}", 3 + normal(random)) : made.back().u;
+    made.push_back(row);
+  }
+  return made;
+}
+
+std::string with_commas(std::string text) {
+  std::replace(text.begin(), text.end(), '.', ',');
+  return text;
+}
+
+struct Dress {
+  const char* name;
+  const char* header;
+  std::string (*line)(const Row& row);
+  std::int64_t hold_s = 30;
+};
+
+class IdentifyRows : public test::CliTest {
+ protected:
+  identification::Record of_file(const Dress& dress, const std::string& file,
+                                 const std::string& time) const {
+    DataRequest request;
+    request.file = folder() / file;
+    request.inputs = {"u"};
+    request.outputs = {"y"};
+    request.reading.time.column = time;
+    request.period_s = 10;
+    request.hold_ns = dress.hold_s * second;
+    request.phase_ns = 0;
+    request.screening = false;
+    auto read = read_data(request);
+    if (const auto* refusal = std::get_if<Refusal>(&read))
+      throw std::runtime_error(refusal->message);
+    return std::get<IdentifyData>(std::move(read)).record;
+  }
+  identification::Record of_archive(const Dress& dress, const std::string& file) const {
+    storage::Database database(folder() / file, storage::Database::Mode::read_write);
+    const WindowRequest request{.spacecraft = "SAT-1",
+                                .inputs = {"u"},
+                                .derived = {},
+                                .outputs = {"y"},
+                                .period = 10 * second,
+                                .sample_hold = dress.hold_s * second};
+    const storage::Archive archive(database);
+    auto loaded =
+        load_window(archive, request, {begin_s * second, (begin_s + 10 * rows - 5) * second});
+    return std::get<WindowData>(std::move(loaded)).record;
+  }
+};
+
+TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
+  const Dress dresses[] = {
+      {"plain", "time,u,y\n", [](const Row& r) { return r.date + "Z," + r.u + "," + r.y + "\n"; }},
+      {"european", "Export\n\ntime;u;y\n;A;V\n",
+       [](const Row& r) {
+         return "28.02.2024 " + r.date.substr(11) + ";" + with_commas(r.u) + ";" +
+                with_commas(r.y) + "\r\n";
+       }},
+      {"days", "time\tu\ty\n",
+       [](const Row& r) { return r.ordinal + "\t" + r.u + "\t" + r.y + "\n"; }},
+      {"epoch", "time_ms,u,y\n",
+       [](const Row& r) { return fmt::format("{},{},{}\n", r.ms, r.u, r.y); }},
+      {"packets", "time,u,y\n",
+       [](const Row& r) {
+         return r.date + ".000Z," + r.u + ",\n" + r.date + ".180Z,," + r.y + "\n";
+       }},
+      {"on_change", "time,u,y\n",
+       [](const Row& r) { return r.date + "Z," + (r.changes ? r.u : "") + "," + r.y + "\n"; }, 40},
+      {"samples", "time,name,value\n",
+       [](const Row& r) { return r.date + "Z,u," + r.u + "\n" + r.date + "Z,y," + r.y + "\n"; }},
+      {"jitter", "time,u,y\n",
+       [](const Row& r) {
+         return fmt::format("{},{},{}\n", double(r.ms + r.ms / 10'000 % 7 * 10 - 30) / 1000, r.u,
+                            r.y);
+       }},
+  };
+  const auto table = telemetry();
+  for (const Dress& dress : dresses) {
+    const std::string file = dress.name + std::string(".csv"),
+                      archive = dress.name + std::string(".db");
+    std::string text = dress.header;
+    for (const Row& row : table) text += dress.line(row);
+    write(file, text);
+    const test::Ran ran = reident({"import", file, "--db", archive, "--spacecraft", "SAT-1"});
+    ASSERT_EQ(ran.status, 0) << dress.name << ran.err;
+    const std::string header = dress.header;
+    const auto here = of_file(dress, file, header.find("time_ms") == 0 ? "time_ms" : "time");
+    const auto there = of_archive(dress, archive);
+    EXPECT_GE(here.rows(), rows - 2) << dress.name;
+    EXPECT_EQ(here.segments, there.segments) << dress.name;
+    EXPECT_EQ(here.u, there.u) << dress.name;
+    EXPECT_EQ(here.y, there.y) << dress.name;
+  }
+}
+
+}  // namespace
+}  // namespace reident::cli::identify_data_test
