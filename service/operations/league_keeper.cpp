@@ -4,11 +4,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "service/model/model_json.hpp"
 #include "service/model/reasons.hpp"
 #include "service/support/floor_divide.hpp"
+#include "service/support/time_text.hpp"
 #include "service/windows/member_run.hpp"
 #include "service/windows/provenance.hpp"
 
@@ -42,6 +44,17 @@ storage::NewDecision decision_of(DecisionKind kind, const std::vector<Reason>& r
   evidence["reasons"] = to_json(reasons);
   return {kind, gate, sentences(reasons),
           evidence.dump(-1, ' ', false, ordered_json::error_handler_t::replace)};
+}
+
+/// Throws Error (corrupt) where a record is not of the model's size.
+void require_fitting(const Member& member, const identification::StateSpaceModel& model) {
+  for (const storage::BlockScore& score : member.scores)
+    if ((score.rows > 0 && std::ssize(score.mean) != model.outputs()) ||
+        (score.state.tick && std::ssize(score.state.x) != model.order()))
+      throw storage::Error(storage::Error::Kind::corrupt,
+                           fmt::format("the record of version {} is not of its model from {} on: "
+                                       "restore a backup",
+                                       member.version, time_text(score.begin)));
 }
 
 storage::TimeRange window_behind(const Change& change, const EquipmentConfig& equipment) {
@@ -102,9 +115,11 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
     if (!version || mistake_in(*version)) return std::nullopt;
     EquipmentModel model = equipment_model_from_json(version->model_json);
     if (request_of(model) != reader_.request()) return std::nullopt;
-    models_.emplace(number, std::move(model));
-    return Member{number, version->window,
+    Member member{number, version->window,
                   registry.scores(spacecraft_, equipment_.name, number, INT64_MIN)};
+    require_fitting(member, model.dynamics);
+    models_.emplace(number, std::move(model));
+    return member;
   };
   std::int64_t passed_over = 0;
   if (const auto made = registry.champion_decision(spacecraft_, equipment_.name)) {

@@ -16,12 +16,16 @@ std::span<const std::uint8_t> blob(const std::vector<double>& values) {
   return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(double)};
 }
 
-/// Throws Error (corrupt) where the bytes are no list of numbers.
+/// Throws Error (corrupt) unless a row is as it was recorded.
+void require(bool is_sound) {
+  if (!is_sound)
+    throw Error(Error::Kind::corrupt,
+                "a score of the registry is damaged: 'reident verify' names it; restore a backup");
+}
+
 std::vector<double> numbers(const sqlite::Query& row, int column) {
   const std::span<const std::uint8_t> bytes = row.bytes(column);
-  if (bytes.size() % sizeof(double) != 0)
-    throw Error(Error::Kind::corrupt,
-                "a score of the registry is no list of numbers: run 'reident verify'");
+  require(bytes.size() % sizeof(double) == 0);
   std::vector<double> values(bytes.size() / sizeof(double));
   if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
@@ -34,14 +38,32 @@ std::string block_sql(const std::string& rest) {
 }
 
 Block read_block(const sqlite::Query& row) {
-  return {{row.integer(0), row.integer(1)},
-          row.integer(2),
-          row.real(3),
-          numbers(row, 4),
-          numbers(row, 5),
-          numbers(row, 6),
-          numbers(row, 7),
-          numbers(row, 8)};
+  Block block{{row.integer(0), row.integer(1)},
+              row.integer(2),
+              row.real(3),
+              numbers(row, 4),
+              numbers(row, 5),
+              numbers(row, 6),
+              numbers(row, 7),
+              numbers(row, 8)};
+  require(block.output_square.size() == block.output_mean.size() &&
+          block.input_high.size() == block.input_low.size());
+  return block;
+}
+
+BlockScore read_score(std::int64_t version, const sqlite::Query& row) {
+  BlockScore score{
+      version,
+      row.integer(0),
+      row.integer(1),
+      numbers(row, 2),
+      numbers(row, 3),
+      numbers(row, 4),
+      {numbers(row, 5), row.is_null(6) ? std::nullopt : std::optional<std::int64_t>(row.integer(6)),
+       numbers(row, 7), row.integer(8)},
+      numbers(row, 9)};
+  require(score.square.size() == score.mean.size() && score.noise.size() == score.mean.size());
+  return score;
 }
 
 }  // namespace
@@ -103,17 +125,7 @@ std::vector<BlockScore> Registry::scores(const std::string& spacecraft,
       "FROM score WHERE spacecraft = ? AND equipment = ? AND version = ? AND begin_time >= ? "
       "ORDER BY begin_time",
       spacecraft, equipment, version, since);
-  while (row.step())
-    scores.push_back({version,
-                      row.integer(0),
-                      row.integer(1),
-                      numbers(row, 2),
-                      numbers(row, 3),
-                      numbers(row, 4),
-                      {numbers(row, 5),
-                       row.is_null(6) ? std::nullopt : std::optional<std::int64_t>(row.integer(6)),
-                       numbers(row, 7), row.integer(8)},
-                      numbers(row, 9)});
+  while (row.step()) scores.push_back(read_score(version, row));
   return scores;
 }
 

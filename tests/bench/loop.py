@@ -1,6 +1,7 @@
 """Recorded BUPT-1 telemetry through the real loop: satcs-replay at full speed, reidentd with
 deploy/bupt1.toml, one simulator. Checks that the archive holds exactly the samples of the files and
-prints what was tried, approved and rejected, as Markdown. The last line is one JSON object.
+prints what was tried, approved and rejected, and what approved versions erred on the telemetry after
+them, as Markdown. The last line is one JSON object.
 
     loop.py PROGRAMS CONFIGURATIONS FILE.csv...
 """
@@ -78,6 +79,19 @@ def table(equipment):
     return "\n".join(lines)
 
 
+def followed_table(versions):
+    lines = ["| version | rows after it | MRSE %, fit % | replaced | mean | static regression |",
+             "|---|---|---|---|---|---|"]
+    for row in versions:
+        errors = {name: row.get(name) for name in
+                  ("errors", "replaced_errors", "mean", "static_regression")}
+        cells = [f"{error['mrse_percent']:.2f}, {error['fit_percent']:.1f}" if error else "-"
+                 for error in errors.values()]
+        lines.append(f"| {row['equipment']}@{row['version']} | {row.get('rows', 0)} | "
+                     + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
 def every_model(equipment):
     return "The model of every slide, median MRSE on unseen data: " + ", ".join(
         f"{name} {tried['slides']['median']:.2f} % of {tried['slides']['models']}"
@@ -119,8 +133,9 @@ def main():
                 frames += summary["frames"]
             run("cli/reident", "status", "--wait", "idle", "--timeout", "600", *endpoint)
             seconds = time.monotonic() - began
-            history = json.loads(run("cli/reident", "history", "--database", folder / "bupt1.db",
-                                     "--json"))
+            database = ["--database", folder / "bupt1.db", "--json"]
+            history = json.loads(run("cli/reident", "history", *database))
+            followed = json.loads(run("cli/reident", "score", *database))["versions"]
         finally:
             for child in children:
                 child.send_signal(signal.SIGTERM)
@@ -136,10 +151,11 @@ def main():
         equipment = summary(history["attempts"])
         print(table(equipment))
         print("\n" + every_model(equipment))
+        print("\n" + followed_table(followed))
         print(json.dumps({
             "frames": frames, "replay_s": replay_s, "samples": len(expected),
             "archive_exact": same, "windows": len(history["attempts"]), "decided_s": seconds,
-            "versions_adopted": len(adopted), "equipment": equipment}))
+            "versions_adopted": len(adopted), "equipment": equipment, "followed": followed}))
         return 0 if same else 1
 
 

@@ -176,6 +176,23 @@ class Loop(EndToEnd):
         self.assertEqual(status, 0, text)
         self.assertIn("inputs: the same", text)
 
+        status, text = self.reident("score", "SAT/PLANT", "--database", self.database, "--json")
+        self.assertEqual(status, 0, text)
+        scored = json.loads(text)["versions"]
+        self.assertEqual([row["version"] for row in scored[:1] + scored[-1:]], [first, second])
+        self.assertEqual(scored[0]["end"], scored[1]["begin"], "until the next one")
+        for before, row in zip(scored, scored[1:]):
+            self.assertEqual(row["replaced"], before["version"])
+        self.assertLess(3 * scored[-1]["errors"]["mrse_percent"],
+                        scored[-1]["replaced_errors"]["mrse_percent"], "the gain is another")
+        for row in scored:
+            self.assertLess(row["errors"]["mrse_percent"], row["mean"]["mrse_percent"])
+            self.assertLess(row["errors"]["mrse_percent"],
+                            row["static_regression"]["mrse_percent"], "the plant has a state")
+        status, text = self.reident("score", "--span", "1min", "--database", self.database)
+        self.assertEqual(status, 0, text)
+        self.assertIn(" 1min ", text)
+
         drawing = self.folder / "plant.svg"
         status, text = self.reident("plot", f"SAT/PLANT@{second}", "-o", drawing, "--database",
                                     self.database)
@@ -205,7 +222,9 @@ class Loop(EndToEnd):
                 (2, "is no time", "plot", "SAT/PLANT", "--begin", "soon"),
                 (1, "cannot be written", "plot", "SAT/PLANT", "-o", self.folder / "no" / "x.svg"),
                 (2, "x is no version", "compare", "SAT/PLANT", first, "x"),
-                (2, "nothing is known about SAT/NONE", "compare", "SAT/NONE", 1, 2)]:
+                (2, "nothing is known about SAT/NONE", "compare", "SAT/NONE", 1, 2),
+                (2, "nothing is known about SAT/NONE", "score", "SAT/NONE"),
+                (2, "is no length of time", "score", "--span", "soon")]:
             with self.subTest(words=words):
                 done, text = self.reident(*words, "--database", self.database)
                 self.assertEqual((done, text.count("\n")), (status, 1), text)

@@ -66,6 +66,7 @@ class Remote(EndToEnd):
                 self.assert_same("at", time, *as_json)
             self.assert_same("at", at, "SAT/PLANT", *as_json)
             self.assert_same("compare", "PLANT", first, last, *as_json)
+            self.assert_same("score", "PLANT", *as_json)
             for options in ([], ["--by", "hour", "--parameters"]):
                 self.assert_same("completeness", *options, *as_json, archive=True)
         status, picture, _ = self.assert_same("plot", "PLANT", "-o", "-")

@@ -22,7 +22,7 @@ constexpr Duration block_ns = 1'500'000'000'000;
 class Errors {
  public:
   Errors(ErrorKind kind, double size, std::uint64_t seed)
-      : kind_(kind), size_(size), random_(seed) {}
+      : kind_(kind), size_(size), random_(seed), state_(normal_(random_)) {}
 
   storage::BlockScore block(std::int64_t version, storage::Time begin) {
     double sum = 0, squares = 0;
@@ -58,7 +58,7 @@ class Errors {
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   std::uniform_real_distribution<double> uniform_;
-  double state_ = 0;
+  double state_;
   bool is_burst_ = false;
   int left_ = 0;
 };
@@ -115,11 +115,12 @@ int PowerPoint::changed() const {
       std::count_if(cycles.begin(), cycles.end(), [](const auto& one) { return one.has_value(); }));
 }
 
-std::vector<PowerPoint> power_curves(std::uint64_t seed, int sequences) {
+std::vector<PowerPoint> power_curves(std::uint64_t seed, int sequences,
+                                     const std::vector<double>& ratios) {
   std::vector<PowerPoint> points;
   std::mt19937_64 seeds(seed);
   for (const ErrorKind kind : {ErrorKind::white, ErrorKind::slow, ErrorKind::bursty})
-    for (const double ratio : {1.0, 0.9, 0.75, 0.5, 0.25}) {
+    for (const double ratio : ratios) {
       PowerPoint point{kind, ratio, sequences, {}};
       for (int i = 0; i < sequences; ++i)
         point.cycles.push_back(cycles_until_change(kind, ratio, seeds()));

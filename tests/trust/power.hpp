@@ -30,8 +30,12 @@ struct PowerPoint {
 
 inline constexpr int followed_cycles = 120;
 
-/// Every kind and ratio, with `sequences` each, drawn from `seed`.
-std::vector<PowerPoint> power_curves(std::uint64_t seed, int sequences);
+/// Ratios of a table: equal versions, and better ones.
+inline const std::vector<double> power_ratios = {1.0, 0.9, 0.75, 0.5, 0.25};
+
+/// Every kind with each of the ratios, `sequences` of both, drawn from `seed`.
+std::vector<PowerPoint> power_curves(std::uint64_t seed, int sequences,
+                                     const std::vector<double>& ratios = power_ratios);
 
 /// In Markdown.
 std::string power_table(const std::vector<PowerPoint>& points);

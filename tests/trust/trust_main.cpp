@@ -43,6 +43,8 @@ struct Options {
   std::string keep;                   // a folder
   std::optional<std::uint64_t> draw;  // absent: a fresh one
   unsigned jobs = 2;
+  int sequences = 200;
+  std::vector<double> ratios = power_ratios;
 };
 
 bool is_wanted(const LifeGroup& group, int first_number, const Scenario& scenario,
@@ -167,6 +169,13 @@ void add_options(CLI::App& app, Options& options) {
       "a draw that nobody has seen, which is printed");
   app.add_flag("--power", options.power,
                "run none; print how soon the rule tells a better version, by the ratio of errors");
+  app.add_option("--sequences", options.sequences, "of --power: for each kind and ratio")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--ratio", options.ratios,
+                 "of --power: the version's error over the champion's; 1: no change is right")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
   app.add_option("--life", options.life, "run the scenarios of this life alone");
   app.add_option("--fault", options.fault, "run the scenarios of this fault alone");
   app.add_option("--plot", options.plot, "write an SVG picture of the one scenario that is run");
@@ -205,10 +214,9 @@ int main(int argc, char** argv) {
     options.draw = options.databases.empty() && options.scenarios.empty() ? fresh_draw() : 0;
   try {
     log::set_level("error");
-    constexpr int sequences = 200;
     if (options.power) {
       nlohmann::ordered_json figures{{"draw", *options.draw}};
-      const auto points = power_curves(*options.draw, sequences);
+      const auto points = power_curves(*options.draw, options.sequences, options.ratios);
       add_power(points, figures);
       fmt::print("{}{}\n", power_table(points), figures.dump());
       return 0;
@@ -238,7 +246,7 @@ int main(int argc, char** argv) {
     nlohmann::ordered_json figures{{"draw", *options.draw}};
     figures.update(figures_json(outcomes));
     if (!options.report.empty()) {
-      const auto points = power_curves(*options.draw, sequences);
+      const auto points = power_curves(*options.draw, options.sequences);
       add_power(points, figures);
       write_report(outcomes, "## Power\n\n" + power_table(points), options.report);
     }

@@ -195,6 +195,23 @@ TEST_F(Keeper, LeavesOutAMemberThatCannotBeDecoded) {
   EXPECT_THAT(scores(1), SizeIs(12 + 40));
 }
 
+TEST_F(Keeper, DecidesNothingOnADamagedRecord) {
+  archive.append(telemetry(day, 1201));
+  window(day + 10 * minute);
+  ASSERT_EQ(champion(), 1);
+  for (const char* lost :
+       {"error_square = x''", "error_mean = x'', error_square = x'', noise_square = x''",
+        "error_mean = zeroblob(8), error_square = zeroblob(8), noise_square = zeroblob(8), "
+        "state = zeroblob(800)"}) {
+    SCOPED_TRACE(lost);
+    run_sql("DROP TRIGGER IF EXISTS score_update; UPDATE score SET " + std::string(lost) +
+            " WHERE begin_time = (SELECT max(begin_time) FROM score)");
+    restart();
+    EXPECT_THROW(advance(*keeper, day + 20 * minute), storage::Error);
+    EXPECT_THAT(registry.blocks("SAT", "PLANT", day + 10 * minute), IsEmpty());
+  }
+}
+
 TEST_F(Keeper, LeavesOutMembersThatAskForOtherTelemetryThanTheConfiguration) {
   archive.append(telemetry(day, 1201));
   window(day + 10 * minute);

@@ -86,5 +86,18 @@ TEST_F(RegistryTest, ScoresNoVersionThatIsNotThere) {
   EXPECT_THAT(registry.blocks("CB4", "BDR", INT64_MIN), IsEmpty());
 }
 
+TEST_F(RegistryTest, ReadsNoBlockOrScoreOfWhichAListIsDamaged) {
+  version(10, DecisionKind::wait);
+  BlockScore lost = score(1, 0);
+  lost.square.pop_back();
+  registry.record_scores("CB4", "BDR", {}, {lost});
+  EXPECT_THROW(registry.scores("CB4", "BDR", 1, INT64_MIN), Error);
+  EXPECT_THAT(registry.scores("CB4", "BDR", 1, 10), IsEmpty()) << "others are read";
+  Block damaged = block(0);
+  damaged.input_high.clear();
+  registry.record_scores("CB4", "BDR", damaged, {});
+  EXPECT_THROW(registry.blocks("CB4", "BDR", INT64_MIN), Error);
+}
+
 }  // namespace
 }  // namespace reident::storage::test::registry_scores_test
