@@ -1,6 +1,7 @@
 #include "service/config/config.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -209,10 +210,13 @@ std::variant<std::string, ConfigMistake> read_file(const std::filesystem::path& 
   if (!file)
     return ConfigMistake{0,
                          fmt::format("cannot be read: {}", std::generic_category().message(errno))};
-  std::string text(max_file_bytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::string text;
+  std::array<char, 16384> piece;
+  do {
+    file.read(piece.data(), piece.size());
+    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+  } while (file && text.size() <= max_file_bytes);
   if (file.bad()) return ConfigMistake{0, "cannot be read to its end"};
-  text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > max_file_bytes)
     return ConfigMistake{
         0, fmt::format("is larger than {} MiB; this is no configuration", max_file_bytes >> 20)};

@@ -12,8 +12,8 @@ using namespace std::chrono_literals;
 
 // Larger transactions are no faster, and what comes next waits for them longer.
 constexpr std::size_t batch_bytes = std::size_t{5} << 20;
-constexpr auto idle_wait = 500ms;  // for the first event of a batch; post() ends it earlier
-constexpr auto retry_wait = 1s;    // between two tries of a batch that the disk refused
+constexpr auto idle_wait = 2s;   // for the first event of a batch; post() ends it earlier
+constexpr auto retry_wait = 1s;  // between two tries of a batch that the disk refused
 
 void log_late_start(const storage::AppendReport::LateStart& start) {
   if (start.first == 0)

@@ -65,7 +65,7 @@ void CommandDesk::answer(const CommandRequest& request, const Execute& execute) 
 
 void CommandDesk::run(const Execute& execute) {
   while (!stopping_) {
-    ready_.wait(dds::stop_check_interval);
+    ready_.wait(dds::idle_wait);
     std::vector<CommandRequest> requests;
     do {
       requests.clear();

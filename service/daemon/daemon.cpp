@@ -415,8 +415,11 @@ void Daemon::heartbeat() {
 }
 
 bool Daemon::goes_on() {
-  const bool stores = writer_.goes_on(), takes = ingest_->goes_on();
-  return stores && takes;
+  has_stored_ |= writer_.goes_on();
+  has_taken_ |= ingest_->goes_on();
+  if (!has_stored_ || !has_taken_) return false;
+  has_stored_ = has_taken_ = false;
+  return true;
 }
 
 bool Daemon::stop() {

@@ -53,8 +53,9 @@ class Daemon {
   /// Publishes the state of the service, and sees to what is due now and then; call about once a
   /// second.
   void heartbeat();
-  /// Whether the threads that take and store telemetry went on since the last call. One that waits
-  /// for a disk, or for the room that the disk makes, goes on.
+  /// Whether the threads that take and store telemetry both went on since this was true the last
+  /// time; each does every two seconds. One that waits for a disk, or for the room that the disk
+  /// makes, goes on. Of the main thread alone.
   bool goes_on();
   /// A thread ended by an error, which is logged: the service must be stopped.
   bool failed() const { return failed_; }
@@ -110,6 +111,7 @@ class Daemon {
   std::vector<std::thread> identification_threads_;
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> failed_ = false;
+  bool has_stored_ = false, has_taken_ = false;  // since goes_on() was true
   std::atomic<std::uint64_t> attempts_ = 0, approvals_ = 0;
 };
 

@@ -47,7 +47,7 @@ void HistoryDesk::reply(const HistoryRequest& request,
 void HistoryDesk::run(const Answer& answer) {
   using Asked = std::pair<HistoryRequest, std::string>;  // what is malformed, or nothing
   while (!stopping_) {
-    ready_.wait(dds::stop_check_interval);
+    ready_.wait(dds::idle_wait);
     std::vector<Asked> asked;
     do {
       asked.clear();

@@ -116,7 +116,7 @@ void Ingest::watch_simulators() {
 
 void Ingest::run() {
   while (!stopping_) {
-    ready_.wait(dds::stop_check_interval);
+    ready_.wait(dds::idle_wait);
     while (take() > 0 && !stopping_) {
     }
     watch_simulators();

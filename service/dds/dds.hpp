@@ -186,9 +186,9 @@ class Reader {
 /// Whoever leads a pair says so within this time, or leads no more.
 inline constexpr std::chrono::milliseconds leadership_lease{1000};
 
-/// How long a thread waits at most before it looks whether it has to stop; data and wake() end
-/// the wait earlier.
-inline constexpr std::chrono::milliseconds stop_check_interval{500};
+/// How long a thread that hears nothing waits before it shows that it comes round; data and wake()
+/// end the wait earlier. A hundred idle services of a machine wake up so often each.
+inline constexpr std::chrono::seconds idle_wait{2};
 
 /// Wakes one thread when any attached reader has something to take, or when woken. Readers may end
 /// before it.

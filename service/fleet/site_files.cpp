@@ -65,7 +65,8 @@ class Network {
       std::vector<std::string> own = gateways;
       own.push_back(address(one.host, index));
       all.push_back(own.back());
-      files[one.name + ".xml"] = text(one.host, index, {});
+      // Without any peer the middleware would ask the first ports of its machine: other services.
+      files[one.name + ".xml"] = text(one.host, index, {own.back()});
       files[one.name + "-clients.xml"] = text(client_host(), std::nullopt, own);
     }
     files["clients.xml"] = text(client_host(), std::nullopt, all);

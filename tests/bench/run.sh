@@ -58,13 +58,15 @@
 #   tests/bench/run.sh fuzz [TARGET...] [--runs N] [--seconds N]
 #                                         libFuzzer's targets of tests/fuzz, 10 million inputs each
 #                                         or for an hour. The last line is one JSON object
-#   tests/bench/run.sh scale [--services N] [--spacecraft N] [--days N] [--folder FOLDER]
+#   tests/bench/run.sh scale [--services N] [--spacecraft N] [--days N] [--samples N] [--folder FOLDER]
 #                                         a hundred services and simulators on this machine: until
 #                                         all have found each other, what they take when idle, and
 #                                         their status; a sweep of six spacecraft over 30 days on
 #                                         one core, on two
 #                                         and as a Slurm array on two emulated nodes, which needs
-#                                         root: whether the bits are equal, and the speed-up.
+#                                         root: whether the bits are equal, and the speed-up; an
+#                                         archive of a billion samples, or N, compared with a million,
+#                                         also with a year in a shard.
 #                                         The last line is one JSON object
 #   tests/bench/run.sh build [--suite]    processor and wall time of a build from nothing, without
 #                                         and with the tests; with --suite also of the tests.
@@ -140,7 +142,8 @@ case $what in
     ;;
   scale)
     arguments=(build/release deploy "$@")
-    targets=(reident reidentd reident-simulator satcs-reference)
+    targets=(reident reidentd reident-simulator satcs-reference reident_archive_bench
+             reident_telemetry)
     ;;
   web)
     arguments=(build/release "$@")

@@ -1,9 +1,10 @@
 """A constellation: many services on a machine, and sweeps over several spacecraft on one core, on
 two, and as a Slurm array.
 
-    scale.py BUILD DEPLOY [--services N] [--spacecraft N] [--days N] [--folder FOLDER]
+    scale.py BUILD DEPLOY [--services N] [--spacecraft N] [--days N] [--samples N] [--folder FOLDER]
 
-site_of_services.py says what is measured of the services (--services 0 leaves them out).
+site_of_services.py says what is measured of the services (--services 0 leaves them out), and
+archive/growth.py what of an archive of N samples (0 leaves it out).
 
 Each spacecraft is satcs-reference with another seed, and with a string of its array lost in the
 middle. The cluster has two emulated nodes (slurmctld and two slurmd of this machine, started and
@@ -13,6 +14,9 @@ measured and, as the last line, one JSON object of the figures:
   sweep_equal     whether the Slurm array gave the registries of one machine, to the bit
   sweep_speedup   wall time on one core over that on two, both undisturbed
   load_of_sweeps  other work of the machine before the two runs [processes]
+  billion_append, billion_window, billion_month  costs of an archive of N samples over those of a
+                  small one; _of_shards: with a year in a shard
+  verify_day_s    `reident verify --known` of that archive after a day of telemetry more
 """
 
 import argparse
@@ -27,7 +31,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "e2e"))
+sys.path.insert(0, str(HERE / "archive"))
 
+import growth  # noqa: E402: found in the folder archive
+import programs  # noqa: E402: found in the folder archive
 import site_of_services  # noqa: E402: found in this folder
 import slurm  # noqa: E402: found in the folder above
 
@@ -124,6 +131,7 @@ def main():
     parser.add_argument("--services", type=int, default=100)
     parser.add_argument("--spacecraft", type=int, default=6)
     parser.add_argument("--days", type=float, default=30)
+    parser.add_argument("--samples", type=float, default=1e9)
     parser.add_argument("--folder", default=None)
     arguments = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what was started is ended all the same
@@ -136,6 +144,11 @@ def main():
         if arguments.spacecraft:
             (sweeps := Path(folder) / "sweeps").mkdir()
             figures |= measure_sweeps(arguments, sweeps)
+        if arguments.samples:
+            (archives := Path(folder) / "archives").mkdir()
+            build = Path(arguments.build).resolve()
+            figures |= growth.measure(programs.Programs(build), build / "service/cli/reident",
+                                      archives, arguments.samples)
         print(json.dumps(figures))
 
 

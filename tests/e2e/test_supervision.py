@@ -11,7 +11,7 @@ import plant
 from harness import BIN, DEADLINE_S, EndToEnd, wait_until
 
 SEIZE, INTERRUPT, DETACH, ALL_THREADS = 0x4206, 0x4207, 17, 0x40000000
-SILENCE_S = 5  # of a watchdog that is fed each second, and by the archive's thread twice a second
+SILENCE_S = 5  # of a watchdog that is fed when both threads came round, as each does every two seconds
 LIBC = ctypes.CDLL(None, use_errno=True)
 
 
