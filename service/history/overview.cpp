@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "service/judgement/scores.hpp"
-#include "service/model/model_json.hpp"
+#include "service/model/derived_inputs.hpp"
+#include "service/model/model_version.hpp"
 #include "service/operations/commands.hpp"
 #include "storage/archive/holdings.hpp"
 
@@ -61,14 +62,37 @@ void read_errors(const Registry& registry, OverviewRow& row) {
   if (simulator.rows > 0) row.simulator_percent = simulator.mrse_percent();
 }
 
-/// The time until which every parameter of the model has samples; absent where one has none.
-std::optional<storage::Time> complete_until(const EquipmentModel& model, const Newest& newest) {
-  std::vector<std::string> names =
-      InputExpressions(signal_names(model.inputs), derived_inputs(model.inputs)).parameters();
-  for (const Signal& output : model.outputs) names.push_back(output.name);
+/// The parameters that a model has telemetry of. The rest of its JSON, which is most, is passed
+/// over.
+std::vector<std::string> parameters_of(const std::string& model_json) {
+  using nlohmann::json;
+  const json model = json::parse(model_json, [](int depth, json::parse_event_t event, json& key) {
+    if (depth != 1 || event != json::parse_event_t::key) return true;
+    const auto& name = key.get_ref<const std::string&>();
+    return name == "inputs" || name == "outputs";
+  });
+  const auto signals = [&model](const char* kind) {
+    std::vector<Signal> read;
+    for (const json& one : model.at(kind)) {
+      Signal& signal = read.emplace_back();
+      signal.name = one.at("name").get<std::string>();
+      signal.expression = one.value("expression", "");
+    }
+    return read;
+  };
+  const std::vector<Signal> inputs = signals("inputs");
+  auto names = InputExpressions(signal_names(inputs), derived_inputs(inputs)).parameters();
+  for (const Signal& output : signals("outputs")) names.push_back(output.name);
+  return names;
+}
+
+/// The time until which every parameter has samples; absent where one has none.
+std::optional<storage::Time> complete_until(const std::string& spacecraft,
+                                            const std::vector<std::string>& parameters,
+                                            const Newest& newest) {
   std::optional<storage::Time> until;
-  for (const std::string& name : names) {
-    const auto found = newest.find({model.spacecraft, name});
+  for (const std::string& name : parameters) {
+    const auto found = newest.find({spacecraft, name});
     if (found == newest.end()) return std::nullopt;
     until = std::min(until.value_or(found->second), found->second);
   }
@@ -86,7 +110,7 @@ void read_champion(const Registry& registry, const storage::Decision& made, cons
     if (const auto attempt = registry.attempt(version->attempt))
       row.approved_error_percent = percent_in(attempt->evidence_json, "mrse_percent");
   try {
-    row.telemetry = complete_until(equipment_model_from_json(version->model_json), newest);
+    row.telemetry = complete_until(row.name.spacecraft, parameters_of(version->model_json), newest);
   } catch (const std::exception&) {  // damaged: nothing is known of its parameters, verify says it
   }
   read_errors(registry, row);

@@ -43,7 +43,7 @@ export function useAnswer<T>(path: string | null, parameters: Record<string, str
   }, [key, turn]);
   const isFirst = useRef(true);  // what is known already is no news
   useChanges((change) => {
-    if (isFirst.current || !isNews(change)) return;
+    if (!isNews(change) || isFirst.current) return;
     clearTimeout(timer.current);
     timer.current = window.setTimeout(() => setTurn((n) => n + 1), 100);
   });
@@ -204,6 +204,19 @@ export interface Version {
   decisions: Decision[];
 }
 
+export interface PairService {
+  service: string;
+  role: string;  // leads, follows, listens
+  term: number;
+  lag: number | null;
+}
+
+export interface OverviewAnswer {
+  equipment: EquipmentLine[];
+  alarms: Alarm[];
+  pair: PairService[];  // that are heard; none: the service is of none
+}
+
 export interface Service {
   service: string;
   program_version: string;
@@ -212,9 +225,12 @@ export interface Service {
   age_s: number;
   newest_telemetry: string | null;
   certificate_end: string | null; // null: the domain is not secured
+  certificate_days: number | null;
   last_error: string;
   failing_champions: string;
-  [count: string]: string | number | null;
+  alarms: string[];
+  pair?: { name: string; role: string; term: number; partner: string; lag: number | null };
+  [count: string]: unknown;
 }
 
 export interface ServiceAnswer {

@@ -70,6 +70,11 @@ export function figure(value: number | null | undefined, digits = 3): string {
   return size >= 1e5 || size < 1e-3 ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
 }
 
+export function percent(value: number | null | undefined): string {
+  const text = figure(value);
+  return text === unknown ? text : `${text} %`;
+}
+
 export function count(value: number | null | undefined): string {
   return value === null || value === undefined ? unknown : value.toLocaleString("en").replace(/,/g, " ");
 }

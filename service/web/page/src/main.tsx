@@ -54,27 +54,39 @@ function View({ view, parameters }: Place) {
   }
 }
 
+interface Heard {
+  status: Service;
+  heard: number;  // [s]
+}
+
+const freshSeconds = 5;
+const ageOf = (one: Heard) => Date.now() / 1000 - one.heard;
+
+/** One that lives comes before one that is silent, and of a pair the one that leads. */
+const rank = (one: Heard) => (ageOf(one) > freshSeconds ? 2 : one.status.pair && one.status.pair.role !== "leads" ? 1 : 0);
+
 /** Whether the service lives, and how far telemetry has come. */
 function Pulse() {
   const zone = useZone();
-  const [service, set] = useState<{ status: Service; heard: number } | null>(null);
+  const [services, set] = useState<Record<string, Heard>>({});
   const [isOpen, setOpen] = useState(true);
   const [, tick] = useState(0);
   useChanges(({ event, data }) => {
     if (event === "connection") setOpen(data.open as boolean);
-    if (event === "service") set({ status: data as unknown as Service, heard: Date.now() / 1000 - (data.age_s as number) });
+    if (event === "service") set((before) => ({ ...before, [data.service as string]: { status: data as unknown as Service, heard: Date.now() / 1000 - (data.age_s as number) } }));
   });
   useEffect(() => {
     const timer = setInterval(() => tick((n) => n + 1), 1000);
     return () => clearInterval(timer);
   }, []);
   if (!isOpen) return <span class="pulse bad" role="status">no connection to the page's server</span>;
+  const service = Object.values(services).sort((a, b) => rank(a) - rank(b))[0];
   if (!service) return <span class="pulse unknown">no service heard yet</span>;
-  const age = Date.now() / 1000 - service.heard;
   const { status } = service;
-  if (age > 5) return <span class="pulse bad" role="status">service {status.service} silent for {durationText(age)}</span>;
+  const age = ageOf(service);
+  if (age > freshSeconds) return <span class="pulse bad" role="status">service {status.service} silent for {durationText(age)}</span>;
   if (status.last_error) return <a class="pulse bad" href="#/service" role="status">{status.last_error}</a>;
-  return <span class="pulse"><span class="good">●</span> {status.service}; telemetry to {timeText(status.newest_telemetry)} {zone}{Number(status.windows_pending) > 0 && `; ${status.windows_pending} windows pending`}</span>;
+  return <span class="pulse"><span class="good">●</span> {status.service}{status.pair && ` ${status.pair.role}`}; telemetry to {timeText(status.newest_telemetry)} {zone}{Number(status.windows_pending) > 0 && `; ${status.windows_pending} windows pending`}</span>;
 }
 
 function moveInRows(step: number): void {

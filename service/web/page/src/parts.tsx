@@ -46,7 +46,7 @@ export function Status({ status }: { status: string }) {
 
 export function decisionColumns(zone: string, named: boolean): Column<Decision>[] {
   return [
-    { title: `time (${zone})`, text: (row) => timeText(row.time) },
+    { title: `time (${zone})`, text: (row) => timeText(row.time), isTime: true },
     ...(named ? [{
       title: "equipment", text: (row: Decision) => `${row.spacecraft}/${row.equipment}`,
       cell: (row: Decision) => <a href={link("equipment", { spacecraft: row.spacecraft, equipment: row.equipment })}>{row.spacecraft}/{row.equipment}</a>,

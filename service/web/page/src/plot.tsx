@@ -3,6 +3,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { currentZone, figure, timeOfSeconds, zoneLabel } from "./format";
+import { colourOf, drawLevels, drawMarks, drawOutside, drawStretches, hatch } from "./marks";
 import { joined, robustScale, type Points } from "./series";
 
 export interface Line {
@@ -54,117 +55,6 @@ export interface PlotProperties {
 
 const leftAxis = 68;
 
-function colourOf(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim() || "gray";
-}
-
-function hatch(plot: uPlot, begin: number, end: number, colour: string): void {
-  const { ctx, bbox } = plot;
-  const left = Math.max(bbox.left, plot.valToPos(begin, "x", true));
-  const right = Math.min(bbox.left + bbox.width, plot.valToPos(end, "x", true));
-  if (right <= left) return;
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(left, bbox.top, Math.max(right - left, 1), bbox.height);
-  ctx.clip();
-  ctx.strokeStyle = colour;
-  ctx.lineWidth = devicePixelRatio;
-  const step = 7 * devicePixelRatio;
-  ctx.beginPath();
-  for (let x = left - bbox.height; x < right; x += step) {
-    ctx.moveTo(x, bbox.top + bbox.height);
-    ctx.lineTo(x + bbox.height, bbox.top);
-  }
-  ctx.stroke();
-  ctx.restore();
-}
-
-function drawLevels(plot: uPlot, panel: Panel): void {
-  const { ctx, bbox } = plot;
-  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-  for (const level of panel.levels ?? []) {
-    const y = plot.valToPos(level.value, "y", true);
-    if (y < bbox.top || y > bbox.top + bbox.height) continue;
-    ctx.strokeStyle = ctx.fillStyle = colourOf(level.colour);
-    ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
-    ctx.lineWidth = devicePixelRatio;
-    ctx.beginPath();
-    ctx.moveTo(bbox.left, y);
-    ctx.lineTo(bbox.left + bbox.width, y);
-    ctx.stroke();
-    ctx.setLineDash([]);
-    ctx.textAlign = "right";
-    ctx.fillText(level.label, bbox.left + bbox.width - 4 * devicePixelRatio, y - 3 * devicePixelRatio);
-  }
-}
-
-/** Triangles at the edge where values lie outside the scale. */
-function drawOutside(plot: uPlot, panel: Panel): void {
-  const { ctx, bbox } = plot;
-  const { min, max } = plot.scales.y!;
-  if (min === undefined || max === undefined || min === null || max === null) return;
-  const size = 5 * devicePixelRatio;
-  for (const line of panel.lines) {
-    ctx.fillStyle = colourOf(line.colour);
-    const [times, values] = line.points;
-    let last = -Infinity;
-    for (let i = 0; i < times.length; i++) {
-      const value = values[i];
-      if (value === null || value === undefined || (value >= min && value <= max)) continue;
-      const x = plot.valToPos(times[i]!, "x", true);
-      if (x < bbox.left || x > bbox.left + bbox.width || x - last < size) continue;
-      last = x;
-      const edge = value > max ? bbox.top : bbox.top + bbox.height;
-      const into = value > max ? size * 1.6 : -size * 1.6;
-      ctx.beginPath();
-      ctx.moveTo(x, edge);
-      ctx.lineTo(x - size, edge + into);
-      ctx.lineTo(x + size, edge + into);
-      ctx.fill();
-    }
-  }
-}
-
-function drawMarks(plot: uPlot, marks: Mark[], named: boolean): void {
-  const { ctx, bbox } = plot;
-  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-  ctx.textAlign = "left";
-  let free = -Infinity;
-  for (const mark of marks) {
-    const x = plot.valToPos(mark.at, "x", true);
-    if (x < bbox.left || x > bbox.left + bbox.width) continue;
-    ctx.strokeStyle = ctx.fillStyle = colourOf(`--event-${mark.kind}`);
-    ctx.lineWidth = 1.4 * devicePixelRatio;
-    ctx.setLineDash(mark.kind === "approve" || mark.kind === "roll_back" ? [] : [3 * devicePixelRatio, 3 * devicePixelRatio]);
-    ctx.beginPath();
-    ctx.moveTo(x, bbox.top);
-    ctx.lineTo(x, bbox.top + bbox.height);
-    ctx.stroke();
-    ctx.setLineDash([]);
-    if (!named || x < free) continue;
-    ctx.fillText(mark.label, x + 3 * devicePixelRatio, bbox.top + bbox.height - 5 * devicePixelRatio);
-    free = x + ctx.measureText(mark.label).width + 8 * devicePixelRatio;
-  }
-}
-
-/** Who was champion when, above the panel. */
-function drawStretches(plot: uPlot, stretches: Stretch[]): void {
-  const { ctx, bbox } = plot;
-  const height = 15 * devicePixelRatio;
-  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-  ctx.textAlign = "left";
-  for (const stretch of stretches) {
-    const left = Math.max(bbox.left, plot.valToPos(stretch.begin, "x", true));
-    const right = Math.min(bbox.left + bbox.width, plot.valToPos(stretch.end, "x", true));
-    if (right <= left) continue;
-    ctx.fillStyle = colourOf(stretch.colour);
-    ctx.fillRect(left, bbox.top - height, Math.max(right - left - devicePixelRatio, devicePixelRatio), height - 2 * devicePixelRatio);
-    if (right - left < ctx.measureText(stretch.label).width + 6 * devicePixelRatio) continue;
-    ctx.fillStyle = colourOf("--strip-text");
-    ctx.fillText(stretch.label, left + 4 * devicePixelRatio, bbox.top - 5 * devicePixelRatio);
-  }
-}
-
 function axis(text: string, side: number, options: Partial<uPlot.Axis>): uPlot.Axis {
   return {
     side,
@@ -192,8 +82,7 @@ function timeLabels(splits: number[], step: number): string[] {
   });
 }
 
-function options(panel: Panel, place: { isFirst: boolean; isLast: boolean; width: number },
-                 properties: () => PlotProperties): uPlot.Options {
+function options(panel: Panel, place: Place, properties: () => PlotProperties): uPlot.Options {
   const scale = robustScale(panel.lines.map((line) => line.points), (panel.levels ?? []).map((level) => level.value));
   return {
     width: place.width,
@@ -242,60 +131,94 @@ function options(panel: Panel, place: { isFirst: boolean; isLast: boolean; width
   };
 }
 
+interface Place {
+  isFirst: boolean;
+  isLast: boolean;
+  width: number;
+}
+
+interface Drawn {
+  panel: Panel;
+  place: Place;
+  element: HTMLElement;
+  plot: uPlot;
+}
+
+function draw(panel: Panel, place: Place, properties: () => PlotProperties): Drawn {
+  const element = document.createElement("div");
+  element.className = "panel";
+  const title = document.createElement("div");
+  title.className = "panel-title";
+  title.textContent = panel.title;
+  for (const line of panel.lines) {
+    const key = document.createElement("span");
+    key.className = "key";
+    const sample = document.createElement("i");
+    sample.style.borderTop = `2px ${line.dash ? "dashed" : "solid"} var(${line.colour})`;
+    key.append(sample, line.label);
+    title.append(key);
+  }
+  element.append(title);
+  return { panel, place, element, plot: new uPlot(options(panel, place, properties), joined(panel.lines.map((line) => line.points)), element) };
+}
+
 export function Plot(properties: PlotProperties) {
   const host = useRef<HTMLDivElement>(null);
-  const plots = useRef<uPlot[]>([]);
+  const drawn = useRef<Drawn[]>([]);
   const last = useRef(properties);
   last.current = properties;
 
-  useLayoutEffect(() => {
-    const element = host.current!;
-    const make = () => {
-      for (const plot of plots.current) plot.destroy();
-      element.replaceChildren();
-      plots.current = last.current.panels.map((panel, index, all) => {
-        const figureElement = document.createElement("div");
-        figureElement.className = "panel";
-        const title = document.createElement("div");
-        title.className = "panel-title";
-        title.textContent = panel.title;
-        for (const line of panel.lines) {
-          const key = document.createElement("span");
-          key.className = "key";
-          const sample = document.createElement("i");
-          sample.style.borderTop = `2px ${line.dash ? "dashed" : "solid"} var(${line.colour})`;
-          key.append(sample, line.label);
-          title.append(key);
+  /** Draws what is new; a panel that is as it was stays. */
+  const update = () => {
+    const width = host.current!.clientWidth;
+    const before = new Set(drawn.current);
+    drawn.current = last.current.panels.map((panel, index, all) => {
+      const place = { isFirst: index === 0, isLast: index === all.length - 1, width };
+      for (const one of before)
+        if (one.panel === panel && JSON.stringify(one.place) === JSON.stringify(place)) {
+          before.delete(one);
+          return one;
         }
-        figureElement.append(title);
-        element.append(figureElement);
-        const place = { isFirst: index === 0, isLast: index === all.length - 1, width: element.clientWidth };
-        return new uPlot(options(panel, place, () => last.current), joined(panel.lines.map((line) => line.points)), figureElement);
-      });
-    };
-    make();
-    let width = element.clientWidth;
-    const observer = new ResizeObserver(() => {
-      if (element.clientWidth === width) return;
-      width = element.clientWidth;
-      make();
+      return draw(panel, place, () => last.current);
     });
-    observer.observe(element);
+    for (const one of before) one.plot.destroy();
+    host.current!.replaceChildren(...drawn.current.map((one) => one.element));
+  };
+  const clear = () => {
+    for (const one of drawn.current) one.plot.destroy();
+    drawn.current = [];
+  };
+
+  useLayoutEffect(update, [properties.panels]);
+  useLayoutEffect(() => {
+    const again = () => {
+      clear();
+      update();
+    };
+    let width = host.current!.clientWidth;
+    const observer = new ResizeObserver(() => {
+      if (host.current!.clientWidth === width) return;
+      width = host.current!.clientWidth;
+      again();
+    });
+    observer.observe(host.current!);
     const scheme = matchMedia("(prefers-color-scheme: dark)");
-    scheme.addEventListener("change", make);
-    addEventListener("themechange", make);
+    scheme.addEventListener("change", again);
+    addEventListener("themechange", again);
     return () => {
       observer.disconnect();
-      scheme.removeEventListener("change", make);
-      removeEventListener("themechange", make);
-      for (const plot of plots.current) plot.destroy();
-      plots.current = [];
+      scheme.removeEventListener("change", again);
+      removeEventListener("themechange", again);
+      clear();
     };
-  }, [properties.panels, properties.marks, properties.stretches, properties.excluded]);
+  }, []);
+  useEffect(() => {
+    for (const { plot } of drawn.current) plot.redraw();
+  }, [properties.marks, properties.stretches, properties.excluded]);
 
   // A range alone: the lines that are there move within the frame, before the new ones come.
   useEffect(() => {
-    for (const plot of plots.current) plot.setScale("x", { min: properties.begin, max: properties.end });
+    for (const { plot } of drawn.current) plot.setScale("x", { min: properties.begin, max: properties.end });
   }, [properties.begin, properties.end]);
 
   return <div class="plot" ref={host} role="img" aria-label="plot over time" aria-describedby={properties.describedBy} />;

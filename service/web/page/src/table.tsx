@@ -6,6 +6,11 @@ export interface Column<Row> {
   text: (row: Row) => string;                   // as in CSV
   cell?: (row: Row) => ComponentChildren;       // as shown, where that is more
   isNumber?: boolean;
+  isTime?: boolean;
+}
+
+function classOf<Row>({ isNumber, isTime }: Column<Row>): string {
+  return isNumber ? "number" : isTime ? "time" : "";
 }
 
 export function csvOf<Row>(columns: Column<Row>[], rows: Row[]): string {
@@ -28,7 +33,7 @@ interface TableProperties<Row> {
   caption: string;
   columns: Column<Row>[];
   rows: Row[];
-  href?: (row: Row) => string;  // where a row leads
+  href?: (row: Row) => string | undefined;  // where a row leads
   rowClass?: (row: Row) => string;
   empty?: string;
 }
@@ -48,16 +53,17 @@ export function Table<Row>({ name, caption, columns, rows, href, rowClass, empty
         <div class="scroll" tabIndex={0} role="region" aria-label={caption}>
           <table aria-label={caption}>
             <thead>
-              <tr>{columns.map((column) => <th scope="col" class={column.isNumber ? "number" : ""}>{column.title}</th>)}</tr>
+              <tr>{columns.map((column) => <th scope="col" class={classOf(column)}>{column.title}</th>)}</tr>
             </thead>
             <tbody>
               {rows.map((row) => (
                 <tr class={rowClass?.(row)}>
                   {columns.map((column, index) => {
                     const content = column.cell ? column.cell(row) : column.text(row);
+                    const address = index === 0 ? href?.(row) : undefined;
                     return (
-                      <td class={column.isNumber ? "number" : ""} data-title={column.title}>
-                        {index === 0 && href ? <a href={href(row)} data-row>{content}</a> : content}
+                      <td class={classOf(column)} data-title={column.title}>
+                        <div>{address ? <a href={address} data-row>{content}</a> : content}</div>
                       </td>
                     );
                   })}

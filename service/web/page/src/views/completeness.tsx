@@ -83,8 +83,8 @@ function All({ series }: { series: Series[] }) {
       { title: "missing", text: (row) => count(sum(days[keyOf(row)]?.missing)), isNumber: true },
       { title: "gaps", text: (row) => count(sum(days[keyOf(row)]?.gaps)), isNumber: true },
       { title: "longest gap", text: (row) => durationText(days[keyOf(row)] ? Math.max(0, ...days[keyOf(row)]!.longest_gap_s) : NaN), isNumber: true },
-      { title: `first (${zone})`, text: (row) => timeText(row.first) },
-      { title: `last (${zone})`, text: (row) => timeText(row.last) },
+      { title: `first (${zone})`, text: (row) => timeText(row.first), isTime: true },
+      { title: `last (${zone})`, text: (row) => timeText(row.last), isTime: true },
     ]} />
   );
 }

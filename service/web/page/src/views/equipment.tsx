@@ -1,5 +1,5 @@
 // One equipment: what was measured, what the champion makes of it, and what was decided, on one axis.
-import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
+import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ask, isAbout, useAnswer, type Equipment, type Run, type Telemetry, type Timeline, type VersionLine } from "../api";
 import { Decide } from "../decide";
 import { figure, isoOf, secondsOf, timeText } from "../format";
@@ -51,8 +51,17 @@ function limits(telemetry: Telemetry): Level[] {
   return levels;
 }
 
-function panelsOf(equipment: Equipment, drawn: Drawn): Panel[] {
+/** Panels by name, each with the answers that it was made of: what came before is not drawn again. */
+type Kept = Map<string, { of: unknown[]; panel: Panel }>;
+
+function panelsOf(equipment: Equipment, drawn: Drawn, kept: Kept): Panel[] {
   const panels: Panel[] = [];
+  const push = (of: unknown[], panel: Panel) => {
+    const before = kept.get(panel.title);
+    const isKnown = before?.of.every((one, index) => one === of[index]);
+    if (!isKnown) kept.set(panel.title, { of, panel });
+    panels.push(isKnown ? before!.panel : panel);
+  };
   const add = (name: string, isOutput: boolean, height: number) => {
     const telemetry = drawn.telemetry[name];
     const run = drawn.run?.outputs.find((one) => one.name === name);
@@ -65,9 +74,9 @@ function panelsOf(equipment: Equipment, drawn: Drawn): Panel[] {
     }
     if (run && drawn.run)
       panel.lines.push({ label: `free run of version ${drawn.run.version}`, points: pointsOf(run.run, secondsOf(drawn.run.range.begin), telemetry?.gaps), colour: "--run", width: 1.4 });
-    panels.push(panel);
+    push([telemetry, run], panel);
     if (run && drawn.run)
-      panels.push({
+      push([telemetry, run], {
         title: `${name}: residual`, unit: run.unit, height: 110, levels: [{ value: 0, label: "", colour: "--quiet" }],
         lines: [{ label: "measured − free run", points: pointsOf(run.residual, secondsOf(drawn.run.range.begin), telemetry?.gaps), colour: "--residual" }],
       });
@@ -79,7 +88,7 @@ function panelsOf(equipment: Equipment, drawn: Drawn): Panel[] {
     const levels: Level[] = [];
     const last = timeline.champions[timeline.champions.length - 1];
     if (last?.approved_error_percent) levels.push({ value: last.approved_error_percent, label: `version ${last.version} when approved`, colour: "--good" });
-    panels.push({
+    push([timeline], {
       title: "error of the champion over its last cycle, on what it was not fitted to", unit: "MRSE %", height: 130, levels,
       lines: timeline.records.filter((record) => record.from_s.length > 0).flatMap((record, index) => [
         { label: index === 0 ? "champion" : `version ${record.version}`, points: levelsOf(record.from_s, record.to_s, record.error_percent, begin), colour: "--run", width: 2 },
@@ -110,7 +119,8 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
   const version = parameters.version ?? equipment.line.champion;
   const bins = String(Math.min(1000, Math.max(200, Math.round(innerWidth / 2))));
   const drawn = useDrawn(equipment, begin, end, bins, version, turn);
-  const panels = useMemo(() => panelsOf(equipment, drawn), [equipment, drawn]);
+  const kept = useRef<Kept>(new Map());
+  const panels = useMemo(() => panelsOf(equipment, drawn, kept.current), [equipment, drawn]);
   const timeline = drawn.timeline;
   const origin = timeline ? secondsOf(timeline.range.begin) : 0;
   const marks = useMemo<Mark[]>(() => (timeline?.events ?? []).filter((event) => changesWhatRuns(event.kind) || event.actor !== "gate").map((event) => ({ at: origin + event.at_s, label: `${kindText(event.kind)} ${event.version}`, kind: event.kind })), [timeline]);
@@ -174,7 +184,7 @@ function Figures({ panel, zone }: { panel: Panel; zone: string }) {
   const rows = panel.lines.flatMap((line) => line.points[0].map((time, index) => ({ line: line.label, time, value: line.points[1][index] }))).filter((row) => row.value !== null && row.value !== undefined);
   return <Table name={panel.title} caption={`${panel.title} [${panel.unit}]`} rows={rows}
     columns={[
-      { title: `time (${zone})`, text: (row) => timeText(isoOf(row.time)) },
+      { title: `time (${zone})`, text: (row) => timeText(isoOf(row.time)), isTime: true },
       { title: "line", text: (row) => row.line },
       { title: `value [${panel.unit}]`, text: (row) => String(row.value), isNumber: true },
     ]} />;
@@ -190,6 +200,7 @@ function VersionErrors({ versions }: { versions: VersionLine[] }) {
   return (
     <section>
       <h2>Error of each version, with its 95 % interval</h2>
+      <div class="scroll" tabIndex={0} role="region" aria-label="error of each version">
       <svg class="errors" viewBox={`0 0 ${width} ${height}`} role="img" aria-label="error of each version; the table below has the figures">
         {shown.map((one, index) => {
           const x = (index + 0.5) * step;
@@ -203,6 +214,7 @@ function VersionErrors({ versions }: { versions: VersionLine[] }) {
         })}
         <text class="scale" x="0" y="10">{figure(greatest)} %</text>
       </svg>
+      </div>
     </section>
   );
 }
@@ -239,7 +251,7 @@ export function EquipmentView({ parameters }: { parameters: Record<string, strin
                 { title: "95 % interval", text: (row) => (row.interval_percent ? `${figure(row.interval_percent[0])} to ${figure(row.interval_percent[1])}` : "–"), isNumber: true },
                 { title: "fit %", text: (row) => figure(row.fit_percent), isNumber: true },
                 { title: "order", text: (row) => String(row.order ?? "–"), isNumber: true },
-                { title: `window ends (${zone})`, text: (row) => timeText(row.window.end) },
+                { title: `window ends (${zone})`, text: (row) => timeText(row.window.end), isTime: true },
               ]} />
             <Table name={`decisions-${name}`} caption="Decisions" rows={[...equipment.decisions].reverse()} columns={decisionColumns(zone, false)} />
           </>

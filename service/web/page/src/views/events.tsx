@@ -34,7 +34,7 @@ function Refusals() {
   const answer = useAnswer<{ refusals: Refusal[] }>("refusals", {});
   if (!answer.data || answer.data.refusals.length === 0) return null;
   return <Table name="refusals" caption="Refused by this page, since its server began" rows={answer.data.refusals} columns={[
-    { title: `time (${zone})`, text: (row) => timeText(row.time) },
+    { title: `time (${zone})`, text: (row) => timeText(row.time), isTime: true },
     { title: "why", text: (row) => row.code },
     { title: "user", text: (row) => row.user || "nobody" },
     { title: "from", text: (row) => row.peer },

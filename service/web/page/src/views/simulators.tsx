@@ -46,7 +46,7 @@ export function SimulatorsView() {
             { title: "version", text: (row) => row.version ?? "none", isNumber: true },
             { title: "state", text: state, cell: (row) => <span class={isCurrent(row) ? "good" : "act"}>{state(row)}</span> },
             { title: "mode", text: (row) => row.mode || "–" },
-            { title: `since (${zone})`, text: (row) => timeText(row.since) },
+            { title: `since (${zone})`, text: (row) => timeText(row.since), isTime: true },
             { title: "host", text: (row) => row.host },
             { title: "library", text: (row) => row.program_version },
           ]} />

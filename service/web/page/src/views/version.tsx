@@ -2,7 +2,7 @@
 import { useMemo } from "preact/hooks";
 import { isAbout, useAnswer, type Version } from "../api";
 import { Decide, type Action } from "../decide";
-import { durationText, figure, secondsOf, timeText } from "../format";
+import { durationText, figure, percent, secondsOf, timeText } from "../format";
 import { decisionColumns, Facts, Loaded, Status, useZone } from "../parts";
 import { Plot, type Panel } from "../plot";
 import { Table } from "../table";
@@ -111,10 +111,10 @@ export function VersionView({ parameters }: { parameters: Record<string, string>
               <section>
                 <h2>Figures</h2>
                 <Facts facts={[
-                  ["error (MRSE), free run", `${figure(numberIn(evidence, "mrse_percent"))} %${low !== null ? ` (95 %: ${figure(low)} to ${figure(high)} %)` : ""}`],
-                  ["fit", `${figure(numberIn(evidence, "fit_percent"))} %`],
-                  ["champion on the same rows", `${figure(numberIn(evidence, "champion_mrse_percent"))} %`],
-                  ["static gain", `${figure(numberIn(evidence, "static_mrse_percent"))} %`],
+                  ["error (MRSE), free run", `${percent(numberIn(evidence, "mrse_percent"))}${low !== null ? ` (95 %: ${figure(low)} to ${figure(high)} %)` : ""}`],
+                  ["fit", percent(numberIn(evidence, "fit_percent"))],
+                  ["champion on the same rows", percent(numberIn(evidence, "champion_mrse_percent"))],
+                  ["static gain", percent(numberIn(evidence, "static_mrse_percent"))],
                   ["order, method", `${version.order}, ${version.method}`],
                   ["window", `${timeText(version.window.begin)} to ${timeText(version.window.end)} ${zone} (${durationText(window)})`],
                   ["rows identified, chose, judged", [numberIn(evidence, "rows_identified"), numberIn(evidence, "rows_tuned"), numberIn(evidence, "rows_validated")].map((n) => n ?? "–").join(", ")],

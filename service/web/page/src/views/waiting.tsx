@@ -26,11 +26,11 @@ export function WaitingView() {
           href={(row) => link("version", { spacecraft: row.spacecraft, equipment: row.equipment, version: row.version })}
           columns={[
             { title: "version", text: (row) => `${row.spacecraft}/${row.equipment}@${row.version}` },
-            { title: `since (${zone})`, text: (row) => timeText(row.since) },
+            { title: `since (${zone})`, text: (row) => timeText(row.since), isTime: true },
             { title: "error %", text: (row) => figure(row.error_percent), isNumber: true },
             { title: "verdict", text: (row) => row.verdict },
             { title: "supersedes", text: (row) => row.supersedes.join(", ") || "none" },
-            { title: `window ends (${zone})`, text: (row) => timeText(row.window.end) },
+            { title: `window ends (${zone})`, text: (row) => timeText(row.window.end), isTime: true },
           ]} />
       )}
     </Loaded>
