@@ -17,8 +17,8 @@ using storage::Alarm;
 /// So long after the last new name all of a source's descriptors have come.
 constexpr Duration descriptors_settle = 10'000'000'000;
 
-/// Spacecraft that are not configured have alarms of their own up to so many: a name costs whoever
-/// sends nothing.
+/// Spacecraft that are not configured have alarms of their own up to so many: a name costs its
+/// sender nothing.
 constexpr std::size_t most_strangers = 10;
 
 constexpr Duration minute = 60'000'000'000;

@@ -525,7 +525,7 @@ def soak(figures):
              "memory_growth_mib": "growth of a process's memory after its first minute, at most, MiB",
              "files_growth": "growth of its open files, at most"}
     rows = [["telemetry, days", figure(figures["soak_days_of_telemetry"])],
-            ["wall time, minutes", figure(figures["soak_minutes"])],
+            ["the same at 300 times real time, minutes", figure(figures["soak_minutes"])],
             ["failures", failures], ["seed", figures["soak_seed"]],
             *([label, figures[f"soak_{key}"]] for key, label in names.items())]
     return [table(["what", "figure"], rows)]

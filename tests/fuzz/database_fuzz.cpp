@@ -1,0 +1,129 @@
+// A database with any damage is opened for reading and read, or refused with a reason; whatever it
+// holds, nothing but storage's error ends a read. The bytes are places and new bytes of a good one.
+// TMPDIR is best in memory.
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "storage/archive/archive.hpp"
+#include "storage/care/verify.hpp"
+#include "storage/registry/registry.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace {
+
+using namespace reident::storage;
+namespace fs = std::filesystem;
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+constexpr Time hour = 3600 * second_ns;
+
+TelemetryFrame frame_at(Time time, std::uint64_t sequence) {
+  TelemetryFrame frame;
+  frame.spacecraft = "SAT";
+  frame.source = "station";
+  frame.sequence = sequence;
+  frame.generation_time = frame.reception_time = time;
+  for (std::uint32_t id = 1; id <= 3; ++id)
+    frame.samples.push_back({id, Quality::good, static_cast<double>(sequence % (7 * id))});
+  return frame;
+}
+
+/// Chunks, samples that wait for one, gaps, late samples, a version with its record, an alarm.
+void fill(const fs::path& path) {
+  Database database(path, Database::Mode::read_write, Durability::kill);
+  Archive archive(database, {.chunk_samples = 64, .recent_samples = 256, .step_samples = 64});
+  for (std::uint32_t id = 1; id <= 3; ++id)
+    archive.describe({{{.spacecraft = "SAT", .id = id, .name = "P" + std::to_string(id)}}});
+  std::vector<TelemetryFrame> frames;
+  for (std::uint64_t i = 0; i < 400; ++i)
+    if (i % 50 != 7) frames.push_back(frame_at(static_cast<Time>(i) * second_ns, i + 1));
+  archive.append(frames);
+  archive.compact();
+  archive.seal("SAT", hour);
+  archive.append(std::vector{frame_at(7 * second_ns, 8), frame_at(500 * second_ns, 401)});
+  Registry registry(database);
+  registry.journal().begin_term(2, "a", 1);
+  NewAttempt attempt;
+  attempt.spacecraft = "SAT";
+  attempt.equipment = "BDR";
+  attempt.window = {0, 100};
+  attempt.trigger = "slide";
+  attempt.outcome = "challenger";
+  attempt.evidence_json = "{}";
+  registry.record(attempt, {.model_json = "{}", .digest = "d"},
+                  {.kind = DecisionKind::approve, .actor = "gate", .reason = "because"});
+  Block block;
+  block.range = {60, 120};
+  block.output_mean = {0.5};
+  registry.record_scores("SAT", "BDR", block,
+                         {{2, 60, 5, {0.1}, {0.2}, {}, {{1, 2}, 7, {3}, 4}, {0.5}}});
+  registry.raise({"disk", {}, "full", 40});
+}
+
+std::vector<char> good_file(const fs::path& path) {
+  fill(path);
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// False where it was refused, with a reason.
+template <class Action>
+void look(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    require(error.what()[0] != '\0');
+  }
+}
+
+void read(Database& database) {
+  const Archive archive(database);
+  const Registry registry(database);
+  constexpr TimeRange always{std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()};
+  for (std::uint32_t id = 1; id <= 3; ++id) {
+    look([&] { archive.read_with_sources("SAT", Origin::real, id, always); });
+    look([&] { archive.first_at_or_after("SAT", Origin::real, id, 100 * second_ns); });
+  }
+  look([&] { archive.parameters("SAT"); });
+  look([&] { archive.extent("SAT", Origin::real); });
+  look([&] { archive.late_ranges("SAT"); });
+  look([&] { archive.sequence_gaps(); });
+  look([&] { archive.sources(); });
+  look([&] { registry.champions(); });
+  look([&] { registry.decisions("SAT", "BDR"); });
+  look([&] { registry.attempts(); });
+  look([&] { registry.scores("SAT", "BDR", 2, 0); });
+  look([&] { registry.alarms(); });
+  look([&] { registry.journal().part(0, std::numeric_limits<std::size_t>::max()); });
+  look([&] { verify(database, {}, [](const VerifyProgress&) { return true; }); });
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  static const reident::test::TemporaryFolder folder;
+  static const std::vector<char> good = good_file(folder / "good.db");
+  std::vector<char> changed = good;
+  std::span<const std::uint8_t> data(bytes, size);
+  for (; data.size() >= 4; data = data.subspan(4))
+    changed[(data[0] + 256U * data[1] + 65536U * data[2]) % changed.size()] =
+        static_cast<char>(data[3]);
+  const fs::path path = folder / "changed.db";
+  std::ofstream(path, std::ios::binary)
+      .write(changed.data(), static_cast<std::streamsize>(changed.size()));
+  look([&] {
+    Database database(path, Database::Mode::read_only);
+    read(database);
+  });
+  return 0;
+}
