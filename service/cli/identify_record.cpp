@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "identification/samples/grid.hpp"
+#include "identification/samples/tick_ranges.hpp"
 #include "service/cli/identify_ticks.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/support/time_text.hpp"
@@ -235,6 +236,16 @@ std::int64_t ticks_of_parts(const IdentifyTable& table,
   return ticks;
 }
 
+/// Ticks behind the last row of a part, at which its values would be held.
+identification::TickSet ticks_between_parts(const IdentifyTable& table,
+                                            const std::vector<std::int64_t>& tick_of_row) {
+  identification::TickSet between;
+  for (std::size_t row = 1; row < table.rows; ++row)
+    if (table.part[row] != table.part[row - 1])
+      between.push_back({tick_of_row[row - 1] + 1, tick_of_row[row]});
+  return between;
+}
+
 /// Says of each column that speaks at every tick how often an older value serves in its place.
 void warn_of_held_values(const IdentifyTable& table, const std::vector<Samples>& samples,
                          std::int64_t period_ns, std::vector<std::string>& warnings) {
@@ -290,6 +301,7 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
   const auto tick_at_or_after = [&](std::int64_t time) { return -floor_divide(-time, period_ns); };
   for (const std::int64_t time : placed.time_ns) made.tick_of_row.push_back(tick_at_or_after(time));
   made.tick_of_row.push_back(tick_at_or_after(end));
+  made.record = without(std::move(made.record), ticks_between_parts(table, made.tick_of_row));
   const auto ticks = static_cast<double>(ticks_of_parts(table, made.tick_of_row));
   const auto complete = static_cast<double>(made.record.rows());
   if (gaps.mends_ns > hold_ns && complete < complete_enough * ticks)
