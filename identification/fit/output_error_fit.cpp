@@ -29,13 +29,30 @@ Fitted from(const RegressionSolution& solution, const Columns& columns, StateSpa
   return {std::move(model), solution.x0, solution.sum_of_squares};
 }
 
+/// Rows of a record that a fit is made of, and what is known of its errors: nothing, or the colour
+/// of each output's.
+struct Target {
+  const Record& record;
+  const std::vector<Segment>& segments;
+  const std::vector<ErrorColour>& colours;
+};
+
+const std::vector<ErrorColour> unknown;
+
 template <typename Accumulator>
-Accumulator accumulate(const Columns& columns, const StateSpaceModel& model, const Record& record,
-                       const std::vector<Segment>& segments, const std::vector<Vector>& x0) {
+Accumulator accumulate(const Columns& columns, const StateSpaceModel& model, const Target& target,
+                       const std::vector<Vector>& x0) {
   Accumulator accumulator(columns);
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    walk_regression(columns, model, record, segments[i], x0.empty() ? Vector() : x0[i],
-                    [&accumulator](const RegressionRows& rows) { accumulator.add(rows); });
+  std::vector<Whitener> whiteners(target.colours.begin(), target.colours.end());
+  const auto add = [&](const RegressionRows& rows) {
+    if (whiteners.empty()) return accumulator.add(rows);
+    const Matrix white = whiteners[static_cast<std::size_t>(rows.output)].white(rows.values);
+    accumulator.add({rows.output, white});
+  };
+  for (std::size_t i = 0; i < target.segments.size(); ++i) {
+    for (Whitener& whitener : whiteners) whitener.begin_segment();
+    walk_regression(columns, model, target.record, target.segments[i],
+                    x0.empty() ? Vector() : x0[i], add);
     accumulator.end_segment();
   }
   return accumulator;
@@ -51,22 +68,20 @@ Columns columns_of(const StateSpaceModel& dynamics, bool direct) {
 }
 
 Fitted fit(const NormalEquations& sums, const StateSpaceModel& dynamics, bool direct,
-           const Record& record, const std::vector<Segment>& segments, Accuracy accuracy) {
+           const Target& target, Accuracy accuracy) {
   const Columns columns = columns_of(dynamics, direct);
   if (const auto solution = sums.solve(0, least_pivot(accuracy)))
     return from(*solution, columns, dynamics);
   if (accuracy == Accuracy::fast)
     if (const auto solution = sums.solve_without_small(least_pivot(accuracy)))
       return from(*solution, columns, dynamics);
-  const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, record, segments, {});
+  const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, target, {});
   return from(factor.solve(), columns, dynamics);
 }
 
-Fitted fit(const StateSpaceModel& dynamics, bool direct, const Record& record,
-           const std::vector<Segment>& segments, Accuracy accuracy) {
-  const auto sums =
-      accumulate<NormalEquations>(columns_of(dynamics, direct), dynamics, record, segments, {});
-  return fit(sums, dynamics, direct, record, segments, accuracy);
+Fitted fit(const StateSpaceModel& dynamics, bool direct, const Target& target, Accuracy accuracy) {
+  const auto sums = accumulate<NormalEquations>(columns_of(dynamics, direct), dynamics, target, {});
+  return fit(sums, dynamics, direct, target, accuracy);
 }
 
 /// Rows that count as one in the errors of the output whose errors last longest.
@@ -110,13 +125,45 @@ StateSpaceModel with_dynamics(const Matrix& A, const Matrix& C, const Record& re
           record.period_s};
 }
 
+/// At most `steps` Levenberg-Marquardt steps on A and C from those of `dynamics`.
+Fitted refined(const StateSpaceModel& dynamics, bool direct, const Target& target, int steps) {
+  const Columns columns{dynamics.order(), dynamics.inputs(), dynamics.outputs(), direct, true};
+  Fitted best = fit(dynamics, direct, target, Accuracy::fast);
+  double damping = 1e-3;
+  for (int step = 0; step < steps; ++step) {
+    const auto sums = accumulate<NormalEquations>(columns, best.model, target, best.x0);
+    bool lowered = false;
+    double before = best.sum_of_squares;
+    for (int attempt = 0; attempt < 5 && !lowered; ++attempt, damping *= 10) {
+      const auto solution = sums.solve(damping, least_pivot(Accuracy::fast));
+      if (!solution) continue;
+      const Matrix L = Eigen::Map<const Matrix>(solution->theta.data() + columns.dynamics(),
+                                                columns.n, columns.p);
+      Matrix moved_C = best.model.C;
+      for (Index q = 0; columns.p > 1 && q < columns.p; ++q)
+        moved_C.row(q) += solution->theta.segment(columns.output_map(q), columns.n).transpose();
+      const Matrix moved_A = best.model.A + L * best.model.C;
+      const StateSpaceModel moved = with_dynamics(moved_A, moved_C, target.record);
+      if (!is_well_formed(moved) || !(spectral_radius(moved) < 1)) continue;
+      Fitted trial = fit(moved, columns.direct, target, Accuracy::fast);
+      if (!(trial.sum_of_squares < best.sum_of_squares)) continue;
+      best = std::move(trial);
+      lowered = true;
+      damping /= 100;
+    }
+    damping = std::max(damping, 1e-9);
+    if (!lowered || best.sum_of_squares > before * (1 - 1e-4)) break;
+  }
+  return best;
+}
+
 }  // namespace
 
 Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
                       RowRange rows, Accuracy accuracy) {
   const std::vector<Segment> segments = segments_within(record, rows);
-  return response_of(fit(with_dynamics(A, C, record), direct, record, segments, accuracy),
-                     rows.size());
+  return response_of(
+      fit(with_dynamics(A, C, record), direct, {record, segments, unknown}, accuracy), rows.size());
 }
 
 Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows) {
@@ -124,8 +171,9 @@ Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowR
   const std::vector<Segment> segments = segments_within(record, rows);
   const StateSpaceModel dynamics = with_dynamics(A, C, record);
   const Columns columns = columns_of(dynamics, true);
-  const auto sums = accumulate<NormalEquations>(columns, dynamics, record, segments, {});
-  const Fitted full = fit(sums, dynamics, true, record, segments, Accuracy::fast);
+  const Target target{record, segments, unknown};
+  const auto sums = accumulate<NormalEquations>(columns, dynamics, target, {});
+  const Fitted full = fit(sums, dynamics, true, target, Accuracy::fast);
   const Index told = rows.size() * columns.p - (columns.target() - columns.n) -
                      columns.n * static_cast<Index>(segments.size());
   if (told < 1) return response_of({dynamics, {}, 0}, rows.size());
@@ -138,34 +186,34 @@ Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowR
 Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
                          RowRange rows, int steps) {
   const std::vector<Segment> segments = segments_within(record, rows);
-  const Columns columns{A.rows(), record.u.cols(), C.rows(), direct, true};
-  Fitted best = fit(with_dynamics(A, C, record), direct, record, segments, Accuracy::fast);
-  double damping = 1e-3;
-  for (int step = 0; step < steps; ++step) {
-    const auto sums = accumulate<NormalEquations>(columns, best.model, record, segments, best.x0);
-    bool lowered = false;
-    double before = best.sum_of_squares;
-    for (int attempt = 0; attempt < 5 && !lowered; ++attempt, damping *= 10) {
-      const auto solution = sums.solve(damping, least_pivot(Accuracy::fast));
-      if (!solution) continue;
-      const Matrix L = Eigen::Map<const Matrix>(solution->theta.data() + columns.dynamics(),
-                                                columns.n, columns.p);
-      Matrix moved_C = best.model.C;
-      for (Index q = 0; columns.p > 1 && q < columns.p; ++q)
-        moved_C.row(q) += solution->theta.segment(columns.output_map(q), columns.n).transpose();
-      const Matrix moved_A = best.model.A + L * best.model.C;
-      const StateSpaceModel moved = with_dynamics(moved_A, moved_C, record);
-      if (!is_well_formed(moved) || !(spectral_radius(moved) < 1)) continue;
-      Fitted trial = fit(moved, direct, record, segments, Accuracy::fast);
-      if (!(trial.sum_of_squares < best.sum_of_squares)) continue;
-      best = std::move(trial);
-      lowered = true;
-      damping /= 100;
-    }
-    damping = std::max(damping, 1e-9);
-    if (!lowered || best.sum_of_squares > before * (1 - 1e-4)) break;
+  return response_of(
+      refined(with_dynamics(A, C, record), direct, {record, segments, unknown}, steps),
+      rows.size());
+}
+
+std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows) {
+  constexpr double rounding = 1e-6;  // of an output's deviation
+  std::vector<RowRange> ranges;
+  for (const Segment& segment : segments_from(record, rows))
+    ranges.push_back({segment.begin, segment.end});
+  const Matrix errors =
+      record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
+  std::vector<ErrorColour> colours;
+  for (Index q = 0; q < errors.cols(); ++q) {
+    Series series(errors.col(q), ranges);
+    const double deviation = series.centred().norm() / std::sqrt(double(rows.size()));
+    const Autoregression past = autoregression(series);
+    colours.push_back({past, std::max(deviation * past.deviation.back(), rounding)});
   }
-  return response_of(best, rows.size());
+  return colours;
+}
+
+Response refine_whitened(const Response& fit, bool direct, const Record& record, RowRange rows,
+                         int steps, const std::vector<ErrorColour>& colours) {
+  const std::vector<Segment> segments = segments_within(record, rows);
+  return response_of(refined(with_dynamics(fit.model.A, fit.model.C, record), direct,
+                             {record, segments, colours}, steps),
+                     rows.size());
 }
 
 }  // namespace reident::identification

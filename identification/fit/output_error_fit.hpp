@@ -3,6 +3,9 @@
 // whose operating point is zero. Nothing here throws.
 #pragma once
 
+#include <vector>
+
+#include "identification/fit/whitening.hpp"
 #include "identification/samples/record.hpp"
 #include "identification/simulation/state_space.hpp"
 
@@ -33,5 +36,13 @@ Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowR
 /// lower the output error. The result is stable.
 Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
                          RowRange rows, int steps);
+
+/// Returns the colour of the errors of a fit to `rows`, one for each output.
+std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows);
+
+/// Refines a fit like refine_response(), where the errors have these colours: of the steps each
+/// lowers the sum of squares of the errors made white. `error` is that of these.
+Response refine_whitened(const Response& fit, bool direct, const Record& record, RowRange rows,
+                         int steps, const std::vector<ErrorColour>& colours);
 
 }  // namespace reident::identification

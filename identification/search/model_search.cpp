@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -20,8 +21,8 @@ namespace {
 constexpr double equal_errors = 1.002;
 constexpr double no_error = 1e-6;  // of an output's deviation
 constexpr double worthwhile_recency = 0.95;
-constexpr double worthwhile_refinement = 0.99;
 constexpr int refinement_steps = 25;
+constexpr int whitened_steps = 10;
 constexpr Index least_scored = 1000,
                 most_scored = 2000;  // rows of a fold in the first stage
 constexpr Index least_fitted = 2000;
@@ -67,6 +68,19 @@ void rank(std::vector<Candidate>& candidates) {
   };
   std::stable_sort(candidates.begin(), candidates.end(),
                    [&key](const auto& a, const auto& b) { return key(a) < key(b); });
+}
+
+/// The best of each order, then the second of each, and so on: the first stage ranks by little
+/// of the rows, and candidates of one order that stand beside each other are often the same model.
+std::vector<Candidate> by_turns(const std::vector<Candidate>& ranked) {
+  std::map<int, int> of_order;
+  std::vector<std::pair<int, std::size_t>> turns;
+  for (std::size_t i = 0; i < ranked.size(); ++i)
+    turns.emplace_back(of_order[ranked[i].recipe.order]++, i);
+  std::sort(turns.begin(), turns.end());
+  std::vector<Candidate> result;
+  for (const auto& [turn, place] : turns) result.push_back(ranked[place]);
+  return result;
 }
 
 class Search {
@@ -262,7 +276,7 @@ std::vector<Candidate> Search::affordable(const std::vector<Candidate>& candidat
 std::vector<Candidate> Search::simulated_stage(std::vector<Candidate> compressed) {
   if (compressed.empty()) return {};
   std::vector<Candidate> both_ways;
-  for (const Candidate& candidate : compressed)
+  for (const Candidate& candidate : by_turns(compressed))
     for (const ResponseFit fit : space_.fits) {
       both_ways.push_back(candidate);
       both_ways.back().recipe.fit = fit;
@@ -315,8 +329,14 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
     effort_.spent += work_of_regression(candidate.recipe, m_, p_) * double(fitted.size());
     return fit_of(candidate, 0, fitted);
   };
+  const auto whitened = [&](const Response& response, const Recipe& recipe,
+                            const std::vector<ErrorColour>& colours) {
+    return refine_whitened(response, recipe.direct, data_.normalised, fitted,
+                           recipe.order == 0 ? 0 : whitened_steps, colours);
+  };
   const Fold& largest = data_.folds.front();
   std::optional<Response> rich_fit;
+  std::vector<ErrorColour> colours;
   // Absent where something speaks against the order.
   const auto accepted = [&](int order) -> std::optional<Candidate> {
     const auto found = std::find_if(compressed.begin(), compressed.end(), [&](const Candidate& c) {
@@ -329,9 +349,15 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
     simple.recipe.direct = order == 0 || winner.recipe.direct;
     simple.recipe.refinement_steps = order == 0 ? 0 : refinement_steps;
     simple.recipe.refined_rows = order == 0 ? 0 : rows * static_cast<Index>(folds());
-    if (!rich_fit) rich_fit = fit(rich);
+    if (!rich_fit) {
+      const Response unweighted = fit(rich);
+      colours = colours_of(unweighted, data_.normalised, fitted);
+      rich_fit = whitened(unweighted, rich.recipe, colours);
+    }
     const Index extra = std::max<Index>(1, parameters(winner.recipe) - parameters(simple.recipe));
-    if (is_refuted(fit(simple), *rich_fit, extra, data_.normalised, fitted)) return std::nullopt;
+    if (is_refuted(whitened(fit(simple), simple.recipe, colours), *rich_fit, colours, extra,
+                   data_.normalised, fitted))
+      return std::nullopt;
     std::vector<Candidate> result = scored({simple}, rows);
     if (result.empty()) return std::nullopt;
     if (errs_more(result.front().fold_errors, winner.fold_errors, extra,
@@ -358,7 +384,7 @@ std::vector<ScoredRecipe> Search::run() {
   const std::vector<Candidate> compressed = compressed_stage();
   std::vector<Candidate> found = simulated_stage(compressed);
   const std::vector<Candidate> refined = refined_stage(found);
-  if (!refined.empty() && refined.front().error < worthwhile_refinement * found.front().error)
+  if (!refined.empty() && refined.front().error <= equal_errors * found.front().error)
     found.insert(found.begin(), refined.front());
   if (orders() == 0 && has_order_zero()) {
     Candidate only;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "identification/simulation/free_run.hpp"
-#include "identification/statistics/correlation.hpp"
 #include "identification/statistics/quantiles.hpp"
 
 namespace reident::identification {
@@ -14,32 +13,6 @@ namespace {
 constexpr double least_deviation = 1e-6;  // of an output's: below it errors are rounding
 constexpr double chance_deviations = 4;
 constexpr double certain_loss = 2;  // standard errors
-
-/// Coefficients of the autoregression that makes a series white, by Levinson's recursion, with the
-/// number of them that has the least BIC.
-Vector whitening(Series& series) {
-  const Index rows = series.rows();
-  const Index most = std::min<Index>({20, rows / 20, series.longest_segment() - 1});
-  Vector a(0), best(0);
-  double variance = 1, least = 0;
-  for (Index n = 1; n <= most; ++n) {
-    double left = series.autocorrelation(n);
-    for (Index i = 0; i < n - 1; ++i) left -= a(i) * series.autocorrelation(n - 1 - i);
-    const double k = left / variance;
-    Vector next(n);
-    for (Index i = 0; i < n - 1; ++i) next(i) = a(i) - k * a(n - 2 - i);
-    next(n - 1) = k;
-    a = std::move(next);
-    variance *= 1 - k * k;
-    if (!(variance > 0)) break;
-    const double criterion = double(rows) * std::log(variance) + double(n) * std::log(double(rows));
-    if (criterion < least) {
-      least = criterion;
-      best = a;
-    }
-  }
-  return best;
-}
 
 double whitened_squares(const Vector& errors, const Vector& a,
                         const std::vector<RowRange>& ranges) {
@@ -66,19 +39,29 @@ double median_ratio(const std::vector<HeldOutError>& one, const std::vector<Held
   return (ratios[(ratios.size() - 1) / 2] + ratios[ratios.size() / 2]) / 2;
 }
 
-/// By how many standard errors one model errs more than another, over the parts of all folds.
+/// The mean of the values in its standard errors; 0 where it is below zero.
+double mean_in_deviations(const std::vector<double>& values) {
+  double sum = 0, squares = 0;
+  for (const double value : values) {
+    sum += value;
+    squares += value * value;
+  }
+  const double count = double(values.size()), mean = sum / count;
+  return mean > 0 ? mean / std::sqrt((squares / count - mean * mean) / (count - 1)) : 0;
+}
+
+/// By how many standard errors one model errs more than another, over the parts of all folds: in
+/// squares or, where few parts hold most of these, in their logarithms.
 double loss_in_deviations(const std::vector<HeldOutError>& one,
                           const std::vector<HeldOutError>& other) {
-  double sum = 0, squares = 0, count = 0;
+  constexpr double floor = least_deviation * least_deviation;
+  std::vector<double> more, ratios;
   for (std::size_t i = 0; i < one.size(); ++i)
     for (std::size_t k = 0; k < error_blocks; ++k) {
-      const double more = one[i].squares[k] - other[i].squares[k];
-      sum += more;
-      squares += more * more;
-      ++count;
+      more.push_back(one[i].squares[k] - other[i].squares[k]);
+      ratios.push_back(std::log((one[i].squares[k] + floor) / (other[i].squares[k] + floor)));
     }
-  const double mean = sum / count, variance = squares / count - mean * mean;
-  return mean > 0 ? mean / std::sqrt(variance / (count - 1)) : 0;
+  return std::max(mean_in_deviations(more), mean_in_deviations(ratios));
 }
 
 }  // namespace
@@ -87,7 +70,8 @@ Index parameters_of(Index n, Index m, Index p, bool direct, Index segments) {
   return n * (m + p) + (direct ? m * p : 0) + p + n * segments;
 }
 
-bool is_refuted(const Response& simple, const Response& rich, Index extra, const Record& record,
+bool is_refuted(const Response& simple, const Response& rich,
+                const std::vector<ErrorColour>& colours, Index extra, const Record& record,
                 RowRange rows) {
   assert(extra >= 1);
   const Matrix left_by_simple = errors_of(simple, record, rows);
@@ -99,8 +83,7 @@ bool is_refuted(const Response& simple, const Response& rich, Index extra, const
     ranges.push_back({segment.begin, segment.end});
   double ratio = 0;
   for (Index q = 0; q < record.y.cols(); ++q) {
-    Series errors(left_by_rich.col(q), ranges);
-    const Vector a = whitening(errors);
+    const Vector& a = colours[static_cast<std::size_t>(q)].past.coefficients.back();
     ratio += count * std::log((whitened_squares(left_by_simple.col(q), a, ranges) + floor) /
                               (whitened_squares(left_by_rich.col(q), a, ranges) + floor));
   }

@@ -22,13 +22,14 @@ Vector filter(const std::vector<double>& b, const std::vector<double>& a, const 
   return y;
 }
 
-/// Octave takes A and C by MOESP.
+/// Octave takes A and C by MOESP, and does not refine them.
 IdentifyOptions as_octave(int order, int horizon) {
   IdentifyOptions options;
   options.order = order;
   options.horizon = horizon;
   options.weighting = Weighting::moesp;
   options.direct_feedthrough = true;
+  options.response_fit = ResponseFit::simulation;
   return options;
 }
 

@@ -1,0 +1,32 @@
+// What is known of the errors of each output, for fits that weigh them by it (METHOD.md, section 7,
+// "Parsimony"). Private to the library. Nothing here throws.
+#pragma once
+
+#include <vector>
+
+#include "identification/fit/regression.hpp"
+#include "identification/statistics/autoregression.hpp"
+
+namespace reident::identification {
+
+/// The errors of one output.
+struct ErrorColour {
+  Autoregression past;
+  double deviation = 1;  // of what the past does not explain
+};
+
+/// Makes the rows of one output, regressors and target alike, those of errors that are white and of
+/// deviation 1. The first rows of a segment are predicted by lower orders.
+class Whitener {
+ public:
+  explicit Whitener(const ErrorColour& colour) : colour_(colour) {}
+  void begin_segment();
+  /// Returns the next rows of the segment, a column a time.
+  Matrix white(const Eigen::Ref<const Matrix>& values);
+
+ private:
+  ErrorColour colour_;
+  Matrix latest_;  // columns, the latest last
+};
+
+}  // namespace reident::identification

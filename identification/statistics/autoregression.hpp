@@ -1,0 +1,23 @@
+// The autoregression of a series, and what makes the series white (METHOD.md, section 7,
+// "Parsimony"). Nothing here throws.
+#pragma once
+
+#include <vector>
+
+#include "identification/statistics/correlation.hpp"
+
+namespace reident::identification {
+
+/// Predictors of a series from its own past, of every order up to the last one.
+struct Autoregression {
+  std::vector<Vector> coefficients{Vector(0)};  // [k]: k of them, that of the latest value first
+  std::vector<double> deviation{1};             // [k]: of what order k leaves, over the series' own
+
+  Index order() const { return static_cast<Index>(coefficients.size()) - 1; }
+};
+
+/// Returns the autoregression with the least BIC, by Levinson's recursion; at most 20 coefficients,
+/// a twentieth of the rows, and fewer than the longest segment.
+Autoregression autoregression(Series& series);
+
+}  // namespace reident::identification
