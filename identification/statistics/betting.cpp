@@ -12,7 +12,7 @@ namespace {
 constexpr std::array bets = {1.0, 0.5, 0.25, 0.125, 0.0625};
 /// Means of so many scores show nothing where there are fewer of them.
 constexpr Index least_means = 6;
-/// Dependence is taken for that of one cycle at first, and as measured behind so many cycles.
+/// Dependence is taken for what is assumed at first, and as measured behind so many cycles.
 constexpr Index cycles_to_measure = 8;
 /// Scores that differ by less, over their bound, are equal but for rounding.
 constexpr double rounding = 1e-9;
@@ -21,11 +21,19 @@ double variance(const Vector& values) {
   return (values.array() - values.mean()).square().sum() / double(values.size() - 1);
 }
 
-/// Means of `length` scores each, of the newest ones.
-Vector means(const Vector& scores, Index length) {
-  const Index count = scores.size() / length;
-  const auto newest = scores.tail(count * length);
-  return newest.reshaped(length, count).colwise().mean().transpose();
+/// Variance of the mean of `length` successive scores, from all such means: those that overlap too,
+/// so that it does not depend on where the first one begins. The scores' own mean is taken for the
+/// true one, which the last factor corrects.
+double variance_of_means(const Vector& scores, Index length) {
+  const Index n = scores.size(), count = n - length + 1;
+  const double mean = scores.mean();
+  double sum = scores.head(length).sum(), squares = 0;
+  for (Index i = 0; i < count; ++i) {
+    const double deviation = sum / double(length) - mean;
+    squares += deviation * deviation;
+    if (i + length < n) sum += scores(i + length) - scores(i);
+  }
+  return squares / double(count) * double(n) / double(n - length);
 }
 
 }  // namespace
@@ -33,16 +41,20 @@ Vector means(const Vector& scores, Index length) {
 double dependence(const ScoreSeries& series) {
   const Index n = series.scores.size();
   const double measured = std::min(1.0, double(n) / double(cycles_to_measure * series.cycle));
-  const double assumed = series.assumed > 0 ? series.assumed : double(series.cycle);
-  double largest = measured + (1 - measured) * assumed;
+  double largest = 1;
+  if (series.assumed == 0)
+    largest = measured + (1 - measured) * double(series.cycle);
+  else if (measured < 1)
+    largest = series.assumed;
   if (n < 2) return largest;
   const double of_one = variance(series.scores);
   if (!(of_one > rounding * rounding * series.bound * series.bound)) return largest;
   for (Index length = 2; n / length >= least_means; length *= 2) {
-    const Vector together = means(series.scores, length);
-    // By a standard deviation more: the ratio of so few means is uncertain.
-    const double uncertain = 1 + std::sqrt(2.0 / double(together.size() - 1));
-    largest = std::max(largest, double(length) * variance(together) / of_one * uncertain);
+    // By a standard deviation more, of 3/2 as many independent means as fit in: the ratio of so
+    // few is uncertain.
+    const double uncertain = 1 + std::sqrt(2.0 / (1.5 * double(n) / double(length) - 1));
+    largest = std::max(
+        largest, double(length) * variance_of_means(series.scores, length) / of_one * uncertain);
   }
   return largest;
 }

@@ -14,7 +14,8 @@ struct ScoreSeries {
   double bound = 1;
   /// Those of a whole cycle.
   Index cycle = 1;
-  /// Dependence that is assumed until it is measured; 0: the cycle's scores count as one.
+  /// Least dependence until it is measured, at least 1; 0: the cycle's scores count as one at
+  /// first.
   double assumed = 0;
 };
 
