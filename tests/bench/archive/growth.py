@@ -75,10 +75,11 @@ def measure(programs, reident, folder, samples):
     growth = Growth(programs, reident, folder)
     small = growth.make("small", SMALL_FRAMES)
     month = growth.make("month", MONTH_FRAMES)
-    large = growth.make("large", max(MONTH_FRAMES, int(samples) // PARAMETERS))
+    frames = max(MONTH_FRAMES, int(samples) // PARAMETERS)
+    large = growth.make("large", frames)
     small_append, small_window = growth.append_s(small), growth.window_s(small)
     small_month = {name: growth.month_s(month, name) for name in ("rows", "summary")}
-    figures = {"growth_samples": int(samples), "growth_bytes": large.stat().st_size}
+    figures = {"growth_samples": frames * PARAMETERS, "growth_bytes": large.stat().st_size}
 
     def ratios(suffix):
         months = [growth.month_s(large, name) / least for name, least in small_month.items()]
