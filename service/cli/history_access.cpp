@@ -10,12 +10,14 @@
 #include "service/history/remote_readers.hpp"
 #include "service/history/stored_readers.hpp"
 #include "service/security/material.hpp"
+#include "service/support/progress.hpp"
 #include "service/support/terminal.hpp"
 
 namespace reident::cli {
 namespace {
 
 constexpr double max_timeout_s = 1e6;
+constexpr std::chrono::seconds silent_at_most{2};
 
 struct Service {
   dds::Endpoint endpoint;
@@ -52,7 +54,15 @@ std::chrono::milliseconds timeout_of(const HistoryAccessOptions& options) {
 int with_service(const Service& service, const HistoryAccessOptions& options,
                  const std::function<int(const Readers&)>& work) {
   dds::Participant participant(service.endpoint);
-  history::RemoteHistory remote(participant, service.name);
+  Progress line;
+  const auto begun = Progress::Clock::now();
+  history::RemoteHistory remote(participant, service.name, [&](bool is_waiting) {
+    const std::chrono::duration<double> waited = Progress::Clock::now() - begun;
+    if (!is_waiting)
+      line.clear();
+    else if (waited >= silent_at_most)
+      line.update(fmt::format("asking {} for {:.0f} s", service.name, waited.count()));
+  });
   const history::RemoteRows rows(remote, timeout_of(options));
   try {
     return work({history::RemoteHistoryReader(rows), history::RemoteTelemetryReader(rows)});

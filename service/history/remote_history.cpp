@@ -17,13 +17,15 @@ using namespace std::chrono_literals;
 constexpr auto look_around = 10ms;  // for a service to be discovered
 constexpr Clock::duration first_patience = 200ms;
 constexpr Clock::duration last_patience = 3s;
+constexpr Clock::duration longest_wait = 200ms;  // until it is said that it goes on
 constexpr std::size_t take_at_most = 16;
 constexpr std::size_t slots = 1024;  // idl/README.md
 
 }  // namespace
 
-RemoteHistory::RemoteHistory(dds::Participant& participant, std::string service)
+RemoteHistory::RemoteHistory(dds::Participant& participant, std::string service, Waits waits)
     : wanted_service_(std::move(service)),
+      waits_(waits ? std::move(waits) : [](bool) {}),
       requests_(participant),
       replies_(participant),
       ready_(participant) {
@@ -71,13 +73,17 @@ std::variant<HistoryPage, RemoteHistory::Failure> RemoteHistory::page(
       send_at = now + std::exchange(patience, std::min(2 * patience, last_patience));
       was_asked = true;
     }
-    ready_.wait(std::min<Clock::duration>(is_heard ? send_at - now : look_around, deadline - now));
-    if (auto reply = take()) {
+    ready_.wait(std::min<Clock::duration>(
+        {is_heard ? send_at - now : look_around, deadline - now, longest_wait}));
+    auto reply = take();
+    waits_(!reply);
+    if (reply) {
       request_.service = reply->service;
       if (reply->ok) return std::move(reply->page);
       return Failure{Error::Kind::refused, std::move(reply->reason)};
     }
   }
+  waits_(false);
   request_.service = wanted_service_;  // another one may have taken over
   return Failure{
       Error::Kind::no_answer,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -16,9 +17,13 @@ namespace reident::history {
 /// services the one that answered first is asked on. One thread at a time.
 class RemoteHistory {
  public:
+  /// Called some times a second with true while an answer is waited for, and with false when it is
+  /// there, or will not come.
+  using Waits = std::function<void(bool)>;
+
   /// Asks the service of this instance name, or any. The participant must outlive it. Throws
   /// dds::Error.
-  explicit RemoteHistory(dds::Participant& participant, std::string service = "");
+  explicit RemoteHistory(dds::Participant& participant, std::string service = "", Waits waits = {});
 
   /// Why there is no page; the message says what would mend it.
   struct Failure {
@@ -37,6 +42,7 @@ class RemoteHistory {
   std::optional<HistoryReply> take();
 
   const std::string wanted_service_;
+  const Waits waits_;
   dds::Writer<HistoryRequest> requests_;
   dds::Reader<HistoryReply> replies_;
   dds::WaitSet ready_;

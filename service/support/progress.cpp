@@ -26,8 +26,17 @@ void Progress::update(double fraction, std::string_view detail, Clock::time_poin
   const int filled = static_cast<int>(held * width);
   const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                           std::string(static_cast<std::size_t>(width - filled), '.');
-  std::fprintf(out_, "\r\033[K[%s] %3.0f %%  %.*s", bar.c_str(), 100 * held,
-               static_cast<int>(detail.size()), detail.data());
+  char percent[8];
+  std::snprintf(percent, sizeof percent, "%3.0f", 100 * held);
+  draw("[" + bar + "] " + percent + " %  " + std::string(detail), now);
+}
+
+void Progress::update(std::string_view detail, Clock::time_point now) {
+  if (due(now)) draw(std::string(detail), now);
+}
+
+void Progress::draw(const std::string& line, Clock::time_point now) {
+  std::fprintf(out_, "\r\033[K%s", line.c_str());
   std::fflush(out_);
   drawn_ = true;
   last_draw_ = now;

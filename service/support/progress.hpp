@@ -27,10 +27,14 @@ class Progress {
   /// Draws when it is due. `fraction` is held to [0, 1], a NaN is shown as 0; `detail`, one short
   /// line, follows the bar.
   void update(double fraction, std::string_view detail, Clock::time_point now = Clock::now());
+  /// As above, for what has no end that is known: the detail alone.
+  void update(std::string_view detail, Clock::time_point now = Clock::now());
   /// Takes the bar off the terminal, so that other text can be written.
   void clear();
 
  private:
+  void draw(const std::string& line, Clock::time_point now);
+
   std::FILE* out_;
   bool enabled_;
   bool drawn_ = false;

@@ -237,7 +237,8 @@ class Web(WebCase):
         last = re.findall(rb"id: (\d+)", heard)[-1].decode()
         self.assertEqual(self.api("overview")["equipment"][0]["champion"], str(version))
         changes = self.get(f"/api/v1/changes?since={int(last) - 10**6}")["changes"]
-        keys = [(one["event"], one["data"].get("equipment")) for one in changes]
+        keys = [(one["event"], one["data"].get("service") or one["data"].get("equipment"))
+                for one in changes]
         self.assertEqual(len(keys), len(set(keys)), "each thing once")
 
     def test_the_page_comes_whole_compressed_and_once(self):

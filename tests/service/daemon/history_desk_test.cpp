@@ -105,8 +105,12 @@ TEST_F(HistoryDesk, LeavesQuestionsToAnotherServiceAlone) {
 }
 
 TEST_F(HistoryDesk, WithoutAServiceTheConsoleIsToldInTime) {
-  RemoteHistory remote(console_);
+  std::vector<bool> waits;
+  RemoteHistory remote(console_, "", [&waits](bool is_waiting) { waits.push_back(is_waiting); });
   EXPECT_THAT(failure(remote.page(about("attempts"), 200ms)), HasSubstr("within 0.2 s"));
+  ASSERT_GT(waits.size(), 1U);
+  EXPECT_TRUE(waits.front());
+  EXPECT_FALSE(waits.back());
 }
 
 }  // namespace

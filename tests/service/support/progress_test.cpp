@@ -45,6 +45,14 @@ TEST_F(ProgressTest, DrawsTheFractionAndTheDetailAndClearsAfterItself) {
                          "]  50 %  12 of 24 frames" + "\r\033[K");
 }
 
+TEST_F(ProgressTest, ShowsTheDetailAloneWhereNoEndIsKnown) {
+  {
+    Progress progress(file_.get(), true);
+    progress.update("asking reident for 3 s", start_);
+  }
+  EXPECT_EQ(drawn(), "\r\033[Kasking reident for 3 s\r\033[K");
+}
+
 TEST_F(ProgressTest, DrawsAtMostTenTimesASecond) {
   Progress progress(file_.get(), true);
   for (int ms = 0; ms < 1000; ++ms) progress.update(0.1, "x", start_ + ms * 1ms);
