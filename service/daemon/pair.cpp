@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "service/support/log.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident {
 namespace {
@@ -22,8 +23,8 @@ constexpr Instant saying_interval = 100ms;                   // that this servic
 constexpr Instant alive_within = 5s;                         // the archive's thread
 constexpr storage::Time overruled_for = 86'400'000'000'000;  // an alarm stays
 
-Instant steady_now() {
-  return std::chrono::steady_clock::now().time_since_epoch();
+Instant instant_now() {
+  return Instant(steady_now());
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ Pair::Pair(const Config& config, Clock clock, dds::Participant& participant, Arc
       ready_(participant),
       replication_(config, std::move(clock), participant, writer, ready_,
                    {listener_.copied, [this] { listener_.overruled(replication_.registry()); }}),
-      rule_(config.strength, steady_now()),
+      rule_(config.strength, instant_now()),
       taking_over_(writer, ready_),
       sign_of_life_(writer, ready_) {
   ready_.attach(leaders_);
@@ -67,9 +68,9 @@ void Pair::run() {
 }
 
 void Pair::share_the_last() {
-  const Instant until = steady_now() + share_limit;
+  const Instant until = instant_now() + share_limit;
   try {
-    for (Instant now = steady_now(); now < until && is_leading(); now = steady_now()) {
+    for (Instant now = instant_now(); now < until && is_leading(); now = instant_now()) {
       turn();
       const auto partner = replication_.partner(now);
       if (!partner || !partner->follows ||
@@ -88,7 +89,7 @@ void Pair::stop() {
 }
 
 void Pair::turn() {
-  const Instant now = steady_now();
+  const Instant now = instant_now();
   hear_leaders(now);
   replication_.turn({is_leading(), rule_.leader(), now});
   if (const auto partner = replication_.partner(now))
@@ -146,7 +147,7 @@ void Pair::take_over(const Standing& ours) {
   taking_over_.post(
       [this, term](storage::Registry& registry, auto&) {
         registry.journal().begin_term(term, config_.service_name, clock_());
-        said_at_ = steady_now().count();
+        said_at_ = instant_now().count();
         may_record_ = true;
       },
       [this, term] {
@@ -156,7 +157,7 @@ void Pair::take_over(const Standing& ours) {
         dds::WriterOptions options;
         options.strength = static_cast<std::int32_t>(strength);
         leadership_.emplace(participant_, options);
-        say_that_it_leads(replication_.standing(), steady_now());
+        say_that_it_leads(replication_.standing(), instant_now());
         log::info("pair", "leads", {{"term", term}});
         listener_.leads(replication_.registry());
       });
@@ -176,7 +177,7 @@ void Pair::say_that_it_leads(const Standing& ours, Instant now) {
   next_saying_ = now + saying_interval;
   leadership_->write({config_.pair, rule_.latest_term(), config_.service_name, ours.position, {}},
                      [] { return true; });
-  said_at_ = steady_now().count();
+  said_at_ = instant_now().count();
 }
 
 bool Pair::archive_works(Instant now) {
@@ -214,19 +215,19 @@ void Pair::note(const Standing& ours, Instant now) {
 }
 
 bool Pair::leads() const {
-  return may_record_ && steady_now() - Instant(said_at_) < LeadershipRule::lease;
+  return may_record_ && instant_now() - Instant(said_at_) < LeadershipRule::lease;
 }
 
 bool Pair::share(const storage::Registry& registry) {
   if (!leads()) return false;
   if (std::this_thread::get_id() == thread_) return true;  // it would wait for itself
   const std::int64_t last = registry.journal().last();
-  const Instant until = steady_now() + share_limit;
+  const Instant until = instant_now() + share_limit;
   ready_.wake();
   const MutexLock lock(mutex_);
   while (may_record_ && !stopping_ && seen_.partner && seen_.partner->follows &&
          seen_.partner->standing.position < last) {
-    const Instant left = until - steady_now();
+    const Instant left = until - instant_now();
     if (left <= Instant::zero()) {
       published_beyond_ = last;
       break;

@@ -276,6 +276,17 @@ class ArchiveFaults(EndToEnd):
         self.assertNotEqual(newest, "telemetry_damaged", "windows behind the damage are tried")
         self.assertEqual(self.query("SELECT frames FROM telemetry_source")[0][0], 4000)
 
+        daemon.terminate()
+        with sqlite3.connect(self.database) as connection:
+            connection.execute("DROP TRIGGER attempt_update")
+            connection.execute("UPDATE attempt SET spacecraft = 'ANOTHER' WHERE id = "
+                               "(SELECT attempt FROM version WHERE number = ?)", (approved,))
+        connection.close()
+        status, text = self.reident("show", f"SAT/PLANT@{approved}", "--config",
+                                    self.folder / "reident.toml")
+        self.assertEqual(status, 1, text)
+        self.assertIn("has lost its attempt", text)
+
 
 if __name__ == "__main__":
     sys.exit(unittest.main())
