@@ -479,7 +479,8 @@ const Impossible requests[] = {
     {"one_row", "one.csv --input u1 --output y1", "1 row"},
     {"time_goes_back", "back.csv --input u1 --output y1 --time t --clock-back stop",
      "back.csv:4: the clock goes back"},
-    {"time_stands_still", "still.csv --input u1 --output y1 --time t", "never moves"},
+    {"time_stands_still", "still.csv --input u1 --output y1 --time t",
+     "is the time of the row before"},
     {"time_of_words", "plant.csv --input u1 --output y1 --time mode", "plant.csv:2"},
     {"no_row_to_validate_on", "holes.csv --input u1 --output y1", "none with every column valid"},
 };
