@@ -66,9 +66,9 @@ class Follower {
         found.before =
             score(y, free_run(other.dynamics, record, record.all()).bottomRows(own.rows));
     }
+    const Duration period = request_of(model).period;
     identification::Index fitted = 0;  // rows of its window
-    while (fitted < record.rows() &&
-           time_of_row(record, fitted, request_of(model).period) < version->window.end)
+    while (fitted < record.rows() && time_of_row(record, fitted, period) < version->window.end)
       ++fitted;
     if (fitted == 0) return "the telemetry of its window is gone";
     const auto mean = record.y.topRows(fitted).colwise().mean();

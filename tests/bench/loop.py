@@ -125,12 +125,12 @@ def main():
                   "--equipment", "MPPT2", "BUS", "--json", "--cache", "", *endpoint, output="simulator.out")
             expected, began, replay_s, frames = {}, time.monotonic(), 0.0, 0
             for file in files:
-                summary = json.loads(run("satcs/satcs-replay", file, "--spacecraft", "BUPT-1",
-                                         "--speed", "max", "--wait-readers", "2", "--json",
-                                         *endpoint))
+                replay = json.loads(run("satcs/satcs-replay", file, "--spacecraft", "BUPT-1",
+                                        "--speed", "max", "--wait-readers", "2", "--json",
+                                        *endpoint))
                 expected.update(read_samples(file))
-                replay_s += summary["wall_s"]
-                frames += summary["frames"]
+                replay_s += replay["wall_s"]
+                frames += replay["frames"]
             run("cli/reident", "status", "--wait", "idle", "--timeout", "600", *endpoint)
             seconds = time.monotonic() - began
             database = ["--database", folder / "bupt1.db", "--json"]

@@ -10,6 +10,7 @@
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/review/follow_up.hpp"
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
 namespace reident::cli::score_verb {
@@ -83,6 +84,18 @@ std::string error_text(const Score& score) {
   return fmt::format("{:.3g}", score.mrse());
 }
 
+/// What errs less than the version.
+std::vector<std::string> better_than(const FollowUp& version) {
+  std::vector<std::string> names;
+  const auto add = [&](const Score& other, const char* name) {
+    if (other.mrse() < version.own.mrse()) names.emplace_back(name);
+  };
+  if (version.before) add(*version.before, "replaced");
+  add(version.mean, "mean");
+  add(version.static_regression, "static");
+  return names;
+}
+
 void print_table(const std::vector<Scored>& all) {
   using enum Table::Align;
   Table table({{"version"},
@@ -92,7 +105,8 @@ void print_table(const std::vector<Scored>& all) {
                {"MRSE %", right},
                {"replaced", right},
                {"mean", right},
-               {"static", right}});
+               {"static", right},
+               {"errs less"}});
   std::string missing;
   for (const Scored& one : all)
     for (const FollowUp& version : one.versions) {
@@ -101,16 +115,11 @@ void print_table(const std::vector<Scored>& all) {
         missing += fmt::format("{}: {}\n", name, version.reason);
         continue;
       }
-      const double error = version.own.mrse();
-      const bool is_worse = version.mean.mrse() < error ||
-                            version.static_regression.mrse() < error ||
-                            (version.before && version.before->mrse() < error);
       const storage::TimeRange range = version.range;
       table.add({name, time_text(range.begin), rough_duration_text(range.end - range.begin),
                  fmt::format("{:.3g}", version.own.fit()), error_text(version.own),
                  version.before ? error_text(*version.before) : "-", error_text(version.mean),
-                 error_text(version.static_regression)},
-                is_worse ? Table::Look::urgent : Table::Look::plain);
+                 error_text(version.static_regression), joined(better_than(version))});
     }
   if (!table.empty()) fmt::print("{}", table.text(terminal_width()));
   fmt::print("{}", missing);
@@ -145,7 +154,7 @@ std::function<int()> declare(CLI::App& command) {
   command.footer(
       "Errors are of free runs on the telemetry from a version's approval until the next one,\n"
       "nothing excluded: of the version, of the one that it replaced, of the outputs' means over\n"
-      "its window, and of a static regression of its window. Red: one of these errs less.\n"
+      "its window, and of a static regression of its window.\n"
       "Example:\n  reident score CBERS-4/BDR --config reident.toml");
   return [arguments] { return run(*arguments); };
 }
