@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "identification/fit/regression.hpp"
+#include "identification/fit/whitening.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "identification/statistics/correlation.hpp"
 

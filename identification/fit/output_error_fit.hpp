@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "identification/fit/whitening.hpp"
 #include "identification/samples/record.hpp"
 #include "identification/simulation/state_space.hpp"
+#include "identification/statistics/autoregression.hpp"
 
 namespace reident::identification {
 

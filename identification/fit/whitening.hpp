@@ -1,19 +1,10 @@
-// What is known of the errors of each output, for fits that weigh them by it (METHOD.md, section 7,
-// "Parsimony"). Private to the library. Nothing here throws.
+// Makes the errors of an output white, for fits that weigh them by what is known of them
+// (METHOD.md, section 7, "Parsimony"). Private to the library. Nothing here throws.
 #pragma once
 
-#include <vector>
-
-#include "identification/fit/regression.hpp"
 #include "identification/statistics/autoregression.hpp"
 
 namespace reident::identification {
-
-/// The errors of one output.
-struct ErrorColour {
-  Autoregression past;
-  double deviation = 1;  // of what the past does not explain
-};
 
 /// Makes the rows of one output, regressors and target alike, those of errors that are white and of
 /// deviation 1. The first rows of a segment are predicted by lower orders.

@@ -16,6 +16,12 @@ struct Autoregression {
   Index order() const { return static_cast<Index>(coefficients.size()) - 1; }
 };
 
+/// The errors of one output of a model.
+struct ErrorColour {
+  Autoregression past;
+  double deviation = 1;  // of what the past does not explain
+};
+
 /// Returns the autoregression with the least BIC, by Levinson's recursion; at most 20 coefficients,
 /// a twentieth of the rows, and fewer than the longest segment.
 Autoregression autoregression(Series& series);

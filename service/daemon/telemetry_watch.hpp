@@ -35,8 +35,8 @@ class TelemetryWatch : public ArchiveListener {
 
   /// What is wrong now: `no_telemetry` of an equipment for longer than its slide, `unknown_names`
   /// of an equipment or of a spacecraft that is not configured (of none where these are many),
-  /// `clock` of a spacecraft whose telemetry is ahead, or of none where the clock is before the last
-  /// entry. Their texts stay the same as long as nothing changes. For any thread.
+  /// `clock` of a spacecraft whose telemetry is ahead, or of none where the clock is before the
+  /// last entry. Their texts stay the same as long as nothing changes. For any thread.
   std::vector<storage::Alarm> alarms();
 
  private:

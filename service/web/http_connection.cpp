@@ -69,7 +69,8 @@ class OverTls : public Over<TlsStream> {
   using Over::Over;
 
   awaitable<bool> begin() override {
-    const auto [error] = co_await stream_.async_handshake(asio::ssl::stream_base::server, with_error);
+    const auto [error] =
+        co_await stream_.async_handshake(asio::ssl::stream_base::server, with_error);
     co_return !error;
   }
 

@@ -15,7 +15,8 @@ SimulatedService::SimulatedService(const Config& config)
       database_(config.database, storage::Database::Mode::read_write, config.durability),
       archive_(database_, {.recent_samples = config.recent_samples}),
       registry_(database_),
-      feed_(config, [this] { return now_; }, [this] { return now_; }),
+      feed_(
+          config, [this] { return now_; }, [this] { return now_; }),
       leagues_(config, feed_),
       context_{{[this](const LeagueContext::Task& task) { task(registry_, archive_); },
                 [this] { return now_; }, [] { return false; }},
