@@ -16,8 +16,8 @@ class Whitener {
   Matrix white(const Eigen::Ref<const Matrix>& values);
 
  private:
-  ErrorColour colour_;
-  Matrix latest_;  // columns, the latest last
+  const ErrorColour& colour_;  // outlives it
+  Matrix latest_;              // columns, the latest last
 };
 
 }  // namespace reident::identification

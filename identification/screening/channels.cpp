@@ -28,8 +28,9 @@ double least_jump_of(const Channel& channel) {
     if (plateaus[i].segment == plateaus[i - 1].segment)
       steps.push_back(std::abs(plateaus[i].value - plateaus[i - 1].value));
   const double usual = steps.empty() ? 0 : quantile(std::move(steps), 0.5);
-  const std::vector<double> values(channel.values.begin(), channel.values.end());
-  const double range = quantile(values, 1 - tails) - quantile(values, tails);
+  std::vector<double> values(channel.values.begin(), channel.values.end());
+  const double high = quantile(values, 1 - tails);
+  const double range = high - quantile(std::move(values), tails);
   return std::max(jump_steps * usual, jump_range_share * range);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace reident::identification {
@@ -11,8 +12,8 @@ namespace {
 // equipment that switches on may well draw a hundred times the noise of its current before.
 constexpr double far = 10, absurd = 1e4;
 constexpr Index least_fills = 2;
-// Of any value that is scattered over the rows, such as 0: plateaus, their share of all, and the
-// share of them at which another channel may jump by chance.
+// A value of any kind that is scattered over the rows, such as 0: its plateaus, their share of all,
+// and the share of them at which another channel may jump by chance.
 constexpr std::size_t least_scattered = 3;
 constexpr double most_scattered = 0.25, jumps_together = 0.5;
 
@@ -31,10 +32,8 @@ bool is_end_of_integers(double value) {
   return false;
 }
 
-/// Sorted values [begin, end): the others, and whether `value` may stand for none beside them.
-bool stands_for_none(double value, const std::vector<double>& sorted, std::size_t begin,
-                     std::size_t end) {
-  const double low = sorted[begin], high = sorted[end - 1];
+/// Whether `value` may stand for none beside others from `low` to `high`.
+bool stands_for_none(double value, double low, double high) {
   const double greatest = std::max(std::abs(low), std::abs(high));
   const double gap = value < low ? low - value : value - high;
   const bool other_sign = value < 0 ? low >= 0 : high <= 0;
@@ -76,17 +75,18 @@ std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::
   for (const auto& [value, count] : {std::pair(channel.low, at_low), {channel.high, at_high}}) {
     const double share = double(count) / double(channel.plateaus.size());
     if (count < least_scattered || share > most_scattered) continue;
-    std::vector<Plateau> fills, others;
     double low = channel.high, high = channel.low;
     for (const Plateau& plateau : channel.plateaus) {
-      (plateau.value == value ? fills : others).push_back(plateau);
       if (plateau.value == value) continue;
       low = std::min(low, plateau.value);
       high = std::max(high, plateau.value);
     }
     const double gap = std::max(low - value, value - high);
-    if (!(high > low) || gap <= high - low || median_size(fills) > 2 * median_size(others) ||
-        another_jumps(channels, self, fills))
+    if (!(high > low) || gap <= high - low) continue;
+    std::vector<Plateau> fills, others;
+    for (const Plateau& plateau : channel.plateaus)
+      (plateau.value == value ? fills : others).push_back(plateau);
+    if (median_size(fills) > 2 * median_size(others) || another_jumps(channels, self, fills))
       continue;
     return fills;
   }
@@ -94,30 +94,44 @@ std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::
 }
 
 std::vector<double> fill_values(const Vector& values) {
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<double> found;
-  std::size_t begin = 0, end = sorted.size();
-  while (begin < end) {
-    const auto first = sorted.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(end);
-    const auto above =
-        static_cast<std::size_t>(std::upper_bound(first, last, sorted[begin]) - sorted.begin());
-    const auto below =
-        static_cast<std::size_t>(std::lower_bound(first, last, sorted[end - 1]) - sorted.begin());
-    if (above < end && above - begin >= static_cast<std::size_t>(least_fills) &&
-        stands_for_none(sorted[begin], sorted, above, end)) {
-      found.push_back(sorted[begin]);
-      begin = above;
-    } else if (below > begin && end - below >= static_cast<std::size_t>(least_fills) &&
-               stands_for_none(sorted[end - 1], sorted, begin, below)) {
-      found.push_back(sorted[end - 1]);
-      end = below;
+  double above = -infinity, below = infinity;  // the values that are left lie between
+  while (true) {
+    double low = infinity, next_low = infinity, high = -infinity, next_high = -infinity;
+    Index lows = 0, highs = 0;
+    for (const double value : values) {
+      if (!(value > above && value < below)) continue;
+      if (value < low) {
+        next_low = low;
+        low = value;
+        lows = 1;
+      } else if (value == low) {
+        ++lows;
+      } else {
+        next_low = std::min(next_low, value);
+      }
+      if (value > high) {
+        next_high = high;
+        high = value;
+        highs = 1;
+      } else if (value == high) {
+        ++highs;
+      } else {
+        next_high = std::max(next_high, value);
+      }
+    }
+    if (!(low < high)) return found;
+    if (lows >= least_fills && stands_for_none(low, next_low, high)) {
+      found.push_back(low);
+      above = low;
+    } else if (highs >= least_fills && stands_for_none(high, low, next_high)) {
+      found.push_back(high);
+      below = high;
     } else {
-      break;
+      return found;
     }
   }
-  return found;
 }
 
 }  // namespace reident::identification

@@ -86,7 +86,7 @@ std::vector<SensorFault> sensor_faults(const Record& whole, const std::vector<bo
   if (const auto scattered = scattered_fills_of(channels, filled); !scattered.empty()) {
     faults.insert(faults.end(), scattered.begin(), scattered.end());
     rest = without_faults(whole, faults);
-    channels = channels_of(rest, analog);
+    channels = rest.rows() > 0 ? channels_of(rest, analog) : std::vector<Channel>();
   }
   const Record& record = faults.empty() ? whole : rest;
   const auto bursts = noise_bursts(channels, record);

@@ -282,7 +282,6 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
   const auto period_ns = std::get<std::int64_t>(period);
   const std::int64_t hold_ns = request.hold_ns.value_or(sample_hold_periods * period_ns);
   const Placed placed = place_rows(table, period_ns, request.phase_ns);
-  made.phase_ns = placed.phase_ns;
   if (placed.phase_ns != 0 && !request.phase_ns)
     made.warnings.push_back(
         fmt::format("ticks stand {0} behind the multiples of {1}, where all columns have come "

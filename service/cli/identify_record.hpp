@@ -22,7 +22,6 @@ struct GridRecord {
   /// Which column has gaps that its values do not reach across, how long they are and which --hold
   /// would mend it; empty where ticks are complete.
   std::string advice;
-  std::int64_t phase_ns = 0;  // how far behind the multiples of the period ticks stand
   std::vector<std::string> warnings;
 };
 

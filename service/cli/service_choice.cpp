@@ -88,7 +88,7 @@ std::variant<ServiceStatus, Refusal> chosen_service(const dds::Endpoint& endpoin
   std::vector<std::string> names;
   for (const ServiceStatus& service : services) {
     if (addressee(service) == configured && !has_double(service, services)) return service;
-    names.push_back(addressee(service));
+    names.push_back(service.service);
   }
   return Refusal{
       fmt::format("{} services are on domain {}, partition {}: {}; say which one with "

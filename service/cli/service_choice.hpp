@@ -20,10 +20,7 @@ inline constexpr std::chrono::milliseconds heartbeat_wait{1500};
 inline const std::string& addressee(const ServiceStatus& service) {
   return service.pair.empty() ? service.service : service.pair;
 }
-/// The same of the service that a configuration is for.
-inline const std::string& addressee(const Config& config) {
-  return config.pair.empty() ? config.service_name : config.pair;
-}
+using reident::addressee;
 
 /// The last heartbeats of the services that are heard: none within `timeout`, or those that come in
 /// a moment after the first one. Refused where the domain is secured and this program is not.

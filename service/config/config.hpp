@@ -127,4 +127,9 @@ std::variant<Config, std::vector<ConfigMistake>> parse_config(std::string_view t
 /// block rows of inputs and outputs ask for.
 std::int64_t least_window_ticks(const EquipmentConfig& equipment);
 
+/// Whom commands are for: the service of the configuration, or of its pair whoever leads it then.
+inline const std::string& addressee(const Config& config) {
+  return config.pair.empty() ? config.service_name : config.pair;
+}
+
 }  // namespace reident

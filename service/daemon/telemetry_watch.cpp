@@ -89,8 +89,10 @@ void TelemetryWatch::stored(const std::vector<storage::TelemetryFrame>& frames,
       if (name == spacecraft->second.names.end()) continue;
       for (Equipment& equipment : equipment_)
         if (equipment.name.spacecraft == touched.spacecraft &&
-            contains(equipment.parameters, name->second))
-          equipment.heard = now, equipment.heard_at = uptime_();
+            contains(equipment.parameters, name->second)) {
+          equipment.heard = now;
+          equipment.heard_at = uptime_();
+        }
     }
     for (const storage::TelemetryFrame& frame : frames) {
       if (frame.origin != storage::Origin::real) continue;

@@ -20,7 +20,7 @@ struct Member {
 inline constexpr double largest_score = 1;
 /// A block of which less is believed says nothing.
 inline constexpr double least_believed = 0.5;
-/// Of an error where the sensor's noise is not known.
+/// Least square of an error where the sensor's noise is not known.
 inline constexpr double least_square = 1e-300;
 
 /// Blocks of a record that later ones are measured against: eight cycles.

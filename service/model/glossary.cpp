@@ -18,8 +18,7 @@ struct Glossary {
        ""},
       {"bias_unverified", "waits: a sensor may be biased",
        "The version is better than the champion but for what a biased sensor would show too, and "
-       "no "
-       "relation of sensors rules that out.",
+       "no relation of sensors rules that out.",
        "Look at the sensors that the reason names; then 'reident approve' or 'reject'. A declared "
        "relation, or bias = \"approve\", decides such cases without you."},
       {"cannot_follow", "the standby cannot follow",

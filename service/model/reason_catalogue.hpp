@@ -181,8 +181,7 @@ struct Catalogue {
        "Surely worse than champion {champion:d} in an operating regime that this one has served."},
       {bias_unverified, "bias_unverified", none,
        "Better than champion {champion:d} but for what a biased sensor of {sensors} would show "
-       "too; "
-       "no relation binds it. Waits for an operator's approval."},
+       "too; no relation binds it. Waits for an operator's approval."},
       {too_soon, "too_soon", none,
        "The window ends {since_ns:duration} after that of champion {champion:d}; versions are at "
        "least {min_interval_ns:duration} apart."},

@@ -21,8 +21,8 @@ using identification::score;
 using identification::Score;
 
 /// Behind the last sample of the equipment's first output.
-storage::Time end_of(const history::TelemetryReader& telemetry, const EquipmentModel& model) {
-  for (const storage::SeriesInfo& series : telemetry.series())
+storage::Time end_of(const std::vector<storage::SeriesInfo>& all, const EquipmentModel& model) {
+  for (const storage::SeriesInfo& series : all)
     if (series.spacecraft == model.spacecraft && series.origin == storage::Origin::real &&
         series.name == model.outputs.front().name)
       return series.last + 1;
@@ -33,7 +33,10 @@ class Follower {
  public:
   Follower(const history::HistoryReader& history, const history::TelemetryReader& telemetry,
            const storage::EquipmentName& equipment)
-      : history_(history), telemetry_(telemetry), equipment_(equipment) {}
+      : history_(history),
+        telemetry_(telemetry),
+        equipment_(equipment),
+        series_(telemetry.series()) {}
 
   FollowUp follow(const Tenure& tenure, std::int64_t replaced, storage::Time until) const {
     FollowUp found;
@@ -50,7 +53,7 @@ class Follower {
     const auto version = history_.version(equipment_, found.version);
     if (!version) return "the version is gone";
     const EquipmentModel model = equipment_model_from_json(version->model_json);
-    found.range.end = std::min(found.range.end, end_of(telemetry_, model));
+    found.range.end = std::min(found.range.end, end_of(series_, model));
     if (found.range.end <= found.range.begin) return "no telemetry follows it";
     const storage::TimeRange run{version->window.begin, found.range.end};
     const auto ran = run_model(telemetry_, model, run, found.range.begin);
@@ -60,16 +63,15 @@ class Follower {
     const Record& record = data.record;
     const Matrix y = record.y.bottomRows(own.rows);
     if (found.replaced != 0) {
-      const auto before = history_.version(equipment_, found.replaced);
-      const EquipmentModel other = equipment_model_from_json(before.value().model_json);
-      if (is_well_formed(other.dynamics) && request_of(other) == request_of(model))
-        found.before =
-            score(y, free_run(other.dynamics, record, record.all()).bottomRows(own.rows));
+      if (const auto before = history_.version(equipment_, found.replaced)) {
+        const EquipmentModel other = equipment_model_from_json(before->model_json);
+        if (is_well_formed(other.dynamics) && request_of(other) == request_of(model))
+          found.before =
+              score(y, free_run(other.dynamics, record, record.all()).bottomRows(own.rows));
+      }
     }
-    const Duration period = request_of(model).period;
-    identification::Index fitted = 0;  // rows of its window
-    while (fitted < record.rows() && time_of_row(record, fitted, period) < version->window.end)
-      ++fitted;
+    const identification::Index fitted =  // rows of its window
+        first_row_at(record, ticks_of(version->window, request_of(model).period).end);
     if (fitted == 0) return "the telemetry of its window is gone";
     const auto mean = record.y.topRows(fitted).colwise().mean();
     found.mean = score(y, mean.replicate(own.rows, 1));
@@ -82,6 +84,7 @@ class Follower {
   const history::HistoryReader& history_;
   const history::TelemetryReader& telemetry_;
   const storage::EquipmentName& equipment_;
+  const std::vector<storage::SeriesInfo> series_;
 };
 
 }  // namespace
@@ -90,6 +93,7 @@ std::vector<FollowUp> follow_up(const history::HistoryReader& history,
                                 const history::TelemetryReader& telemetry,
                                 const storage::EquipmentName& equipment, Duration span) {
   const std::vector<Tenure> tenures = history::tenures(history, equipment);
+  if (tenures.empty()) return {};
   const Follower follower(history, telemetry, equipment);
   std::vector<FollowUp> all;
   for (std::size_t i = 0; i < tenures.size(); ++i) {

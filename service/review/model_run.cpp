@@ -10,9 +10,7 @@ namespace {
 
 identification::Index rows_before(const identification::Record& record, storage::Time time,
                                   Duration period) {
-  identification::Index row = 0;
-  while (row < record.rows() && time_of_row(record, row, period) < time) ++row;
-  return row;
+  return first_row_at(record, ticks_of({time, time}, period).begin);
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace reident::telemetry_file {
 namespace {
 
-// Of a text: a disk or link that failed leaves NUL bytes, nothing leaves others.
+// Shares of the bytes of a text: a disk or link that failed leaves NUL bytes, nothing leaves
+// others.
 constexpr double most_nuls = 0.3, most_controls = 0.02;
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 

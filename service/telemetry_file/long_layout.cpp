@@ -8,6 +8,7 @@
 
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
+#include "service/telemetry_file/time_units.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -39,13 +40,17 @@ std::optional<std::size_t> column_of(const std::vector<std::string>& columns,
   return std::nullopt;
 }
 
+std::string in_quotes(std::string_view cell) {
+  std::string text = "\"";
+  for (const char c : cell) text += c == '"' ? "\"\"" : std::string(1, c);
+  return text + "\"";
+}
+
 /// What stands in one cell of the table, a number in its shortest spelling.
 std::string cell_text(const TelemetryFile& file, std::size_t column) {
   const Cell cell = file.cell(column);
   if (cell.kind == Cell::Kind::number && !cell.is_flagged) return fmt::format("{}", cell.value);
-  std::string text = "\"";
-  for (const char c : trimmed(file.cells()[column])) text += c == '"' ? "\"\"" : std::string(1, c);
-  return text + "\"";
+  return in_quotes(trimmed(file.cells()[column]));
 }
 
 struct Table {
@@ -72,15 +77,9 @@ std::variant<Table, Error> table_of(TelemetryFile& file, LongLayout layout) {
   return table;
 }
 
-std::string quoted_name(const std::string& name) {
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
-  return text + "\"";
-}
-
 std::string text_of(const Table& table, const std::string& time_name, bool is_absolute) {
-  std::string text = quoted_name(time_name);
-  for (const std::string& parameter : table.parameters) text += "," + quoted_name(parameter);
+  std::string text = in_quotes(time_name);
+  for (const std::string& parameter : table.parameters) text += "," + in_quotes(parameter);
   text += '\n';
   for (const auto& [time, cells] : table.rows) {
     text += is_absolute ? time_text(time) : fmt::format("{}e-9", time);
@@ -130,6 +129,7 @@ std::variant<TelemetryFile, Error> open_as_table(const std::filesystem::path& pa
   plain.latest_ns = options.latest_ns;
   const bool is_absolute = file.clock().is_absolute();
   plain.time.format = is_absolute ? TimeFormat::text : TimeFormat::elapsed;
+  if (!is_absolute) plain.time.unit_ns = second_ns;  // whatever the name says
   return TelemetryFile::of_text(text_of(std::get<Table>(read), time_name, is_absolute),
                                 path.string() + " as a table", plain,
                                 file.found() + "; one sample a row");

@@ -15,7 +15,7 @@ struct LongLayout {
 /// By the names of the columns: value, Wert, _value beside parameter, name, Mnemonic, _field and
 /// their like. Absent where a file with these columns has one for each parameter.
 std::optional<LongLayout> find_long_layout(const std::vector<std::string>& columns);
-/// The same of a file, whose names are words where the column is not called parameter.
+/// Looks at the cells of a file too: a column that is not called parameter has to hold words.
 std::optional<LongLayout> find_long_layout(const TelemetryFile& file);
 
 /// Opens a file; one of one sample a row as the table of a row for each time and a column for each

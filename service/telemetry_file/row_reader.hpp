@@ -30,7 +30,8 @@ struct Layout {
   std::string header;       // a line of this text is no row; empty: there is none
   std::size_t cells = 0;    // of each row; 0: any number
   bool joins_date = false;  // a date and a time of day, a blank between them, are the first cell
-  /// Of the columns where blanks separate cells and a row may have fewer: the others are blank.
+  /// Where the columns stand, where blanks separate cells and a row may have fewer: the others are
+  /// blank.
   std::vector<Place> places;
 };
 

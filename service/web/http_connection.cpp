@@ -57,7 +57,7 @@ class Over : public Connection {
     }
   }
 
-  std::string common_name() const override { return ""; }
+  std::string common_name() override { return ""; }
 
  protected:
   auto& below() { return beast::get_lowest_layer(stream_); }
@@ -74,9 +74,9 @@ class OverTls : public Over<TlsStream> {
     co_return !error;
   }
 
-  std::string common_name() const override {
+  std::string common_name() override {
     const std::unique_ptr<X509, decltype(&X509_free)> certificate(
-        SSL_get1_peer_certificate(const_cast<TlsStream&>(stream_).native_handle()), X509_free);
+        SSL_get1_peer_certificate(stream_.native_handle()), X509_free);
     if (!certificate) return "";
     X509_NAME* subject = X509_get_subject_name(certificate.get());
     const int at = X509_NAME_get_index_by_NID(subject, NID_commonName, -1);

@@ -18,7 +18,7 @@ namespace reident::web {
 class Connection {
  public:
   virtual ~Connection() = default;
-  /// Of all that follows until it is set again: it fails, and the connection ends, after `time`.
+  /// Sets when what follows fails, and the connection ends: after `time`, until it is set again.
   virtual void expires_after(std::chrono::steady_clock::duration time) = 0;
   /// Before anything is read or written; false where client and server cannot agree.
   virtual boost::asio::awaitable<bool> begin() = 0;
@@ -29,7 +29,7 @@ class Connection {
   /// Ends it although the client may still send: a reset would take the last answer from it.
   virtual boost::asio::awaitable<void> end() = 0;
   /// The common name of the client's certificate; empty where it sent none.
-  virtual std::string common_name() const = 0;
+  virtual std::string common_name() = 0;
 };
 
 std::unique_ptr<Connection> connection_over(boost::asio::ip::tcp::socket socket);

@@ -44,6 +44,7 @@ constexpr auto as_tuple = asio::as_tuple(asio::use_awaitable);
 struct Peer {
   std::string address;  // "unix" of a Unix socket
   bool is_secure = false;
+  std::string user{};  // by the client's certificate; empty: none
 };
 
 /// Makes way for a socket: removes one that nobody listens on any more.
@@ -233,6 +234,7 @@ awaitable<void> HttpServer::Impl::serve(std::unique_ptr<Connection> connection, 
   const Place place(*this, peer.address);
   connection->expires_after(deadline);
   if (!co_await connection->begin()) co_return;
+  peer.user = connection->common_name();
   std::string unread;
   for (bool go_on = true; go_on;) {
     RequestReader reader(names);
@@ -262,7 +264,7 @@ awaitable<bool> HttpServer::Impl::answer(Connection& connection, const RequestRe
   if (request != nullptr) {
     request->peer = peer.address;
     request->is_secure = peer.is_secure;
-    if (const std::string user = connection.common_name(); !user.empty()) request->user = user;
+    if (!peer.user.empty()) request->user = peer.user;
     result = co_await ask(std::move(*request));
   } else {
     result = std::get<HttpResponse>(std::move(read));

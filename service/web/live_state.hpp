@@ -22,6 +22,11 @@ namespace reident::web {
 struct HeardStatus {
   ServiceStatus status;
   std::chrono::steady_clock::time_point heard;
+
+  /// Heartbeats come each second.
+  bool is_fresh() const {
+    return std::chrono::steady_clock::now() - heard <= std::chrono::seconds(5);
+  }
 };
 
 /// Decisions so far, by kind and whether the gate made them.

@@ -45,7 +45,7 @@ int serve(const Config& config, const Arguments& arguments, web::Accounts accoun
   std::optional<web::Site> site;
   {
     web::QueryPool pool(config.database, query_threads, query_queue);
-    web::OrderDesk orders(endpoint, config.pair.empty() ? config.service_name : config.pair);
+    web::OrderDesk orders(endpoint, addressee(config));
     site.emplace(web::Site::Parts{config, live, pool, access, orders, audit,
                                   [&server] { return server->counts(); }});
     server.emplace(

@@ -12,7 +12,6 @@
 namespace reident::web {
 namespace {
 
-constexpr double fresh_heartbeat_s = 5;
 constexpr double percent = 0.01;
 
 std::string escaped(const std::string& value) {
@@ -116,11 +115,8 @@ void RequestCounts::put(MetricsText& text) const {
 void put_service(MetricsText& text, const std::optional<HeardStatus>& heard) {
   text.begin("reident_build_info", "gauge", "Version of this program.");
   text.add(1, {{"version", std::string(program_version())}});
-  const auto age = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - heard->heard).count();
-  };
   text.begin("reident_service_up", "gauge", "Whether the service's heartbeat is fresh.");
-  const bool is_up = heard && age() <= fresh_heartbeat_s;
+  const bool is_up = heard && heard->is_fresh();
   text.add(is_up ? 1 : 0);
   if (!heard) return;
   const ServiceStatus& status = heard->status;

@@ -17,7 +17,7 @@ constexpr std::chrono::seconds longest_answer{10};
 // The service's threads come first.
 constexpr int usual_niceness = 5, last_niceness = 19;
 
-/// That this thread has had [s].
+/// Processor time of this thread [s].
 double processor_time() {
   timespec time{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

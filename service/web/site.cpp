@@ -18,8 +18,6 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds fresh(5);  // heartbeats come each second
-
 struct Route {
   std::string_view path;
   Json (*view)(const Stored& stored, const HttpRequest& request);
@@ -237,7 +235,7 @@ std::vector<ServiceStatus> Site::configured_services() const {
   for (const auto& [name, one] : parts_.live.services()) {
     const bool is_configured =
         config.pair.empty() ? name == config.service_name : one.status.pair == config.pair;
-    if (is_configured && one.heard >= SteadyClock::now() - fresh) services.push_back(one.status);
+    if (is_configured && one.is_fresh()) services.push_back(one.status);
   }
   return services;
 }
@@ -269,8 +267,7 @@ HttpResponse Site::readiness(const HttpRequest& request) const {
   const auto services = parts_.live.services();
   const auto heard = services.find(parts_.config.service_name);
   const Json status = heard == services.end() ? Json() : status_value(heard->second);
-  const bool is_fresh =
-      heard != services.end() && heard->second.heard >= SteadyClock::now() - fresh;
+  const bool is_fresh = heard != services.end() && heard->second.is_fresh();
   const std::string database = parts_.live.database_error();
   const std::string failure = is_fresh ? status["last_error"].get<std::string>() : "";
   const bool is_ready = is_fresh && failure.empty() && database.empty();

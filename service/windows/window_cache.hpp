@@ -19,7 +19,7 @@
 
 namespace reident {
 
-/// Of which sensors of derived inputs, and at which ticks, WindowData::bias_effects is wanted.
+/// What WindowData::bias_effects is wanted of: sensors of derived inputs, and ticks.
 struct WantedBiases {
   std::vector<std::string> sensors{};
   identification::TickRange ticks{};

@@ -30,10 +30,10 @@ constexpr std::string_view chunks_within =
     "SELECT first_time, last_time, samples, step, gap_limit, shard, data FROM chunk "
     "WHERE series = ? AND first_time BETWEEN ? AND ?3 AND last_time <= ?3 ORDER BY first_time";
 
-/// Of a chunk's bytes the checksum of its summary, which has one of the rest (CHUNK.md); 0 where
-/// there are too few.
+/// The checksum of a chunk's summary, which has one of the rest (CHUNK.md); 0 where there are too
+/// few bytes.
 std::uint64_t identity_of(std::span<const std::uint8_t> chunk) {
-  constexpr std::size_t begin = 72, length = 8;
+  constexpr std::size_t length = 8, begin = ChunkSummary::bytes - length;
   std::uint64_t identity = 0;
   if (chunk.size() < begin + length) return identity;
   for (const std::uint8_t byte : chunk.subspan(begin, length)) identity = identity << 8 | byte;

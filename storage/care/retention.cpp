@@ -22,7 +22,7 @@ std::uint64_t bytes_in_use(sqlite::Connection& connection) {
     return row.step() ? row.integer<std::uint64_t>(0) : 0;
   };
   const std::uint64_t pages = pragma("page_count") - pragma("freelist_count");
-  // Of a shard the share of what is still read from it.
+  // A shard counts by the share of it that is still read.
   sqlite::Query row =
       connection.query("SELECT coalesce(sum(bytes / all_chunks * chunks), 0) FROM shard");
   row.step();

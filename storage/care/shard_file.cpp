@@ -151,12 +151,6 @@ void fill(Connection& from, Connection& to, const ShardFile& file) {
 
 }  // namespace
 
-std::int64_t year_of(Time time) {
-  using namespace std::chrono;
-  const year_month_day date(floor<days>(sys_time<nanoseconds>(nanoseconds(time))));
-  return static_cast<int>(date.year());
-}
-
 std::optional<ShardFile> write_shard(Connection& database, std::int64_t year) {
   const sqlite::ReadTransaction snapshot(database);
   std::optional<ShardFile> file = describe(database, year);

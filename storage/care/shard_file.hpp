@@ -21,9 +21,6 @@ struct ShardFile {
   std::uint64_t bytes = 0;  // of the file
 };
 
-/// The year of `time` in UTC.
-std::int64_t year_of(Time time);
-
 /// Writes the chunks that are in the database itself and end in `year`. Absent where there are
 /// none. The file is whole and on the disk when this returns; a file of the name is replaced.
 /// Throws Error where the database or the disk refuses.

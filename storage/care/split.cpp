@@ -1,6 +1,7 @@
 #include "storage/care/split.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -124,6 +125,12 @@ class Split {
 };
 
 }  // namespace
+
+std::int64_t year_of(Time time) {
+  using namespace std::chrono;
+  const year_month_day date(floor<days>(sys_time<nanoseconds>(nanoseconds(time))));
+  return static_cast<int>(date.year());
+}
 
 SplitReport split_by_year(Archive& archive, std::int64_t before,
                           const std::function<bool(const SplitProgress&)>& go_on) {

@@ -15,6 +15,9 @@
 
 namespace reident::storage {
 
+/// The year of `time` in UTC.
+std::int64_t year_of(Time time);
+
 /// How far a split is: chunks that are to move, and those that did.
 struct SplitProgress {
   std::uint64_t chunks = 0;

@@ -17,6 +17,7 @@ measured and, as the last line, one JSON object of the figures:
   billion_append, billion_window, billion_month  costs of an archive of N samples over those of a
                   small one; _of_shards: with a year in a shard
   verify_day_s    `reident verify --known` of that archive after a day of telemetry more
+  split_s         elapsed time of `reident archive split` of that archive
 """
 
 import argparse

@@ -76,7 +76,7 @@ std::vector<char> good_file(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// False where it was refused, with a reason.
+/// Whatever ends a read is storage's error, with a reason.
 template <class Action>
 void look(const Action& action) {
   try {

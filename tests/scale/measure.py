@@ -1,6 +1,7 @@
 """What a constellation takes, measured with few spacecraft and drawn out to many.
 
-    unshare --net tests/scale/measure.py BUILD [--counts 1,2,4,8] [--seconds 20] [--folder FOLDER]
+    unshare --net python3 tests/scale/measure.py BUILD [--counts 1,2,4,8] [--seconds 20]
+                                                 [--folder FOLDER]
 
 In a network namespace of its own, whose counters then show these programs alone. For each count
 there are as many services, each with its database and its simulator, by the files of `reident fleet

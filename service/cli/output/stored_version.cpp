@@ -29,8 +29,8 @@ std::string versions_text(const HistoryReader& history, const storage::Equipment
 }
 
 /// The equipment that a subject means.
-std::variant<storage::EquipmentName, Refusal> find_equipment(const HistoryReader& history,
-                                                             const Subject& subject) {
+std::variant<storage::EquipmentName, Refusal> equipment_named(const HistoryReader& history,
+                                                              const Subject& subject) {
   std::optional<storage::EquipmentName> found;
   for (const storage::EquipmentName& one : history.equipment()) {
     if (one.equipment != subject.equipment) continue;
@@ -68,6 +68,30 @@ std::variant<Subject, Refusal> parse_subject(const std::string& text) {
   return subject;
 }
 
+std::variant<storage::EquipmentName, Refusal> parse_equipment(const std::string& text) {
+  if (text.empty()) return storage::EquipmentName{};
+  const auto parsed = parse_subject(text);
+  if (const auto* refusal = std::get_if<Refusal>(&parsed)) return *refusal;
+  const Subject& subject = std::get<Subject>(parsed);
+  if (subject.version) return Refusal{text + " names a version; name the equipment alone"};
+  return storage::EquipmentName{subject.spacecraft, subject.equipment};
+}
+
+std::variant<std::vector<storage::EquipmentName>, Refusal> find_equipment(
+    const HistoryReader& history, const std::string& text) {
+  const auto parsed = parse_equipment(text);
+  if (const auto* refusal = std::get_if<Refusal>(&parsed)) return *refusal;
+  const auto& wanted = std::get<storage::EquipmentName>(parsed);
+  std::vector<storage::EquipmentName> found;
+  for (const storage::EquipmentName& one : history.equipment())
+    if ((wanted.equipment.empty() || one.equipment == wanted.equipment) &&
+        (wanted.spacecraft.empty() || one.spacecraft == wanted.spacecraft))
+      found.push_back(one);
+  if (!found.empty()) return found;
+  return Refusal{fmt::format("nothing is known about {}; the database has {}",
+                             text.empty() ? "any equipment" : text, equipment_in(history))};
+}
+
 void add_version_argument(CLI::App& command, std::string& subject) {
   command
       .add_option("subject", subject, "SPACECRAFT/EQUIPMENT@VERSION; without @VERSION the champion")
@@ -81,7 +105,7 @@ void add_version_argument(CLI::App& command, std::string& subject) {
 
 std::variant<StoredVersion, Refusal> find_stored_version(const HistoryReader& history,
                                                          const Subject& subject) {
-  const auto found = find_equipment(history, subject);
+  const auto found = equipment_named(history, subject);
   if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
   const auto& equipment = std::get<storage::EquipmentName>(found);
   std::optional<std::int64_t> number = subject.version;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "service/cli/command.hpp"
 #include "service/cli/history_access.hpp"
@@ -21,6 +22,15 @@ struct Subject {
 };
 
 std::variant<Subject, Refusal> parse_subject(const std::string& text);
+
+/// SPACECRAFT/EQUIPMENT taken apart; what is left out is empty, both where the text is. A text that
+/// names a version is refused.
+std::variant<storage::EquipmentName, Refusal> parse_equipment(const std::string& text);
+
+/// All equipment that something is known about and that a text, as of parse_equipment(), means.
+/// Refused where there is none.
+std::variant<std::vector<storage::EquipmentName>, Refusal> find_equipment(
+    const history::HistoryReader& history, const std::string& text);
 
 /// The required first argument of a verb that is about one version.
 void add_version_argument(CLI::App& command, std::string& subject);

@@ -10,7 +10,6 @@
 #include "service/support/progress.hpp"
 #include "service/support/size_text.hpp"
 #include "service/support/stop_signal.hpp"
-#include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
 #include "storage/archive/holdings.hpp"
 #include "storage/care/split.hpp"
@@ -21,19 +20,19 @@ namespace {
 struct Arguments {
   DatabaseOptions database;
   std::string file;
-  std::optional<int> before;
+  std::optional<std::int64_t> before;
   bool json = false;
 };
 
 /// The year of the newest telemetry, or of the clock where that is earlier.
-int year_of_newest(const storage::Database& database) {
+std::int64_t year_of_newest(const storage::Database& database) {
   storage::Time newest = 0;
   for (const storage::SeriesInfo& series : storage::all_series(database))
     newest = std::max(newest, series.last);
-  return std::stoi(time_text(std::min(newest, utc_now())).substr(0, 4));
+  return storage::year_of(std::min(newest, utc_now()));
 }
 
-void print(const Arguments& arguments, int before, const storage::SplitReport& report) {
+void print(const Arguments& arguments, std::int64_t before, const storage::SplitReport& report) {
   if (arguments.json) {
     nlohmann::ordered_json shards = nlohmann::ordered_json::array();
     for (const auto& shard : report.made)
@@ -58,7 +57,7 @@ void print(const Arguments& arguments, int before, const storage::SplitReport& r
 int split(const Arguments& arguments) {
   const StopSignal stop;
   storage::Database database(arguments.file, storage::Database::Mode::read_write);
-  const int before = arguments.before.value_or(year_of_newest(database));
+  const std::int64_t before = arguments.before.value_or(year_of_newest(database));
   storage::Archive archive(database);
   archive.compact();
   Progress bar;

@@ -55,21 +55,12 @@ Line line_of(const HistoryReader& history, const EquipmentName& equipment, stora
 
 std::variant<std::vector<Line>, Refusal> lines(const HistoryReader& history, storage::Time time,
                                                const std::string& text, bool by_telemetry) {
-  Subject wanted;
-  if (!text.empty()) {
-    const auto parsed = parse_subject(text);
-    if (const auto* refusal = std::get_if<Refusal>(&parsed)) return *refusal;
-    wanted = std::get<Subject>(parsed);
-    if (wanted.version) return Refusal{text + " names a version; name the equipment alone"};
-  }
+  const auto equipment = find_equipment(history, text);
+  if (const auto* refusal = std::get_if<Refusal>(&equipment)) return *refusal;
   std::vector<Line> found;
-  for (const EquipmentName& one : history.equipment())
-    if ((wanted.equipment.empty() || one.equipment == wanted.equipment) &&
-        (wanted.spacecraft.empty() || one.spacecraft == wanted.spacecraft))
-      found.push_back(line_of(history, one, time, by_telemetry));
-  if (!found.empty()) return found;
-  return Refusal{fmt::format("nothing is known about {}; the database has {}",
-                             text.empty() ? "any equipment" : text, equipment_in(history))};
+  for (const EquipmentName& one : std::get<std::vector<EquipmentName>>(equipment))
+    found.push_back(line_of(history, one, time, by_telemetry));
+  return found;
 }
 
 /// To the second.

@@ -179,6 +179,7 @@ std::variant<DataRequest, Refusal> complete(const Arguments& arguments) {
 int show(const DataRequest& request) {
   auto reading = request.reading;
   reading.any_epoch = true;
+  if (request.segment) reading.force_times = true;  // as in read_data()
   const auto shown = telemetry_file::dry_run(telemetry_file::open_as_table(request.file, reading),
                                              request.file, reading.time.column.has_value());
   if (const auto* error = std::get_if<csv::Error>(&shown)) return refuse({error->message});

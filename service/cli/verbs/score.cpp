@@ -34,21 +34,12 @@ struct Scored {
 
 std::variant<std::vector<Scored>, Refusal> scored(const Readers& readers, const std::string& text,
                                                   Duration span) {
-  Subject wanted;
-  if (!text.empty()) {
-    const auto parsed = parse_subject(text);
-    if (const auto* refusal = std::get_if<Refusal>(&parsed)) return *refusal;
-    wanted = std::get<Subject>(parsed);
-    if (wanted.version) return Refusal{text + " names a version; name the equipment alone"};
-  }
+  const auto equipment = find_equipment(readers.history, text);
+  if (const auto* refusal = std::get_if<Refusal>(&equipment)) return *refusal;
   std::vector<Scored> all;
-  for (const EquipmentName& one : readers.history.equipment())
-    if ((wanted.equipment.empty() || one.equipment == wanted.equipment) &&
-        (wanted.spacecraft.empty() || one.spacecraft == wanted.spacecraft))
-      all.push_back({one, follow_up(readers.history, readers.telemetry, one, span)});
-  if (!all.empty()) return all;
-  return Refusal{fmt::format("nothing is known about {}; the database has {}",
-                             text.empty() ? "any equipment" : text, equipment_in(readers.history))};
+  for (const EquipmentName& one : std::get<std::vector<EquipmentName>>(equipment))
+    all.push_back({one, follow_up(readers.history, readers.telemetry, one, span)});
+  return all;
 }
 
 ordered_json errors_json(const Score& score) {

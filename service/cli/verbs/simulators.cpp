@@ -30,15 +30,6 @@ struct Arguments {
   bool json = false;
 };
 
-std::variant<storage::EquipmentName, Refusal> wanted_of(const std::string& text) {
-  if (text.empty()) return storage::EquipmentName{};
-  const auto parsed = parse_subject(text);
-  if (const auto* refusal = std::get_if<Refusal>(&parsed)) return *refusal;
-  const Subject& subject = std::get<Subject>(parsed);
-  if (subject.version) return Refusal{text + " names a version; name the equipment alone"};
-  return storage::EquipmentName{subject.spacecraft, subject.equipment};
-}
-
 /// One line of a table: what a simulator says may hold line breaks.
 std::string one_line(std::string text) {
   std::replace_if(
@@ -178,7 +169,7 @@ void print_json(const dds::Endpoint& endpoint, const PartitionSurvey& sight,
 int run(const Arguments& arguments) {
   const auto found = chosen_endpoint(arguments.config, arguments.domain, arguments.partition);
   if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
-  const auto wanted = wanted_of(arguments.subject);
+  const auto wanted = parse_equipment(arguments.subject);
   if (const auto* refusal = std::get_if<Refusal>(&wanted)) return refuse(*refusal);
   const dds::Endpoint& endpoint = std::get<dds::Endpoint>(found);
   const PartitionSurvey sight =

@@ -2,7 +2,8 @@
 came in a day, compared with a small archive of the same telemetry. The large one is measured with
 its telemetry in the database, and with that of 2017 in a shard.
 
-Costs are processor time, the least of several runs: other work of the machine does not count.
+Costs are processor time, the least of several runs: other work of the machine does not count. The
+split and the verify are elapsed time.
 """
 
 import resource
@@ -47,7 +48,7 @@ class Growth:
         return (many - one) / (WINDOWS - 1)
 
     def append_s(self, file):
-        """Into a copy, so that every run finds the same archive."""
+        """Into a copy, so that the archive stays as it is."""
         copy = self.folder / "copy.db"
         shutil.copy(file, copy)
         if (shards := file.with_name(file.name + ".shards")).exists():

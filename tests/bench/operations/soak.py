@@ -19,7 +19,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 from collections import Counter
 from contextlib import suppress
 from pathlib import Path
@@ -131,7 +130,7 @@ class Life:
         return [look for look in self.looks if look[0] > SETTLED_S]
 
     def growth(self):
-        """Of memory [KiB] and files, from the first look at the settled process to the last."""
+        """Growth of memory [KiB] and files, from the first look at the settled process to the last."""
         looks = self.settled()
         return (looks[-1][1] - looks[0][1], looks[-1][2] - looks[0][2]) if looks else (0, 0)
 

@@ -14,7 +14,6 @@ import signal
 import statistics
 import sys
 import time
-import unittest
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent

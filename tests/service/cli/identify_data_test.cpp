@@ -1,4 +1,4 @@
-// The same file gives the same rows to `identify` and, through the archive, to the service.
+// `identify` and, through the archive, the service get the same rows from the same file.
 #include "service/cli/identify_data.hpp"
 
 #include <random>

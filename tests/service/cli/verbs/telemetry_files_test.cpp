@@ -160,6 +160,16 @@ TEST_F(TelemetryFiles, OfOneSampleARowGiveTheModelOfTheTable) {
   EXPECT_EQ(undone.out, "480 samples of 2 parameters removed; the file can be imported again\n");
 }
 
+TEST_F(TelemetryFiles, OfOneSampleARowTakeTheUnitOfElapsedTimesOnce) {
+  std::string text = "time_ms,parameter,value\n";
+  for (std::size_t row = 0; row < data_.u.size(); ++row)
+    text += fmt::format("{0},u,{1:.3f}\n{0},y,{2:.3f}\n", 10'000 * row, data_.u[row], data_.y[row]);
+  write("elapsed.csv", text);
+  const json model = json_of({"identify", "elapsed.csv", "--time", "time_ms", "--input", "u",
+                              "--output", "y", "--order", "1"});
+  EXPECT_EQ(model["sample_period_s"], 10.0);
+}
+
 TEST_F(TelemetryFiles, WhoseTimesJitterOrAreRoundedGiveTheModelOfTheGrid) {
   write("plain.csv", plain());
   const double expected = pole(identify("plain.csv"));
@@ -205,6 +215,9 @@ TEST_F(TelemetryFiles, OfSeveralRecordsFitAStateToEach) {
   EXPECT_NEAR(model["A"][0][0].get<double>(), 0.9, 0.01);
   EXPECT_THAT(model["warnings"], Contains(HasSubstr("2 stretches")));
   EXPECT_EQ(json_of(words("mixed.csv"))["A"], model["A"]);
+  auto shown = words("mixed.csv");
+  shown.push_back("--dry-run");
+  EXPECT_EQ(reident(shown).status, 0);
   auto without_time = words("apart.csv");
   without_time.erase(without_time.begin() + 2, without_time.begin() + 4);
   EXPECT_EQ(json_of(without_time)["A"], model["A"]);
