@@ -133,13 +133,19 @@ class Loop(EndToEnd):
 
         simulator = self.start_simulator("derived", "--report", "0.2")
         wait_until(lambda: self.runs(simulator) == [champion], "the simulator runs the champion")
-        self.replay_rows("second", readers=2, count=1900, first=1900)
 
         def events(kind):
             lines = simulator.out.read_text().splitlines()
             return [event for event in map(json.loads, filter(None, lines))
                     if event.get("event") == kind]
 
+        # Who has no descriptors yet passes over frames: a source stays until they have come.
+        names = self.replay(plant.write(self.folder / "names.csv", plant.rows(count=10, first=1900)),
+                            "--speed", "max", "--source", "names", "--linger", "1h")
+        wait_until(lambda: [event["undescribed"] for event in events("running")][-1:] == [[]],
+                   "the simulator has the descriptors")
+        names.terminate()
+        self.replay_rows("second", readers=2, count=1890, first=1910)
         wait_until(lambda: any(event["ticks"] > 1000 for event in events("running")),
                    "the simulator has run over the telemetry")
         self.assertEqual(simulator.terminate()[0], 0, simulator.text())
