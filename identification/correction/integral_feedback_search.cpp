@@ -138,6 +138,26 @@ RowRange liveliest(const Record& record, RowRange rows, const Vector& error_limi
   return best;
 }
 
+/// Scores the placements on a few rows by the loop without its limits.
+void score_quickly(const StateSpaceModel& model, const Record& record, RowRange rows,
+                   std::vector<TrackingSearch>& placements) {
+  const Matrix y = record.y.middleRows(rows.begin, rows.size());
+  const std::vector<Segment> segments = segments_within(record, rows);
+  Matrix free_errors = y;
+  for (const Segment& segment : segments)
+    free_errors.middleRows(segment.begin - rows.begin, segment.size()) -=
+        free_run(model, record, {segment.begin, segment.end});
+  for (TrackingSearch& one : placements) {
+    Matrix y_hat = y;
+    for (const Segment& segment : segments) {
+      const Index begin = segment.begin - rows.begin;
+      y_hat.middleRows(begin, segment.size()) -=
+          tracked_errors(model, one.gain, free_errors.middleRows(begin, segment.size()));
+    }
+    one.tracking = score(y, y_hat);
+  }
+}
+
 void score_tracking(const StateSpaceModel& model, const Record& record, RowRange rows,
                     TrackingSearch& one) {
   one.tracking = score(record.y.middleRows(rows.begin, rows.size()),
@@ -162,7 +182,7 @@ std::variant<TrackingSearch, Verdict> search_tracking(const StateSpaceModel& mod
   const auto by_error = [](const TrackingSearch& a, const TrackingSearch& b) {
     return a.tracking.mrse() < b.tracking.mrse();
   };
-  for (TrackingSearch& one : tried) score_tracking(model, record, few, one);
+  score_quickly(model, record, few, tried);
   const auto kept = std::min(std::ssize(tried), runs_on_all_rows);
   std::partial_sort(tried.begin(), tried.begin() + kept, tried.end(), by_error);
   tried.resize(static_cast<std::size_t>(kept));

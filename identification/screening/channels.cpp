@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identification/screening/order_statistics.hpp"
+
 namespace reident::identification {
 namespace {
 
@@ -12,6 +14,7 @@ constexpr double tails = 0.01;  // of the samples at either end: a few faults do
 
 std::vector<Plateau> plateaus_of(const Vector& values, const std::vector<Segment>& segments) {
   std::vector<Plateau> plateaus;
+  plateaus.reserve(static_cast<std::size_t>(values.size()));
   for (std::size_t s = 0; s < segments.size(); ++s)
     for (Index row = segments[s].begin; row < segments[s].end; ++row) {
       if (row == segments[s].begin || values(row) != plateaus.back().value)
@@ -24,13 +27,14 @@ std::vector<Plateau> plateaus_of(const Vector& values, const std::vector<Segment
 double least_jump_of(const Channel& channel) {
   const std::vector<Plateau>& plateaus = channel.plateaus;
   std::vector<double> steps;
+  steps.reserve(plateaus.size());
   for (std::size_t i = 1; i < plateaus.size(); ++i)
     if (plateaus[i].segment == plateaus[i - 1].segment)
       steps.push_back(std::abs(plateaus[i].value - plateaus[i - 1].value));
-  const double usual = steps.empty() ? 0 : quantile(std::move(steps), 0.5);
-  std::vector<double> values(channel.values.begin(), channel.values.end());
-  const double high = quantile(values, 1 - tails);
-  const double range = high - quantile(std::move(values), tails);
+  const double usual = steps.empty() ? 0 : quantile(steps, 0.5);
+  const std::span<const double> values(channel.values.data(),
+                                       static_cast<std::size_t>(channel.values.size()));
+  const double range = quantile(values, 1 - tails) - quantile(values, tails);
   return std::max(jump_steps * usual, jump_range_share * range);
 }
 
@@ -54,10 +58,11 @@ std::vector<Channel> channels_of(const Record& record, const std::vector<bool>& 
   return channels;
 }
 
-double quantile(std::vector<double> values, double share) {
-  const auto place = static_cast<std::ptrdiff_t>(share * double(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
+double median_size(const std::vector<Plateau>& plateaus) {
+  std::vector<double> sizes;
+  sizes.reserve(plateaus.size());
+  for (const Plateau& plateau : plateaus) sizes.push_back(double(plateau.size()));
+  return quantile(sizes, 0.5);
 }
 
 double movement(const Vector& values, Index begin, Index end) {

@@ -32,8 +32,8 @@ struct Channel {
 /// Returns the channels, inputs first; `analog` has m + p entries. Requires a row.
 std::vector<Channel> channels_of(const Record& record, const std::vector<bool>& analog);
 
-/// Returns the value that a share of the others is not above. Requires a value.
-double quantile(std::vector<double> values, double share);
+/// Returns the median of the plateaus' rows. Requires a plateau.
+double median_size(const std::vector<Plateau>& plateaus);
 
 /// Returns the largest less the smallest value of some rows.
 double movement(const Vector& values, Index begin, Index end);

@@ -57,12 +57,6 @@ bool another_jumps(const std::vector<Channel>& channels, std::size_t self,
   return false;
 }
 
-double median_size(const std::vector<Plateau>& plateaus) {
-  std::vector<double> sizes;
-  for (const Plateau& plateau : plateaus) sizes.push_back(double(plateau.size()));
-  return quantile(std::move(sizes), 0.5);
-}
-
 }  // namespace
 
 std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self) {

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+
+#include "identification/screening/order_statistics.hpp"
 
 namespace reident::identification {
 namespace {
 
 constexpr Index noise_block = 60;
-constexpr Index trimmed_rows = 6;  // of a block: the jumps at load steps
+constexpr std::size_t trimmed_rows = 6;  // of a block: the jumps at load steps
 constexpr std::size_t least_noisy_blocks = 3;
 constexpr double noise_factor = 4;
 constexpr double common_noise_factor = 2;
@@ -33,12 +34,22 @@ std::vector<Block> blocks_of(const Record& record) {
 
 double roughness(const Eigen::Ref<const Vector>& values, Index begin) {
   std::array<double, noise_block - 2> bends;
-  for (Index k = 0; k < noise_block - 2; ++k)
-    bends[static_cast<std::size_t>(k)] =
-        std::abs(values(begin + k + 1) - (values(begin + k) + values(begin + k + 2)) / 2);
-  const auto kept = bends.end() - trimmed_rows;
-  std::nth_element(bends.begin(), kept, bends.end());
-  return std::accumulate(bends.begin(), kept, 0.0) / double(kept - bends.begin());
+  std::array<double, trimmed_rows> largest{};  // ascending
+  for (std::size_t k = 0; k < bends.size(); ++k) {
+    const Index row = begin + static_cast<Index>(k);
+    bends[k] = std::abs(values(row + 1) - (values(row) + values(row + 2)) / 2);
+    if (bends[k] <= largest.front()) continue;
+    std::size_t place = 0;
+    for (; place + 1 < largest.size() && largest[place + 1] < bends[k]; ++place)
+      largest[place] = largest[place + 1];
+    largest[place] = bends[k];
+  }
+  double sum = 0;
+  std::size_t kept = 0;
+  for (const double bend : bends)
+    if (bend < largest.front()) sum += bend, ++kept;
+  constexpr std::size_t most_kept = bends.size() - largest.size();
+  return (sum + largest.front() * double(most_kept - kept)) / double(most_kept);
 }
 
 /// The roughness of each block of each channel over the usual one; empty where the channel is not

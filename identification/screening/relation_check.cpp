@@ -4,7 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
-#include <utility>
+
+#include "identification/screening/order_statistics.hpp"
 
 namespace reident::identification {
 namespace {
@@ -16,10 +17,8 @@ constexpr Index margin_rows = 60;
 /// A shift counts from this share of the tolerance on.
 constexpr double shift_share = 0.5;
 
-double median(std::vector<double> sorted) {
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+double median(const std::vector<double>& values) {
+  return nth_smallest(values, values.size() / 2);
 }
 
 /// The rows of whose surrounding range of `length` rows more than half are more than `limit` away
@@ -28,6 +27,7 @@ double median(std::vector<double> sorted) {
 std::vector<RowRange> ranges_beyond(const Vector& r, double centre, double limit, Index length,
                                     bool on_one_side) {
   const Index rows = r.size();
+  if (2 * ((r.array() - centre).abs() > limit).count() <= length) return {};
   Index above = 0, below = 0;
   const auto count = [&](Index row, Index one) {
     const double away = r(row) - centre;
@@ -56,7 +56,7 @@ double residual_of(const Vector& r, RowRange rows, bool is_shift) {
   const double middle = median(values);
   if (is_shift) return middle;
   for (double& value : values) value = std::abs(value);
-  return std::copysign(median(std::move(values)), middle);
+  return std::copysign(median(values), middle);
 }
 
 std::int64_t tick_of(const Record& record, Index row) {
@@ -86,7 +86,7 @@ std::vector<Inconsistency> inconsistencies(const Record& residual, double tolera
   std::copy_if(r.begin(), r.end(), std::back_inserter(tolerable),
                [tolerance](double value) { return std::abs(value) <= tolerance; });
   if (static_cast<Index>(tolerable.size()) >= shift_rows)
-    take(median(std::move(tolerable)), shift_share * tolerance, shift_rows, true);
+    take(median(tolerable), shift_share * tolerance, shift_rows, true);
   std::stable_sort(found.begin(), found.end(), [](const Inconsistency& a, const Inconsistency& b) {
     return a.ticks.begin < b.ticks.begin;
   });

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "identification/screening/order_statistics.hpp"
+
 namespace reident::identification {
 namespace {
 
@@ -23,19 +25,19 @@ struct Spike {
 std::vector<Spike> outstanding(const Channel& channel) {
   const std::vector<Plateau>& plateaus = channel.plateaus;
   if (plateaus.size() < 3) return {};
-  std::vector<double> lengths;
-  for (const Plateau& plateau : plateaus) lengths.push_back(double(plateau.size()));
-  const double longest = 2 * quantile(std::move(lengths), 0.5);
   std::vector<Spike> spikes;
   for (std::size_t i = 1; i + 1 < plateaus.size(); ++i) {
     const Plateau &before = plateaus[i - 1], &plateau = plateaus[i], &after = plateaus[i + 1];
     if (before.segment != plateau.segment || after.segment != plateau.segment) continue;
     const double up = plateau.value - before.value, down = plateau.value - after.value;
     const double height = std::min(std::abs(up), std::abs(down));
-    if (up * down > 0 && height > channel.least_jump && double(plateau.size()) <= longest &&
+    if (height > channel.least_jump && up * down > 0 &&
         std::abs(after.value - before.value) < neighbours_agree * height)
       spikes.push_back({plateau, up > 0 ? height : -height});
   }
+  if (spikes.empty()) return {};
+  const double longest = 2 * median_size(plateaus);
+  std::erase_if(spikes, [&](const Spike& one) { return double(one.plateau.size()) > longest; });
   return spikes;
 }
 
@@ -84,7 +86,7 @@ bool step_explains(const Channel& self, const Channel& other, const Spike& spike
   const double height = std::abs(spike.height);
   // A moment of its own kind: it may be what the equipment does, where the value is a possible one.
   if (moved.size() < least_comparable) return height <= self.range() - height;
-  return quantile(std::move(moved), 0.75) >= explained_share * height;
+  return quantile(moved, 0.75) >= explained_share * height;
 }
 
 /// How far rows [begin, end) stand out from the rows on both sides; 0 of a step.

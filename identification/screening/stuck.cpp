@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identification/screening/order_statistics.hpp"
+
 namespace reident::identification {
 namespace {
 
@@ -25,7 +27,7 @@ double quiet_movement(const Channel& channel, Index rows) {
     const Index begin = (total - rows) * i / (windows - 1);
     movements.push_back(movement(channel.values, begin, begin + rows));
   }
-  return quantile(std::move(movements), 0.25);
+  return quantile(movements, 0.25);
 }
 
 bool another_moves(const std::vector<Channel>& channels, std::size_t self, const Plateau& plateau) {
@@ -66,18 +68,19 @@ bool rests_at_end_of_range(const Channel& channel, const Plateau& plateau) {
 
 /// The longest plateaus, as many as chance does not explain: each sample of the rest of the channel
 /// repeats the one before with some probability, and none of the rest is nearly as long.
-std::vector<Plateau> unusually_long(std::vector<Plateau> plateaus) {
-  const std::size_t looked_at = std::min(plateaus.size(), most_stuck + 1);
-  if (looked_at < 4) return {};  // hardly any samples to compare with
-  std::partial_sort(plateaus.begin(), plateaus.begin() + static_cast<std::ptrdiff_t>(looked_at),
-                    plateaus.end(), [](const Plateau& a, const Plateau& b) {
-                      return a.size() != b.size() ? a.size() > b.size() : a.begin < b.begin;
-                    });
-  Index rest = 0;  // rows of the plateaus behind the longest ones
-  for (std::size_t i = looked_at - 1; i < plateaus.size(); ++i) rest += plateaus[i].size();
-  std::size_t count = looked_at - 1;
+std::vector<Plateau> unusually_long(const Channel& channel) {
+  const std::size_t all = channel.plateaus.size();
+  std::vector<Plateau> plateaus(std::min(all, most_stuck + 1));  // the longest, and one more
+  if (plateaus.size() < 4) return {};  // hardly any samples to compare with
+  std::partial_sort_copy(channel.plateaus.begin(), channel.plateaus.end(), plateaus.begin(),
+                         plateaus.end(), [](const Plateau& a, const Plateau& b) {
+                           return a.size() != b.size() ? a.size() > b.size() : a.begin < b.begin;
+                         });
+  std::size_t count = plateaus.size() - 1;
+  Index rest = channel.values.size();  // rows of the plateaus behind the longest ones
+  for (std::size_t i = 0; i < count; ++i) rest -= plateaus[i].size();
   for (; count > 0; --count) {
-    const auto others = double(plateaus.size() - count);
+    const auto others = double(all - count);
     const double log_repeats = std::log1p(-others / double(rest));
     const auto least = double(plateaus[count - 1].size());
     if (plateaus[count - 1].size() >= least_stuck_rows &&
@@ -95,7 +98,7 @@ std::vector<Plateau> unusually_long(std::vector<Plateau> plateaus) {
 std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::size_t self) {
   const Channel& channel = channels[self];
   std::vector<Plateau> stuck;
-  for (const Plateau& plateau : unusually_long(channel.plateaus))
+  for (const Plateau& plateau : unusually_long(channel))
     if (!rests_at_end_of_range(channel, plateau) &&
         !is_repeated_elsewhere(channel.plateaus, plateau) && another_moves(channels, self, plateau))
       stuck.push_back(plateau);

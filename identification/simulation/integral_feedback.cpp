@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "identification/numerics/decompositions.hpp"
+#include "identification/numerics/kernels.hpp"
 #include "identification/simulation/initial_state.hpp"
 
 namespace reident::identification {
@@ -149,6 +150,24 @@ void Tracker::advance() {
   next_.noalias() = model_.A * x_f_;
   next_.noalias() += model_.B * du_;
   x_f_.swap(next_);
+}
+
+Matrix tracked_errors(const StateSpaceModel& model, const TrackingGain& gain,
+                      const Eigen::Ref<const Matrix>& free_errors) {
+  const Index n = model.order(), p = model.outputs(), size = n + 2 * p;
+  Matrix M = Matrix::Zero(size + p, size + p);
+  M.topLeftCorner(size, size) = closed_loop(model, gain);
+  // An error is what its integrator gets.
+  M.bottomLeftCorner(p, size) = M.block(n, 0, p, size);
+  M.block(size, n, p, p) -= Matrix::Identity(p, p);
+  M.block(n, size, p, p).setIdentity();
+  M.bottomRightCorner(p, p).setIdentity();
+  const Matrix driving = free_errors.transpose();
+  Vector state = Vector::Zero(size), work(size + p);
+  Matrix errors(p, free_errors.rows());
+  run_state_space(M.data(), size, p, p, driving.data(), driving.cols(), state.data(), work.data(),
+                  errors.data());
+  return errors.transpose();
 }
 
 Matrix tracked_run(const StateSpaceModel& model, const TrackingGain& gain, const Record& record,

@@ -84,6 +84,12 @@ class Tracker {
   Vector du_, y_hat_, e_, next_;
 };
 
+/// Returns y[k] - yhat[k] (rows x p) of a run whose free run errs by `free_errors` (rows x p), from
+/// v = 0. As tracked_run() where no error reaches error_limit, at a fraction of its time. Requires
+/// sizes that agree.
+Matrix tracked_errors(const StateSpaceModel& model, const TrackingGain& gain,
+                      const Eigen::Ref<const Matrix>& free_errors);
+
 /// Returns the outputs (rows.size() x p) of the model that follows the record's outputs. Each
 /// segment starts from the estimated state, the first one from `x0` (n) where it is given, with
 /// v = 0: nothing is carried over a gap. Requires what the Tracker does.

@@ -87,7 +87,7 @@ LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipm
 
 void LeagueKeeper::forget(storage::TimeRange range) {
   reader_.forget(range);
-  samples_.clear();
+  std::erase_if(samples_, [&](const auto& kept) { return reader_.reads(kept.first, range); });
 }
 
 void LeagueKeeper::read_members(const storage::Registry& registry) {

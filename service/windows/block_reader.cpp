@@ -18,6 +18,10 @@ constexpr int cycles_checked = 4;
 /// With more sensor faults found in a tick, others that are too small to be found spoil the scores.
 constexpr double most_faults = 1.0 / 400;
 
+Duration checked_before(Duration block) {
+  return cycles_checked * blocks_of_cycle * block;
+}
+
 /// Mean squared difference of the outputs at the ticks that both have.
 std::vector<double> mean_squared_difference(const Record& one, const Record& other) {
   identification::Vector squares = identification::Vector::Zero(one.y.cols());
@@ -51,13 +55,19 @@ Duration block_length(const EquipmentConfig& equipment) {
 }
 
 Duration checked_before_block(const EquipmentConfig& equipment) {
-  return cycles_checked * blocks_of_cycle * block_length(equipment);
+  return checked_before(block_length(equipment));
 }
 
 BlockReader::BlockReader(const std::string& spacecraft, const EquipmentConfig& equipment)
     : length_(block_length(equipment)),
       telemetry_(request_of(spacecraft, equipment), 1, checks_of(equipment)),
       derived_sensors_(sensors_of(telemetry_.request().derived)) {}
+
+bool BlockReader::reads(storage::Time begin, storage::TimeRange range) const {
+  // A sample serves until it is too old.
+  return range.begin < begin + length_ &&
+         range.end > begin - checked_before(length_) - telemetry_.request().sample_hold;
+}
 
 std::vector<double> BlockReader::baseline(const storage::Archive& archive,
                                           const BlockSamples& samples,
@@ -79,8 +89,7 @@ BlockSamples BlockReader::read(const storage::Archive& archive, storage::Time be
   samples.block.range = {begin, begin + length_};
   std::variant<WindowData, UnknownParameter> loaded = UnknownParameter{};
   try {
-    const storage::TimeRange checked{begin - cycles_checked * blocks_of_cycle * length_,
-                                     begin + length_};
+    const storage::TimeRange checked{begin - checked_before(length_), begin + length_};
     const auto wanted = ticks_of({begin - length_, begin + length_}, period);
     loaded = telemetry_.load(archive, checked, {derived_sensors_, wanted});
     auto* data = std::get_if<WindowData>(&loaded);

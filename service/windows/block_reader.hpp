@@ -49,6 +49,9 @@ class BlockReader {
   /// is not described, or samples are damaged. Throws storage::Error where the file cannot be read.
   BlockSamples read(const storage::Archive& archive, storage::Time begin);
 
+  /// Whether samples in `range` can change what read() gives of the block that begins at `begin`.
+  bool reads(storage::Time begin, storage::TimeRange range) const;
+
   /// Forgets what samples in `range` serve, since samples were stored there.
   void forget(storage::TimeRange range) { telemetry_.forget(range); }
 

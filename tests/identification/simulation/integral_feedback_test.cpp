@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <gtest/gtest.h>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -82,6 +83,18 @@ TEST(Tracking, FollowsTheClosedLoopsEquations) {
       z.segment(4, 2) += difference.row(k).transpose();
     }
   }
+}
+
+TEST(Tracking, ErrsAsTheLoopSaysWhereNoErrorReachesItsLimit) {
+  for (const auto& [n, m, p] : {std::tuple<Index, Index, Index>{4, 3, 2}, {2, 1, 1}, {11, 2, 1}})
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const Loop l = loop(seed, n, m, p, 1e6);
+      const Matrix difference = test::Noise(seed).normal(300, p);
+      const Runs runs = run(l, difference);
+      const Matrix expected = runs.free + difference - runs.tracked;
+      EXPECT_LT((tracked_errors(l.model, l.gain, difference) - expected).norm(),
+                1e-8 * expected.norm());
+    }
 }
 
 TEST(Tracking, LeavesNoErrorOfASteadyDifferenceOrASteadilyGrowingOne) {
