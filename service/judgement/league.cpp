@@ -421,7 +421,11 @@ std::optional<Reason> Judge::failure(const League& league) {
     if (error <= theirs) return std::nullopt;
     ScoreSeries losses = series(compared.scores.values(), 0);
     losses.scores = -losses.scores;
-    if (!(log_wealth(losses, dependence(losses), 0) > -std::log(error_probability(*limits_))))
+    // A few great errors make the bet no richer, yet the model is of no use.
+    const bool is_plain = compared.blocks.size() >= reference_blocks &&
+                          error * (1 - limits_->margin_percent / 100) > theirs;
+    if (!is_plain &&
+        !(log_wealth(losses, dependence(losses), 0) > -std::log(error_probability(*limits_))))
       return std::nullopt;
     return because<Code::champion_failed>(champion, error, losses.scores.size(), rival, theirs);
   };

@@ -78,8 +78,9 @@ class Judge {
   /// The last change in the champion's record; absent where there is none, or too little to compare
   /// with.
   std::optional<Change> change(const League& league);
-  /// Why the champion fails: it errs surely more than the mean of the outputs, or than the
-  /// simulator's own model, since the last change. Absent where it does not.
+  /// Why the champion fails: since the last change it errs more than the mean of the outputs, or
+  /// than the simulator's own model; surely, or by the margin on reference_blocks at least. Absent
+  /// where it does not.
   std::optional<Reason> failure(const League& league);
   /// The blocks of which the finding about `challenger`, one of the league's, is made. Requires a
   /// champion.

@@ -37,7 +37,7 @@ struct Glossary {
        "champion.",
        ""},
       {"champion_failed", "the champion fails",
-       "The champion errs surely more than a constant at the mean, or than the simulator's own "
+       "The champion errs more than a constant at the mean, or than the simulator's own "
        "model, "
        "since the last change.",
        "Look at the equipment; 'reident rollback' or 'withdraw'. on_failure = \"withdraw\" does so "

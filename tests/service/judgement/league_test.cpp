@@ -308,6 +308,16 @@ TEST(League, AChampionFailsThatErrsMoreThanTheMeanOrTheSimulator) {
   EXPECT_TRUE(Judge(beside.limits()).failure(beside.league()));
 }
 
+TEST(League, AChampionFailsWhoseGreatErrorsAreFew) {
+  // It errs less than the mean on three blocks of five, and more than twice as much in all.
+  const auto errors = [](int block) { return Error{0, block % 20 < 12 ? 0.2 : 12}; };
+  for (const auto& [blocks, fails] : {std::pair(30, false), {80, true}}) {
+    Records records(blocks);
+    records.champion(errors);
+    EXPECT_EQ(Judge(records.limits()).failure(records.league()).has_value(), fails) << blocks;
+  }
+}
+
 TEST(League, AJudgeThatIsAskedAtEachBlockFindsWhatOneFindsThatIsAskedOnce) {
   Records records(160);
   records.champion([](int block) {
