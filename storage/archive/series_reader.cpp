@@ -67,16 +67,26 @@ std::optional<std::int64_t> SeriesReader::find(std::string_view spacecraft, Orig
   return row.step() ? std::optional(row.integer(0)) : std::nullopt;
 }
 
+SeriesReader::Extent SeriesReader::extent_of(std::int64_t batch, std::int64_t series) {
+  const auto [extent, is_new] = extents_.try_emplace({batch, series});
+  if (is_new) {
+    sqlite::Query row = connection_.query(
+        "SELECT first_time, last_time FROM recent WHERE batch = ? AND series = ?", batch, series);
+    if (row.step()) extent->second = {row.integer(0), row.integer(1)};
+  }
+  return extent->second;
+}
+
 template <typename Use>
 void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const Use& use) {
   std::int64_t from = 0, to = 0;
   {
     sqlite::Query batches = connection_.query(
-        "SELECT max((SELECT moved FROM series WHERE id = ?) + 1, min(batch)), max(batch) "
-        "FROM recent",
+        "SELECT min(batch), max(batch), (SELECT moved FROM series WHERE id = ?) + 1 FROM recent",
         series);
     if (!batches.step() || batches.is_null(1)) return;
-    from = batches.integer(0);
+    extents_.erase(extents_.begin(), extents_.lower_bound({batches.integer(0), 0}));
+    from = std::max(batches.integer(0), batches.integer(2));
     to = batches.integer(1);
   }
   if (to - from > most_batches)
@@ -87,9 +97,10 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
             ", more than there can be: restore a backup, or see what 'reident verify' says");
   sqlite::Query row = connection_.query(
       "SELECT first_time, last_time, samples, data FROM recent WHERE batch = ? AND series = ?");
-  for (std::int64_t batch = from; batch <= to; ++batch)
-    if (row.bind(batch, series).step() && row.integer(0) <= last && row.integer(1) >= first)
-      use(row);
+  for (std::int64_t batch = from; batch <= to; ++batch) {
+    const Extent extent = extent_of(batch, series);
+    if (extent.first <= last && extent.last >= first && row.bind(batch, series).step()) use(row);
+  }
 }
 
 SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedColumns wanted,

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "storage/archive/chunk_bytes.hpp"
@@ -39,7 +42,16 @@ class SeriesReader {
   template <typename Use>
   void each_recent(std::int64_t series, Time first, Time last, const Use& use);
 
+  /// Times of the first and the last sample; those of no fragment meet no range.
+  struct Extent {
+    Time first = std::numeric_limits<Time>::max();
+    Time last = std::numeric_limits<Time>::min();
+  };
+  Extent extent_of(std::int64_t batch, std::int64_t series);
+
   sqlite::Connection& connection_;
+  /// Of fragments, by batch and series: a batch does not change until it goes.
+  std::map<std::pair<std::int64_t, std::int64_t>, Extent> extents_;
   ChunkBytes bytes_;
   ChunkDecoder decoder_;
 };
