@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -9,8 +10,7 @@ namespace reident::identification {
 namespace {
 
 constexpr std::size_t sampled = 512;
-constexpr std::size_t margin =
-    40;  // 3.5 deviations of a rank among so many, where it is a middle one
+constexpr double deviations = 3.5;  // of a rank in the sample
 
 /// Values between which a rank is likely to lie.
 struct Bracket {
@@ -21,7 +21,10 @@ Bracket bracket_of(std::span<const double> values, std::size_t rank) {
   std::array<double, sampled> sample;
   for (std::size_t i = 0; i < sampled; ++i) sample[i] = values[i * values.size() / sampled];
   std::sort(sample.begin(), sample.end());
-  const std::size_t place = rank * sampled / values.size();
+  const double share = double(rank) / double(values.size());
+  const auto place = static_cast<std::size_t>(share * sampled);
+  const auto margin =
+      static_cast<std::size_t>(2 + deviations * std::sqrt(share * (1 - share) * sampled));
   constexpr double infinity = std::numeric_limits<double>::infinity();
   return {place < margin ? -infinity : sample[place - margin],
           place + margin >= sampled ? infinity : sample[place + margin]};
