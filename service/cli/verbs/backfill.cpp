@@ -73,7 +73,7 @@ int run(const Arguments& arguments) {
   if (const auto* refusal = std::get_if<Refusal>(&request)) return refuse(*refusal);
   const StopSignal stop;
   return refusing_what_cannot_be([&]() -> int {
-    storage::Database database(config->database, storage::Database::Mode::read_write);
+    storage::Database database(config->database, storage::Database::Mode::update);
     if (!config->pair.empty() || !storage::Registry(database).journal().is_of(config->service_name))
       return refuse(
           {fmt::format("{} is the database of a pair of services, whose leader alone "
