@@ -121,7 +121,7 @@ std::string outcome_text(const Attempt& attempt, const Decided& decided) {
   if (!attempt.version) return text;
   const std::vector<Decision>& decisions = decided.version(attempt).decisions;
   for (std::size_t i = 1; i < decisions.size(); ++i)
-    text += fmt::format(" Then {} by {} at {}{}.", name(decisions[i].kind), decisions[i].actor,
+    text += fmt::format(" Then {} by {} at {}{}.", past(decisions[i].kind), decisions[i].actor,
                         time_text(decisions[i].time), reason_text(decisions[i].reason));
   return text;
 }

@@ -117,7 +117,7 @@ std::string champion_text(const ordered_json& evidence) {
 std::string decisions_text(const std::vector<Decision>& decisions) {
   Table table({{"decided (UTC)"}, {"what"}, {"by"}, {"reason"}});
   for (const Decision& decision : decisions)
-    table.add({time_text(decision.time), std::string(name(decision.kind)), decision.actor,
+    table.add({time_text(decision.time), std::string(past(decision.kind)), decision.actor,
                decision.reason});
   return table.text(terminal_width());
 }
