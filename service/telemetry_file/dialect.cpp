@@ -6,6 +6,7 @@
 #include <set>
 
 #include "service/support/text.hpp"
+#include "service/telemetry_file/clock_names.hpp"
 #include "service/telemetry_file/date_text.hpp"
 #include "service/telemetry_file/head_lines.hpp"
 #include "service/telemetry_file/number_text.hpp"
@@ -114,12 +115,22 @@ class Head {
   std::vector<bool> values_;
 };
 
+/// Whether a word says of what clock a column of times is, as MEZ, or how they are written.
+bool is_of_a_clock(std::string_view word) {
+  const std::string_view pattern = "dDmMyYhHsSaAjJ.-/: T";
+  const bool is_pattern =
+      word.find_first_not_of(pattern) == std::string_view::npos &&
+      (word.find("yy") != std::string_view::npos || word.find("YY") != std::string_view::npos ||
+       word.find("hh") != std::string_view::npos || word.find("HH") != std::string_view::npos);
+  return is_pattern || zone_hint_of({}, word);
+}
+
 bool are_units(const HeadLine& line) {
   bool any = false;
   for (const std::string& cell : line.cells) {
     const std::string_view word = trimmed(cell);
     if (word.empty() || word == "-") continue;
-    if (!is_unit_word(word)) return false;
+    if (!is_unit_word(word) && !is_of_a_clock(word)) return false;
     any = true;
   }
   return any;
@@ -373,6 +384,12 @@ std::optional<Error> refuse_one_cell(const HeadLines& lines, const Layout& layou
   if (text.starts_with('<') || text.starts_with('{') || text.starts_with("[{") || text == "[")
     return at_line(name, first->number,
                    "the text is HTML, XML or JSON and no table of cells; write it as CSV first");
+  const bool is_quoted = text.size() > 2 && text.front() == '"' && text.back() == '"' &&
+                         text.find_first_of(",;\t|") != std::string_view::npos;
+  if (layout.cells == 1 && is_quoted && options.names.size() != 1)
+    return at_line(name, first->number,
+                   "the line is one quoted cell ('" + std::string(text.substr(0, 40)) +
+                       "'); remove the quotes around the lines");
   if (layout.cells > 1 || options.separator || options.names.size() == 1 || lines.size() < 3)
     return std::nullopt;
   return at_line(name, first->number,

@@ -65,6 +65,14 @@ std::string find_comment(const HeadLines& lines) {
       if (line.text.starts_with(mark)) return std::string(mark);
     if (looks_like_value(line.text.substr(0, line.text.find_first_of(",;\t|")))) break;
   }
+  // Among rows, where few lines begin so.
+  for (const std::string_view mark : comment_marks) {
+    const auto count = std::count_if(lines.begin(), lines.end(), [mark](const HeadLine& line) {
+      return line.text.starts_with(mark);
+    });
+    if (count > 0 && 10 * count <= static_cast<std::ptrdiff_t>(lines.size()))
+      return std::string(mark);
+  }
   return "";
 }
 

@@ -246,6 +246,7 @@ std::variant<std::vector<std::string>, Error> dry_run(std::variant<TelemetryFile
     }
     lines.push_back(std::move(text));
   }
+  for (std::string& remark : file.remarks()) lines.push_back(std::move(remark));
   return lines;
 }
 

@@ -69,6 +69,13 @@ std::string_view name(Damage damage) {
   return names[static_cast<std::size_t>(damage)];
 }
 
+std::string comment_advice(std::string_view line) {
+  for (const std::string_view mark : comment_marks)
+    if (line.starts_with(mark))
+      return "; where such lines are comments, say --comment '" + std::string(mark) + "'";
+  return {};
+}
+
 std::optional<std::string_view> split_cells(std::span<char> line, char separator,
                                             std::vector<std::string_view>& cells) {
   cells.clear();
@@ -301,7 +308,8 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
               "the row has " + std::to_string(cells_.size()) + " cells, the header has " +
                   std::to_string(layout_.cells) +
                   "; mend the row (a cell with the separator in it needs quotes), or leave such "
-                  "rows out with --skip-bad-lines",
+                  "rows out with --skip-bad-lines" +
+                  comment_advice(text),
               Damage::cell_count);
 }
 

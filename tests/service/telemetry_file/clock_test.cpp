@@ -80,6 +80,17 @@ TEST(TelemetryClock, ReadsEveryForm) {
            Case{"datenum", {"739310.9166666667", "739310.9167824074"}, "2024-02-28T22:00:00Z"},
            Case{"JD", {"2460369.416666667", "2460369.416782407"}, "2024-02-28T22:00:00Z"},
            Case{"time_ticks", {"638447544000000000"}, "2024-02-28T22:00:00Z"},
+           Case{"Zeit (MEZ)", {"28.02.2024 23:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time_CEST", {"2024-02-29T00:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"Time [UTC+01:00]", {"2024-02-28 23:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time [Europe/Berlin]", {"2024-07-01 00:00:00"}, "2024-06-30T22:00:00Z"},
+           Case{"datum,zeit,zone", {"28.02.2024,23:00:00,MEZ"}, "2024-02-28T22:00:00Z"},
+           Case{"time,utc_offset", {"2024-02-28 23:00:00,+01:00"}, "2024-02-28T22:00:00Z"},
+           Case{"date,time,ms",
+                {"2024-02-28,22:00:00,7", "2024-02-28,22:00:00,507"},
+                "2024-02-28T22:00:00.007Z"},
+           Case{"time_s,usec", {"1709157600,250000"}, "2024-02-28T22:00:00.25Z"},
+           Case{"time (CET)", {"2024-02-28 23:00:00+02:00"}, "2024-02-28T21:00:00Z"},
        })
     EXPECT_EQ(first_time(c.names, c.cells), c.time) << c.cells[0];
 }
@@ -99,6 +110,11 @@ TEST(TelemetryClock, ReadsWhatIsSaidOfIt) {
   TimeOptions columns;
   columns.column = "a,b";
   EXPECT_EQ(first_time("a,b", {"2024-02-28,22:00"}, columns), "2024-02-28T22:00:00Z");
+  EXPECT_EQ(first_time("a,b", {"2024061,43200", "2024061,43260"}, columns), "2024-03-01T12:00:00Z");
+  EXPECT_EQ(first_time("a,b", {"2024061,120000", "2024061,120010"}, columns),
+            "2024-03-01T12:00:00Z");
+  columns.column = "day,sod";
+  EXPECT_EQ(first_time("day,sod", {"2024061,43200.5"}, columns), "2024-03-01T12:00:00.5Z");
 }
 
 TEST(TelemetryClock, ReadsTimesThatHavePassedAsTheyAreWritten) {
@@ -140,6 +156,7 @@ TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
   EXPECT_THAT(first_time("time", {"03/04/2024 22:00", "03/04/2024 22:10"}),
               HasSubstr("--time-format dmy or mdy"));
   EXPECT_THAT(first_time("time_s", {"1709157600000"}), HasSubstr("--time-unit"));
+  EXPECT_THAT(first_time("Local time", {"2024-02-28 23:00:00"}), HasSubstr("--time-zone"));
   EXPECT_THAT(first_time("tow_ms", {"338418.0"}),
               HasSubstr("t.csv:2: '338418.0' in column 'tow_ms' would be"));
   EXPECT_THAT(first_time("time", {"2030-01-01T00:00:00Z"}), HasSubstr("later than tomorrow"));

@@ -83,6 +83,8 @@ TEST(TelemetryDialect, IsFoundFromTheFirstRows) {
            Found{"# time,u,v\n", ",", false, 1, 0, 2},
            Found{"Station: KRN\nPass: 17, good\n\ntime,u,v\nUTC,A,V\n", ",", false, 4, 5, 6},
            Found{"time,u,v\n,[A],[V]\n", ",", false, 1, 2, 3},
+           Found{"Zeit;u;v\nMEZ;A;V\n", ";", true, 1, 2, 3},
+           Found{"time,u,v\nyyyy-mm-dd HH:MM:SS,A,V\n", ",", false, 1, 2, 3},
            Found{"time,u,v\nTime of the sample,Load current,Bus voltage\n", ",", false, 1, 0, 3},
            Found{"Satellite,SAT-1,\nStart,2024-02-28,\ntime,u,v\n", ",", false, 3, 0, 4},
            Found{"time  u     v\n----- ----- -----\n", " ", false, 1, 0, 3},
@@ -132,6 +134,8 @@ TEST(TelemetryDialect, IsTakenAsGiven) {
 TEST(TelemetryDialect, OfLinesThatAreNoCellsIsRefusedWithTheRemedy) {
   for (const auto& [text, remedy] :
        {std::pair("time^u\n2024-02-28^1.5\n2024-02-29^1.6\n", "t.csv:1: no comma"),
+        {"\"time,u\"\n\"2024-02-28,1.5\"\n\"2024-02-29,1.6\"\n",
+         "t.csv:1: the line is one quoted cell"},
         {"{\"time\":1,\"u\":2}\n{\"time\":2,\"u\":3}\n", "t.csv:1: the text is HTML"},
         {"time,u,v\n2024-02-28,1,5,2,5\n2024-02-29,1,6,2,6\n",
          "t.csv:1: the line has 3 names, the rows have 5 cells"}}) {
