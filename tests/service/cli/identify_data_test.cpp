@@ -47,6 +47,10 @@ std::string with_commas(std::string text) {
   return text;
 }
 
+constexpr const char* equipment =
+    "[[spacecraft]]\nname = \"SAT-1\"\n[[spacecraft.equipment]]\nname = \"X\"\ninputs = [\"u\"]\n"
+    "outputs = [\"y\"]\nsample_period = \"10s\"\nhold = \"40s\"\nwindow = \"1h\"\norder = 1\n";
+
 struct Dress {
   const char* name;
   const char* header;
@@ -133,6 +137,11 @@ TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
     EXPECT_EQ(here.segments, there.segments) << dress.name;
     EXPECT_EQ(here.u, there.u) << dress.name;
     EXPECT_EQ(here.y, there.y) << dress.name;
+    write("reident.toml", "[archive]\ndatabase = \"" + archive + "\"\n" + equipment);
+    EXPECT_EQ(
+        reident({"backfill", "--config", "reident.toml"}).err.find("phase = ") != std::string::npos,
+        dress.has_phase)
+        << dress.name;
   }
 }
 
