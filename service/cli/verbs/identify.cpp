@@ -238,7 +238,7 @@ int run(const Arguments& arguments) {
   outcome.timing_ms = timer.phases();
   outcome.found = data.found;
   outcome.phase_ns = data.phase_ns;
-  if (!arguments.json) fmt::print(stderr, "{}: {}\n", arguments.data.file.string(), data.found);
+  if (!arguments.json) print_error("{}: {}", arguments.data.file.string(), data.found);
   fmt::print("{}", arguments.json ? to_json_text(outcome) : to_report(outcome));
   return exit_done;
 }

@@ -133,9 +133,8 @@ int run(Arguments& arguments) {
     bar.clear();
     if (const auto* error = std::get_if<csv::Error>(&imported)) return refuse({error->message});
     const auto& report = std::get<ImportReport>(imported);
-    if (!arguments.json)
-      fmt::print(stderr, "{}: {}\n", arguments.import.file.string(), report.found);
-    for (const std::string& remark : report.remarks) fmt::print(stderr, "reident: {}\n", remark);
+    if (!arguments.json) print_error("{}: {}", arguments.import.file.string(), report.found);
+    for (const std::string& remark : report.remarks) print_error("reident: {}", remark);
     for (const std::string& message : report.first_bad_lines)
       print_error("reident: left out: {}", message);
     if (arguments.json)

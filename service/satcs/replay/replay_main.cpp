@@ -66,8 +66,8 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
 }
 
 void say(const ReplayPlan& plan) {
-  fmt::print(stderr, "{}: {}\n", plan.file.string(), plan.found);
-  for (const auto& remark : plan.remarks) fmt::print(stderr, "satcs-replay: {}\n", remark);
+  reident::print_error("{}: {}", plan.file.string(), plan.found);
+  for (const auto& remark : plan.remarks) reident::print_error("satcs-replay: {}", remark);
   for (const auto& column : plan.left_out)
     reident::log::info("satcs", "column left out, there is no number in it", {{"column", column}});
 }
