@@ -279,7 +279,7 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
   if (!wrong && !is_cut && cells_.size() < layout_.places.size())
     place_cells({from, row_end - begin_}, layout_.places, cells_);
   if (layout_.joins_date && cells_.size() > 1) join_date(cells_);
-  if (layout_.cells != 0 && cells_.size() == layout_.cells + 1 && trimmed(cells_.back()).empty())
+  while (layout_.cells != 0 && cells_.size() > layout_.cells && trimmed(cells_.back()).empty())
     cells_.pop_back();
   const bool fits = !wrong && (layout_.cells == 0 || cells_.size() == layout_.cells);
   if (!fits && spans_lines) {

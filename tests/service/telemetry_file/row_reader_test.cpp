@@ -159,6 +159,14 @@ TEST(TelemetryRows, BehindAHeaderWithTheColumnsInAnotherOrderAreNotRead) {
   }
 }
 
+TEST(TelemetryRows, WithBlankCellsAtTheirEndsHaveThoseOfTheHeader) {
+  auto opened = TelemetryFile::of_text("time;u;y\n10;1,5;2,5;;;\n20;1,5;2,5;;;\n", "t.csv", {});
+  auto& file = std::get<TelemetryFile>(opened);
+  EXPECT_THAT(file.columns(), ElementsAre("time", "u", "y"));
+  for (int row = 0; row < 2; ++row) ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+  EXPECT_EQ(file.cell(2).value, 2.5);
+}
+
 TEST(TelemetryRows, ThatAreCommentsAmongOthersAreFoundByTheirMark) {
   std::string text = "time,u,y\n";
   for (int row = 0; row < 40; ++row)
