@@ -79,8 +79,8 @@ class Clock {
   bool is_absolute() const { return is_absolute_; }
   /// Whether texts are of a clock that nobody named: it may be a local one.
   bool may_be_local() const { return may_be_local_; }
-  /// Whether a column's name says that it is a local one, and nothing says where.
-  bool is_called_local() const { return is_called_local_; }
+  /// The column that says that it is a local one, and not where; absent: none does.
+  std::optional<std::size_t> local_by() const { return local_by_; }
   std::int64_t unit_ns() const { return unit_ns_; }
   /// Whether the times of rows before decide what a cell means.
   bool depends_on_order() const { return zone_.has_value(); }
@@ -107,7 +107,8 @@ class Clock {
   std::size_t clock_digits_ = 0;  // of a time of day as a number, as 93000; 0: it is no number
   bool has_decimal_comma_ = false;
   bool has_unit_behind_ = false;  // numbers are as "10 sec"
-  bool is_absolute_ = true, may_be_local_ = false, is_called_local_ = false;
+  bool is_absolute_ = true, may_be_local_ = false;
+  std::optional<std::size_t> local_by_;
   std::optional<TimeZone> zone_;
   std::optional<std::int64_t> offset_ns_;       // of texts without their own, by the column's name
   std::optional<std::size_t> zone_column_;      // or by this column of each row

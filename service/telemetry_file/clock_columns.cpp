@@ -99,13 +99,28 @@ bool ClockFinder::find_zone_column() {
   for (std::size_t c = 0; c < head_.names.size(); ++c) {
     const auto& cells = head_.columns[c];
     if (clock_.uses(c) || cells.empty()) continue;
+    const std::string_view first = trimmed(cells.front());
+    const bool is_one = std::all_of(cells.begin(), cells.end(),
+                                    [&](std::string_view cell) { return trimmed(cell) == first; });
+    if (is_one && first.find('/') != std::string_view::npos)
+      clock_.zone_ = TimeZone::named(std::string(first));
+    if (clock_.zone_) {
+      clock_.local_by_.reset();
+      clock_.may_be_local_ = false;
+      clock_.description_ += ", " + std::string(first);
+      return true;
+    }
     const bool is_named = is_named_like_a_zone(head_.names[c]);
     const auto is_zone = [&](std::string_view raw) {
       const std::string_view cell = trimmed(raw);
       const bool is_word = cell.size() >= 3 && cell[0] >= 'A' && cell[0] <= 'Z';
       return !cell.empty() && (is_named || is_word) && read_offset(cell).has_value();
     };
-    if (!std::all_of(cells.begin(), cells.end(), is_zone)) continue;
+    if (!std::all_of(cells.begin(), cells.end(), is_zone)) {
+      if (is_named && !trimmed(first_cell(c).first).empty()) clock_.local_by_ = c;
+      continue;
+    }
+    clock_.local_by_.reset();
     clock_.zone_column_ = c;
     clock_.may_be_local_ = false;
     clock_.description_ += ", zones in column " + head_.names[c];
@@ -210,8 +225,13 @@ bool ClockFinder::holds_time(std::size_t c) const {
 std::optional<Problem> ClockFinder::choose_columns() {
   if (options_.column) return choose_named(*options_.column);
   if (find_set()) return std::nullopt;
-  for (std::size_t c = 0; c < head_.names.size(); ++c)
-    if (is_named_like_a_time(head_.names[c]) && holds_time(c)) return choose({c});
+  for (const bool may_be_local : {false, true})
+    for (std::size_t c = 0; c < head_.names.size(); ++c) {
+      const auto zone = zone_hint_of(head_.names[c], unit(c));
+      if ((may_be_local || !zone || !zone->is_local) && is_named_like_a_time(head_.names[c]) &&
+          holds_time(c))
+        return choose({c});
+    }
   for (std::size_t c = 0; c < head_.names.size(); ++c)
     if (!read_number(first_cell(c).first, head_.style) &&
         read_date_text(first_cell(c).first, clock_.order_))

@@ -94,8 +94,11 @@ void ClockFinder::take_zone_of_names() {
   for (const std::size_t c : clock_.columns_) {
     const auto hint = zone_hint_of(head_.names[c], unit(c));
     if (!hint) continue;
-    clock_.is_called_local_ = hint->is_local;
-    if (hint->is_local) continue;
+    if (hint->is_local) {
+      clock_.local_by_ = c;
+      continue;
+    }
+    clock_.local_by_.reset();
     clock_.may_be_local_ = false;
     if (hint->offset_ns)
       clock_.offset_ns_ = hint->offset_ns;

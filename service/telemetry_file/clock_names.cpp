@@ -68,7 +68,8 @@ std::optional<ZoneHint> zone_in(std::string_view text) {
       return ZoneHint{word, {}, false};
     const bool is_name = word.size() >= 3 && word[0] >= 'A' && word[0] <= 'Z' && word[1] >= 'A' &&
                          word[1] <= 'Z' && word != "MET";  // mission elapsed time
-    const auto offset = is_name ? read_offset(word) : std::nullopt;
+    const bool is_utc = word == "utc" || word == "gmt";
+    const auto offset = is_name || is_utc ? read_offset(word) : std::nullopt;
     if (offset) return ZoneHint{word, offset, false};
   }
   return std::nullopt;
@@ -88,11 +89,15 @@ std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view uni
 }
 
 bool is_named_like_a_zone(std::string_view name) {
-  const auto words = words_of(name);
-  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
-    return word == "zone" || word == "tz" || word == "timezone" || word == "offset" ||
-           word == "zeitzone" || word == "utcoffset";
-  });
+  std::string all;
+  for (const std::string& word : words_of(name)) {
+    if (word == "tz") return true;
+    all += word;
+  }
+  constexpr std::array<std::string_view, 5> hints = {"timezone", "zeitzone", "utcoffset",
+                                                     "gmtoffset", "tzoffset"};
+  return std::any_of(hints.begin(), hints.end(),
+                     [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
 }
 
 std::optional<std::int64_t> fraction_of_second(std::string_view name) {

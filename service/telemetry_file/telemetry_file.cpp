@@ -228,11 +228,11 @@ std::optional<Error> TelemetryFile::find_time(bool is_series_after_series) {
     return Error{at.rows.source().name() + line + ": " + problem->text};
   }
   at.clock = std::get<Clock>(std::move(found));
-  if (at.clock->is_called_local() && !at.options.any_epoch && !at.options.force_times)
+  if (const auto by = at.clock->local_by(); by && !at.options.any_epoch && !at.options.force_times)
     return Error{fmt::format(
-        "{}: column '{}' is of a local clock by its name; say of which zone with --time-zone, as "
-        "Europe/Berlin, or UTC",
-        at.rows.source().name(), at.dialect.columns[at.clock->columns().front()])};
+        "{}: by column '{}' the time is a local one; say of which zone with --time-zone, as "
+        "Europe/Berlin, or UTC, or name another column with --time",
+        at.rows.source().name(), at.dialect.columns[*by])};
   at.clock_at_start = at.clock;
   if (!is_series_after_series && !at.options.force_times)
     if (auto error = at.refuse_repeated_times()) return error;

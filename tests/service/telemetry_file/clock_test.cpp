@@ -85,6 +85,8 @@ TEST(TelemetryClock, ReadsEveryForm) {
            Case{"Time [UTC+01:00]", {"2024-02-28 23:00:00"}, "2024-02-28T22:00:00Z"},
            Case{"time [Europe/Berlin]", {"2024-07-01 00:00:00"}, "2024-06-30T22:00:00Z"},
            Case{"datum,zeit,zone", {"28.02.2024,23:00:00,MEZ"}, "2024-02-28T22:00:00Z"},
+           Case{"Local time,UTC", {"2024-02-28 23:00,2024-02-28 22:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time,zone", {"2024-07-01 00:00,Europe/Berlin"}, "2024-06-30T22:00:00Z"},
            Case{"time,utc_offset", {"2024-02-28 23:00:00,+01:00"}, "2024-02-28T22:00:00Z"},
            Case{"date,time,ms",
                 {"2024-02-28,22:00:00,7", "2024-02-28,22:00:00,507"},
@@ -157,6 +159,8 @@ TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
               HasSubstr("--time-format dmy or mdy"));
   EXPECT_THAT(first_time("time_s", {"1709157600000"}), HasSubstr("--time-unit"));
   EXPECT_THAT(first_time("Local time", {"2024-02-28 23:00:00"}), HasSubstr("--time-zone"));
+  EXPECT_THAT(first_time("time,tz_offset_min", {"2024-02-28 23:00:00,60"}),
+              HasSubstr("--time-zone"));
   EXPECT_THAT(first_time("tow_ms", {"338418.0"}),
               HasSubstr("t.csv:2: '338418.0' in column 'tow_ms' would be"));
   EXPECT_THAT(first_time("time", {"2030-01-01T00:00:00Z"}), HasSubstr("later than tomorrow"));

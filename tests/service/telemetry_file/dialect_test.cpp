@@ -119,6 +119,21 @@ TEST(TelemetryDialect, GivesTheSameValuesInEach) {
   }
 }
 
+TEST(TelemetryDialect, OfDatesWithABlankAndWordsIsThatOfTheOtherCells) {
+  for (const char* row : {"2024-02-28 22:00:00,ON,1.5", "2024-02-28 22:00:00,ON,A,B,C,1.5",
+                          "2024-02-28 22:00:00,Europe/Berlin,x"}) {
+    const std::string cells(row);
+    const auto commas = std::count(cells.begin(), cells.end(), ',');
+    std::string text = "time";
+    for (long c = 0; c < commas; ++c) text += ",p" + std::to_string(c);
+    const auto found = std::get<Dialect>(dialect_of(text + "\n" + cells + "\n" + cells + "\n", {}));
+    EXPECT_EQ(found.layout.separator, ',') << row;
+  }
+  const auto blanks = std::get<Dialect>(
+      dialect_of("time u v\n10 6,001 28,011\n20 6,002 28,012\n30 6,003 28,013\n", {}));
+  EXPECT_EQ(blanks.layout.separator, ' ');
+}
+
 TEST(TelemetryDialect, IsTakenAsGiven) {
   ReadingOptions options;
   options.dialect.separator = ';';
