@@ -238,6 +238,7 @@ TEST_F(TelemetryFiles, OfOneSampleARowSayWhatIsWrongWithTheirLines) {
   }
   write("good.csv", good);
   write("bad.csv", bad);
+  EXPECT_EQ(reident(import_of("good.csv", {"--dry-run"})).status, 0);
   EXPECT_THAT(refusal_of(identify("bad.csv")), HasSubstr("bad.csv:10: "));
   // Two rows more before the end of the range: one for each sample that came twice.
   const json model = json_of(identify("bad.csv", {"--skip-bad-lines", "--identify", "0:162"}));
