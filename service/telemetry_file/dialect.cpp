@@ -331,6 +331,10 @@ std::optional<Error> refuse_one_cell(const HeadLines& lines, const Layout& layou
   if (text.starts_with('<') || text.starts_with('{') || text.starts_with("[{") || text == "[")
     return at_line(name, first->number,
                    "the text is HTML, XML or JSON and no table of cells; write it as CSV first");
+  if (layout.cells == 0 && options.names.empty())
+    return at_line(name, first->number,
+                   "no line can be cut into cells, since their quotes are not paired ('" +
+                       std::string(text.substr(0, 40)) + "'); mend the quotes");
   const bool is_quoted = text.size() > 2 && text.front() == '"' && text.back() == '"' &&
                          text.find_first_of(",;\t|") != std::string_view::npos;
   if (layout.cells == 1 && is_quoted && options.names.size() != 1)

@@ -205,6 +205,14 @@ TEST(TelemetryClockWatch, NotesAnHourThatIsLeftOutInTheNight) {
   EXPECT_EQ(line_of({"2024-03-31 13:59:40", "2024-03-31 13:59:50", "2024-03-31 15:00:00"}), 0U);
 }
 
+TEST(TelemetryClockWatch, TakesTimesThatAreCenturiesApart) {
+  ClockWatch watch(1'000'000'000, true, true);
+  const std::int64_t far = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t time : {-far, far, far - 1, std::int64_t{0}, far - 10, far, -far})
+    watch.next(time, 2);
+  EXPECT_EQ(watch.hour_ahead_line(), 0U);
+}
+
 TEST(TelemetryClockWatch, SaysWhatAStepBackLooksLike) {
   constexpr std::int64_t s = 1'000'000'000;
   struct Case {

@@ -149,6 +149,7 @@ TEST(TelemetryDialect, IsTakenAsGiven) {
 TEST(TelemetryDialect, OfLinesThatAreNoCellsIsRefusedWithTheRemedy) {
   for (const auto& [text, remedy] :
        {std::pair("time^u\n2024-02-28^1.5\n2024-02-29^1.6\n", "t.csv:1: no comma"),
+        {"\"t\"x,u\n\"1\"x,2\n", "t.csv:1: no line can be cut into cells"},
         {"\"time,u\"\n\"2024-02-28,1.5\"\n\"2024-02-29,1.6\"\n",
          "t.csv:1: the line is one quoted cell"},
         {"{\"time\":1,\"u\":2}\n{\"time\":2,\"u\":3}\n", "t.csv:1: the text is HTML"},
