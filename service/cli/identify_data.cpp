@@ -101,7 +101,7 @@ std::variant<TelemetryFile, Refusal> open_file(const DataRequest& request) {
   for (const auto* names : {&request.inputs, &request.outputs})
     for (const std::string& name : *names)
       if (name.find(',') == std::string::npos) reading.dialect.wanted.push_back(name);
-  auto opened = telemetry_file::open_as_table(request.file, reading);
+  auto opened = telemetry_file::open_as_table(request.file, reading, request.skip_bad_lines);
   if (const auto* error = std::get_if<csv::Error>(&opened)) return Refusal{error->message};
   return std::get<TelemetryFile>(std::move(opened));
 }
@@ -312,6 +312,7 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   auto& grid = std::get<GridRecord>(gridded);
   data.record = std::move(grid.record);
   data.advice = grid.advice;
+  data.phase_ns = grid.phase_ns;
   data.warnings.insert(data.warnings.end(), grid.warnings.begin(), grid.warnings.end());
   data.file_ticks = std::move(grid.tick_of_row);
   if (request.screening) data.left_out = leave_out_faults(data.record, columns);

@@ -50,6 +50,7 @@ struct IdentifyData {
   std::vector<std::string> regimes;          // conditions
   int regime_inputs = 0;                     // the last so many inputs are those of the regimes
   std::vector<std::int64_t> file_ticks;      // of the rows of the file
+  std::int64_t phase_ns = 0;                 // of ticks behind the multiples of the period
   std::vector<LeftOut> left_out;
   std::vector<std::string> warnings;
   std::string found;   // how the file is read

@@ -121,12 +121,13 @@ std::variant<std::int64_t, Refusal> period_of(const GridRequest& request, const 
 struct Placed {
   std::vector<std::int64_t> time_ns;
   std::int64_t phase_ns = 0;  // of the first part: how far behind the multiples its ticks stand
+  std::int64_t end_ns = 0;    // behind the last tick, whose values are all that came of it
 };
 
 /// Each part gets its own phase, unless one is given, and comes long behind the one before.
 Placed place_rows(const IdentifyTable& table, std::int64_t period_ns,
                   std::optional<std::int64_t> phase_ns) {
-  Placed placed{table.time_ns, 0};
+  Placed placed{table.time_ns};
   const std::int64_t apart_ns = ticks_apart(table) * period_ns;
   for (std::size_t begin = 0; begin < table.rows;) {
     std::size_t end = begin;
@@ -143,6 +144,7 @@ Placed place_rows(const IdentifyTable& table, std::int64_t period_ns,
                             period_ns) *
                period_ns;
     for (std::size_t row = begin; row < end; ++row) placed.time_ns[row] += shift;
+    placed.end_ns = placed.time_ns[end - 1] + phase + 1;
     begin = end;
   }
   return placed;
@@ -282,10 +284,12 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
   const auto period_ns = std::get<std::int64_t>(period);
   const std::int64_t hold_ns = request.hold_ns.value_or(sample_hold_periods * period_ns);
   const Placed placed = place_rows(table, period_ns, request.phase_ns);
+  made.phase_ns = placed.phase_ns;
   if (placed.phase_ns != 0 && !request.phase_ns)
     made.warnings.push_back(
-        fmt::format("ticks stand {0} behind the multiples of {1}, where all columns have come "
-                    "(--phase 0s puts them on the multiples, as a service does)",
+        fmt::format("ticks stand {0} behind the multiples of {1}, where all columns have come; a "
+                    "service does the same with phase = \"{0}\" for the equipment (--phase 0s puts "
+                    "ticks on the multiples)",
                     duration_text(placed.phase_ns), duration_text(period_ns)));
   const auto samples = samples_of(table, placed.time_ns);
   const std::vector<std::uint8_t> usable(table.rows, 1);
@@ -294,7 +298,7 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
     channels.push_back(
         {column.time_ns, column.value, std::span(usable).first(column.value.size())});
   const std::span all(channels);
-  const std::int64_t begin = placed.time_ns.front(), end = placed.time_ns.back() + 1;
+  const std::int64_t begin = placed.time_ns.front(), end = placed.end_ns;
   made.record =
       make_record(all.first(inputs), all.subspan(inputs), begin, end, {period_ns, hold_ns});
   const auto tick_at_or_after = [&](std::int64_t time) { return -floor_divide(-time, period_ns); };

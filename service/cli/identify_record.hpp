@@ -17,6 +17,7 @@ struct GridRequest {
 
 struct GridRecord {
   identification::Record record;
+  std::int64_t phase_ns = 0;  // of the ticks of the first part behind the multiples of the period
   /// First tick at or behind each row of the table, and the tick behind the last: rows + 1 ticks.
   std::vector<std::int64_t> tick_of_row;
   /// Which column has gaps that its values do not reach across, how long they are and which --hold

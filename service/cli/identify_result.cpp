@@ -145,6 +145,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"weighting", name(outcome.identified.recipe.weighting)},
       {"recipe", recipe_json(outcome.identified)},
       {"sample_period_s", model.period_s},
+      {"phase_ns", outcome.phase_ns},
       {"inputs", outcome.inputs},
       {"outputs", outcome.outputs},
       {"derived", derived_json(outcome.derived)},

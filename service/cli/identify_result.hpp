@@ -27,7 +27,8 @@ struct IdentifyOutcome {
   nlohmann::ordered_json left_out;   // left_out_json()
   std::vector<std::pair<std::string, double>> timing_ms;
   std::vector<std::string> warnings;
-  std::string found;  // how the file is read
+  std::string found;          // how the file is read
+  std::int64_t phase_ns = 0;  // of ticks behind the multiples of the period
 };
 
 /// One JSON object, a key a line.

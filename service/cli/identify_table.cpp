@@ -36,7 +36,8 @@ void note(BadCells& bad, const TelemetryFile& file, std::size_t position, std::s
   bad.rows.push_back(row);
   if (bad.count++ >= examples) return;
   const std::string cell(trimmed(file.cells()[position]).substr(0, 40));
-  bad.first += fmt::format("{}'{}' in line {}", bad.first.empty() ? "" : ", ", cell, file.line());
+  bad.first +=
+      fmt::format("{}'{}' in line {}", bad.first.empty() ? "" : ", ", cell, file.line(position));
 }
 
 /// Whether the values around bad cells are all among the greatest or all among the least.
@@ -171,9 +172,37 @@ void sort_rows(IdentifyTable& table) {
   };
   put(table.time_ns);
   put(table.part);
+  put(table.line);
   for (IdentifyTable::Column& column : table.columns) {
     put(column.value);
     put(column.is_blank);
+  }
+}
+
+/// Of a column's values at one time the first counts, as in an import. Others are said.
+void leave_out_contradictions(IdentifyTable& table) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    auto& [value, is_blank] = table.columns[c];
+    std::optional<double> first;
+    std::size_t contradictions = 0, line = 0;
+    for (std::size_t row = 0; row < table.time_ns.size(); ++row) {
+      if (row > 0 &&
+          (table.time_ns[row] != table.time_ns[row - 1] || table.part[row] != table.part[row - 1]))
+        first.reset();
+      if (!std::isfinite(value[row])) continue;
+      if (!first) {
+        first = value[row];
+        continue;
+      }
+      if (value[row] != *first && contradictions++ == 0) line = table.line[row];
+      value[row] = std::numeric_limits<double>::quiet_NaN();
+      is_blank[row] = 1;
+    }
+    if (contradictions > 0)
+      table.warnings.push_back(fmt::format(
+          "column {}: other values at the time of an earlier one: {}, the first in line "
+          "{}; the earlier one counts, as in an import",
+          table.names[c], contradictions, line));
   }
 }
 
@@ -215,6 +244,7 @@ std::variant<IdentifyTable, Refusal> read_identify_table(TelemetryFile& file,
       return Refusal{
           file.error_here(file.clock_step()->what + "; go on with --clock-back go-on").message};
     table.part.push_back(parts.add(file, request, table));
+    table.line.push_back(file.line());
     for (std::size_t c = 0; c < positions.size(); ++c) {
       const Cell cell = file.cell(positions[c]);
       const bool is_number = cell.kind == Cell::Kind::number && std::isfinite(cell.value);
@@ -231,6 +261,7 @@ std::variant<IdentifyTable, Refusal> read_identify_table(TelemetryFile& file,
   for (std::size_t c = 0; c < names.size(); ++c)
     if (auto refusal = judge(table, c, bad[c], table.warnings)) return *std::move(refusal);
   sort_rows(table);
+  leave_out_contradictions(table);
   return table;
 }
 

@@ -22,6 +22,7 @@ struct IdentifyTable {
   /// Part of each row, from 0 and ascending: of the column that names it, and one more where a
   /// clock was started again. No value of one part serves another.
   std::vector<std::size_t> part;
+  std::vector<std::uint64_t> line;  // of the file, by row
   std::size_t rows = 0;
   std::vector<std::string> warnings;  // cells that are no numbers, rows left out, clocks set back
 };

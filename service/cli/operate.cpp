@@ -83,7 +83,7 @@ std::optional<Asked> execute_on_file(const Target& target, const Command& comman
     return std::nullopt;
   }
   try {
-    storage::Database database(*target.database, storage::Database::Mode::read_write);
+    storage::Database database(*target.database, storage::Database::Mode::update);
     storage::Registry registry(database);
     if (target.is_pair || !registry.journal().is_of(target.service)) {
       why = fmt::format(

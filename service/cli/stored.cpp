@@ -57,12 +57,12 @@ int with_database(const DatabaseOptions& options,
 }
 
 int with_writable_database(const DatabaseOptions& options,
-                           const std::function<int(storage::Database&)>& work) {
+                           const std::function<int(storage::Database&)>& work,
+                           storage::Database::Mode mode) {
   const auto path = database_path(options);
   if (const auto* refusal = std::get_if<Refusal>(&path)) return refuse(*refusal);
   try {
-    storage::Database database(std::get<std::filesystem::path>(path),
-                               storage::Database::Mode::read_write);
+    storage::Database database(std::get<std::filesystem::path>(path), mode);
     return work(database);
   } catch (const storage::Error& error) {
     using Kind = storage::Error::Kind;
@@ -79,12 +79,16 @@ std::string equipment_in(const history::HistoryReader& history) {
   return names.empty() ? "nothing yet" : joined(names);
 }
 
+ordered_json text_json(const std::string& text) {
+  return text.empty() ? ordered_json() : ordered_json(text);
+}
+
 ordered_json alarm_json(const storage::Alarm& alarm) {
   return {{"code", alarm.code},
-          {"spacecraft", alarm.about.spacecraft},
-          {"equipment", alarm.about.equipment},
+          {"spacecraft", text_json(alarm.about.spacecraft)},
+          {"equipment", text_json(alarm.about.equipment)},
           {"since", time_text(alarm.since)},
-          {"seen_by", alarm.acknowledged_by},
+          {"seen_by", text_json(alarm.acknowledged_by)},
           {"text", alarm.text}};
 }
 

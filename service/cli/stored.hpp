@@ -33,13 +33,17 @@ std::variant<std::filesystem::path, Refusal> database_path(const DatabaseOptions
 int with_database(const DatabaseOptions& options,
                   const std::function<int(storage::Database&)>& work);
 
-/// Calls `work` with a database opened for writing, and made where there is none. Refused while
-/// another program writes.
+/// Calls `work` with a database opened for writing: by default made where there is none. Refused
+/// while another program writes.
 int with_writable_database(const DatabaseOptions& options,
-                           const std::function<int(storage::Database&)>& work);
+                           const std::function<int(storage::Database&)>& work,
+                           storage::Database::Mode mode = storage::Database::Mode::read_write);
 
 /// The equipment of the database for messages, such as "CBERS-4/BDR, CBERS-4/MEA".
 std::string equipment_in(const history::HistoryReader& history);
+
+/// Returns a text, or null where it is empty: what is absent is null in JSON.
+nlohmann::ordered_json text_json(const std::string& text);
 
 /// Returns an alarm as `reident overview` and `reident fleet status` have it.
 nlohmann::ordered_json alarm_json(const storage::Alarm& alarm);

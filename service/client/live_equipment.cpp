@@ -91,7 +91,8 @@ void LiveEquipment::seed(const Tick& tick) {
 
 std::optional<ModelRunner::Swap> LiveEquipment::adopt(const ModelVersion& next) {
   const EquipmentModel& current = version().model;
-  if (!same_signals(current, next.model) || current.sample_hold_ns != next.model.sample_hold_ns) {
+  if (!same_signals(current, next.model) || current.sample_hold_ns != next.model.sample_hold_ns ||
+      current.phase_ns != next.model.phase_ns) {
     *this = LiveEquipment(next, mode_);
     return std::nullopt;
   }

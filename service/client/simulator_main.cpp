@@ -3,10 +3,12 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "service/client/simulator.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/version.hpp"
 
 namespace {
@@ -66,6 +68,10 @@ int main(int argc, char** argv) {
   add_options(app, options, cache, report_s);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const reident::FoldedOutput folded(false);
+    fmt::print("{}", app.help());
+    return 0;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }

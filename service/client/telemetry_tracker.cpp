@@ -27,6 +27,7 @@ TelemetryTracker::TelemetryTracker(const EquipmentModel& model)
     : spacecraft_(model.spacecraft),
       period_ns_(std::max<storage::Time>(1, std::llround(model.dynamics.period_s * 1e9))),
       sample_hold_ns_(model.sample_hold_ns),
+      phase_ns_(model.phase_ns.value_or(0)),
       expressions_(signal_names(model.inputs), derived_inputs(model.inputs)),
       inputs_(expressions_.parameters().size()),
       parameters_(static_cast<identification::Index>(inputs_)) {
@@ -63,14 +64,14 @@ std::vector<std::string> TelemetryTracker::undescribed() const {
 void TelemetryTracker::add(const storage::TelemetryFrame& frame,
                            const std::function<void(const Tick&)>& sink) {
   if (frame.spacecraft != spacecraft_ || frame.origin != storage::Origin::real) return;
-  const storage::Time time = frame.generation_time;
-  if (time > sane_time || time < -sane_time) {
+  if (frame.generation_time > sane_time || frame.generation_time < -sane_time) {
     ++counters_.clock_jumps;
     return;
   }
+  const storage::Time time = frame.generation_time - phase_ns_;
   if (!started_ || went_back(time)) restart(time);
   newest_ = std::max(newest_, time);
-  store(frame);
+  store(frame, time);
 
   const std::int64_t end = tick_at_or_after(newest_, period_ns_);
   for (std::int64_t tick = next_tick_; tick < end; ++tick) {
@@ -108,13 +109,12 @@ void TelemetryTracker::restart(storage::Time time) {
   next_tick_ = tick_at_or_after(time, period_ns_);
 }
 
-void TelemetryTracker::store(const storage::TelemetryFrame& frame) {
+void TelemetryTracker::store(const storage::TelemetryFrame& frame, storage::Time time) {
   for (const storage::Sample& sample : frame.samples) {
     const auto [begin, end] = by_parameter_.equal_range(sample.parameter);
     for (auto entry = begin; entry != end; ++entry) {
-      if (frame.generation_time <= (next_tick_ - 1) * period_ns_) ++counters_.late;
-      insert(channels_[entry->second],
-             {frame.generation_time, is_usable(sample) ? sample.value : nan});
+      if (time <= (next_tick_ - 1) * period_ns_) ++counters_.late;
+      insert(channels_[entry->second], {time, is_usable(sample) ? sample.value : nan});
     }
   }
 }

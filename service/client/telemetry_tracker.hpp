@@ -4,7 +4,8 @@
 // latest usable sample at or before it and younger than the sample hold; a sample that is not
 // usable ends the sample hold of the one before it. A tick is given out once a frame with a later
 // generation time has come, so that samples of the tick's own time that travel in several frames
-// are all there. Derived inputs follow from the values of their parameters at the tick.
+// are all there. Derived inputs follow from the values of their parameters at the tick. Times of
+// samples count as earlier by the model's phase.
 #pragma once
 
 #include <cstdint>
@@ -66,7 +67,7 @@ class TelemetryTracker {
   /// Whether the frame of this time is the one that shows it.
   bool went_back(storage::Time time);
   void restart(storage::Time time);
-  void store(const storage::TelemetryFrame& frame);
+  void store(const storage::TelemetryFrame& frame, storage::Time time);
   void insert(Channel& channel, Held held);
   /// NaN where there is no usable sample within the sample hold.
   double value_at(const Channel& channel, storage::Time time) const;
@@ -81,6 +82,7 @@ class TelemetryTracker {
   std::string spacecraft_;
   storage::Time period_ns_;
   storage::Time sample_hold_ns_;
+  storage::Time phase_ns_;
   InputExpressions expressions_;
   std::size_t inputs_;             // channels that the inputs are computed from
   std::vector<Channel> channels_;  // these, then outputs

@@ -153,6 +153,7 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
   reader.require("window", "\"200min\"");
   const auto period = reader.duration("sample_period", millisecond, day);
   const auto hold = reader.duration("hold", millisecond, 30 * day);
+  const auto phase = reader.duration("phase", 0, day);
   const auto window = reader.duration("window", second, 3650 * day);
   const auto slide = reader.duration("slide", millisecond, 3650 * day);
   if (!period) return;
@@ -162,6 +163,11 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
     reader.mistake("hold", fmt::format("hold {} is shorter than sample_period {}: there would be "
                                        "holes between samples",
                                        duration_text(*hold), duration_text(*period)));
+  equipment.phase = phase.value_or(0);
+  if (equipment.phase >= *period)
+    reader.mistake("phase", fmt::format("phase {} must be below sample_period {}: what comes later "
+                                        "belongs to the next tick",
+                                        duration_text(*phase), duration_text(*period)));
   if (!window || *window < *period) {
     if (window) reader.mistake("window", "window is shorter than sample_period");
     return;

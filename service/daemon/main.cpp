@@ -19,6 +19,7 @@
 #include "service/support/allocator.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
 #include "service/support/version.hpp"
 
@@ -115,6 +116,10 @@ int main(int argc, char** argv) {
       ->required();
   try {
     app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const reident::FoldedOutput folded(false);
+    fmt::print("{}", app.help());
+    return 0;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : exit_bad_request;
   }

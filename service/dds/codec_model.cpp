@@ -129,6 +129,10 @@ Fault fault_in_scalars(const ModelVersion& version) {
     return "the sample period is not a number of seconds above 0";
   }
   if (model.sample_hold_ns < 1) return "the hold is below 1 ns";
+  if (const auto phase = static_cast<double>(model.phase_ns.value_or(0));
+      phase < 0 || phase >= model.dynamics.period_s * 1e9) {
+    return "the phase is below 0 or not below the sample period";
+  }
   if (model.identified_from.end < model.identified_from.begin ||
       model.validated_on.end < model.validated_on.begin) {
     return "a range of time ends before it begins";
@@ -151,8 +155,8 @@ const reident_ModelVersion& Codec<ModelVersion>::Encoder::operator()(const Model
   const identification::StateSpaceModel& dynamics = model.dynamics;
   wire_.spacecraft = borrow(model.spacecraft);
   wire_.equipment = borrow(model.equipment);
-  // Older programs know neither expressions nor the gain, and their digest covers neither.
-  wire_.format = has_expressions(model.inputs) || model.tracking ? 2 : 1;
+  // Older programs know neither phase nor expressions nor the gain, nor does their digest.
+  wire_.format = model.phase_ns ? 3 : has_expressions(model.inputs) || model.tracking ? 2 : 1;
   wire_.number = version.number;
   wire_.digest = borrow(version.digest);
   wire_.decided_ns = version.decided;
@@ -180,6 +184,7 @@ const reident_ModelVersion& Codec<ModelVersion>::Encoder::operator()(const Model
   wire_.validation_rows = model.validation.rows;
   wire_.method = borrow(model.method);
   put_tracking(model.tracking.value_or(EquipmentModel::Tracking{}));
+  wire_.phase_ns = model.phase_ns.value_or(0);
   return wire_;
 }
 
@@ -213,6 +218,7 @@ Fault Codec<ModelVersion>::decode(const reident_ModelVersion& wire,
   model.method = texts.text(wire.method, "method");
   model.dynamics.period_s = wire.sample_period_s;
   model.sample_hold_ns = wire.hold_ns;
+  if (wire.phase_ns != 0) model.phase_ns = wire.phase_ns;
   model.identified_from = {wire.identified_begin_ns, wire.identified_end_ns};
   model.validated_on = {wire.validated_begin_ns, wire.validated_end_ns};
   model.validation.rows = wire.validation_rows;

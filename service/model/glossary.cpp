@@ -117,7 +117,7 @@ struct Glossary {
       {"non_finite", "numbers that are not finite",
        "Samples, or the model made of them, hold numbers that are not finite.",
        "Look at the telemetry of the window with 'reident export'."},
-      {"not_better", "not surely better",
+      {"not_better", "not better with confidence",
        "The version's record does not show, with the configured confidence, that it errs less than "
        "the champion.",
        ""},

@@ -112,7 +112,7 @@ void visit_fields(StructOf<EquipmentModel> auto& model, Visit&& visit) {
   using enum Digest;
   using enum Extent;
   auto& [spacecraft, equipment, inputs, outputs, dynamics, sample_hold_ns, identified_from,
-         validated_on, validation, tracking, method] = model;
+         validated_on, validation, tracking, method, phase_ns] = model;
   auto& [A, B, C, D, K, u0, y0, period_s] = dynamics;
   const identification::Index order = dynamics.order();
   visit({"spacecraft", digested}, spacecraft);
@@ -134,6 +134,7 @@ void visit_fields(StructOf<EquipmentModel> auto& model, Visit&& visit) {
   visit({"validation"}, validation);
   visit({"method", undigested, "method"}, method);
   visit({"tracking", digested, "tracking_", one, one, Presence::optional}, tracking);
+  visit({"phase_ns", digested, {}, one, one, Presence::optional}, phase_ns);
 }
 
 /// What a version has in addition to its model. The names are those of a simulator's own file;

@@ -79,6 +79,8 @@ struct EquipmentModel {
   };
   std::optional<Tracking> tracking;  // absent where no gain helped, or none was looked for
   std::string method;                // such as "N4SID, horizon 12, order 3"
+  /// A tick has the values that are known so long after it; absent: at it. Below the period.
+  std::optional<std::int64_t> phase_ns{};
 };
 
 /// Whether the dynamics are well formed and have as many inputs and outputs as are named.

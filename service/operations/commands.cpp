@@ -50,22 +50,6 @@ CommandOutcome done(std::string what) {
   return {true, std::move(what)};
 }
 
-std::string_view past(DecisionKind kind) {
-  switch (kind) {
-    case DecisionKind::approve:
-      return "approved";
-    case DecisionKind::reject:
-      return "rejected";
-    case DecisionKind::wait:
-      return "left waiting";
-    case DecisionKind::roll_back:
-      return "rolled back to";
-    case DecisionKind::withdraw:
-      break;
-  }
-  return "withdrawn";
-}
-
 /// "approved by Ana at 2026-11-21T15:00:00Z".
 std::string text(const Decision& decision) {
   return fmt::format("{} by {} at {}", past(decision.kind), decision.actor,

@@ -53,7 +53,7 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        fmt::format("at least {:.3f}; {:.1f} % not met", finding.lower_score,
                    100 * finding.uncovered_share),
        {}},
-      {"R2", "surely worse in no regime", "", {}},
+      {"R2", "worse in no regime, with confidence", "", {}},
       {"R3",
        fmt::format("without the champion's offset, above {:.2f} too", finding.log_threshold),
        limits.bias == BiasPolicy::approve ? "not asked for: bias = \"approve\""

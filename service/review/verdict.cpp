@@ -41,7 +41,8 @@ Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& s
               conditions_of(*finding, code, record->limits)};
     }
   const storage::Decision& last = story.decisions.back();
-  Verdict verdict{fmt::format("{} by {}: {}", name(last.kind), last.actor, last.reason), {}};
+  Verdict verdict{fmt::format("{} by {}: {}", past(last.kind), last.actor, last.reason), {}};
+  verdict.sentence.front() -= 'a' - 'A';
   for (auto one = story.decisions.rbegin(); record && one != story.decisions.rend(); ++one) {
     const nlohmann::ordered_json evidence = evidence_of(*one);
     if (!evidence.contains("log_threshold")) continue;

@@ -189,6 +189,10 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   app.set_version_flag("--version", std::string(program_version()));
   try {
     app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const FoldedOutput folded(false);
+    fmt::print("{}", app.help());
+    return exit_complete;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return complain(app, fmt::format("{}; see {} --help", error.what(), app.get_name()),

@@ -64,14 +64,6 @@ bool add_pair(const std::string& word, StateMap& states) {
   return false;
 }
 
-const StateMap* given_states(const CellOptions& options, const std::string& column) {
-  for (const auto& [name, states] : options.states)
-    if (name == column) return &states;
-  for (const auto& [name, states] : options.states)
-    if (name.empty()) return &states;
-  return nullptr;
-}
-
 bool is_missing(std::string_view cell, const std::vector<std::string>& missing) {
   return std::any_of(missing.begin(), missing.end(), [&](const std::string& word) {
     if (cell == word) return true;
@@ -121,6 +113,14 @@ struct Counts {
 };
 
 }  // namespace
+
+const StateMap* given_states(const CellOptions& options, const std::string& column) {
+  for (const auto& [name, states] : options.states)
+    if (name == column) return &states;
+  for (const auto& [name, states] : options.states)
+    if (name.empty()) return &states;
+  return nullptr;
+}
 
 std::optional<StateMap> parse_states(std::string_view text) {
   StateMap states;

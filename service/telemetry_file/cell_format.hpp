@@ -56,6 +56,9 @@ struct CellFormat {
   bool may_be_states = false;      // of a column of text: so few words that they may be states
 };
 
+/// The states that the options give for a column, or for all; null where there are none.
+const StateMap* given_states(const CellOptions& options, const std::string& column);
+
 /// Finds the style in which the numbers of a table are written from its cells, column by column;
 /// `separator` is that of the file. An error text that shows a cell where two styles are possible.
 std::variant<NumberStyle, std::string> find_style(

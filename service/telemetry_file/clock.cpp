@@ -76,8 +76,23 @@ std::optional<std::int64_t> parse_time_unit(std::string_view text) {
   return parse_duration("1" + std::string(text));
 }
 
+bool Clock::uses(std::size_t column) const {
+  return column == zone_column_ || column == fraction_column_ ||
+         std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+}
+
 std::optional<std::int64_t> Clock::read(std::span<const std::string_view> cells) {
-  return parts_ == Parts::one ? read_one(cells[columns_.front()]) : read_parts(cells);
+  if (zone_column_) {
+    offset_ns_ = read_offset(cells[*zone_column_]);
+    if (!offset_ns_) return std::nullopt;
+  }
+  auto time = parts_ == Parts::one ? read_one(cells[columns_.front()]) : read_parts(cells);
+  if (!time || !fraction_column_) return time;
+  const auto fraction = parse_count(cells[*fraction_column_], fraction_unit_ns_);
+  if (!fraction || *fraction < 0 || *fraction >= second_ns ||
+      __builtin_add_overflow(*time, *fraction, &*time))
+    return std::nullopt;
+  return time;
 }
 
 std::optional<std::int64_t> Clock::absolute(const DateText& text) {
@@ -87,6 +102,7 @@ std::optional<std::int64_t> Clock::absolute(const DateText& text) {
                                                                          : std::optional(time);
   if (__builtin_add_overflow(text.clock_ns, text.has_date ? 0 : epoch_ns_, &time))
     return std::nullopt;
+  if (offset_ns_ && __builtin_sub_overflow(time, *offset_ns_, &time)) return std::nullopt;
   return zone_ ? zone_->to_utc(time) : std::optional(time);
 }
 
@@ -135,12 +151,12 @@ std::optional<std::int64_t> Clock::read_one(std::string_view cell) {
     const std::string_view text = trimmed(cell);
     if (unit_ns_ == second_ns && text.size() >= 17 && all_digits(text)) return parse_count(text, 1);
     if (const auto time = parse_count(text, unit_ns_)) return time;
-    if (!zone_)
+    if (!zone_ && !offset_ns_)
       if (const auto time = parse_time(text)) return time;
   } else if (format_ != TimeFormat::text) {
     const auto time = read_number_of(cell);
     return time && zone_ && format_ == TimeFormat::excel ? zone_->to_utc(*time) : time;
-  } else if (!zone_) {
+  } else if (!zone_ && !offset_ns_) {
     const std::string_view text = trimmed(cell);
     if (text.size() > 4 && text[4] == '-')
       if (const auto time = parse_time(text)) return time;
@@ -150,6 +166,13 @@ std::optional<std::int64_t> Clock::read_one(std::string_view cell) {
 }
 
 std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> cells) {
+  if (parts_ == Parts::joined && !part_unit_ns_.empty()) {
+    auto day = read_date_text(cells[columns_[0]], order_);
+    const auto of_day = parse_count(cells[columns_[1]], part_unit_ns_.front());
+    if (!day || !of_day || *of_day < 0 || *of_day > day_ns) return std::nullopt;
+    day->clock_ns += *of_day;
+    return absolute(*day);
+  }
   if (parts_ == Parts::joined) {
     std::string clock(trimmed(cells[columns_[1]]));
     if (clock_digits_ != 0 && clock.size() < clock_digits_)

@@ -73,10 +73,14 @@ class Clock {
 
   /// Positions of the columns that it reads; the first names it in messages.
   const std::vector<std::size_t>& columns() const { return columns_; }
+  /// Whether it reads a column, as one of those or for the zone or the part of a second.
+  bool uses(std::size_t column) const;
   /// Whether times are since 1970, and not since an epoch that nobody gave.
   bool is_absolute() const { return is_absolute_; }
   /// Whether texts are of a clock that nobody named: it may be a local one.
   bool may_be_local() const { return may_be_local_; }
+  /// The column that says that it is a local one, and not where; absent: none does.
+  std::optional<std::size_t> local_by() const { return local_by_; }
   std::int64_t unit_ns() const { return unit_ns_; }
   /// Whether the times of rows before decide what a cell means.
   bool depends_on_order() const { return zone_.has_value(); }
@@ -104,7 +108,12 @@ class Clock {
   bool has_decimal_comma_ = false;
   bool has_unit_behind_ = false;  // numbers are as "10 sec"
   bool is_absolute_ = true, may_be_local_ = false;
+  std::optional<std::size_t> local_by_;
   std::optional<TimeZone> zone_;
+  std::optional<std::int64_t> offset_ns_;       // of texts without their own, by the column's name
+  std::optional<std::size_t> zone_column_;      // or by this column of each row
+  std::optional<std::size_t> fraction_column_;  // parts of a second
+  std::int64_t fraction_unit_ns_ = 0;
   std::string description_;
 };
 

@@ -94,6 +94,80 @@ bool ClockFinder::counts_days_of_year(std::size_t c) const {
   });
 }
 
+/// A column beside the dates whose cells are all zones, as MEZ and MESZ, or offsets by its name.
+bool ClockFinder::find_zone_column() {
+  for (std::size_t c = 0; c < head_.names.size(); ++c) {
+    const auto& cells = head_.columns[c];
+    if (clock_.uses(c) || cells.empty()) continue;
+    const std::string_view first = trimmed(cells.front());
+    const bool is_one = std::all_of(cells.begin(), cells.end(),
+                                    [&](std::string_view cell) { return trimmed(cell) == first; });
+    if (is_one && first.find('/') != std::string_view::npos)
+      clock_.zone_ = TimeZone::named(std::string(first));
+    if (clock_.zone_) {
+      clock_.local_by_.reset();
+      clock_.may_be_local_ = false;
+      clock_.description_ += ", " + std::string(first);
+      return true;
+    }
+    const bool is_named = is_named_like_a_zone(head_.names[c]);
+    const auto is_zone = [&](std::string_view raw) {
+      const std::string_view cell = trimmed(raw);
+      const bool is_word = cell.size() >= 3 && cell[0] >= 'A' && cell[0] <= 'Z';
+      return !cell.empty() && (is_named || is_word) && read_offset(cell).has_value();
+    };
+    if (!std::all_of(cells.begin(), cells.end(), is_zone)) {
+      if (is_named && !trimmed(first_cell(c).first).empty()) clock_.local_by_ = c;
+      continue;
+    }
+    clock_.local_by_.reset();
+    clock_.zone_column_ = c;
+    clock_.may_be_local_ = false;
+    clock_.description_ += ", zones in column " + head_.names[c];
+    return true;
+  }
+  return false;
+}
+
+/// A column of milliseconds or the like right behind times of whole seconds.
+void ClockFinder::find_fraction_column() {
+  const std::size_t last = *std::max_element(clock_.columns_.begin(), clock_.columns_.end());
+  const std::size_t c = last + 1;
+  if (c >= head_.names.size() || clock_.parts_ == Clock::Parts::gps_week) return;
+  const auto unit = fraction_of_second(head_.names[c]);
+  if (!unit) return;
+  const auto is_whole = [](std::string_view cell) {
+    const auto clock = cell.rfind(':');
+    return cell.substr(clock == std::string_view::npos ? 0 : clock).find_first_of(".,") ==
+           std::string_view::npos;
+  };
+  const auto fits = [&](std::string_view cell) {
+    const auto value = plain_number(trimmed(cell));
+    return is_digits(trimmed(cell)) && value && *value * static_cast<double>(*unit) < 1e9;
+  };
+  const auto& cells = head_.columns[c];
+  if (cells.empty() ||
+      !std::all_of(head_.columns[last].begin(), head_.columns[last].end(), is_whole) ||
+      !std::all_of(cells.begin(), cells.end(), fits))
+    return;
+  clock_.fraction_column_ = c;
+  clock_.fraction_unit_ns_ = *unit;
+  clock_.description_ += ", parts of a second in column " + head_.names[c];
+}
+
+/// Digits are seconds of the day where one of them is no time of day as 093000.
+bool ClockFinder::counts_seconds(std::size_t c) const {
+  bool any = false;
+  for (const std::string_view raw : head_.columns[c]) {
+    const auto value = plain_number(trimmed(raw));
+    if (!value) continue;
+    if (*value < 0 || *value > 86'400) return false;
+    const auto whole = static_cast<std::int64_t>(*value);
+    any = any || whole % 100 > 59 || whole / 100 % 100 > 59;
+  }
+  return any;
+}
+
 /// A date and a time of day side by side.
 bool ClockFinder::find_date_and_clock() {
   const auto date = part(TimePart::date);
@@ -114,6 +188,11 @@ std::optional<std::size_t> ClockFinder::clock_beside(std::size_t date) const {
 
 bool ClockFinder::join(std::size_t date, std::optional<std::size_t> clock) {
   if (!clock) return false;
+  const TimePart what = part_of(head_.names[*clock]);
+  if (what == TimePart::second_of_day || what == TimePart::millisecond_of_day ||
+      counts_seconds(*clock))
+    return set_parts(Clock::Parts::joined, {date, *clock},
+                     {what == TimePart::millisecond_of_day ? second_ns / 1000 : second_ns});
   clock_.clock_digits_ = 0;
   for (const std::string_view cell : head_.columns[*clock])
     if (is_digits(trimmed(cell)))
@@ -146,8 +225,13 @@ bool ClockFinder::holds_time(std::size_t c) const {
 std::optional<Problem> ClockFinder::choose_columns() {
   if (options_.column) return choose_named(*options_.column);
   if (find_set()) return std::nullopt;
-  for (std::size_t c = 0; c < head_.names.size(); ++c)
-    if (is_named_like_a_time(head_.names[c]) && holds_time(c)) return choose({c});
+  for (const bool may_be_local : {false, true})
+    for (std::size_t c = 0; c < head_.names.size(); ++c) {
+      const auto zone = zone_hint_of(head_.names[c], unit(c));
+      if ((may_be_local || !zone || !zone->is_local) && is_named_like_a_time(head_.names[c]) &&
+          holds_time(c))
+        return choose({c});
+    }
   for (std::size_t c = 0; c < head_.names.size(); ++c)
     if (!read_number(first_cell(c).first, head_.style) &&
         read_date_text(first_cell(c).first, clock_.order_))

@@ -84,7 +84,29 @@ std::variant<Clock, Problem> ClockFinder::run() {
           clock_.parts_ == Clock::Parts::one ? decide_one(clock_.columns_.front()) : decide_parts())
     return *std::move(problem);
   if (clock_.zone_) clock_.description_ += ", " + *options_.zone;
+  if (clock_.may_be_local_ && clock_.is_absolute_ && !find_zone_column()) take_zone_of_names();
+  find_fraction_column();
   return std::move(clock_);
+}
+
+/// The zone that the name of a column says, as "Zeit (MEZ)".
+void ClockFinder::take_zone_of_names() {
+  for (const std::size_t c : clock_.columns_) {
+    const auto hint = zone_hint_of(head_.names[c], unit(c));
+    if (!hint) continue;
+    if (hint->is_local) {
+      clock_.local_by_ = c;
+      continue;
+    }
+    clock_.local_by_.reset();
+    clock_.may_be_local_ = false;
+    if (hint->offset_ns)
+      clock_.offset_ns_ = hint->offset_ns;
+    else
+      clock_.zone_ = TimeZone::named(hint->name);
+    if (hint->offset_ns != 0) clock_.description_ += ", " + hint->name + " by the name";
+    return;
+  }
 }
 
 std::optional<Problem> ClockFinder::decide_parts() {

@@ -27,6 +27,7 @@ class ClockFinder {
   std::optional<std::size_t> part(TimePart part) const;
   std::pair<std::string_view, std::uint64_t> first_cell(std::size_t c) const;
   bool counts_days_of_year(std::size_t c) const;
+  bool counts_seconds(std::size_t c) const;
   bool set_parts(Clock::Parts parts, std::vector<std::size_t> columns,
                  std::vector<std::int64_t> units);
   bool find_calendar();
@@ -41,6 +42,9 @@ class ClockFinder {
   std::optional<Clock::Problem> choose(std::vector<std::size_t> columns);
   std::optional<Clock::Problem> choose_named(const std::string& asked);
   std::optional<Clock::Problem> decide_parts();
+  void take_zone_of_names();
+  bool find_zone_column();
+  void find_fraction_column();
   std::optional<Clock::Problem> decide_order(std::size_t c);
   std::optional<Clock::Problem> decide_one(std::size_t c);
   bool in_window(const std::vector<double>& values, TimeFormat format, std::int64_t unit_ns) const;

@@ -30,7 +30,8 @@ std::optional<std::int64_t> unit_of(const std::string& word) {
   static const std::map<std::string, std::int64_t> units = {
       {"ns", 1},           {"nsec", 1},         {"nanoseconds", 1},     {"us", 1000},
       {"usec", 1000},      {"\xC2\xB5s", 1000}, {"microseconds", 1000}, {"ms", ms},
-      {"msec", ms},        {"millis", ms},      {"milliseconds", ms},   {"s", s},
+      {"msec", ms},        {"millis", ms},      {"milliseconds", ms},   {"millisec", ms},
+      {"millisecond", ms}, {"micros", 1000},    {"microsecond", 1000},  {"s", s},
       {"sec", s},          {"secs", s},         {"seconds", s},         {"min", 60 * s},
       {"minutes", 60 * s}, {"h", 3600 * s},     {"hours", 3600 * s},    {"d", 86400 * s},
       {"days", 86400 * s}};
@@ -57,7 +58,53 @@ std::optional<TimeFormat> format_of(const std::string& word) {
   return found == formats.end() ? std::nullopt : std::optional(found->second);
 }
 
+std::optional<ZoneHint> zone_in(std::string_view text) {
+  constexpr std::string_view ends = " \t_()[],;";
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(ends, at), text.size());
+    const std::string word(text.substr(at, end - at));
+    at = end + 1;
+    if (word.find('/') != std::string::npos && TimeZone::named(word))
+      return ZoneHint{word, {}, false};
+    const bool is_name = word.size() >= 3 && word[0] >= 'A' && word[0] <= 'Z' && word[1] >= 'A' &&
+                         word[1] <= 'Z' && word != "MET";  // mission elapsed time
+    const bool is_utc = word == "utc" || word == "gmt";
+    const auto offset = is_name || is_utc ? read_offset(word) : std::nullopt;
+    if (offset) return ZoneHint{word, offset, false};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view unit) {
+  for (const std::string_view text : {unit, name})
+    if (auto zone = zone_in(text)) return zone;
+  for (const std::string_view text : {unit, name})
+    for (const std::string& word : words_of(text))
+      if (word == "local" || word == "localtime" || word == "lokal" || word == "lokalzeit" ||
+          word == "ortszeit")
+        return ZoneHint{word, {}, true};
+  return std::nullopt;
+}
+
+bool is_named_like_a_zone(std::string_view name) {
+  std::string all;
+  for (const std::string& word : words_of(name)) {
+    if (word == "tz") return true;
+    all += word;
+  }
+  constexpr std::array<std::string_view, 5> hints = {"timezone", "zeitzone", "utcoffset",
+                                                     "gmtoffset", "tzoffset"};
+  return std::any_of(hints.begin(), hints.end(),
+                     [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
+}
+
+std::optional<std::int64_t> fraction_of_second(std::string_view name) {
+  const auto words = words_of(name);
+  const auto unit = words.size() == 1 ? unit_of(words.front()) : std::nullopt;
+  return unit && *unit < s ? unit : std::nullopt;
+}
 
 NameHint hint_of(std::string_view name, std::string_view unit) {
   NameHint hint;

@@ -17,6 +17,21 @@ struct NameHint {
 };
 NameHint hint_of(std::string_view name, std::string_view unit);
 
+/// What a column's name, or its unit, says about the clock of its dates: "Zeit (MEZ)",
+/// "time [Europe/Berlin]", "local time".
+struct ZoneHint {
+  std::string name;                       // as it stands there
+  std::optional<std::int64_t> offset_ns;  // east of UTC; absent: a zone of the database
+  bool is_local = false;                  // a local clock, and nothing says where
+};
+std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view unit);
+
+/// Whether a column is named as one of zones or offsets.
+bool is_named_like_a_zone(std::string_view name);
+
+/// The unit of a column that is called ms, usec, nanoseconds or the like, and nothing else.
+std::optional<std::int64_t> fraction_of_second(std::string_view name);
+
 /// Whether a column is named as times are.
 bool is_named_like_a_time(std::string_view name);
 

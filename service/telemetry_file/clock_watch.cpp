@@ -31,7 +31,7 @@ std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t li
   if (last_ns_ && time_ns < *last_ns_) step = explained(time_ns, line);
   if (last_ns_ && time_ns > *last_ns_) {
     if (hour_ahead_line_ == 0 && begins_daylight_saving(time_ns)) hour_ahead_line_ = line;
-    usual_ns_ = time_ns - *last_ns_;
+    if (__builtin_sub_overflow(time_ns, *last_ns_, &usual_ns_)) usual_ns_ = 0;
   }
   last_ns_ = time_ns;
   return step;
@@ -39,10 +39,13 @@ std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t li
 
 bool ClockWatch::begins_daylight_saving(std::int64_t time_ns) const {
   if (!may_be_local_ || !is_absolute_ || usual_ns_ == 0 || usual_ns_ > hour_ns / 4) return false;
-  const std::int64_t expected_ns = *last_ns_ + usual_ns_;
+  std::int64_t expected_ns = 0;
+  if (__builtin_add_overflow(*last_ns_, usual_ns_, &expected_ns)) return false;
   const std::int64_t of_day_ns = ((expected_ns % day_ns) + day_ns) % day_ns;
   return of_day_ns < 4 * hour_ns && of_day_ns % hour_ns <= usual_ns_ &&
-         std::abs(time_ns - expected_ns - hour_ns) <= std::max(second_ns, usual_ns_ / 2);
+         std::abs(static_cast<double>(time_ns) - static_cast<double>(expected_ns) -
+                  static_cast<double>(hour_ns)) <=
+             static_cast<double>(std::max(second_ns, usual_ns_ / 2));
 }
 
 ClockStep ClockWatch::explained(std::int64_t time_ns, std::uint64_t line) const {
@@ -50,11 +53,10 @@ ClockStep ClockWatch::explained(std::int64_t time_ns, std::uint64_t line) const 
   step.line = line;
   if (__builtin_sub_overflow(*last_ns_, time_ns, &step.back_ns)) return step;
   // What the clock would have shown if it had gone on as before.
-  const std::int64_t lost_ns = step.back_ns + usual_ns_;
-  const std::int64_t tolerance_ns = std::max(second_ns, 2 * usual_ns_);
-  const auto by_about = [&](double ns) {
-    return std::abs(static_cast<double>(lost_ns) - ns) <= static_cast<double>(tolerance_ns);
-  };
+  const auto usual_ns = static_cast<double>(usual_ns_);
+  const double lost_ns = static_cast<double>(step.back_ns) + usual_ns;
+  const double tolerance_ns = std::max(static_cast<double>(second_ns), 2 * usual_ns);
+  const auto by_about = [&](double ns) { return std::abs(lost_ns - ns) <= tolerance_ns; };
   const std::string back = duration_text(step.back_ns);
   if (may_be_local_ && by_about(static_cast<double>(hour_ns))) {
     step.kind = ClockStep::Kind::hour;
@@ -67,14 +69,13 @@ ClockStep ClockWatch::explained(std::int64_t time_ns, std::uint64_t line) const 
   }
   for (const Wrap& wrap : wraps) {
     const double ns = wrap.counts * static_cast<double>(unit_ns_);
-    if (is_absolute_ || ns > 9e18 || !by_about(ns) || ns < 4 * static_cast<double>(usual_ns_))
-      continue;
+    if (is_absolute_ || ns > 9e18 || !by_about(ns) || ns < 4 * usual_ns) continue;
     step.kind = ClockStep::Kind::wrap;
     step.missing_ns = static_cast<std::int64_t>(ns);
     step.what = fmt::format("the clock goes back {}: a counter that wraps at {}", back, wrap.text);
     return step;
   }
-  if (!is_absolute_ && std::abs(time_ns) <= tolerance_ns) {
+  if (!is_absolute_ && std::abs(static_cast<double>(time_ns)) <= tolerance_ns) {
     step.kind = ClockStep::Kind::restart;
     step.what =
         fmt::format("the clock goes back {} to zero: whatever counts was started again", back);

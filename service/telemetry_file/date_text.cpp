@@ -364,6 +364,12 @@ std::string_view without_brackets(std::string_view cell) {
 
 }  // namespace
 
+std::optional<std::int64_t> read_offset(std::string_view text) {
+  Parts parts(trimmed(text));
+  std::optional<std::int64_t> offset;
+  return take_offset(parts, offset) ? offset : std::nullopt;
+}
+
 std::optional<DateText> read_date_text(std::string_view cell, DateOrder order) {
   Parts text(without_brackets(cell));
   DateText read;

@@ -29,4 +29,7 @@ struct DateText {
 /// second 60 is the next minute's 0. Empty where the text is none.
 std::optional<DateText> read_date_text(std::string_view text, DateOrder order);
 
+/// Returns how far east of UTC a clock is that CET, UTC, GMT+1 or +02:00 names; empty for others.
+std::optional<std::int64_t> read_offset(std::string_view text);
+
 }  // namespace reident::telemetry_file

@@ -1,14 +1,13 @@
 #include "service/telemetry_file/dialect.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
 
 #include "service/support/text.hpp"
-#include "service/telemetry_file/date_text.hpp"
+#include "service/telemetry_file/clock_names.hpp"
 #include "service/telemetry_file/head_lines.hpp"
-#include "service/telemetry_file/number_text.hpp"
+#include "service/telemetry_file/row_shape.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -114,12 +113,22 @@ class Head {
   std::vector<bool> values_;
 };
 
+/// Whether a word says of what clock a column of times is, as MEZ, or how they are written.
+bool is_of_a_clock(std::string_view word) {
+  const std::string_view pattern = "dDmMyYhHsSaAjJ.-/: T";
+  const bool is_pattern =
+      word.find_first_not_of(pattern) == std::string_view::npos &&
+      (word.find("yy") != std::string_view::npos || word.find("YY") != std::string_view::npos ||
+       word.find("hh") != std::string_view::npos || word.find("HH") != std::string_view::npos);
+  return is_pattern || zone_hint_of({}, word);
+}
+
 bool are_units(const HeadLine& line) {
   bool any = false;
   for (const std::string& cell : line.cells) {
     const std::string_view word = trimmed(cell);
     if (word.empty() || word == "-") continue;
-    if (!is_unit_word(word)) return false;
+    if (!is_unit_word(word) && !is_of_a_clock(word)) return false;
     any = true;
   }
   return any;
@@ -224,57 +233,6 @@ std::optional<std::size_t> header_in_comment(HeadLines& lines, std::size_t first
   return std::nullopt;
 }
 
-/// Whether the header has a cell less than the rows, which `fits` says of a row's cells.
-bool rows_have_one_more(const HeadLines& lines, std::size_t usual, const std::string& comment,
-                        const std::function<bool(const std::vector<std::string>&)>& fits) {
-  std::size_t rows = 0, fitting = 0;
-  bool has_header = false;
-  for (const HeadLine& line : lines) {
-    if (is_blank(line) || is_comment(line, comment)) continue;
-    if (line.cells.size() + 1 == usual && fitting == 0 &&
-        std::none_of(line.cells.begin(), line.cells.end(), looks_like_value))
-      has_header = true;
-    if (line.cells.size() != usual) continue;
-    ++rows;
-    fitting += fits(line.cells) ? 1U : 0U;
-  }
-  return has_header && rows > 0 && fitting == rows;
-}
-
-/// Dates and times of day that stand a blank apart, under one name; a separator at the end of every
-/// row that the header has not.
-void join_cells(HeadLines& lines, Layout& layout) {
-  if (layout.cells < 2) return;
-  if (layout.separator == ' ' &&
-      rows_have_one_more(lines, layout.cells, layout.comment, [](const auto& cells) {
-        const auto date = read_date_text(cells[0], DateOrder::day_first);
-        return date && date->has_date && cells[1].find(':') != std::string::npos;
-      })) {
-    layout.joins_date = true;
-    for (HeadLine& line : lines)
-      if (line.cells.size() == layout.cells) {
-        line.cells[0] += " " + line.cells[1];
-        line.cells.erase(line.cells.begin() + 1);
-      }
-    --layout.cells;
-  }
-  if (rows_have_one_more(lines, layout.cells, layout.comment,
-                         [](const auto& cells) { return trimmed(cells.back()).empty(); })) {
-    --layout.cells;
-    return;
-  }
-  // Rows are numbered, and no name stands above the numbers.
-  std::optional<double> before;
-  if (rows_have_one_more(lines, layout.cells, layout.comment, [&](const auto& cells) {
-        const auto number = plain_number(cells.front());
-        const bool follows = number && (!before || *number == *before + 1);
-        before = number;
-        return follows;
-      }))
-    for (HeadLine& line : lines)
-      if (line.cells.size() + 1 == layout.cells) line.cells.insert(line.cells.begin(), "");
-}
-
 /// A line right above the rows that holds names, more or less than there are cells.
 const HeadLine* names_of_other_count(const HeadLines& lines, std::size_t first_row,
                                      const Layout& layout) {
@@ -373,6 +331,16 @@ std::optional<Error> refuse_one_cell(const HeadLines& lines, const Layout& layou
   if (text.starts_with('<') || text.starts_with('{') || text.starts_with("[{") || text == "[")
     return at_line(name, first->number,
                    "the text is HTML, XML or JSON and no table of cells; write it as CSV first");
+  if (layout.cells == 0 && options.names.empty())
+    return at_line(name, first->number,
+                   "no line can be cut into cells, since their quotes are not paired ('" +
+                       std::string(text.substr(0, 40)) + "'); mend the quotes");
+  const bool is_quoted = text.size() > 2 && text.front() == '"' && text.back() == '"' &&
+                         text.find_first_of(",;\t|") != std::string_view::npos;
+  if (layout.cells == 1 && is_quoted && options.names.size() != 1)
+    return at_line(name, first->number,
+                   "the line is one quoted cell ('" + std::string(text.substr(0, 40)) +
+                       "'); remove the quotes around the lines");
   if (layout.cells > 1 || options.separator || options.names.size() == 1 || lines.size() < 3)
     return std::nullopt;
   return at_line(name, first->number,

@@ -65,6 +65,14 @@ std::string find_comment(const HeadLines& lines) {
       if (line.text.starts_with(mark)) return std::string(mark);
     if (looks_like_value(line.text.substr(0, line.text.find_first_of(",;\t|")))) break;
   }
+  // Among rows, where few lines begin so.
+  for (const std::string_view mark : comment_marks) {
+    const auto count = std::count_if(lines.begin(), lines.end(), [mark](const HeadLine& line) {
+      return line.text.starts_with(mark);
+    });
+    if (count > 0 && 10 * count <= static_cast<std::ptrdiff_t>(lines.size()))
+      return std::string(mark);
+  }
   return "";
 }
 
@@ -117,16 +125,33 @@ double quality_of(HeadLines& lines, char separator, const std::string& comment) 
   return fitting / all * (0.2 + values / std::max(1.0, cells)) * (separator == ' ' ? 0.9 : 1);
 }
 
+/// Whether a separator cuts all lines, the first of which holds names, into equally many cells.
+bool cuts_all(HeadLines& lines, char separator, const std::string& comment) {
+  split(lines, separator);
+  const auto holds_cells = [&](const HeadLine& line) {
+    return !is_blank(line) && !is_comment(line, comment);
+  };
+  const auto first = std::find_if(lines.begin(), lines.end(), holds_cells);
+  return first != lines.end() && first->cells.size() > 1 &&
+         std::none_of(first->cells.begin(), first->cells.end(), looks_like_value) &&
+         std::all_of(first, lines.end(), [&](const HeadLine& line) {
+           return !holds_cells(line) || line.cells.size() == first->cells.size();
+         });
+}
+
 }  // namespace
 
 char find_separator(HeadLines& lines, const std::string& comment) {
   char best = ',';
   double most = 0;
-  const bool has_tabs = std::any_of(lines.begin(), lines.end(), [](const HeadLine& line) {
+  // Blanks stand in cells too: in dates with a time of day.
+  bool may_be_blanks = std::none_of(lines.begin(), lines.end(), [](const HeadLine& line) {
     return line.text.find('\t') != std::string_view::npos;
   });
+  for (const char separator : {',', ';', '|'})
+    may_be_blanks = may_be_blanks && !cuts_all(lines, separator, comment);
   for (const char separator : {',', ';', '\t', '|', ' '}) {
-    if (separator == ' ' && has_tabs) continue;
+    if (separator == ' ' && !may_be_blanks) continue;
     const double quality = quality_of(lines, separator, comment);
     if (quality > most + 1e-9) {
       most = quality;
@@ -224,8 +249,14 @@ bool looks_like_value(std::string_view cell) {
   }
   const std::size_t digits = static_cast<std::size_t>(
       std::count_if(cell.begin(), cell.end(), [](char c) { return c >= '0' && c <= '9'; }));
-  if (has_clock)
-    return cell.rfind(',') == std::string_view::npos || cell.rfind(',') > cell.rfind(':');
+  if (has_clock) {
+    // A comma is the mark of a part of a second.
+    const auto comma = cell.find(',');
+    if (comma == std::string_view::npos) return true;
+    const std::string_view part = cell.substr(comma + 1);
+    return comma > cell.rfind(':') && !part.empty() && part.front() >= '0' && part.front() <= '9' &&
+           part.find_first_of(",.") == std::string_view::npos;
+  }
   return digits * 2 + 8 >= cell.size();
 }
 

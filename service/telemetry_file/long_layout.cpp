@@ -53,41 +53,91 @@ std::string cell_text(const TelemetryFile& file, std::size_t column) {
   return in_quotes(trimmed(file.cells()[column]));
 }
 
-struct Table {
-  std::vector<std::string> parameters;
-  std::map<std::int64_t, std::vector<std::string>> rows;  // cells by parameter, short of the last
+/// Samples of one time, each of another parameter.
+struct Row {
+  std::vector<std::string> cells;  // by parameter, short of the last
+  std::vector<std::uint64_t> lines;
 };
 
-std::variant<Table, Error> table_of(TelemetryFile& file, LongLayout layout) {
-  Table table;
-  std::map<std::string, std::size_t, std::less<>> positions;
-  for (auto step = file.next(); step != TelemetryFile::Step::end; step = file.next()) {
-    if (step == TelemetryFile::Step::error) return file.error();
-    const std::string_view name = trimmed(file.cells()[layout.parameter]);
-    if (name.empty()) return file.cell_error(layout.parameter, "names no parameter; mend the line");
-    auto at = positions.find(name);
-    if (at == positions.end()) {
-      at = positions.emplace(name, table.parameters.size()).first;
-      table.parameters.emplace_back(name);
-    }
-    auto& cells = table.rows[file.time_ns()];
-    if (cells.size() <= at->second) cells.resize(at->second + 1);
-    cells[at->second] = cell_text(file, layout.value);
-  }
-  return table;
-}
+class Table {
+ public:
+  explicit Table(bool is_absolute) : is_absolute_(is_absolute) {}
 
-std::string text_of(const Table& table, const std::string& time_name, bool is_absolute) {
-  std::string text = in_quotes(time_name);
-  for (const std::string& parameter : table.parameters) text += "," + in_quotes(parameter);
-  text += '\n';
-  for (const auto& [time, cells] : table.rows) {
-    text += is_absolute ? time_text(time) : fmt::format("{}e-9", time);
-    for (std::size_t c = 0; c < table.parameters.size(); ++c)
-      text += c < cells.size() ? "," + cells[c] : ",";
-    text += '\n';
+  /// A second sample of a parameter at a time gets a row of its own.
+  void add(const TelemetryFile& file, LongLayout layout) {
+    const std::size_t column = position_of(trimmed(file.cells()[layout.parameter]));
+    auto& rows = rows_[file.time_ns()];
+    auto row = std::partition_point(rows.begin(), rows.end(), [column](const Row& one) {
+      return column + 1 < one.lines.size() && one.lines[column + 1] != 0;
+    });
+    if (row == rows.end()) row = rows.insert(rows.end(), Row{});
+    if (row->cells.size() <= column) {
+      row->cells.resize(column + 1);
+      row->lines.resize(column + 2);  // behind that of the time
+    }
+    row->cells[column] = cell_text(file, layout.value);
+    row->lines[column + 1] = file.line();
   }
-  return text;
+
+  std::string text(const std::string& time_name) const {
+    std::string text = in_quotes(time_name);
+    for (const std::string& parameter : parameters_) text += "," + in_quotes(parameter);
+    text += '\n';
+    for (const auto& [time, rows] : rows_)
+      for (const Row& row : rows) {
+        text += is_absolute_ ? time_text(time) : fmt::format("{}e-9", time);
+        for (std::size_t c = 0; c < parameters_.size(); ++c)
+          text += c < row.cells.size() ? "," + row.cells[c] : ",";
+        text += '\n';
+      }
+    return text;
+  }
+
+  std::vector<std::vector<std::uint64_t>> lines() && {
+    std::vector<std::vector<std::uint64_t>> lines;
+    for (auto& [time, rows] : rows_)
+      for (Row& row : rows) lines.push_back(std::move(row.lines));
+    return lines;
+  }
+
+ private:
+  std::size_t position_of(std::string_view name) {
+    auto at = positions_.find(name);
+    if (at == positions_.end()) {
+      at = positions_.emplace(name, parameters_.size()).first;
+      parameters_.emplace_back(name);
+    }
+    return at->second;
+  }
+
+  bool is_absolute_;
+  std::vector<std::string> parameters_;
+  std::map<std::string, std::size_t, std::less<>> positions_;
+  std::map<std::int64_t, std::vector<Row>> rows_;
+};
+
+/// Reads all samples. Bad lines are an error, or left out and counted.
+std::optional<Error> read_samples(TelemetryFile& file, LongLayout layout, bool skip_bad_lines,
+                                  Table& table, LeftOut& left_out) {
+  for (auto step = file.next(); step != TelemetryFile::Step::end; step = file.next()) {
+    std::optional<Error> error;
+    Damage damage = Damage::value;
+    if (step == TelemetryFile::Step::error) {
+      error = file.error();
+      damage = file.damage();
+    } else if (trimmed(file.cells()[layout.parameter]).empty()) {
+      error = file.cell_error(layout.parameter,
+                              "names no parameter; mend the line, or leave such lines out with "
+                              "--skip-bad-lines");
+    }
+    if (!error)
+      table.add(file, layout);
+    else if (skip_bad_lines && damage != Damage::none)
+      left_out.add(damage, *error);
+    else
+      return error;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -107,15 +157,19 @@ std::optional<LongLayout> find_long_layout(const TelemetryFile& file) {
 }
 
 std::variant<TelemetryFile, Error> open_as_table(const std::filesystem::path& path,
-                                                 const ReadingOptions& options) {
+                                                 const ReadingOptions& options,
+                                                 bool skip_bad_lines) {
   auto opened = TelemetryFile::open(path, options);
   if (std::holds_alternative<Error>(opened)) return opened;
   auto& file = std::get<TelemetryFile>(opened);
   const auto layout = find_long_layout(file);
   if (!layout || !file.has_rows()) return opened;
   if (auto error = file.find_time(true)) return *std::move(error);
-  auto read = table_of(file, *layout);
-  if (auto* error = std::get_if<Error>(&read)) return std::move(*error);
+  const bool is_absolute = file.clock().is_absolute();
+  Table table(is_absolute);
+  LeftOut left_out;
+  if (auto error = read_samples(file, *layout, skip_bad_lines, table, left_out))
+    return *std::move(error);
   ReadingOptions plain;
   plain.dialect.separator = ',';
   plain.dialect.header_line = 1;
@@ -127,12 +181,13 @@ std::variant<TelemetryFile, Error> open_as_table(const std::filesystem::path& pa
   plain.force_times = options.force_times;
   plain.any_epoch = options.any_epoch;
   plain.latest_ns = options.latest_ns;
-  const bool is_absolute = file.clock().is_absolute();
   plain.time.format = is_absolute ? TimeFormat::text : TimeFormat::elapsed;
   if (!is_absolute) plain.time.unit_ns = second_ns;  // whatever the name says
-  return TelemetryFile::of_text(text_of(std::get<Table>(read), time_name, is_absolute),
-                                path.string() + " as a table", plain,
-                                file.found() + "; one sample a row");
+  MadeOf made_of{file.found() + "; one sample a row", file.remarks(), {}};
+  for (std::string& sentence : left_out.sentences()) made_of.remarks.push_back(std::move(sentence));
+  std::string text = table.text(time_name);
+  made_of.lines = std::move(table).lines();
+  return TelemetryFile::of_text(std::move(text), path.string(), plain, std::move(made_of));
 }
 
 }  // namespace reident::telemetry_file

@@ -19,8 +19,10 @@ std::optional<LongLayout> find_long_layout(const std::vector<std::string>& colum
 std::optional<LongLayout> find_long_layout(const TelemetryFile& file);
 
 /// Opens a file; one of one sample a row as the table of a row for each time and a column for each
-/// parameter that it stands for. Lines of that are no lines of the file.
+/// parameter that it stands for. Further samples of a parameter at a time are rows of their own.
+/// Bad lines of samples are left out with a remark where `skip_bad_lines`, else an error.
 std::variant<TelemetryFile, Error> open_as_table(const std::filesystem::path& path,
-                                                 const ReadingOptions& options);
+                                                 const ReadingOptions& options,
+                                                 bool skip_bad_lines);
 
 }  // namespace reident::telemetry_file

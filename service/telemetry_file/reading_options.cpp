@@ -7,6 +7,7 @@
 
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 #include "service/telemetry_file/time_units.hpp"
 
 namespace reident::telemetry_file {
@@ -224,8 +225,9 @@ std::variant<std::vector<std::string>, Error> dry_run(std::variant<TelemetryFile
   auto& file = std::get<TelemetryFile>(opened);
   if (!file.has_rows())
     return Error{path.string() + ": the header is not followed by a row; there is nothing to show"};
+  const bool is_of_samples = !file.has_samples_of_their_own() && find_long_layout(file);
   if (needs_time)
-    if (auto error = file.find_time()) return *std::move(error);
+    if (auto error = file.find_time(is_of_samples)) return *std::move(error);
   std::vector<std::string> lines = {path.string() + ": " + file.found()};
   for (int row = 0; row < rows_shown; ++row) {
     const auto step = file.next();
@@ -246,6 +248,7 @@ std::variant<std::vector<std::string>, Error> dry_run(std::variant<TelemetryFile
     }
     lines.push_back(std::move(text));
   }
+  for (std::string& remark : file.remarks()) lines.push_back(std::move(remark));
   return lines;
 }
 

@@ -69,6 +69,13 @@ std::string_view name(Damage damage) {
   return names[static_cast<std::size_t>(damage)];
 }
 
+std::string comment_advice(std::string_view line) {
+  for (const std::string_view mark : comment_marks)
+    if (line.starts_with(mark))
+      return "; where such lines are comments, say --comment '" + std::string(mark) + "'";
+  return {};
+}
+
 std::optional<std::string_view> split_cells(std::span<char> line, char separator,
                                             std::vector<std::string_view>& cells) {
   cells.clear();
@@ -272,7 +279,7 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
   if (!wrong && !is_cut && cells_.size() < layout_.places.size())
     place_cells({from, row_end - begin_}, layout_.places, cells_);
   if (layout_.joins_date && cells_.size() > 1) join_date(cells_);
-  if (layout_.cells != 0 && cells_.size() == layout_.cells + 1 && trimmed(cells_.back()).empty())
+  while (layout_.cells != 0 && cells_.size() > layout_.cells && trimmed(cells_.back()).empty())
     cells_.pop_back();
   const bool fits = !wrong && (layout_.cells == 0 || cells_.size() == layout_.cells);
   if (!fits && spans_lines) {
@@ -301,7 +308,8 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
               "the row has " + std::to_string(cells_.size()) + " cells, the header has " +
                   std::to_string(layout_.cells) +
                   "; mend the row (a cell with the separator in it needs quotes), or leave such "
-                  "rows out with --skip-bad-lines",
+                  "rows out with --skip-bad-lines" +
+                  comment_advice(text),
               Damage::cell_count);
 }
 

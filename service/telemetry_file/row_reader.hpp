@@ -6,6 +6,7 @@
 // Every error is a value that names the file and the line. Nothing here throws but std::bad_alloc.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -48,9 +49,15 @@ bool place_cells(std::string_view line, const std::vector<Place>& places,
 /// Makes one cell of the first two, which follow each other in one text. Requires two cells.
 void join_date(std::vector<std::string_view>& cells);
 
+/// What lines of comments begin with.
+inline constexpr std::array<std::string_view, 4> comment_marks = {"#", "%", "//", "!"};
+
 /// What is wrong with a row, as counts of rows that were left out name it.
 enum class Damage { cell_count, open_quote, nul_bytes, time, value, none };
 std::string_view name(Damage damage);
+
+/// What a remedy has in addition where a line looks like a comment; else empty.
+std::string comment_advice(std::string_view line);
 
 /// Reads row by row; memory is bounded by the longest row, which may have 16 MiB. One thread at a
 /// time.

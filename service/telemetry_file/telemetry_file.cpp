@@ -29,7 +29,8 @@ struct TelemetryFile::Impl {
   ReadingOptions options;
   RowReader rows;
   Dialect dialect;
-  std::string said;  // of what was found, where it is not of this text
+  std::optional<MadeOf> made_of;
+  std::size_t rows_read = 0;
   NumberStyle style;
   std::vector<CellFormat> formats;
   // The head, kept for finding the time.
@@ -45,7 +46,9 @@ struct TelemetryFile::Impl {
   Damage damage = Damage::none;
 
   std::optional<Error> start();
-  void keep_head();
+  /// The line of the file that a cell of a row comes from; `own` is that of the row in the text.
+  std::uint64_t line_of(std::size_t row, std::size_t column, std::uint64_t own) const;
+  std::uint64_t line_of(std::size_t row, std::uint64_t own) const;
   std::optional<Error> find_cells();
   std::optional<Error> refuse_repeated_times() const;
   Step fail(Damage what, Error why) {
@@ -53,6 +56,8 @@ struct TelemetryFile::Impl {
     error = std::move(why);
     return Step::error;
   }
+  bool is_another_header() const;
+  Step fail_at_header();
   Step read_time();
 };
 
@@ -118,9 +123,7 @@ std::optional<Error> TelemetryFile::Impl::refuse_repeated_times() const {
     const auto time = reading.read(cells);
     const auto differs = [&](std::size_t c) {
       const std::string_view now = trimmed(cells[c]), then = trimmed(last[c]);
-      const auto& of_time = reading.columns();
-      return !now.empty() && !then.empty() && now != then &&
-             std::find(of_time.begin(), of_time.end(), c) == of_time.end();
+      return !now.empty() && !then.empty() && now != then && !reading.uses(c);
     };
     bool contradicts = false;
     for (std::size_t c = 0; c < cells.size() && time && time == before && !contradicts; ++c)
@@ -136,8 +139,21 @@ std::optional<Error> TelemetryFile::Impl::refuse_repeated_times() const {
       "{} of the first {} rows. Is the time cut off, or a part of it in another column (--time "
       "DATE,CLOCK)? Is each row one sample (call the columns parameter, time and value with "
       "--names)? --force-times takes the times as they are",
-      rows.source().name(), head_lines[first], quoted(head_columns[column][first]),
+      rows.source().name(), line_of(first, head_lines[first]), quoted(head_columns[column][first]),
       dialect.columns[column], repeated, head_lines.size())};
+}
+
+std::uint64_t TelemetryFile::Impl::line_of(std::size_t row, std::size_t column,
+                                           std::uint64_t own) const {
+  if (!made_of) return own;
+  const auto& lines = made_of->lines[row];
+  return column < lines.size() && lines[column] != 0 ? lines[column] : line_of(row, own);
+}
+
+std::uint64_t TelemetryFile::Impl::line_of(std::size_t row, std::uint64_t own) const {
+  if (!made_of) return own;
+  const auto& lines = made_of->lines[row];
+  return *std::find_if(lines.begin(), lines.end(), [](std::uint64_t line) { return line != 0; });
 }
 
 TelemetryFile::TelemetryFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -161,9 +177,9 @@ std::variant<TelemetryFile, Error> TelemetryFile::open(const std::filesystem::pa
 
 std::variant<TelemetryFile, Error> TelemetryFile::of_text(std::string text, std::string name,
                                                           const ReadingOptions& options,
-                                                          std::string found) {
+                                                          std::optional<MadeOf> made_of) {
   auto opened = start(TextSource::of_text(std::move(text), std::move(name)), options);
-  if (auto* file = std::get_if<TelemetryFile>(&opened)) file->impl_->said = std::move(found);
+  if (auto* file = std::get_if<TelemetryFile>(&opened)) file->impl_->made_of = std::move(made_of);
   return opened;
 }
 
@@ -196,7 +212,8 @@ std::string TelemetryFile::first_word(std::size_t column) const {
   const auto& cells = impl_->head_columns[column];
   for (std::size_t row = 0; row < cells.size(); ++row)
     if (!trimmed(cells[row]).empty())
-      return fmt::format("{} in line {}", quoted(cells[row]), impl_->head_lines[row]);
+      return fmt::format("{} in line {}", quoted(cells[row]),
+                         impl_->line_of(row, column, impl_->head_lines[row]));
   return "no cell";
 }
 
@@ -211,6 +228,11 @@ std::optional<Error> TelemetryFile::find_time(bool is_series_after_series) {
     return Error{at.rows.source().name() + line + ": " + problem->text};
   }
   at.clock = std::get<Clock>(std::move(found));
+  if (const auto by = at.clock->local_by(); by && !at.options.any_epoch && !at.options.force_times)
+    return Error{fmt::format(
+        "{}: by column '{}' the time is a local one; say of which zone with --time-zone, as "
+        "Europe/Berlin, or UTC, or name another column with --time",
+        at.rows.source().name(), at.dialect.columns[*by])};
   at.clock_at_start = at.clock;
   if (!is_series_after_series && !at.options.force_times)
     if (auto error = at.refuse_repeated_times()) return error;
@@ -223,14 +245,12 @@ const Clock& TelemetryFile::clock() const {
 }
 
 bool TelemetryFile::is_time(std::size_t column) const {
-  if (!impl_->clock) return false;
-  const auto& columns = impl_->clock->columns();
-  return std::find(columns.begin(), columns.end(), column) != columns.end();
+  return impl_->clock && impl_->clock->uses(column);
 }
 
 std::string TelemetryFile::found() const {
   const Impl& at = *impl_;
-  if (!at.said.empty()) return at.said;
+  if (at.made_of) return at.made_of->found;
   std::string text = describe(at.dialect);
   if (at.style.decimal == ',') text += ", decimal commas";
   if (at.style.thousands != '\0') text += fmt::format(", thousands with '{}'", at.style.thousands);
@@ -246,7 +266,7 @@ std::string TelemetryFile::found() const {
 }
 
 bool TelemetryFile::has_samples_of_their_own() const {
-  return !impl_->said.empty();
+  return impl_->made_of.has_value();
 }
 
 std::vector<std::string> TelemetryFile::unnamed_columns() const {
@@ -260,6 +280,7 @@ std::vector<std::string> TelemetryFile::unnamed_columns() const {
 
 std::vector<std::string> TelemetryFile::remarks() const {
   const RowReader& rows = impl_->rows;
+  if (impl_->made_of) return impl_->made_of->remarks;
   std::vector<std::string> remarks;
   if (rows.repeated_headers() > 0)
     remarks.push_back(
@@ -280,15 +301,39 @@ TelemetryFile::Step TelemetryFile::next() {
   Impl& at = *impl_;
   at.damage = Damage::none;
   const Step step = at.rows.next();
+  ++at.rows_read;
   if (step == Step::error) return at.fail(at.rows.damage(), at.rows.error());
   if (step == Step::row && at.rows.has_nul_bytes())
     return at.fail(Damage::nul_bytes, at.rows.error_here({}));
-  return step == Step::end || !at.clock ? step : at.read_time();
+  if (step == Step::end || at.clock) return step == Step::end ? step : at.read_time();
+  return at.is_another_header() ? at.fail_at_header() : step;
+}
+
+/// Whether a row names columns in another order, as where another file was joined.
+bool TelemetryFile::Impl::is_another_header() const {
+  const auto is_name = [&](std::string_view cell) {
+    return std::find(dialect.columns.begin(), dialect.columns.end(), trimmed(cell)) !=
+           dialect.columns.end();
+  };
+  const auto cells = rows.cells();
+  if (dialect.header_line == 0 || !is_name(cells.front())) return false;
+  const auto names = std::count_if(cells.begin(), cells.end(), is_name);
+  const bool is_same =
+      std::equal(cells.begin(), cells.end(), dialect.columns.begin(), dialect.columns.end(),
+                 [](std::string_view a, const auto& b) { return trimmed(a) == b; });
+  return !is_same && 2 * names >= static_cast<std::ptrdiff_t>(cells.size());
+}
+
+TelemetryFile::Step TelemetryFile::Impl::fail_at_header() {
+  return fail(Damage::none,
+              rows.error_here("another header stands here, as where files were joined, and its "
+                              "columns are others or in another order; divide the file there"));
 }
 
 TelemetryFile::Step TelemetryFile::Impl::read_time() {
   const std::size_t column = clock->columns().front();
   const auto time = clock->read(rows.cells());
+  if (!time && is_another_header()) return fail_at_header();
   const auto here = [&](std::string_view what) {
     return rows.error_here(fmt::format("{} in column '{}' {}", quoted(rows.cells()[column]),
                                        dialect.columns[column], what));
@@ -300,7 +345,8 @@ TelemetryFile::Step TelemetryFile::Impl::read_time() {
                  ? std::string("is no time; use 2023-04-29T16:22:37.5Z or seconds since 1970-01-01 "
                                "UTC, or say what it is with --time-format, --time-unit or --epoch")
                  : "is no time as the others (" + clock->description() +
-                       "); mend it, or leave such rows out with --skip-bad-lines"));
+                       "); mend it, or leave such rows out with --skip-bad-lines" +
+                       comment_advice(rows.cells().front())));
   }
   time_ns = *time;
   const bool is_possible =
@@ -340,7 +386,10 @@ const std::optional<ClockStep>& TelemetryFile::clock_step() const {
   return impl_->step;
 }
 std::uint64_t TelemetryFile::line() const {
-  return impl_->rows.line();
+  return impl_->line_of(impl_->rows_read - 1, impl_->rows.line());
+}
+std::uint64_t TelemetryFile::line(std::size_t column) const {
+  return impl_->line_of(impl_->rows_read - 1, column, impl_->rows.line());
 }
 const Error& TelemetryFile::error() const {
   return impl_->error;
@@ -349,11 +398,11 @@ Damage TelemetryFile::damage() const {
   return impl_->damage;
 }
 Error TelemetryFile::error_here(std::string_view what) const {
-  return impl_->rows.error_here(what);
+  return Error{fmt::format("{}:{}: {}", impl_->rows.source().name(), line(), what)};
 }
 Error TelemetryFile::cell_error(std::size_t column, std::string_view what) const {
-  return error_here(
-      fmt::format("{} in column '{}' {}", quoted(cells()[column]), columns()[column], what));
+  return Error{fmt::format("{}:{}: {} in column '{}' {}", impl_->rows.source().name(), line(column),
+                           quoted(cells()[column]), columns()[column], what)};
 }
 std::uint64_t TelemetryFile::bytes_read() const {
   return impl_->rows.bytes_read();

@@ -33,16 +33,25 @@ struct ReadingOptions {
   std::int64_t latest_ns = std::numeric_limits<std::int64_t>::max();
 };
 
+/// What is said of a text that stands for another one.
+struct MadeOf {
+  std::string found;                 // what was found there
+  std::vector<std::string> remarks;  // what was passed over there, one sentence each
+  /// By row and column, the line there that a cell comes from; 0 for one that comes from none. A
+  /// row has one at least.
+  std::vector<std::vector<std::uint64_t>> lines;
+};
+
 class TelemetryFile {
  public:
   /// Opens a file and finds all but its time. An error where it cannot be read or understood.
   static std::variant<TelemetryFile, Error> open(const std::filesystem::path& path,
                                                  const ReadingOptions& options);
-  /// Reads `text` itself; `name` stands for the file in messages, and `found` is what is said of
-  /// what was found, where that is about another text.
+  /// Reads `text` itself; `name` stands for the file in messages, whose lines are those of
+  /// `made_of` where there is one.
   static std::variant<TelemetryFile, Error> of_text(std::string text, std::string name,
                                                     const ReadingOptions& options,
-                                                    std::string found = {});
+                                                    std::optional<MadeOf> made_of = {});
   ~TelemetryFile();
   TelemetryFile(TelemetryFile&&) noexcept;
   TelemetryFile& operator=(TelemetryFile&&) noexcept;
@@ -87,6 +96,7 @@ class TelemetryFile {
   /// After a row: the step where its clock is behind that of the row before.
   const std::optional<ClockStep>& clock_step() const;
   std::uint64_t line() const;
+  std::uint64_t line(std::size_t column) const;  // of the cell, where cells of a row have their own
   const Error& error() const;
   /// After an error: what is wrong with the row alone, so that next() goes on behind it; else none.
   Damage damage() const;

@@ -15,6 +15,7 @@ namespace {
 
 using csv::Error;
 using telemetry_file::Cell;
+using telemetry_file::StateMap;
 using Reader = telemetry_file::TelemetryFile;
 using storage::TelemetryFrame;
 using Entry = ParameterBook::Entry;
@@ -46,6 +47,13 @@ std::variant<std::vector<std::string>, Error> taken_columns(const ImportOptions&
 
 storage::Quality quality_of(const Cell& cell) {
   return cell.is_flagged ? storage::Quality::out_of_limits : storage::Quality::good;
+}
+
+std::optional<double> state_among(const StateMap* states, std::string_view word) {
+  if (states)
+    for (const auto& [state, value] : *states)
+      if (state == word) return value;
+  return std::nullopt;
 }
 
 void describe_once(Entry& entry, ImportBatch& batch) {
@@ -160,7 +168,8 @@ class LongRows : public ImportRows {
   /// Takes over what the row says of spacecraft, source and origin, where it says something new.
   std::optional<Error> read_stream(const Reader& reader);
 
-  std::optional<Error> read_parameter(const Reader& reader);
+  /// `states` are those that the row's value is among.
+  std::optional<Error> read_parameter(const Reader& reader, const StateMap* states);
 
   /// Into the last frame if it is of the same stream and time, else into one of its own.
   void place(const storage::Sample& sample, storage::Time time, ImportBatch& batch);
@@ -199,20 +208,27 @@ LongRows::LongRows(const ImportOptions& options, const Reader& reader,
 }
 
 std::optional<Error> LongRows::add(const Reader& reader, ImportBatch& batch) {
-  const auto cells = reader.cells();
   storage::Sample sample;
-  const Cell cell = reader.cell(value_);
-  // What a state is could not be said of one parameter of many.
-  if (cell.kind == Cell::Kind::bad ||
-      reader.format(value_).kind == telemetry_file::CellFormat::Kind::state)
-    return reader.cell_error(value_,
-                             "is no number; mend it or leave out such lines with --skip-bad-lines");
+  Cell cell = reader.cell(value_);
+  const bool is_state = reader.format(value_).kind == telemetry_file::CellFormat::Kind::state;
+  const StateMap* states = nullptr;
+  if (cell.kind == Cell::Kind::bad || (is_state && cell.kind == Cell::Kind::number)) {
+    states = given_states(options_.reading.cells, std::string(trimmed(reader.cells()[parameter_])));
+    const auto state = state_among(states, trimmed(reader.cells()[value_]));
+    if (!state)
+      return reader.cell_error(
+          value_,
+          "is no number; mend it, say with --missing that it stands for no value, with "
+          "--map-states PARAMETER:STATE=NUMBER,... what states are, or leave out such lines with "
+          "--skip-bad-lines");
+    cell = {Cell::Kind::number, *state, false};
+  }
   if (cell.kind != Cell::Kind::number) return std::nullopt;
   sample.value = cell.value;
   sample.quality = quality_of(cell);
   if (auto error = read_quality(reader, sample.quality)) return error;
   if (auto error = read_stream(reader)) return error;
-  if (auto error = read_parameter(reader)) return error;
+  if (auto error = read_parameter(reader, states)) return error;
   sample.parameter = entry_->descriptor.id;
   describe_once(*entry_, batch);
   place(sample, reader.time_ns(), batch);
@@ -255,7 +271,7 @@ std::optional<Error> LongRows::read_stream(const Reader& reader) {
   return std::nullopt;
 }
 
-std::optional<Error> LongRows::read_parameter(const Reader& reader) {
+std::optional<Error> LongRows::read_parameter(const Reader& reader, const StateMap* states) {
   const std::string_view name = trimmed(reader.cells()[parameter_]);
   if (entry_ && entry_->descriptor.name == name) return std::nullopt;
   if (name.empty()) return reader.cell_error(parameter_, "names no parameter; mend the line");
@@ -263,6 +279,11 @@ std::optional<Error> LongRows::read_parameter(const Reader& reader) {
   wanted.name = name;
   if (unit_) wanted.unit = trimmed(reader.cells()[*unit_]);
   wanted.description = "imported from " + options_.file.filename().string();
+  if (states) {
+    wanted.kind = storage::ParameterKind::digital;
+    wanted.description =
+        "states " + telemetry_file::states_text(*states) + "; " + wanted.description;
+  }
   const auto found = book_->find(wanted);
   if (const auto* refusal = std::get_if<std::string>(&found))
     return reader.error_here(*refusal + "; give it another name in the file");

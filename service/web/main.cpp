@@ -13,6 +13,7 @@
 #include "service/config/config.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/version.hpp"
 #include "service/web/site.hpp"
 
@@ -174,6 +175,10 @@ int main(int argc, char** argv) {
   declare(app, arguments);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const FoldedOutput folded(false);
+    fmt::print("{}", app.help());
+    return 0;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : exit_bad_request;
   }

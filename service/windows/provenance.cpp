@@ -40,6 +40,7 @@ ordered_json to_json(const EquipmentConfig& equipment) {
                        {"min_coverage", equipment.min_coverage},
                        {"min_order", equipment.min_order},
                        {"max_order", equipment.max_order}};
+  if (equipment.phase > 0) json["phase_ns"] = equipment.phase;
   if (equipment.regime_inputs > 0) json["regime_inputs"] = equipment.regime_inputs;
   if (equipment.screening) json["screening"] = true;
   for (const Relation& relation : equipment.relations)
@@ -70,6 +71,7 @@ EquipmentConfig equipment_from(const ordered_json& json) {
   json.at("outputs").get_to(equipment.outputs);
   json.at("sample_period_ns").get_to(equipment.sample_period);
   json.at("hold_ns").get_to(equipment.sample_hold);
+  equipment.phase = json.value("phase_ns", Duration{0});
   json.at("tune_share").get_to(equipment.tune_share);
   json.at("validation_share").get_to(equipment.validation_share);
   json.at("min_coverage").get_to(equipment.min_coverage);
@@ -129,7 +131,7 @@ std::vector<std::int64_t> revisions_of(const storage::Archive& archive,
                                        const RefreshRequest& request) {
   std::vector<std::int64_t> batches;
   const storage::TimeRange range{request.window.begin - request.equipment.sample_hold,
-                                 request.window.end};
+                                 request.window.end + request.equipment.phase};
   for (const std::string& name : parameters_of(request.equipment))
     if (const auto parameter = archive.parameter(request.spacecraft, name)) {
       const auto of_one =

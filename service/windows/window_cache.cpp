@@ -112,9 +112,13 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Arch
 
 void WindowCache::forget(storage::TimeRange range) {
   // A sample serves the ticks until it is too old.
-  const storage::Time latest = std::numeric_limits<storage::Time>::max() - request_.sample_hold;
+  using Limits = std::numeric_limits<storage::Time>;
+  const storage::Time earliest = Limits::min() + request_.phase;
+  const storage::Time latest = Limits::max() - request_.sample_hold;
   const TickRange ticks =
-      ticks_of({range.begin, std::min(range.end, latest) + request_.sample_hold}, request_.period);
+      ticks_of({std::max(range.begin, earliest) - request_.phase,
+                std::min(range.end, latest) + request_.sample_hold - request_.phase},
+               request_.period);
   samples_.forget(ticks);
   checks_.forget(ticks);
   sums_.forget(ticks);

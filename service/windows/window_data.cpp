@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "identification/samples/grid.hpp"
@@ -15,7 +16,8 @@ struct ReadChannel {
   storage::Series series;
   std::vector<std::uint8_t> usable;
 
-  explicit ReadChannel(storage::Series&& read) : series(std::move(read)) {
+  ReadChannel(storage::Series&& read, Duration phase) : series(std::move(read)) {
+    for (storage::Time& time : series.time) time -= phase;
     usable.reserve(series.quality.size());
     for (const storage::Quality quality : series.quality)
       usable.push_back(storage::is_usable(quality));
@@ -38,7 +40,8 @@ WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& e
     for (const DerivedInput& one : equipment.derived)
       if (one.name == input) derived.push_back(one);
   return {spacecraft,        equipment.inputs,        std::move(derived),
-          equipment.outputs, equipment.sample_period, equipment.sample_hold};
+          equipment.outputs, equipment.sample_period, equipment.sample_hold,
+          equipment.phase};
 }
 
 WindowRequest request_of(const EquipmentModel& model) {
@@ -47,7 +50,8 @@ WindowRequest request_of(const EquipmentModel& model) {
           derived_inputs(model.inputs),
           signal_names(model.outputs),
           static_cast<Duration>(std::llround(model.dynamics.period_s * 1e9)),
-          model.sample_hold_ns};
+          model.sample_hold_ns,
+          model.phase_ns.value_or(0)};
 }
 
 std::vector<std::string> parameters_of(const EquipmentConfig& equipment) {
@@ -110,11 +114,14 @@ double coverage_of(const identification::Record& record, storage::TimeRange wind
 identification::Record load_samples(const storage::SampleReader& archive,
                                     const WindowRequest& request, const WindowData& described,
                                     storage::TimeRange window) {
-  const storage::TimeRange read{window.begin - request.sample_hold, window.end};
+  const storage::Time latest = std::numeric_limits<storage::Time>::max() - request.phase;
+  const storage::TimeRange read{window.begin - request.sample_hold + request.phase,
+                                std::min(window.end, latest) + request.phase};
   const auto channels = [&](const std::vector<Channel>& wanted) {
     std::vector<ReadChannel> result;
     for (const Channel& channel : wanted)
-      result.emplace_back(archive.read(request.spacecraft, request.origin, channel.id, read));
+      result.emplace_back(archive.read(request.spacecraft, request.origin, channel.id, read),
+                          request.phase);
     return result;
   };
   const std::vector<ReadChannel> inputs = channels(described.input_channels);

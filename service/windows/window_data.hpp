@@ -22,6 +22,7 @@ struct WindowRequest {
   std::vector<std::string> outputs;   // names of parameters
   Duration period = 0;                // of the grid, whose ticks are multiples of it since 1970
   Duration sample_hold = 0;           // how long a sample serves
+  Duration phase = 0;                 // a tick has the values that are known so long after it
   storage::Origin origin = storage::Origin::real;
   bool operator==(const WindowRequest&) const = default;
 };

@@ -33,9 +33,9 @@ void refuse_what_is_no_file(const fs::path& path, Database::Mode mode) {
   if (!fs::exists(folder, error))
     throw Error(Error::Kind::cannot_open,
                 what + " cannot be opened: its folder does not exist; check the path");
-  if (mode == Database::Mode::read_only && !fs::exists(status))
+  if (mode != Database::Mode::read_write && !fs::exists(status))
     throw Error(Error::Kind::cannot_open,
-                what + " does not exist: check the path, or start the service that makes it");
+                what + " does not exist: check the path; a service or 'reident import' makes it");
 }
 
 // SQLite deletes the log of an empty file.
@@ -165,12 +165,12 @@ Database::Database(const std::filesystem::path& path, Mode mode, Durability dura
     : impl_(std::make_unique<Impl>()) {
   impl_->path = resolved(path);
   refuse_what_is_no_file(impl_->path, mode);
-  if (mode == Mode::read_write) {
+  if (mode != Mode::read_only) {
     refuse_a_second_name(impl_->path);
     impl_->lock.emplace(impl_->path);
   }
   refuse_an_emptied_file(impl_->path, impl_->lock);
-  if (mode == Mode::read_write) {
+  if (mode != Mode::read_only) {
     impl_->connection.emplace(open_writer(impl_->path, durability));
     impl_->lock->note_tables();
   } else {

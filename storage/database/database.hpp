@@ -25,13 +25,13 @@ enum class Durability {
 /// An open file. Archive and Registry work on one.
 class Database {
  public:
-  enum class Mode { read_only, read_write };
+  enum class Mode { read_only, read_write, update };
 
   /// Opens the file at `path`. read_write creates the file and its tables where they do not exist,
-  /// and brings the tables of an older schema up to date, in one transaction. `durability` matters
-  /// to read_write alone. The folder exists. Throws Error, and leaves the file as it is:
-  /// cannot_open, locked (another process writes it), newer_schema, older_schema (read_only alone),
-  /// corrupt, full or read_only.
+  /// and brings the tables of an older schema up to date, in one transaction; update is read_write
+  /// for a file that exists. `durability` matters to these two alone. The folder exists. Throws
+  /// Error, and leaves the file as it is: cannot_open, locked (another process writes it),
+  /// newer_schema, older_schema (read_only alone), corrupt, full or read_only.
   Database(const std::filesystem::path& path, Mode mode,
            Durability durability = Durability::power_cut);
   ~Database();

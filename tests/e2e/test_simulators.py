@@ -112,7 +112,7 @@ class Simulators(EndToEnd):
         self.assert_goes_on(simulator, 2)
         unstable = model(A=[[1.2, 0], [0, 0.7]])
         bad = [({"spoil": "digest"}, "digest"), ({"spoil": "truncated"}, "2 x 2 are due"),
-               ({"spoil": "order"}, "3 x 3 are due"), ({"spoil": "format"}, "format 3"),
+               ({"spoil": "order"}, "3 x 3 are due"), ({"spoil": "format"}, "format 4"),
                ({"spoil": "nan"}, "not finite"), ({"spoil": "number"}, "number"),
                ({"model": unstable}, "spectral radius")]
         for count, (order, reason) in enumerate(bad, 1):

@@ -1,5 +1,6 @@
 // Any text is either rows of as many cells as there are columns, or an error with a message,
 // whatever dialect it is taken for; and the rows, written as CSV again, are read as the same cells.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -9,7 +10,9 @@
 
 #include "service/support/csv.hpp"
 #include "service/support/time_text.hpp"
+#include "service/telemetry_file/long_layout.hpp"
 #include "service/telemetry_file/telemetry_file.hpp"
+#include "tests/fuzz/memory_file.hpp"
 
 namespace {
 
@@ -42,6 +45,22 @@ Rows rows_of(TelemetryFile& file) {
   return rows;
 }
 
+/// As a table of its samples, every cell comes from a line of the text.
+void check_table(const std::string& text) {
+  static const reident::test::MemoryFile memory;
+  memory.write(text);
+  auto opened = open_as_table(memory.path(), {}, true);
+  auto* table = std::get_if<TelemetryFile>(&opened);
+  if (!table || !table->has_samples_of_their_own()) return;
+  const auto lines = static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n') +
+                                                std::count(text.begin(), text.end(), '\r'));
+  for (auto step = table->next(); step != TelemetryFile::Step::end; step = table->next()) {
+    if (step == TelemetryFile::Step::error && table->damage() == Damage::none) break;
+    for (std::size_t c = 0; c < table->columns().size(); ++c)
+      require(table->line(c) >= 1 && table->line(c) <= lines + 1);
+  }
+}
+
 std::string written(const Rows& rows) {
   std::string text;
   for (const auto& row : rows) {
@@ -70,6 +89,7 @@ void check_cell(const std::string& cell) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
+  check_table(text);
   auto opened = TelemetryFile::of_text(text, "fuzz", {});
   if (const auto* error = std::get_if<Error>(&opened)) {
     require(!error->message.empty());

@@ -64,6 +64,7 @@ EquipmentModel any_model() {
                     any_vector(m),    any_vector(p),    any_of(1, 9) / 8.0};
   if (n > 0 && any_of(0, 2) == 0) model.dynamics.K = any_matrix(n, p);
   model.sample_hold_ns = any_of<std::int64_t>(1, std::int64_t{1} << 60);
+  if (any_of(0, 2) == 0) model.phase_ns = any_of(1, 100'000'000);
   model.validation = {any_vector(p), any_vector(p), any_of(0, 1000)};
   if (any_of(0, 2) == 0)
     model.tracking = EquipmentModel::Tracking{

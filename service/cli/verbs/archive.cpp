@@ -56,7 +56,7 @@ void print(const Arguments& arguments, std::int64_t before, const storage::Split
 
 int split(const Arguments& arguments) {
   const StopSignal stop;
-  storage::Database database(arguments.file, storage::Database::Mode::read_write);
+  storage::Database database(arguments.file, storage::Database::Mode::update);
   const std::int64_t before = arguments.before.value_or(year_of_newest(database));
   storage::Archive archive(database);
   archive.compact();

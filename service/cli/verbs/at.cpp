@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -80,7 +81,7 @@ void print_table(const std::vector<Line>& lines, bool by_telemetry) {
     if (line.reign) {
       const Decision& made = line.reign->decision;
       table.add({name, fmt::format("{}", made.version), second_text(line.reign->from), made.actor,
-                 fmt::format("{}: {}", storage::name(made.kind), made.reason)});
+                 fmt::format("{}: {}", past(made.kind), made.reason)});
       continue;
     }
     table.add({name, "-", "-", "-",
@@ -91,6 +92,10 @@ void print_table(const std::vector<Line>& lines, bool by_telemetry) {
                           : "no champion"});
   }
   fmt::print("{}", table.text(terminal_width()));
+  const bool is_before_a_first = std::any_of(
+      lines.begin(), lines.end(), [](const Line& line) { return line.first.has_value(); });
+  if (!by_telemetry && is_before_a_first)
+    fmt::print("--telemetry says which version belongs to telemetry of then\n");
 }
 
 void print_json(storage::Time time, const std::vector<Line>& lines) {

@@ -7,15 +7,18 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/file_errors.hpp"
+#include "service/cli/identify_ticks.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/time_options.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
+#include "service/windows/window_data.hpp"
 
 namespace reident::cli::backfill_verb {
 namespace {
@@ -49,6 +52,40 @@ std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
                              joined(names))};
 }
 
+/// The phase that suits the newest telemetry of an equipment (identify_ticks.hpp); 0: none is
+/// asked.
+Duration suitable_phase_of(const storage::Archive& archive, const std::string& spacecraft,
+                           const EquipmentConfig& equipment) {
+  constexpr std::int64_t ticks = 2000;
+  const auto extent = archive.extent(spacecraft, storage::Origin::real);
+  if (!extent || equipment.phase != 0) return 0;
+  std::vector<std::vector<std::int64_t>> channels;
+  for (const std::string& name : parameters_of(equipment))
+    if (const auto parameter = archive.parameter(spacecraft, name))
+      channels.push_back(archive
+                             .read(spacecraft, storage::Origin::real, parameter->id,
+                                   {extent->end - ticks * equipment.sample_period, extent->end})
+                             .time);
+  return suitable_phase(channels, equipment.sample_period);
+}
+
+/// Says which equipment has columns that come behind its ticks, which no option of this mends.
+void say_phases(storage::Database& database, const Config& config, const BackfillRequest& request) {
+  const storage::Archive archive(database);
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment) {
+      if ((!request.spacecraft.empty() && request.spacecraft != spacecraft.name) ||
+          (!request.equipment.empty() && request.equipment != equipment.name))
+        continue;
+      if (const Duration phase = suitable_phase_of(archive, spacecraft.name, equipment))
+        print_error(
+            "reident: {}: not all parameters have come at the multiples of {}; phase = \"{}\" for "
+            "the equipment puts its ticks where they have, as reident identify does",
+            full_name({spacecraft.name, equipment.name}), duration_text(equipment.sample_period),
+            duration_text(phase));
+    }
+}
+
 void print(const BackfillProgress& progress, bool json) {
   if (json) {
     const nlohmann::ordered_json object = {
@@ -73,12 +110,13 @@ int run(const Arguments& arguments) {
   if (const auto* refusal = std::get_if<Refusal>(&request)) return refuse(*refusal);
   const StopSignal stop;
   return refusing_what_cannot_be([&]() -> int {
-    storage::Database database(config->database, storage::Database::Mode::read_write);
+    storage::Database database(config->database, storage::Database::Mode::update);
     if (!config->pair.empty() || !storage::Registry(database).journal().is_of(config->service_name))
       return refuse(
           {fmt::format("{} is the database of a pair of services, whose leader alone "
                        "records attempts: it tries what it has telemetry of by itself",
                        config->database.string())});
+    say_phases(database, *config, std::get<BackfillRequest>(request));
     WorkerPool workers(usable_cores());
     Progress bar;
     const BackfillProgress progress = backfill(

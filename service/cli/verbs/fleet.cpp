@@ -111,7 +111,7 @@ void print_json(const std::vector<Instance>& instances) {
     for (const storage::Alarm& alarm : one.alarms) alarms.push_back(alarm_json(alarm));
     list.push_back({{"instance", one.name},
                     {"act", one.needs_action()},
-                    {"problem", one.problem},
+                    {"problem", text_json(one.problem)},
                     {"service", one.has_service},
                     {"equipment", one.rows.size()},
                     {"with_champion", with_champion(one)},

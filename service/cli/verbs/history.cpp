@@ -121,7 +121,7 @@ std::string outcome_text(const Attempt& attempt, const Decided& decided) {
   if (!attempt.version) return text;
   const std::vector<Decision>& decisions = decided.version(attempt).decisions;
   for (std::size_t i = 1; i < decisions.size(); ++i)
-    text += fmt::format(" Then {} by {} at {}{}.", name(decisions[i].kind), decisions[i].actor,
+    text += fmt::format(" Then {} by {} at {}{}.", past(decisions[i].kind), decisions[i].actor,
                         time_text(decisions[i].time), reason_text(decisions[i].reason));
   return text;
 }
@@ -251,8 +251,10 @@ Refusal nothing_selected(const Arguments& arguments, const HistoryReader& histor
   const auto or_any = [](const std::string& name) { return name.empty() ? "(any)" : name; };
   const bool is_narrowed = !arguments.outcome.empty() || arguments.time.from || arguments.time.to;
   return {fmt::format(
-      "no {} of {}{}; the database has {}", arguments.versions_only ? "version" : "attempt",
-      full_name({or_any(arguments.spacecraft), or_any(arguments.equipment)}),
+      "no {}{}{}; the database has {}", arguments.versions_only ? "version" : "attempt",
+      arguments.spacecraft.empty() && arguments.equipment.empty()
+          ? ""
+          : " of " + full_name({or_any(arguments.spacecraft), or_any(arguments.equipment)}),
       is_narrowed ? fmt::format(" with this outcome and time; the last window that was "
                                 "tried ends at {}",
                                 time_text(last.back().window.end))

@@ -180,8 +180,9 @@ int show(const DataRequest& request) {
   auto reading = request.reading;
   reading.any_epoch = true;
   if (request.segment) reading.force_times = true;  // as in read_data()
-  const auto shown = telemetry_file::dry_run(telemetry_file::open_as_table(request.file, reading),
-                                             request.file, reading.time.column.has_value());
+  const auto shown = telemetry_file::dry_run(
+      telemetry_file::open_as_table(request.file, reading, request.skip_bad_lines), request.file,
+      reading.time.column.has_value());
   if (const auto* error = std::get_if<csv::Error>(&shown)) return refuse({error->message});
   for (const std::string& line : std::get<std::vector<std::string>>(shown))
     fmt::print("{}\n", line);
@@ -236,7 +237,8 @@ int run(const Arguments& arguments) {
   timer.end();
   outcome.timing_ms = timer.phases();
   outcome.found = data.found;
-  if (!arguments.json) fmt::print(stderr, "{}: {}\n", arguments.data.file.string(), data.found);
+  outcome.phase_ns = data.phase_ns;
+  if (!arguments.json) print_error("{}: {}", arguments.data.file.string(), data.found);
   fmt::print("{}", arguments.json ? to_json_text(outcome) : to_report(outcome));
   return exit_done;
 }

@@ -97,7 +97,7 @@ int show(const ImportOptions& options) {
 }
 
 int undo(const Arguments& arguments) {
-  return with_writable_database(arguments.database, [&](storage::Database& database) {
+  const auto take_back = [&](storage::Database& database) {
     const auto undone = transfer::undo_import(database, arguments.import.file);
     if (const auto* error = std::get_if<csv::Error>(&undone)) return refuse({error->message});
     const auto& report = std::get<storage::SourceRemovalReport>(undone);
@@ -109,7 +109,8 @@ int undo(const Arguments& arguments) {
       fmt::print("{} samples of {} parameters removed; the file can be imported again\n",
                  report.samples, report.series);
     return static_cast<int>(exit_done);
-  });
+  };
+  return with_writable_database(arguments.database, take_back, storage::Database::Mode::update);
 }
 
 int run(Arguments& arguments) {
@@ -132,9 +133,8 @@ int run(Arguments& arguments) {
     bar.clear();
     if (const auto* error = std::get_if<csv::Error>(&imported)) return refuse({error->message});
     const auto& report = std::get<ImportReport>(imported);
-    if (!arguments.json)
-      fmt::print(stderr, "{}: {}\n", arguments.import.file.string(), report.found);
-    for (const std::string& remark : report.remarks) fmt::print(stderr, "reident: {}\n", remark);
+    if (!arguments.json) print_error("{}: {}", arguments.import.file.string(), report.found);
+    for (const std::string& remark : report.remarks) print_error("reident: {}", remark);
     for (const std::string& message : report.first_bad_lines)
       print_error("reident: left out: {}", message);
     if (arguments.json)

@@ -120,7 +120,7 @@ int plan(const Arguments& arguments, const Request& request) {
 
 int remove(const Arguments& arguments, const Request& request) {
   const StopSignal stop;
-  storage::Database database(arguments.file, storage::Database::Mode::read_write);
+  storage::Database database(arguments.file, storage::Database::Mode::update);
   storage::Archive archive(database);
   archive.compact();
   const storage::Time now = utc_now();

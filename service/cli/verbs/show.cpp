@@ -117,7 +117,7 @@ std::string champion_text(const ordered_json& evidence) {
 std::string decisions_text(const std::vector<Decision>& decisions) {
   Table table({{"decided (UTC)"}, {"what"}, {"by"}, {"reason"}});
   for (const Decision& decision : decisions)
-    table.add({time_text(decision.time), std::string(name(decision.kind)), decision.actor,
+    table.add({time_text(decision.time), std::string(past(decision.kind)), decision.actor,
                decision.reason});
   return table.text(terminal_width());
 }
@@ -144,7 +144,8 @@ void print_story(const StoredVersion& story) {
   fmt::print("judged against  {}\n", story.version.parent
                                          ? fmt::format("version {}", *story.version.parent)
                                          : "no champion");
-  fmt::print("method          {}, sample period {:g} s\n", model.method, dynamics.period_s);
+  fmt::print("method          {}, sample period {:g} s{}\n", model.method, dynamics.period_s,
+             model.phase_ns ? ", phase " + duration_text(*model.phase_ns) : "");
   fmt::print("poles           {} (spectral radius {:.6g})\n", poles_text(dynamics),
              spectral_radius(dynamics));
   fmt::print("digest          {}{}\n", story.version.digest,

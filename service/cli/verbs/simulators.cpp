@@ -9,6 +9,7 @@
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
 #include "service/cli/partition_survey.hpp"
+#include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/support/time_text.hpp"
 
@@ -126,9 +127,9 @@ ordered_json row_json(const SimulatorRow& row) {
   const auto outside = outside_percent(running);
   ordered_json json = {
       {"simulator", said.simulator},
-      {"host", said.host},
+      {"host", text_json(said.host)},
       {"process", said.process},
-      {"program_version", said.program_version},
+      {"program_version", text_json(said.program_version)},
       {"spacecraft", said.spacecraft},
       {"equipment", said.equipment},
       {"version", version_json(running.version)},
@@ -140,7 +141,7 @@ ordered_json row_json(const SimulatorRow& row) {
       {"since", time_json(running.since)},
       {"decided", time_json(running.decided)},
       {"from_file", running.from_cache},
-      {"mode", running.mode},
+      {"mode", text_json(running.mode)},
       {"running_mrse_percent",
        std::isfinite(running.mrse_percent) ? ordered_json(running.mrse_percent) : ordered_json()},
       {"steps", running.steps},

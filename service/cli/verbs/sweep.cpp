@@ -128,8 +128,7 @@ int run_here(const Plan& plan, const Arguments& arguments, const StopSignal& sto
   if (sweep::states(plan, TaskKind::candidates).left.empty())
     run_here(plan, TaskKind::judgement, workers, stop);
   if (stop.token().stop_requested())
-    fmt::print(stderr, "reident: stopped; reident sweep {} goes on where it ended\n",
-               plan.folder.string());
+    print_error("reident: stopped; reident sweep {} goes on where it ended", plan.folder.string());
   return print_report(plan, arguments);
 }
 

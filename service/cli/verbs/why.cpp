@@ -187,7 +187,7 @@ Sentences sentences_of(const StoredVersion& story) {
       fmt::format("At its window: {}. {}", story.attempt.outcome, story.attempt.reason));
   for (const storage::Decision& decision : story.decisions)
     sentences.push_back(fmt::format("{} {} by {}: {}", time_text(decision.time),
-                                    name(decision.kind), decision.actor, decision.reason));
+                                    past(decision.kind), decision.actor, decision.reason));
   return sentences;
 }
 
@@ -209,7 +209,7 @@ int print(const history::HistoryReader& history, const StoredVersion& story, boo
       conditions.push_back(
           {{"rule", condition.rule},
            {"asked", condition.asked},
-           {"found", condition.found},
+           {"found", text_json(condition.found)},
            {"holds", condition.holds ? ordered_json(*condition.holds) : ordered_json()}});
     const ordered_json object = {{"spacecraft", story.version.spacecraft},
                                  {"equipment", story.version.equipment},

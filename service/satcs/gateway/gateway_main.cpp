@@ -15,6 +15,7 @@
 #include "service/satcs/gateway/xtce_reader.hpp"
 #include "service/satcs/program.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
 
@@ -119,7 +120,7 @@ void choose_time(Arguments& arguments) {
 /// Says what the gateway does not know; throws BadRequest where that is not allowed.
 void say_notes(const xtce::Database& database, const Arguments& arguments) {
   for (const std::string& line : note_lines(database, arguments.database))
-    fmt::print(stderr, "satcs-gateway: {}\n", line);
+    reident::print_error("satcs-gateway: {}", line);
   if (arguments.is_strict && !database.notes.empty())
     throw BadRequest(
         fmt::format("{}: {} things are not known to the gateway; correct them, or "
@@ -165,7 +166,7 @@ int run(Arguments& arguments, const Sender& sender, const PublisherOptions& publ
   const int status = publish_and_report(stream, sender, publisher, json, stop,
                                         [&stream] { return stream.counts().json(); });
   for (const std::string& line : stream.counts().sentences())
-    fmt::print(stderr, "satcs-gateway: {}\n", line);
+    reident::print_error("satcs-gateway: {}", line);
   return status;
 }
 

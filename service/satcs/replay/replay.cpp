@@ -38,7 +38,7 @@ void count_cells(const TelemetryFile& reader, Survey& result) {
     if (result.bad[c]++ >= examples) continue;
     std::string& text = result.first_bad[c];
     text += (text.empty() ? "'" : ", '") + std::string(trimmed(reader.cells()[c]).substr(0, 40)) +
-            "' in line " + std::to_string(reader.line());
+            "' in line " + std::to_string(reader.line(c));
   }
 }
 
@@ -96,15 +96,16 @@ bool within(storage::TimeRange range, storage::Time time) {
 }
 
 std::variant<TelemetryFile, Error> opened_with_time(const std::filesystem::path& file,
-                                                    const telemetry_file::ReadingOptions& reading) {
-  auto opened = telemetry_file::open_as_table(file, reading);
+                                                    const telemetry_file::ReadingOptions& reading,
+                                                    bool skip_bad_lines) {
+  auto opened = telemetry_file::open_as_table(file, reading, skip_bad_lines);
   if (auto* reader = std::get_if<TelemetryFile>(&opened); reader && reader->has_rows())
     if (auto error = reader->find_time()) return *std::move(error);
   return opened;
 }
 
 TelemetryFile reopened(const ReplayPlan& plan) {
-  auto opened = opened_with_time(plan.file, plan.reading);
+  auto opened = opened_with_time(plan.file, plan.reading, plan.skip_bad_lines);
   if (const auto* error = std::get_if<Error>(&opened)) throw std::runtime_error(error->message);
   return std::get<TelemetryFile>(std::move(opened));
 }
@@ -141,7 +142,7 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
       !std::filesystem::is_directory(options.file, failed)) {
     return Error{file + ": is no regular file and cannot be read twice; save it as one first"};
   }
-  auto opened = opened_with_time(options.file, options.reading);
+  auto opened = opened_with_time(options.file, options.reading, options.skip_bad_lines);
   if (auto* error = std::get_if<Error>(&opened)) return std::move(*error);
   auto& reader = std::get<TelemetryFile>(opened);
   if (!reader.has_rows())

@@ -10,6 +10,7 @@
 #include "service/satcs/program.hpp"
 #include "service/satcs/replay/replay.hpp"
 #include "service/support/log.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
 #include "service/telemetry_file/long_layout.hpp"
 #include "service/telemetry_file/reading_options.hpp"
@@ -65,8 +66,8 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
 }
 
 void say(const ReplayPlan& plan) {
-  fmt::print(stderr, "{}: {}\n", plan.file.string(), plan.found);
-  for (const auto& remark : plan.remarks) fmt::print(stderr, "satcs-replay: {}\n", remark);
+  reident::print_error("{}: {}", plan.file.string(), plan.found);
+  for (const auto& remark : plan.remarks) reident::print_error("satcs-replay: {}", remark);
   for (const auto& column : plan.left_out)
     reident::log::info("satcs", "column left out, there is no number in it", {{"column", column}});
 }
@@ -97,9 +98,11 @@ std::string json_of(const ReplayPlan& plan) {
 
 int show(const ReplayOptions& options) {
   const auto shown = reident::telemetry_file::dry_run(
-      reident::telemetry_file::open_as_table(options.file, options.reading), options.file, true);
+      reident::telemetry_file::open_as_table(options.file, options.reading, options.skip_bad_lines),
+      options.file, true);
   if (const auto* error = std::get_if<reident::csv::Error>(&shown))
     throw BadRequest(error->message);
+  const reident::FoldedOutput folded(false);
   for (const auto& line : std::get<std::vector<std::string>>(shown)) fmt::print("{}\n", line);
   return exit_complete;
 }

@@ -47,17 +47,21 @@ std::string with_commas(std::string text) {
   return text;
 }
 
+constexpr const char* equipment =
+    "[[spacecraft]]\nname = \"SAT-1\"\n[[spacecraft.equipment]]\nname = \"X\"\ninputs = [\"u\"]\n"
+    "outputs = [\"y\"]\nsample_period = \"10s\"\nhold = \"40s\"\nwindow = \"1h\"\norder = 1\n";
+
 struct Dress {
   const char* name;
   const char* header;
   std::string (*line)(const Row& row);
   std::int64_t hold_s = 30;
+  bool has_phase = false;
 };
 
 class IdentifyRows : public test::CliTest {
  protected:
-  identification::Record of_file(const Dress& dress, const std::string& file,
-                                 const std::string& time) const {
+  IdentifyData of_file(const Dress& dress, const std::string& file, const std::string& time) const {
     DataRequest request;
     request.file = folder() / file;
     request.inputs = {"u"};
@@ -65,21 +69,22 @@ class IdentifyRows : public test::CliTest {
     request.reading.time.column = time;
     request.period_s = 10;
     request.hold_ns = dress.hold_s * second;
-    request.phase_ns = 0;
     request.screening = false;
     auto read = read_data(request);
     if (const auto* refusal = std::get_if<Refusal>(&read))
       throw std::runtime_error(refusal->message);
-    return std::get<IdentifyData>(std::move(read)).record;
+    return std::get<IdentifyData>(std::move(read));
   }
-  identification::Record of_archive(const Dress& dress, const std::string& file) const {
+  identification::Record of_archive(const Dress& dress, const std::string& file,
+                                    std::int64_t phase_ns) const {
     storage::Database database(folder() / file, storage::Database::Mode::read_write);
     const WindowRequest request{.spacecraft = "SAT-1",
                                 .inputs = {"u"},
                                 .derived = {},
                                 .outputs = {"y"},
                                 .period = 10 * second,
-                                .sample_hold = dress.hold_s * second};
+                                .sample_hold = dress.hold_s * second,
+                                .phase = phase_ns};
     const storage::Archive archive(database);
     auto loaded =
         load_window(archive, request, {begin_s * second, (begin_s + 10 * rows - 5) * second});
@@ -102,7 +107,8 @@ TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
       {"packets", "time,u,y\n",
        [](const Row& r) {
          return r.date + ".000Z," + r.u + ",\n" + r.date + ".180Z,," + r.y + "\n";
-       }},
+       },
+       30, true},
       {"on_change", "time,u,y\n",
        [](const Row& r) { return r.date + "Z," + (r.changes ? r.u : "") + "," + r.y + "\n"; }, 40},
       {"samples", "time,name,value\n",
@@ -110,7 +116,8 @@ TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
       {"jitter", "time,u,y\n",
        [](const Row& r) {
          return fmt::format("{},{},{}\n", double(r.ms + r.ms / 10'000 % 7 * 10) / 1000, r.u, r.y);
-       }},
+       },
+       30, true},
   };
   const auto table = telemetry();
   for (const Dress& dress : dresses) {
@@ -122,12 +129,19 @@ TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
     const test::Ran ran = reident({"import", file, "--db", archive, "--spacecraft", "SAT-1"});
     ASSERT_EQ(ran.status, 0) << dress.name << ran.err;
     const std::string header = dress.header;
-    const auto here = of_file(dress, file, header.find("time_ms") == 0 ? "time_ms" : "time");
-    const auto there = of_archive(dress, archive);
+    const auto data = of_file(dress, file, header.find("time_ms") == 0 ? "time_ms" : "time");
+    EXPECT_EQ(data.phase_ns != 0, dress.has_phase) << dress.name;
+    const auto& here = data.record;
+    const auto there = of_archive(dress, archive, data.phase_ns);
     EXPECT_GE(here.rows(), rows - 2) << dress.name;
     EXPECT_EQ(here.segments, there.segments) << dress.name;
     EXPECT_EQ(here.u, there.u) << dress.name;
     EXPECT_EQ(here.y, there.y) << dress.name;
+    write("reident.toml", "[archive]\ndatabase = \"" + archive + "\"\n" + equipment);
+    EXPECT_EQ(
+        reident({"backfill", "--config", "reident.toml"}).err.find("phase = ") != std::string::npos,
+        dress.has_phase)
+        << dress.name;
   }
 }
 

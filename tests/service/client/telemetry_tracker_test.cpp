@@ -169,6 +169,8 @@ TEST(TrackerGrid, IsThatOfTheIdentification) {
     model.outputs.clear();
     model.dynamics.period_s = 0.5;
     model.sample_hold_ns = 1'200'000'000;
+    const storage::Time phase = trial % 2 == 0 ? 0 : second / 5;
+    if (phase > 0) model.phase_ns = phase;
     TelemetryTracker tracker(model);
     describe_all(tracker);
     std::array<std::vector<storage::Time>, 2> times;
@@ -182,7 +184,7 @@ TEST(TrackerGrid, IsThatOfTheIdentification) {
       const std::size_t channel = random() % 2;
       const double value = static_cast<double>(i);
       const bool good = random() % 5 != 0;
-      times[channel].push_back(time);
+      times[channel].push_back(time - phase);
       values[channel].push_back(value);
       usable[channel].push_back(good);
       tracker.add(frame_at(time, {{static_cast<std::uint32_t>(channel + 1),
@@ -192,7 +194,7 @@ TEST(TrackerGrid, IsThatOfTheIdentification) {
     const std::vector<identification::ChannelSamples> channels = {{times[0], values[0], usable[0]},
                                                                   {times[1], values[1], usable[1]}};
     const identification::Record record = identification::make_record(
-        channels, {}, begin, time,
+        channels, {}, begin - phase, time - phase,
         {.period_ns = second / 2, .sample_hold_ns = model.sample_hold_ns});
     ASSERT_EQ(static_cast<identification::Index>(ticks.size()), record.u.rows());
     std::size_t i = 0;

@@ -85,6 +85,8 @@ const Mistake values[] = {
      "9: equipment BDR: slide must be a duration"},
     {"short_hold", minimal + "hold = \"500ms\"",
      "9: equipment BDR: hold 500ms is shorter than sample_period 1s"},
+    {"long_phase", minimal + "phase = \"1s\"",
+     "9: equipment BDR: phase 1s must be below sample_period 1s"},
     {"shares_that_leave_nothing", minimal + "validation_share = 0.6\ntune_share = 0.35",
      "10: equipment BDR: tune_share 0.35 and validation_share 0.6 leave less than a tenth of the "
      "window to identify from; make their sum at most 0.9"},

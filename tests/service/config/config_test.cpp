@@ -51,6 +51,14 @@ TEST(Config, AMinimalFileHasGoodDefaults) {
   EXPECT_EQ(bdr.approval, ApprovalPolicy::automatic);
 }
 
+TEST(Config, PhaseIsZeroWhereNoneIsGiven) {
+  const auto phase = [](const std::string& text) {
+    return config_of(text).spacecraft[0].equipment[0].phase;
+  };
+  EXPECT_EQ(phase(minimal), 0);
+  EXPECT_EQ(phase(minimal + "phase = \"180ms\""), 180 * ms);
+}
+
 TEST(Config, CutOfTheNetworkIsALengthAndARate) {
   const Config config = config_of("[dds]\ncut = \"60s\"\nrate = \"6/min\"\n" + minimal);
   EXPECT_EQ(config.cut, 60'000'000'000);

@@ -191,7 +191,10 @@ INSTANTIATE_TEST_SUITE_P(
         ModelSpoil{"hold", [](auto& v) { v.hold_ns = -1; }, "hold"},
         ModelSpoil{"number", [](auto& v) { v.number = 0; }, "number is below 1"},
         ModelSpoil{"window", [](auto& v) { v.identified_end_ns = 0; }, "ends before it begins"},
-        ModelSpoil{"format", [](auto& v) { v.format = 3; }, "format 3 and this program knows 2"},
+        ModelSpoil{"phase", [](auto& v) { v.phase_ns = -1; }, "phase"},
+        ModelSpoil{"long phase",
+                   [](auto& v) { v.phase_ns = std::numeric_limits<std::int64_t>::max(); }, "phase"},
+        ModelSpoil{"format", [](auto& v) { v.format = 4; }, "format 4 and this program knows 3"},
         ModelSpoil{"digest", [](auto& v) { v.digest = text(""); }, "digest is empty"}));
 
 class FullModelCodec : public testing::TestWithParam<ModelSpoil> {};

@@ -72,6 +72,7 @@ TEST(Digest, ChangesWithEverythingThatASimulatorComputesWith) {
       [](EquipmentModel& m) { std::swap(m.inputs[0], m.inputs[1]); },
       [](EquipmentModel& m) { m.outputs[0].unit = "V"s; },
       [](EquipmentModel& m) { m.sample_hold_ns += 1; },
+      [](EquipmentModel& m) { m.phase_ns = 1; },
       [](EquipmentModel& m) { m.dynamics.period_s = 2; },
       [](EquipmentModel& m) { m.dynamics.A(0, 1) += 1e-16; },
       [](EquipmentModel& m) { m.dynamics.A.transposeInPlace(); },

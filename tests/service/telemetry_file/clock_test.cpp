@@ -80,6 +80,19 @@ TEST(TelemetryClock, ReadsEveryForm) {
            Case{"datenum", {"739310.9166666667", "739310.9167824074"}, "2024-02-28T22:00:00Z"},
            Case{"JD", {"2460369.416666667", "2460369.416782407"}, "2024-02-28T22:00:00Z"},
            Case{"time_ticks", {"638447544000000000"}, "2024-02-28T22:00:00Z"},
+           Case{"Zeit (MEZ)", {"28.02.2024 23:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time_CEST", {"2024-02-29T00:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"Time [UTC+01:00]", {"2024-02-28 23:00:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time [Europe/Berlin]", {"2024-07-01 00:00:00"}, "2024-06-30T22:00:00Z"},
+           Case{"datum,zeit,zone", {"28.02.2024,23:00:00,MEZ"}, "2024-02-28T22:00:00Z"},
+           Case{"Local time,UTC", {"2024-02-28 23:00,2024-02-28 22:00"}, "2024-02-28T22:00:00Z"},
+           Case{"time,zone", {"2024-07-01 00:00,Europe/Berlin"}, "2024-06-30T22:00:00Z"},
+           Case{"time,utc_offset", {"2024-02-28 23:00:00,+01:00"}, "2024-02-28T22:00:00Z"},
+           Case{"date,time,ms",
+                {"2024-02-28,22:00:00,7", "2024-02-28,22:00:00,507"},
+                "2024-02-28T22:00:00.007Z"},
+           Case{"time_s,usec", {"1709157600,250000"}, "2024-02-28T22:00:00.25Z"},
+           Case{"time (CET)", {"2024-02-28 23:00:00+02:00"}, "2024-02-28T21:00:00Z"},
        })
     EXPECT_EQ(first_time(c.names, c.cells), c.time) << c.cells[0];
 }
@@ -99,6 +112,11 @@ TEST(TelemetryClock, ReadsWhatIsSaidOfIt) {
   TimeOptions columns;
   columns.column = "a,b";
   EXPECT_EQ(first_time("a,b", {"2024-02-28,22:00"}, columns), "2024-02-28T22:00:00Z");
+  EXPECT_EQ(first_time("a,b", {"2024061,43200", "2024061,43260"}, columns), "2024-03-01T12:00:00Z");
+  EXPECT_EQ(first_time("a,b", {"2024061,120000", "2024061,120010"}, columns),
+            "2024-03-01T12:00:00Z");
+  columns.column = "day,sod";
+  EXPECT_EQ(first_time("day,sod", {"2024061,43200.5"}, columns), "2024-03-01T12:00:00.5Z");
 }
 
 TEST(TelemetryClock, ReadsTimesThatHavePassedAsTheyAreWritten) {
@@ -140,6 +158,9 @@ TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
   EXPECT_THAT(first_time("time", {"03/04/2024 22:00", "03/04/2024 22:10"}),
               HasSubstr("--time-format dmy or mdy"));
   EXPECT_THAT(first_time("time_s", {"1709157600000"}), HasSubstr("--time-unit"));
+  EXPECT_THAT(first_time("Local time", {"2024-02-28 23:00:00"}), HasSubstr("--time-zone"));
+  EXPECT_THAT(first_time("time,tz_offset_min", {"2024-02-28 23:00:00,60"}),
+              HasSubstr("--time-zone"));
   EXPECT_THAT(first_time("tow_ms", {"338418.0"}),
               HasSubstr("t.csv:2: '338418.0' in column 'tow_ms' would be"));
   EXPECT_THAT(first_time("time", {"2030-01-01T00:00:00Z"}), HasSubstr("later than tomorrow"));
@@ -182,6 +203,14 @@ TEST(TelemetryClockWatch, NotesAnHourThatIsLeftOutInTheNight) {
   EXPECT_EQ(line_of({"2024-03-31 01:59:40", "2024-03-31 01:59:50", "2024-03-31 03:00:00"}), 4U);
   EXPECT_EQ(line_of({"2024-03-31 01:59:40", "2024-03-31 01:59:50", "2024-03-31 03:30:00"}), 0U);
   EXPECT_EQ(line_of({"2024-03-31 13:59:40", "2024-03-31 13:59:50", "2024-03-31 15:00:00"}), 0U);
+}
+
+TEST(TelemetryClockWatch, TakesTimesThatAreCenturiesApart) {
+  ClockWatch watch(1'000'000'000, true, true);
+  const std::int64_t far = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t time : {-far, far, far - 1, std::int64_t{0}, far - 10, far, -far})
+    watch.next(time, 2);
+  EXPECT_EQ(watch.hour_ahead_line(), 0U);
 }
 
 TEST(TelemetryClockWatch, SaysWhatAStepBackLooksLike) {

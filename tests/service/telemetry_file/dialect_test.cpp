@@ -83,6 +83,8 @@ TEST(TelemetryDialect, IsFoundFromTheFirstRows) {
            Found{"# time,u,v\n", ",", false, 1, 0, 2},
            Found{"Station: KRN\nPass: 17, good\n\ntime,u,v\nUTC,A,V\n", ",", false, 4, 5, 6},
            Found{"time,u,v\n,[A],[V]\n", ",", false, 1, 2, 3},
+           Found{"Zeit;u;v\nMEZ;A;V\n", ";", true, 1, 2, 3},
+           Found{"time,u,v\nyyyy-mm-dd HH:MM:SS,A,V\n", ",", false, 1, 2, 3},
            Found{"time,u,v\nTime of the sample,Load current,Bus voltage\n", ",", false, 1, 0, 3},
            Found{"Satellite,SAT-1,\nStart,2024-02-28,\ntime,u,v\n", ",", false, 3, 0, 4},
            Found{"time  u     v\n----- ----- -----\n", " ", false, 1, 0, 3},
@@ -117,6 +119,21 @@ TEST(TelemetryDialect, GivesTheSameValuesInEach) {
   }
 }
 
+TEST(TelemetryDialect, OfDatesWithABlankAndWordsIsThatOfTheOtherCells) {
+  for (const char* row : {"2024-02-28 22:00:00,ON,1.5", "2024-02-28 22:00:00,ON,A,B,C,1.5",
+                          "2024-02-28 22:00:00,Europe/Berlin,x"}) {
+    const std::string cells(row);
+    const auto commas = std::count(cells.begin(), cells.end(), ',');
+    std::string text = "time";
+    for (long c = 0; c < commas; ++c) text += ",p" + std::to_string(c);
+    const auto found = std::get<Dialect>(dialect_of(text + "\n" + cells + "\n" + cells + "\n", {}));
+    EXPECT_EQ(found.layout.separator, ',') << row;
+  }
+  const auto blanks = std::get<Dialect>(
+      dialect_of("time u v\n10 6,001 28,011\n20 6,002 28,012\n30 6,003 28,013\n", {}));
+  EXPECT_EQ(blanks.layout.separator, ' ');
+}
+
 TEST(TelemetryDialect, IsTakenAsGiven) {
   ReadingOptions options;
   options.dialect.separator = ';';
@@ -132,6 +149,9 @@ TEST(TelemetryDialect, IsTakenAsGiven) {
 TEST(TelemetryDialect, OfLinesThatAreNoCellsIsRefusedWithTheRemedy) {
   for (const auto& [text, remedy] :
        {std::pair("time^u\n2024-02-28^1.5\n2024-02-29^1.6\n", "t.csv:1: no comma"),
+        {"\"t\"x,u\n\"1\"x,2\n", "t.csv:1: no line can be cut into cells"},
+        {"\"time,u\"\n\"2024-02-28,1.5\"\n\"2024-02-29,1.6\"\n",
+         "t.csv:1: the line is one quoted cell"},
         {"{\"time\":1,\"u\":2}\n{\"time\":2,\"u\":3}\n", "t.csv:1: the text is HTML"},
         {"time,u,v\n2024-02-28,1,5,2,5\n2024-02-29,1,6,2,6\n",
          "t.csv:1: the line has 3 names, the rows have 5 cells"}}) {

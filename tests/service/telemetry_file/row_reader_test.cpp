@@ -146,6 +146,38 @@ TEST(TelemetryRows, OfAHeaderThatComesAgainAreSkippedAndCounted) {
   EXPECT_THAT(file.remarks(), ElementsAre(AllOf(HasSubstr("t.csv:3: "), HasSubstr("2 in all"))));
 }
 
+TEST(TelemetryRows, BehindAHeaderWithTheColumnsInAnotherOrderAreNotRead) {
+  for (const bool has_time : {true, false}) {
+    auto opened = TelemetryFile::of_text("time,u,y\n1709157600,1,2\ntime,y,u\n1709157610,3,4\n",
+                                         "t.csv", plain());
+    auto& file = std::get<TelemetryFile>(opened);
+    EXPECT_FALSE(has_time && file.find_time());
+    ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+    ASSERT_EQ(file.next(), TelemetryFile::Step::error);
+    EXPECT_EQ(file.damage(), Damage::none) << "not to be skipped";
+    EXPECT_THAT(file.error().message, StartsWith("t.csv:3: another header"));
+  }
+}
+
+TEST(TelemetryRows, WithBlankCellsAtTheirEndsHaveThoseOfTheHeader) {
+  auto opened = TelemetryFile::of_text("time;u;y\n10;1,5;2,5;;;\n20;1,5;2,5;;;\n", "t.csv", {});
+  auto& file = std::get<TelemetryFile>(opened);
+  EXPECT_THAT(file.columns(), ElementsAre("time", "u", "y"));
+  for (int row = 0; row < 2; ++row) ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+  EXPECT_EQ(file.cell(2).value, 2.5);
+}
+
+TEST(TelemetryRows, ThatAreCommentsAmongOthersAreFoundByTheirMark) {
+  std::string text = "time,u,y\n";
+  for (int row = 0; row < 40; ++row)
+    text += "17091576" + std::to_string(10 + row) + ",1,2\n" + (row == 20 ? "# a, b, c, d\n" : "");
+  auto opened = TelemetryFile::of_text(text, "t.csv", {});
+  auto& file = std::get<TelemetryFile>(opened);
+  for (int row = 0; row < 40; ++row) ASSERT_EQ(file.next(), TelemetryFile::Step::row) << row;
+  EXPECT_EQ(file.next(), TelemetryFile::Step::end);
+  EXPECT_THAT(file.found(), HasSubstr("comments begin with #"));
+}
+
 TEST(TelemetryRows, WithNulBytesAreBadByThemselves) {
   using namespace std::string_literals;
   auto opened = TelemetryFile::of_text("a,b\n1,2\n9,\0\0\n3,4\n"s, "t.csv", plain());

@@ -140,6 +140,21 @@ TEST_F(Care, SplitMovesClosedYearsAndEverythingIsReadAsBefore) {
   EXPECT_THAT(refusal_of({"archive", "split", "reident.db"}), HasSubstr("stop the service"));
 }
 
+TEST_F(Care, WhatChangesADatabaseMakesNone) {
+  write("reident.toml",
+        "[archive]\ndatabase = \"mistyped.db\"\n[[spacecraft]]\nname = \"CB4\"\n"
+        "[[spacecraft.equipment]]\nname = \"BDR\"\ninputs = [\"I_BUS\"]\noutputs = "
+        "[\"V_BUS\"]\nsample_period = \"1s\"\nwindow = \"30min\"\n");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"archive", "split", "mistyped.db"},
+        {"retain", "mistyped.db", "--keep", "1h"},
+        {"import", "telemetry.csv", "--undo", "--db", "mistyped.db"},
+        {"backfill", "--config", "reident.toml"}})
+    EXPECT_THAT(refusal_of(words), HasSubstr("mistyped.db does not exist")) << words[0];
+  for (const auto& file : std::filesystem::directory_iterator(folder()))
+    EXPECT_FALSE(file.path().filename().string().starts_with("mistyped.db")) << file.path();
+}
+
 TEST_F(Care, RetainRemovesByAgeAndSaysSoBeforehand) {
   append(600, 20000);  // a chunk and a part of a second
   const json plan = json_of({"retain", "reident.db", "--keep", "1h", "--dry-run"});

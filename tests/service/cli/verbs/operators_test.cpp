@@ -130,8 +130,8 @@ TEST_F(OperatorCommands, HistoryAndShowTellWhatWasDecided) {
   reident(on_file({"hold", "BDR", "--reason", "training"}));
   const test::Ran history = reident({"history", "--long", "--database", "reident.db"});
   EXPECT_THAT(history.out, HasSubstr("  2x  "));
-  EXPECT_THAT(history.out, HasSubstr("approved: Good. Then withdraw by Ana at 2"));
-  EXPECT_THAT(history.out, HasSubstr("roll_back by Ana at 2"));
+  EXPECT_THAT(history.out, HasSubstr("approved: Good. Then withdrawn by Ana at 2"));
+  EXPECT_THAT(history.out, HasSubstr("rolled back to by Ana at 2"));
   EXPECT_THAT(history.out, HasSubstr("(version 2 was withdrawn: wrong sensor)."));
   EXPECT_THAT(history.out, HasSubstr("* champion: what simulators run now; x withdrawn\n"
                                      "CBERS-4/BDR is held by Ana since 2"));
@@ -160,7 +160,7 @@ TEST_F(OperatorCommands, AtTellsTheChampionOfATimeAndWhoDecidedSo) {
   EXPECT_EQ(at("2200-01-01")["kind"], "roll_back");
   EXPECT_EQ(at("2200-01-01")["reason"], "odd");
   const test::Ran table = reident({"at", "1700000010", "--database", "reident.db"});
-  EXPECT_THAT(table.out, HasSubstr("CBERS-4/BDR        2  2023-11-14T22:13:30Z  gate  approve: "
+  EXPECT_THAT(table.out, HasSubstr("CBERS-4/BDR        2  2023-11-14T22:13:30Z  gate  approved: "
                                    "Good.\n"));
   EXPECT_EQ(at("now")["version"], 1);
   EXPECT_EQ(at("-2h")["version"], 2) << "before the rollback";

@@ -216,7 +216,7 @@ TEST_F(Stored, ShowTellsTheWholeStoryOfTheChampion) {
                     HasSubstr("I_BDRIN2  input   A       0.25        8"),
                     HasSubstr("I_BDROUT     2.5  91.25"),
                     HasSubstr("version 1, on the same rows: MRSE 3.75 %"),
-                    HasSubstr("approve  gate  The reason of the gate."),
+                    HasSubstr("approved  gate  The reason of the gate."),
                     HasSubstr(model_digest(model_of("BDR"))), HasSubstr("K = (none)"),
                     HasSubstr("continuous time: poles -0.0992"), HasSubstr("dx/dt = A x")));
   EXPECT_THAT(ran.out, Not(HasSubstr("DOES NOT MATCH")));

@@ -226,6 +226,49 @@ TEST_F(TelemetryFiles, OfSeveralRecordsFitAStateToEach) {
       HasSubstr("--segment: apart.csv: there is no column 'test'"));
 }
 
+TEST_F(TelemetryFiles, OfOneSampleARowSayWhatIsWrongWithTheirLines) {
+  std::string good = "time,name,value\n", bad = good;
+  for (std::size_t row = 0; row < data_.u.size(); ++row) {
+    const std::string u = fmt::format("{},u,{:.3f}\n", iso(row), data_.u[row]),
+                      y = fmt::format("{},y,{:.3f}\n", iso(row), data_.y[row]);
+    good += u + y;
+    bad += u + y;
+    if (row == 3) bad += "no time,u,1\n" + iso(row) + ",,1\n";       // lines 10 and 11
+    if (row == 4) bad += iso(row) + ",u,99\ntime,name,value\n" + u;  // lines 14, 15 and 16
+  }
+  write("good.csv", good);
+  write("bad.csv", bad);
+  EXPECT_EQ(reident(import_of("good.csv", {"--dry-run"})).status, 0);
+  EXPECT_THAT(refusal_of(identify("bad.csv")), HasSubstr("bad.csv:10: "));
+  // Two rows more before the end of the range: one for each sample that came twice.
+  const json model = json_of(identify("bad.csv", {"--skip-bad-lines", "--identify", "0:162"}));
+  EXPECT_EQ(model["A"], json_of(identify("good.csv", {"--identify", "0:160"}))["A"]);
+  EXPECT_THAT(model["warnings"],
+              AllOf(Contains(HasSubstr("bad.csv:10: 'no time'")),
+                    Contains(HasSubstr("bad.csv:11: '' in column 'name'")),
+                    Contains(HasSubstr("bad.csv:15: the header stands here again")),
+                    Contains(HasSubstr("column u: other values at the time of an earlier one: 1, "
+                                       "the first in line 14"))));
+  const test::Ran imported = reident(import_of("bad.csv", {"--skip-bad-lines"}));
+  EXPECT_THAT(imported.out, HasSubstr("480 stored, 1 there already, 1 in conflict"));
+  write("words.csv", good + iso(240) + ",y,3\n" + iso(240) + ",u,broken\n");
+  EXPECT_THAT(json_of(identify("words.csv"))["warnings"],
+              Contains(HasSubstr("column u: 1 of 241 cells are neither numbers nor blank: 'broken' "
+                                 "in line 483")));
+}
+
+TEST_F(TelemetryFiles, OfOneSampleARowHaveStatesThatAreNamedByTheirParameter) {
+  write("s.csv", "time,name,value\n" + iso(0) + ",heater,ON\n" + iso(0) + ",u,1\n" + iso(1) +
+                     ",heater,OFF\n");
+  EXPECT_THAT(refusal_of(import_of("s.csv")), HasSubstr("--map-states PARAMETER:STATE=NUMBER"));
+  EXPECT_EQ(json_of(import_of("s.csv", {"--map-states", "heater:OFF=0,ON=1"}))["stored"], 3);
+  storage::Database database(folder() / "a.db", storage::Database::Mode::read_write);
+  const auto heater = storage::Archive(database).parameter("SAT-1", "heater");
+  ASSERT_TRUE(heater);
+  EXPECT_EQ(heater->kind, storage::ParameterKind::digital);
+  EXPECT_EQ(heater->description, "states OFF=0, ON=1; imported from s.csv");
+}
+
 TEST_F(TelemetryFiles, OfAClockThatWasSetBackGoOnOrStop) {
   std::string text = "time,u,y\n";
   for (std::size_t row = 0; row < data_.u.size(); ++row) {
