@@ -155,8 +155,4 @@ Matrix matrix_exponential(const Matrix& A) {
   return A.exp();
 }
 
-Matrix matrix_logarithm(const Matrix& A) {
-  return A.log();
-}
-
 }  // namespace reident::identification

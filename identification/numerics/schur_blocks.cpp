@@ -12,7 +12,15 @@ namespace {
 
 constexpr double accepted_swap = 1e-13;  // of the blocks' size, left below the diagonal
 
-/// X of T11 X - X T22 = T12 for blocks of at most two rows.
+Matrix exchange(Index n1, Index n2) {
+  Matrix Z = Matrix::Zero(n1 + n2, n1 + n2);
+  Z.topRightCorner(n1, n1).setIdentity();
+  Z.bottomLeftCorner(n2, n2).setIdentity();
+  return Z;
+}
+
+}  // namespace
+
 Matrix sylvester(const Matrix& T11, const Matrix& T22, const Matrix& T12) {
   const Index n1 = T11.rows(), n2 = T22.rows();
   Matrix operation = Matrix::Zero(n1 * n2, n1 * n2);
@@ -25,15 +33,6 @@ Matrix sylvester(const Matrix& T11, const Matrix& T22, const Matrix& T12) {
   const Vector x = solve_full_lu(operation, Vector(T12.reshaped()));
   return x.reshaped(n1, n2);
 }
-
-Matrix exchange(Index n1, Index n2) {
-  Matrix Z = Matrix::Zero(n1 + n2, n1 + n2);
-  Z.topRightCorner(n1, n1).setIdentity();
-  Z.bottomLeftCorner(n2, n2).setIdentity();
-  return Z;
-}
-
-}  // namespace
 
 SchurBlocks::SchurBlocks(const Matrix& A) {
   assert(A.rows() == A.cols() && A.allFinite());

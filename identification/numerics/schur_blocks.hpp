@@ -9,6 +9,9 @@
 
 namespace reident::identification {
 
+/// X of T11 X - X T22 = T12 for blocks of at most two rows, which have no eigenvalue in common.
+Matrix sylvester(const Matrix& T11, const Matrix& T22, const Matrix& T12);
+
 /// A = Q T Q' with T block upper triangular, blocks of one or two rows.
 class SchurBlocks {
  public:

@@ -11,6 +11,7 @@
 #include "service/satcs/csv_export.hpp"
 #include "service/satcs/faults/faulty_stream.hpp"
 #include "service/satcs/program.hpp"
+#include "service/satcs/programs.hpp"
 #include "service/satcs/reference/life_text.hpp"
 #include "service/satcs/reference/random.hpp"
 #include "service/satcs/reference/reference_stream.hpp"
@@ -18,11 +19,10 @@
 #include "service/support/stop_signal.hpp"
 #include "service/support/time_text.hpp"
 
+namespace reident::satcs {
 namespace {
 
-using namespace reident::satcs;
-
-constexpr const char* about =
+constexpr const char* about_reference =
     "Simulates the electrical power subsystem of a CBERS-4-class spacecraft, or its platform\n"
     "(thermal nodes, reaction wheels, transmitter), and publishes the telemetry at 1 Hz. The same\n"
     "start and seed give the same telemetry.\n\n"
@@ -107,8 +107,8 @@ std::unique_ptr<FrameStream> with_faults(std::unique_ptr<FrameStream> truth,
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CLI::App app(about, "satcs-reference");
+int reference_main(int argc, char** argv) {
+  CLI::App app(about_reference, "satcs-reference");
   ReferenceOptions options;
   Sender sender{.source = "reference"};
   PublisherOptions publisher;
@@ -158,3 +158,5 @@ int main(int argc, char** argv) {
     return write_csv(*stream, file, stop.token()) ? exit_complete : exit_signal + stop.number();
   });
 }
+
+}  // namespace reident::satcs

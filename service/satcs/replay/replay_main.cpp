@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/satcs/program.hpp"
+#include "service/satcs/programs.hpp"
 #include "service/satcs/replay/replay.hpp"
 #include "service/support/log.hpp"
 #include "service/support/terminal.hpp"
@@ -15,13 +16,13 @@
 #include "service/telemetry_file/long_layout.hpp"
 #include "service/telemetry_file/reading_options.hpp"
 
+namespace reident::satcs {
 namespace {
 
-using namespace reident::satcs;
-using reident::telemetry_file::ReadingArguments;
-using reident::telemetry_file::ReadingOptions;
+using telemetry_file::ReadingArguments;
+using telemetry_file::ReadingOptions;
 
-constexpr const char* about =
+constexpr const char* about_replay =
     "Publishes the rows of a CSV file as SATCS telemetry frames, one frame a row.\n\n"
     "Examples:\n"
     "  satcs-replay telemetry.csv --spacecraft SAT-1 --speed max\n"
@@ -109,8 +110,8 @@ int show(const ReplayOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CLI::App app(about, "satcs-replay");
+int replay_main(int argc, char** argv) {
+  CLI::App app(about_replay, "satcs-replay");
   ReplayOptions replay;
   Sender sender{.source = "replay"};
   PublisherOptions publisher;
@@ -130,3 +131,5 @@ int main(int argc, char** argv) {
     return publish_and_report(stream, sender, publisher, json, stop, [&found] { return found; });
   });
 }
+
+}  // namespace reident::satcs
