@@ -9,6 +9,8 @@
 namespace reident::identification::verdicts_test {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -32,11 +34,21 @@ TEST(Verdicts, TooFewSamplesNamesTheNumberNeeded) {
     ASSERT_TRUE(std::holds_alternative<Verdict>(result)) << rows;
     const Verdict& verdict = std::get<Verdict>(result);
     EXPECT_EQ(verdict.code, VerdictCode::too_few_samples) << rows;
-    EXPECT_THAT(verdict.reason, HasSubstr("at least 26 rows"));
+    EXPECT_THAT(verdict.reason, HasSubstr(" 26 rows"));
+    EXPECT_THAT(verdict.reason, HasSubstr(" 200"));
   }
   const IdentifyResult result = identify(record, {0, 26}, {});
   const auto* verdict = std::get_if<Verdict>(&result);
   EXPECT_TRUE(!verdict || verdict->code != VerdictCode::too_few_samples);
+}
+
+TEST(Verdicts, AnOrderThatTheRowsDoNotFeedIsNamed) {
+  const auto warnings = [](Index rows) {
+    return std::get<Identified>(identify(driven(rows), {0, rows}, {})).warnings;
+  };
+  EXPECT_THAT(warnings(60), Contains(AllOf(HasSubstr("no order above 1"), HasSubstr(" 200 rows"))));
+  EXPECT_THAT(warnings(199), Contains(HasSubstr("no order above 9")));
+  EXPECT_THAT(warnings(200), IsEmpty());
 }
 
 TEST(Verdicts, SegmentsShorterThanTwiceTheHorizonAreTooFewSamples) {
