@@ -172,9 +172,10 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
       const Recipe recipe = recipe_at(place);
       if (recipe.order > gamma.cols() - p_) break;
       const Dynamics found = shift_invariant(gamma, p_, recipe.order, recipe.stability);
-      if (!is_stable(found.A)) continue;
+      const auto A = stable_over(found.A, fold.fit.size());
+      if (!A) continue;
       StateSpaceModel& model = models_[fold_index][place];
-      model = with_response(projection, found.A, found.C, recipe.direct, record.period_s);
+      model = with_response(projection, *A, found.C, recipe.direct, record.period_s);
       set_operating_point(model, data_.normalisation, mean);
       errors[place] = quick_held_out_errors(model, record, fold);
     }

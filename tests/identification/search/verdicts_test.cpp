@@ -119,6 +119,33 @@ TEST(Verdicts, AnUnstableSystemIsToldAsUnstable) {
   EXPECT_THAT(verdict.reason, HasSubstr("or let A be made stable"));
 }
 
+TEST(Verdicts, EquipmentThatIntegratesIsNotTakenForUnstable) {
+  // A battery's voltage: its charge, a slower part and its resistance, over orbits.
+  for (const std::uint64_t seed : {2U, 6U}) {
+    test::Noise noise(seed);
+    Matrix A(2, 2), C(1, 2);
+    A << 1, 0, 0, 0.86;
+    C << 2e-4, 0.007;
+    const StateSpaceModel battery{A,
+                                  Matrix::Ones(2, 1),
+                                  C,
+                                  Matrix::Constant(1, 1, 0.03),
+                                  {},
+                                  Vector::Zero(1),
+                                  Vector::Zero(1),
+                                  60};
+    Matrix u = 0.5 * noise.normal(600, 1);
+    for (Index t = 0; t < 600; ++t) u(t) += t % 94 < 60 ? 5 : -4;
+    const Record record = contiguous_record(
+        60, u, test::simulated(battery, u, Vector::Zero(2)) + 0.002 * noise.normal(600, 1));
+    const IdentifyResult result = identify(record, record.all(), {});
+    const auto* found = std::get_if<Identified>(&result);
+    ASSERT_NE(found, nullptr) << std::get<Verdict>(result).reason;
+    EXPECT_LT(*found->held_out_error, 0.03) << seed;
+    EXPECT_NEAR(found->spectral_radius, 1, 1e-3) << seed;
+  }
+}
+
 TEST(Options, EveryMistakeIsNamed) {
   EXPECT_THAT(mistakes({}), IsEmpty());
   IdentifyOptions options;
