@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "identification/numerics/decompositions.hpp"
+#include "identification/simulation/free_run.hpp"
 #include "identification/statistics/feedback.hpp"
 #include "identification/subspace/ssarx.hpp"
 
@@ -45,6 +46,15 @@ std::string poles_of(const StateSpaceModel& model) {
   return text;
 }
 
+/// The outputs that the model makes of the inputs, in units, over the normalised rows.
+Matrix of_inputs(PreparedRows& rows, const Identified& identified) {
+  Matrix result = Matrix::Zero(rows.normalised().rows(), rows.outputs());
+  result.topRows(rows.fitted().size()) =
+      free_run(identified.model, rows.record(), rows.fitted(), identified.x0)(
+          Eigen::all, rows.normalisation().outputs);
+  return result;
+}
+
 }  // namespace
 
 std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified& identified,
@@ -53,7 +63,8 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
   const Index fitted = rows.fitted().size();
   const RowRange looked_at{std::max<Index>(0, fitted - most_rows), fitted};
   const Record& record = rows.normalised();
-  const std::vector<Feedback> feedback = feedback_of(record, looked_at, past);
+  const std::vector<Feedback> feedback =
+      feedback_of(record, looked_at, past, of_inputs(rows, identified));
   if (feedback.empty()) return std::nullopt;
   std::string who;
   for (const Feedback& one : feedback)

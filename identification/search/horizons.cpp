@@ -33,6 +33,16 @@ int longest_horizon(const IdentifyOptions& options) {
       std::max(*std::rbegin(preferred_horizons), least_horizon(options)));
 }
 
+int largest_order(int horizon, Index p) {
+  return static_cast<int>(p) * (horizon - 1);
+}
+
+int horizon_of_order(int order, Index p) {
+  for (const int horizon : preferred_horizons)
+    if (largest_order(horizon, p) >= order) return horizon;
+  return *std::rbegin(preferred_horizons);
+}
+
 std::vector<int> feasible_horizons(const HankelSupply& supply, const IdentifyOptions& options) {
   const int least = options.horizon.value_or(least_horizon(options));
   const Index columns = supply.columns(least);

@@ -29,6 +29,13 @@ int least_horizon(const IdentifyOptions& options);
 /// Returns the longest horizon that these options may lead to.
 int longest_horizon(const IdentifyOptions& options);
 
+/// Returns the largest order that a horizon can carry with p outputs.
+int largest_order(int horizon, Index p);
+
+/// Returns the least horizon of those that are tried, 6 to 30, that carries the order with p
+/// outputs; the longest where none does.
+int horizon_of_order(int order, Index p);
+
 /// Returns the horizons of {6, 10, 15, 20, 30} that the rows can feed, ascending. A longer one must
 /// leave at least half of the columns that the shortest one has, since gaps cost columns.
 std::vector<int> feasible_horizons(const HankelSupply& supply, const IdentifyOptions& options);

@@ -22,7 +22,6 @@ constexpr double equal_errors = 1.002;
 constexpr double no_error = 1e-6;  // of an output's deviation
 constexpr double worthwhile_recency = 0.95;
 constexpr int refinement_steps = 25;
-constexpr int whitened_steps = 10;
 constexpr Index least_scored = 1000,
                 most_scored = 2000;  // rows of a fold in the first stage
 constexpr Index least_fitted = 2000;
@@ -173,9 +172,10 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
       const Recipe recipe = recipe_at(place);
       if (recipe.order > gamma.cols() - p_) break;
       const Dynamics found = shift_invariant(gamma, p_, recipe.order, recipe.stability);
-      if (!is_stable(found.A)) continue;
+      const auto A = stable_over(found.A, fold.fit.size());
+      if (!A) continue;
       StateSpaceModel& model = models_[fold_index][place];
-      model = with_response(projection, found.A, found.C, recipe.direct, record.period_s);
+      model = with_response(projection, *A, found.C, recipe.direct, record.period_s);
       set_operating_point(model, data_.normalisation, mean);
       errors[place] = quick_held_out_errors(model, record, fold);
     }
@@ -325,18 +325,16 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
   const auto parameters = [&](const Recipe& recipe) {
     return parameters_of(recipe.order, m_, p_, recipe.direct, segments);
   };
+  // Each is fitted twice, again to errors that are correlated.
   const auto fit = [&](const Candidate& candidate) {
-    effort_.spent += work_of_regression(candidate.recipe, m_, p_) * double(fitted.size());
+    Recipe again = candidate.recipe;
+    again.refinement_steps = again.order == 0 ? 0 : RicherFit::steps;
+    for (const Recipe& recipe : {candidate.recipe, again})
+      effort_.spent += work_of_regression(recipe, m_, p_) * double(fitted.size());
     return fit_of(candidate, 0, fitted);
   };
-  const auto whitened = [&](const Response& response, const Recipe& recipe,
-                            const std::vector<ErrorColour>& colours) {
-    return refine_whitened(response, recipe.direct, data_.normalised, fitted,
-                           recipe.order == 0 ? 0 : whitened_steps, colours);
-  };
   const Fold& largest = data_.folds.front();
-  std::optional<Response> rich_fit;
-  std::vector<ErrorColour> colours;
+  std::optional<RicherFit> richer;
   // Absent where something speaks against the order.
   const auto accepted = [&](int order) -> std::optional<Candidate> {
     const auto found = std::find_if(compressed.begin(), compressed.end(), [&](const Candidate& c) {
@@ -349,19 +347,15 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
     simple.recipe.direct = order == 0 || winner.recipe.direct;
     simple.recipe.refinement_steps = order == 0 ? 0 : refinement_steps;
     simple.recipe.refined_rows = order == 0 ? 0 : rows * static_cast<Index>(folds());
-    if (!rich_fit) {
-      const Response unweighted = fit(rich);
-      colours = colours_of(unweighted, data_.normalised, fitted);
-      rich_fit = whitened(unweighted, rich.recipe, colours);
-    }
+    if (!richer) richer.emplace(fit(rich), rich.recipe.direct, data_.normalised, fitted);
     const Index extra = std::max<Index>(1, parameters(winner.recipe) - parameters(simple.recipe));
-    if (is_refuted(whitened(fit(simple), simple.recipe, colours), *rich_fit, colours, extra,
-                   data_.normalised, fitted))
-      return std::nullopt;
+    if (richer->refutes(fit(simple), simple.recipe.direct, extra)) return std::nullopt;
     std::vector<Candidate> result = scored({simple}, rows);
     if (result.empty()) return std::nullopt;
+    const double together = richer->correlated_rows();
     if (errs_more(result.front().fold_errors, winner.fold_errors, extra,
-                  largest.with_fit_of(rows).fit.size(), largest.tune.size()))
+                  double(largest.with_fit_of(rows).fit.size()) / together,
+                  double(largest.tune.size()) / together))
       return std::nullopt;
     return std::move(result.front());
   };

@@ -4,7 +4,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/free_run.hpp"
+#include "identification/statistics/correlation.hpp"
 #include "identification/statistics/quantiles.hpp"
 
 namespace reident::identification {
@@ -14,11 +16,12 @@ constexpr double least_deviation = 1e-6;  // of an output's: below it errors are
 constexpr double chance_deviations = 4;
 constexpr double certain_loss = 2;  // standard errors
 
-double whitened_squares(const Vector& errors, const Vector& a,
-                        const std::vector<RowRange>& ranges) {
+double squares_of_white(const Vector& errors, const ErrorColour& colour,
+                        const std::vector<Segment>& segments) {
+  const Vector& a = colour.past.coefficients.back();
   double sum = 0;
-  for (const RowRange& range : ranges)
-    for (Index t = range.begin + a.size(); t < range.end; ++t) {
+  for (const Segment& segment : segments)
+    for (Index t = segment.begin + a.size(); t < segment.end; ++t) {
       double w = errors(t);
       for (Index i = 0; i < a.size(); ++i) w -= a(i) * errors(t - 1 - i);
       sum += w * w;
@@ -28,6 +31,34 @@ double whitened_squares(const Vector& errors, const Vector& a,
 
 Matrix errors_of(const Response& fit, const Record& record, RowRange rows) {
   return record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
+}
+
+/// A row for each of the mixtures of outputs whose errors are uncorrelated. Where outputs are
+/// linear in one another, mixtures without errors are among them.
+Matrix uncorrelated_mixtures(const Matrix& errors) {
+  const Index p = errors.cols();
+  if (p == 1 || !errors.allFinite()) return Matrix::Identity(p, p);
+  const SymmetricEigen found = symmetric_eigen(errors.transpose() * errors);
+  return found.converged ? Matrix(found.vectors.transpose()) : Matrix::Identity(p, p);
+}
+
+/// Rows that count as one in the errors of the output where they last longest.
+double longest_correlation(const Matrix& errors, const std::vector<Segment>& segments) {
+  std::vector<RowRange> ranges;
+  for (const Segment& segment : segments) ranges.push_back({segment.begin, segment.end});
+  double most = 1;
+  for (Index q = 0; q < errors.cols(); ++q) {
+    Series series(errors.col(q), ranges);
+    most = std::max(most, correlated_rows(series));
+  }
+  return most;
+}
+
+Response mixed(Response fit, const Matrix& mixtures) {
+  fit.model.C = mixtures * fit.model.C;
+  fit.model.D = mixtures * fit.model.D;
+  fit.model.y0 = mixtures * fit.model.y0;
+  return fit;
 }
 
 /// The error of one model over that of another, median over the folds.
@@ -70,30 +101,39 @@ Index parameters_of(Index n, Index m, Index p, bool direct, Index segments) {
   return n * (m + p) + (direct ? m * p : 0) + p + n * segments;
 }
 
-bool is_refuted(const Response& simple, const Response& rich,
-                const std::vector<ErrorColour>& colours, Index extra, const Record& record,
-                RowRange rows) {
+RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows)
+    : mixtures_(uncorrelated_mixtures(errors_of(fit, record, rows))),
+      mixed_{record.period_s, record.u, record.y * mixtures_.transpose(), record.segments},
+      rows_(rows),
+      colours_(colours_of(mixed(fit, mixtures_), mixed_, rows)),
+      squares_(whitened_squares(fit, direct)),
+      correlated_rows_(
+          longest_correlation(errors_of(fit, record, rows), segments_from(record, rows))) {}
+
+Vector RicherFit::whitened_squares(const Response& fit, bool direct) const {
+  const int most = fit.model.order() == 0 ? 0 : steps;
+  const Response white =
+      refine_whitened(mixed(fit, mixtures_), direct, mixed_, rows_, most, colours_);
+  const Matrix errors = errors_of(white, mixed_, rows_);
+  const std::vector<Segment> segments = segments_from(mixed_, rows_);
+  Vector squares(errors.cols());
+  for (Index q = 0; q < errors.cols(); ++q)
+    squares(q) = squares_of_white(errors.col(q), colours_[static_cast<std::size_t>(q)], segments);
+  return squares;
+}
+
+bool RicherFit::refutes(const Response& simple, bool direct, Index extra) const {
   assert(extra >= 1);
-  const Matrix left_by_simple = errors_of(simple, record, rows);
-  const Matrix left_by_rich = errors_of(rich, record, rows);
-  const double count = double(rows.size());
+  const double count = double(rows_.size());
   const double floor = least_deviation * least_deviation * count;
-  std::vector<RowRange> ranges;
-  for (const Segment& segment : segments_from(record, rows))
-    ranges.push_back({segment.begin, segment.end});
-  double ratio = 0;
-  for (Index q = 0; q < record.y.cols(); ++q) {
-    const Vector& a = colours[static_cast<std::size_t>(q)].past.coefficients.back();
-    ratio += count * std::log((whitened_squares(left_by_simple.col(q), a, ranges) + floor) /
-                              (whitened_squares(left_by_rich.col(q), a, ranges) + floor));
-  }
+  const Vector more = whitened_squares(simple, direct);
+  const double ratio = count * ((more.array() + floor) / (squares_.array() + floor)).log().sum();
   return !(ratio <= chi_squared_quantile(0.9999, double(extra)));
 }
 
 bool errs_more(const std::vector<HeldOutError>& simple, const std::vector<HeldOutError>& rich,
-               Index extra, Index fitted, Index held_out) {
-  const double by_chance =
-      chance_deviations * std::sqrt(double(extra) / (double(fitted) * double(held_out)));
+               Index extra, double fitted, double held_out) {
+  const double by_chance = chance_deviations * std::sqrt(double(extra) / (fitted * held_out));
   return median_ratio(simple, rich) > 1 + by_chance &&
          loss_in_deviations(simple, rich) > certain_loss;
 }

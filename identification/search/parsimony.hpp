@@ -14,19 +14,42 @@ namespace reident::identification {
 /// segments: those of the model up to a change of basis, and the initial states.
 Index parameters_of(Index n, Index m, Index p, bool direct, Index segments);
 
-/// Whether the likelihood ratio refutes, at 99.99 %, that the simpler of two fits to the same rows
-/// has all that is in the outputs. Both are fits to errors of these colours: only then is the ratio
-/// distributed as chi-squared. `extra` are the parameters, at least 1, that the richer one has
-/// more.
-bool is_refuted(const Response& simple, const Response& rich,
-                const std::vector<ErrorColour>& colours, Index extra, const Record& record,
-                RowRange rows);
+/// The richer one of two fits to the same rows. The ratio of their likelihoods is distributed as
+/// chi-squared where both are fits to errors that have the correlation and the colour of these. So
+/// both are fitted again, to those mixtures of the outputs whose errors are uncorrelated.
+class RicherFit {
+ public:
+  /// Takes a fit of least squares to `rows` of the record, with or without D.
+  RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows);
+
+  /// Whether the likelihood ratio refutes, at 99.99 %, that a simpler fit of least squares has all
+  /// that is in the outputs. `extra` are the parameters, at least 1, that the richer one has more.
+  bool refutes(const Response& simple, bool direct, Index extra) const;
+
+  /// Returns the rows that count as one in its errors, at least 1: of the output where they last
+  /// longest.
+  double correlated_rows() const { return correlated_rows_; }
+
+  /// Steps of the refinement that a fit of order n, above 0, takes again.
+  static constexpr int steps = 25;
+
+ private:
+  /// Fits again and returns the sums (p) of the squared errors, made white.
+  Vector whitened_squares(const Response& fit, bool direct) const;
+
+  Matrix mixtures_;  // p x p, orthogonal
+  Record mixed_;     // its outputs are the mixtures
+  RowRange rows_;
+  std::vector<ErrorColour> colours_;
+  Vector squares_;  // of its own
+  double correlated_rows_;
+};
 
 /// Whether the rows held out speak against the simpler of two models, by their errors on each fold:
 /// the median of its errors over the other's is above what chance gives `extra` parameters that
-/// mean nothing, with white errors on so many rows fitted and held out; and its squares, or
-/// their logarithms, are larger by two standard errors.
+/// mean nothing; and its squares, or their logarithms, are larger by two standard errors. `fitted`
+/// and `held_out` are the rows of a fold that count, which are fewer where errors last.
 bool errs_more(const std::vector<HeldOutError>& simple, const std::vector<HeldOutError>& rich,
-               Index extra, Index fitted, Index held_out);
+               Index extra, double fitted, double held_out);
 
 }  // namespace reident::identification

@@ -23,7 +23,7 @@ std::string PreparedRows::input_name(Index input) const {
 }
 
 std::optional<Verdict> PreparedRows::prepare(std::vector<std::string>& warnings) {
-  if (fitted_.size() < 4) return too_few_samples(record_.u.cols() + record_.y.cols());
+  if (fitted_.size() < 4) return too_few_samples(record_.u.cols(), record_.y.cols());
   segments_ = segments_from(record_, fitted_);
   sums_ = sums_of({0, fitted_.size()});
   if (!all_finite(sums_))
@@ -87,16 +87,31 @@ std::vector<Fold> PreparedRows::folds() const {
   return {{{0, fitted}, {fitted, fitted + tune_.size()}}};
 }
 
-Verdict PreparedRows::too_few_samples(Index width) const {
-  const Index s = options_.horizon.value_or(least_horizon(options_));
-  const Index fit = 2 * s * width + 2 * s;
+Index PreparedRows::rows_needed(int horizon, Index width) const {
+  const Index fit = 2 * Index{horizon} * (width + 1);
   Index needed = fit;
-  while (folds_of(needed, options_.tune_share)[2].fit.size() < fit) ++needed;
-  return {VerdictCode::too_few_samples,
-          std::to_string(fitted_.size()) + " rows in " +
-              std::to_string(segments_within(record_, fitted_).size()) +
-              " segments are too few; at least " + std::to_string(needed) +
-              " rows without a gap are needed for a horizon of " + std::to_string(s)};
+  if (tune_.size() == 0)
+    while (folds_of(needed, options_.tune_share)[2].fit.size() < fit) ++needed;
+  return needed;
+}
+
+Verdict PreparedRows::too_few_samples(Index m, Index p) const {
+  const auto counted = [](Index count, const char* what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+  };
+  const int least = options_.horizon.value_or(least_horizon(options_));
+  const int lowest = options_.order.value_or(std::max(1, options_.min_order));
+  std::string reason =
+      counted(fitted_.size(), "row") + " to identify from in " +
+      counted(static_cast<Index>(segments_within(record_, fitted_).size()), "segment") +
+      " are too few for " + counted(m, "input") + " and " + counted(p, "output") + ": order " +
+      std::to_string(lowest) + " takes at least " + std::to_string(rows_needed(least, m + p)) +
+      " rows without a gap (horizon " + std::to_string(least) + ")";
+  const int usual = horizon_of_order(options_.max_order, p);
+  if (!options_.order && !options_.horizon && usual > least)
+    reason += ", all up to " + std::to_string(options_.max_order) + " take " +
+              std::to_string(rows_needed(usual, m + p));
+  return {VerdictCode::too_few_samples, reason + "; choose more rows or fewer channels"};
 }
 
 const Record& PreparedRows::normalised() {

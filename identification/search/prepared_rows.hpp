@@ -57,9 +57,12 @@ class PreparedRows {
   /// at most half of the block rows of the sums.
   const HankelFactor& factor(int horizon);
 
-  /// Returns the verdict on rows that do not feed the least horizon with `width` = m + p channels.
-  /// It names the number of rows that would.
-  Verdict too_few_samples(Index width) const;
+  /// Returns the rows without a gap that a horizon takes with `width` = m + p channels, where rows
+  /// are held out as the options say.
+  Index rows_needed(int horizon, Index width) const;
+  /// Returns the verdict on rows that do not feed the least horizon with m inputs and p outputs. It
+  /// names the number of rows that would.
+  Verdict too_few_samples(Index m, Index p) const;
 
  private:
   /// Warns of each channel that does not move; the `kind` is "input" or "output".

@@ -47,12 +47,15 @@ std::optional<Identified> realise(PreparedRows& rows, const Recipe& recipe,
   const HankelFactor& hankel = rows.factor(recipe.horizon);
   const Projection projection(hankel);
   auto [gamma, singular_values] = projection.observability(recipe.weighting);
-  const Dynamics dynamics = shift_invariant(gamma, hankel.outputs, recipe.order, recipe.stability);
-  if (!is_stable(dynamics.A)) return std::nullopt;
+  const Index fitted = rows.fitted().size();
+  Dynamics dynamics = shift_invariant(gamma, hankel.outputs, recipe.order, recipe.stability);
+  const auto stable = stable_over(dynamics.A, fitted);
+  if (!stable) return std::nullopt;
+  dynamics.A = *stable;
   if (recipe.refinement_steps == 0 &&
       slowest_time_constant_s(dynamics.A, rows.record().period_s) > longest_time_constant_s)
     return std::nullopt;
-  const Index fitted = rows.fitted().size(), m = rows.record().u.cols();
+  const Index m = rows.record().u.cols();
   StateSpaceModel model = respond(rows, recipe, projection, dynamics);
   Identified result;
   if (recipe.stability == Stability::enforced)

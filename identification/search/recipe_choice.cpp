@@ -52,6 +52,20 @@ std::optional<Verdict> limit_by_excitation(PreparedRows& rows, SearchSpace& spac
   return std::nullopt;
 }
 
+/// Lowers the largest order to what the longest horizon carries that the rows feed.
+void limit_by_rows(const PreparedRows& rows, SearchSpace& space,
+                   std::vector<std::string>& warnings) {
+  const int largest = largest_order(space.horizons.back(), rows.outputs());
+  if (rows.options().horizon || largest >= space.max_order) return;
+  const int usual = horizon_of_order(space.max_order, rows.outputs());
+  if (usual > space.horizons.back())
+    warnings.push_back("the rows feed no order above " + std::to_string(largest) +
+                       "; those up to " + std::to_string(space.max_order) + " take " +
+                       std::to_string(rows.rows_needed(usual, rows.inputs() + rows.outputs())) +
+                       " rows to identify from, without a gap");
+  space.max_order = largest;
+}
+
 /// Judges the best recipe by `constant`, the error of the mean on rows held out. Sets
 /// acceptable_error.
 std::optional<Verdict> useless(RecipeChoice& choice, double constant, bool may_enforce_stability) {
@@ -115,7 +129,8 @@ std::variant<RecipeChoice, Verdict> choose_recipes(PreparedRows& rows,
   SearchSpace space = search_space(rows, supply);
   const std::optional<Recipe> given = given_recipe(supply, rows.fitted().size(), options);
   if (given) space.horizons = {given->horizon};
-  if (space.horizons.empty()) return rows.too_few_samples(width);
+  if (space.horizons.empty()) return rows.too_few_samples(rows.inputs(), rows.outputs());
+  if (!given) limit_by_rows(rows, space, warnings);
   if (auto verdict = limit_by_excitation(rows, space, warnings)) return *std::move(verdict);
   if (given) return without_choice(*given, options, warnings);
 

@@ -1,5 +1,7 @@
 #include "identification/statistics/feedback.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "identification/numerics/decompositions.hpp"
@@ -8,7 +10,8 @@
 namespace reident::identification {
 namespace {
 
-constexpr double feedback_confidence = 0.999;
+constexpr double false_alarms = 5e-4;  // share of the records without feedback
+constexpr Index latest = 3;            // rows that most controllers look back at the most
 constexpr double least_share = 0.02;
 constexpr double nothing_left = 1e-12;  // of an input's square: below it nothing is left to explain
 
@@ -27,19 +30,30 @@ Matrix past_of(const Matrix& values, const std::vector<Segment>& segments, Index
 
 }  // namespace
 
-std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index past) {
+std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index past,
+                                  const Matrix& of_inputs) {
   const Index m = record.u.cols(), p = record.y.cols();
+  assert(of_inputs.rows() == record.rows() && of_inputs.cols() == p);
   const std::vector<Segment> segments = segments_within(record, rows);
   Index count = 0;
   for (const Segment& segment : segments) count += std::max<Index>(0, segment.size() - past);
-  if (m == 0 || count < 3 * (m + 1) * past) return {};
-  const Matrix inputs = past_of(record.u, segments, past, count);
+  if (m == 0 || count < 3 * (m + p + 1) * past) return {};
+  Matrix alone(record.rows(), m + p);
+  alone << record.u, of_inputs;
   Matrix now(count, m);
   Index at = 0;
   for (const Segment& segment : segments)
     for (Index t = segment.begin + past; t < segment.end; ++t) now.row(at++) = record.u.row(t);
-  const Matrix basis = orthonormal_basis(inputs);
+  const Matrix basis = orthonormal_basis(past_of(alone, segments, past, count));
   const Matrix left = now - basis * (basis.transpose() * now);
+  // For the latest rows of an output and for all, by Bartlett's factor, with which the logarithm of
+  // few rows is distributed as chi-squared, too.
+  const auto is_explained = [&](double share, Index rows_of_past) {
+    const double degrees = double(rows_of_past);
+    const double factor = double(count - basis.cols() - 1) - degrees / 2;
+    return -factor * std::log1p(-std::min(share, 1 - nothing_left)) >
+           chi_squared_quantile(1 - false_alarms / double(2 * m * p), degrees);
+  };
 
   std::vector<Feedback> found;
   for (Index q = 0; q < p; ++q) {
@@ -48,9 +62,11 @@ std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index pas
     for (Index i = 0; i < m; ++i) {
       const double all = left.col(i).squaredNorm();
       if (!(all > nothing_left * now.col(i).squaredNorm())) continue;
-      const double share = (beside.transpose() * left.col(i)).squaredNorm() / all;
-      const double ratio = -double(count) * std::log1p(-std::min(share, 1 - nothing_left));
-      if (share >= least_share && ratio > chi_squared_quantile(feedback_confidence, double(past)))
+      const Vector explained = beside.transpose() * left.col(i);
+      const Index few = std::min(latest, past);
+      const double share = explained.squaredNorm() / all;
+      if (share >= least_share &&
+          (is_explained(explained.head(few).squaredNorm() / all, few) || is_explained(share, past)))
         found.push_back({i, q, share});
     }
   }

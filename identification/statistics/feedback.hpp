@@ -8,17 +8,19 @@
 
 namespace reident::identification {
 
-/// An input that the past of an output predicts better than the past of all inputs does.
+/// An input that the past of an output predicts better than inputs alone do.
 struct Feedback {
   Index input = 0;
   Index output = 0;
-  double share = 0;  // of what the inputs' past leaves of the input, in (0, 1]
+  double share = 0;  // of what inputs alone leave of the input, in (0, 1]
 };
 
 /// Tests each input against each output on `rows` with so many rows of past, by the likelihood
-/// ratio of two regressions at 99.9 %. What the output explains must be at least 2 %: that is seen
-/// where inputs and outputs share a rhythm longer than the past. Empty where there are too few
-/// rows.
-std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index past);
+/// ratio of two regressions. Where no input follows any output, one is found with a probability of
+/// 1e-3. `of_inputs` (record's rows x p) is what a model makes of the inputs alone: what the output
+/// shows of inputs longer ago, such as a rhythm that they share, is no feedback. What the output
+/// explains must be at least 2 %. Empty where there are too few rows.
+std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index past,
+                                  const Matrix& of_inputs);
 
 }  // namespace reident::identification

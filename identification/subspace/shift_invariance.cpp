@@ -1,6 +1,9 @@
 #include "identification/subspace/shift_invariance.hpp"
 
+#include <cmath>
+
 #include "identification/numerics/decompositions.hpp"
+#include "identification/simulation/state_space.hpp"
 
 namespace reident::identification {
 
@@ -24,6 +27,15 @@ Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order, Stabil
   Matrix shifted = Matrix::Zero(gamma.rows(), order);
   shifted.topRows(rows) = gamma.bottomLeftCorner(rows, order);
   return {solve_pivoted_qr(gamma.leftCols(order), shifted), C};
+}
+
+std::optional<Matrix> stable_over(const Matrix& A, Index rows) {
+  constexpr double inside = 1 - 1e-7;
+  if (!A.allFinite()) return std::nullopt;
+  const double radius = spectral_radius(A);
+  if (radius < 1) return A;
+  if (!(std::log(radius) * double(rows) < 1)) return std::nullopt;
+  return A * (inside / radius);
 }
 
 }  // namespace reident::identification

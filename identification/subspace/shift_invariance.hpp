@@ -2,6 +2,8 @@
 // section 5). Nothing here throws.
 #pragma once
 
+#include <optional>
+
 #include "identification/numerics/matrix.hpp"
 
 namespace reident::identification {
@@ -23,6 +25,10 @@ enum class Stability {
 /// gamma.rows() - outputs.
 Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order,
                          Stability stability = Stability::as_found);
+
+/// Returns A (n x n) with a spectral radius below 1 where it grows by less than e over so many
+/// rows: they cannot tell it from equipment that integrates. Absent where it grows by more.
+std::optional<Matrix> stable_over(const Matrix& A, Index rows);
 
 /// Returns Γ of `rows` >= 1 block rows (p rows x n).
 Matrix extended_observability(const Matrix& A, const Matrix& C, Index rows);

@@ -80,8 +80,16 @@ std::string delays_text(const IdentifyOutcome& outcome) {
 
 /// A line for each output.
 std::string gains_text(const IdentifyOutcome& outcome) {
-  const auto gain = static_gain(outcome.identified.model);
-  if (!gain || outcome.inputs.empty()) return "";
+  const StateSpaceModel& model = outcome.identified.model;
+  const auto gain = static_gain(model);
+  if (outcome.inputs.empty()) return "";
+  const double slowest = slowest_time_constant_s(model);
+  const double rows = model.period_s * static_cast<double>(outcome.identify.rows);
+  if (!gain || slowest > rows)
+    return fmt::format(
+        "gains at rest: none that the rows show; the slowest mode lasts {:.3g} s, the "
+        "identification rows {:.3g} s\n",
+        slowest, rows);
   std::string text;
   const auto& regimes = outcome.identified.regimes;
   const std::size_t inputs =

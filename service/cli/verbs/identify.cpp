@@ -136,10 +136,12 @@ void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
              : diagnose(identified.model, data.record, run, data.validate, identified.x0);
 }
 
-int print_rejection(const Verdict& verdict, const IdentifyData& data, bool json) {
-  const std::string advice = data.advice.empty() ? "" : "; " + data.advice;
+int print_rejection(const Verdict& verdict, const Arguments& arguments, const IdentifyData& data) {
+  std::string advice = data.advice.empty() ? "" : "; " + data.advice;
+  if (verdict.code == identification::VerdictCode::too_few_samples && !arguments.data.identify)
+    advice += "; these are the first two thirds of the file: --identify 0:ROWS takes more of them";
   const std::vector<std::string> left_out = left_out_sentences(data);
-  if (json) {
+  if (arguments.json) {
     const nlohmann::ordered_json object = {{"rejected", name(verdict.code)},
                                            {"reason", verdict.reason + advice},
                                            {"found", data.found},
@@ -214,7 +216,7 @@ int run(const Arguments& arguments) {
   options.output_names = data.outputs;
   auto result = identification::identify(data.record, data.identify, options);
   if (const auto* verdict = std::get_if<Verdict>(&result))
-    return print_rejection(*verdict, data, arguments.json);
+    return print_rejection(*verdict, arguments, data);
 
   timer.begin("score");
   IdentifyOutcome outcome;

@@ -116,14 +116,63 @@ TEST(Parsimony, AFitOfTheTrueOrderIsRefutedAsOftenAsChanceSays) {
           fit_response(Matrix(0, 0), Matrix(1, 0), true, record, record.all(), Accuracy::fast);
       const auto one_state = refine_response(Matrix::Constant(1, 1, 0.5), Matrix::Ones(1, 1), true,
                                              record, record.all(), 25);
-      const auto colours = colours_of(one_state, record, record.all());
-      refuted += is_refuted(refine_whitened(static_fit, true, record, record.all(), 0, colours),
-                            refine_whitened(one_state, true, record, record.all(), 10, colours),
-                            colours, 3, record, record.all());
+      refuted += RicherFit(one_state, true, record, record.all()).refutes(static_fit, true, 3);
     }
     // At 99.99 %; the pole of a mode that is not there fits what it likes, which takes more.
     EXPECT_LE(refuted, records / 100) << lasting;
   }
+}
+
+/// The record with another sensor of its output: a scale, an offset and noise of its own.
+Record with_second_sensor(Record record, test::Noise& noise, double noise_share) {
+  record.y.conservativeResize(record.rows(), 2);
+  record.y.col(1) = 2.5 * (record.y.col(0) + noise_share * noise.normal(record.rows(), 1));
+  return record;
+}
+
+TEST(Parsimony, ASecondSensorOfTheSameIsNoFurtherEvidence) {
+  const auto most_extra = [](const Record& record) {
+    const Index p = record.y.cols();
+    const auto simple =
+        fit_response(Matrix(0, 0), Matrix(p, 0), true, record, record.all(), Accuracy::fast);
+    const auto rich = refine_response(Matrix::Constant(1, 1, 0.5), Matrix::Ones(p, 1), true, record,
+                                      record.all(), 25);
+    const RicherFit richer(rich, true, record, record.all());
+    Index extra = 0;
+    while (richer.refutes(simple, true, extra + 1)) ++extra;
+    return extra;
+  };
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    test::Noise noise(seed);
+    const Record one = test::excited(test::random_system(noise, 1, 1, 1), noise, 60, 0.5);
+    const Index alone = most_extra(one);
+    EXPECT_GT(alone, 3) << seed;
+    EXPECT_EQ(most_extra(with_second_sensor(one, noise, 0)), alone) << seed;
+    EXPECT_NEAR(double(most_extra(with_second_sensor(one, noise, 1e-4))), double(alone),
+                double(alone) / 3)
+        << seed;
+  }
+}
+
+TEST(Parsimony, OutputsThatAreNearlyLinearInOneAnotherGetNoMoreStates) {
+  for (const double noise_share : {0.0, 1e-4}) {
+    test::Noise noise(1006);
+    const StateSpaceModel system = test::random_system(noise, 3, 1, 1);
+    const Record one = test::excited(system, noise, 500, 0.003);
+    EXPECT_EQ(identified(with_second_sensor(one, noise, noise_share)).recipe.order, 3)
+        << noise_share;
+  }
+}
+
+TEST(Parsimony, ErrorsThatLastGetNoStates) {
+  constexpr int records = 8;
+  int right = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    const StateSpaceModel system = test::random_system(noise, 2, 1, 1);
+    right += identified(with_lasting_errors(system, noise, 300, 0.1)).recipe.order == 2;
+  }
+  EXPECT_GE(right, records * 3 / 4);
 }
 
 TEST(Parsimony, FitsThatKnowHowErrorsLastAreNearerToTheTruth) {

@@ -9,6 +9,8 @@
 namespace reident::identification::verdicts_test {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -32,11 +34,21 @@ TEST(Verdicts, TooFewSamplesNamesTheNumberNeeded) {
     ASSERT_TRUE(std::holds_alternative<Verdict>(result)) << rows;
     const Verdict& verdict = std::get<Verdict>(result);
     EXPECT_EQ(verdict.code, VerdictCode::too_few_samples) << rows;
-    EXPECT_THAT(verdict.reason, HasSubstr("at least 26 rows"));
+    EXPECT_THAT(verdict.reason, HasSubstr(" 26 rows"));
+    EXPECT_THAT(verdict.reason, HasSubstr(" 200"));
   }
   const IdentifyResult result = identify(record, {0, 26}, {});
   const auto* verdict = std::get_if<Verdict>(&result);
   EXPECT_TRUE(!verdict || verdict->code != VerdictCode::too_few_samples);
+}
+
+TEST(Verdicts, AnOrderThatTheRowsDoNotFeedIsNamed) {
+  const auto warnings = [](Index rows) {
+    return std::get<Identified>(identify(driven(rows), {0, rows}, {})).warnings;
+  };
+  EXPECT_THAT(warnings(60), Contains(AllOf(HasSubstr("no order above 1"), HasSubstr(" 200 rows"))));
+  EXPECT_THAT(warnings(199), Contains(HasSubstr("no order above 9")));
+  EXPECT_THAT(warnings(200), IsEmpty());
 }
 
 TEST(Verdicts, SegmentsShorterThanTwiceTheHorizonAreTooFewSamples) {
@@ -105,6 +117,33 @@ TEST(Verdicts, AnUnstableSystemIsToldAsUnstable) {
   const Verdict verdict = verdict_of(record, options);
   EXPECT_EQ(verdict.code, VerdictCode::unstable);
   EXPECT_THAT(verdict.reason, HasSubstr("or let A be made stable"));
+}
+
+TEST(Verdicts, EquipmentThatIntegratesIsNotTakenForUnstable) {
+  // A battery's voltage: its charge, a slower part and its resistance, over orbits.
+  for (const std::uint64_t seed : {2U, 6U}) {
+    test::Noise noise(seed);
+    Matrix A(2, 2), C(1, 2);
+    A << 1, 0, 0, 0.86;
+    C << 2e-4, 0.007;
+    const StateSpaceModel battery{A,
+                                  Matrix::Ones(2, 1),
+                                  C,
+                                  Matrix::Constant(1, 1, 0.03),
+                                  {},
+                                  Vector::Zero(1),
+                                  Vector::Zero(1),
+                                  60};
+    Matrix u = 0.5 * noise.normal(600, 1);
+    for (Index t = 0; t < 600; ++t) u(t) += t % 94 < 60 ? 5 : -4;
+    const Record record = contiguous_record(
+        60, u, test::simulated(battery, u, Vector::Zero(2)) + 0.002 * noise.normal(600, 1));
+    const IdentifyResult result = identify(record, record.all(), {});
+    const auto* found = std::get_if<Identified>(&result);
+    ASSERT_NE(found, nullptr) << std::get<Verdict>(result).reason;
+    EXPECT_LT(*found->held_out_error, 0.03) << seed;
+    EXPECT_NEAR(found->spectral_radius, 1, 1e-3) << seed;
+  }
 }
 
 TEST(Options, EveryMistakeIsNamed) {
