@@ -64,9 +64,10 @@ BlockReader::BlockReader(const std::string& spacecraft, const EquipmentConfig& e
       derived_sensors_(sensors_of(telemetry_.request().derived)) {}
 
 bool BlockReader::reads(storage::Time begin, storage::TimeRange range) const {
-  // A sample serves until it is too old.
-  return range.begin < begin + length_ &&
-         range.end > begin - checked_before(length_) - telemetry_.request().sample_hold;
+  // A sample serves the ticks from `phase` before it on, until it is too old.
+  const WindowRequest& request = telemetry_.request();
+  return range.begin < begin + length_ + request.phase &&
+         range.end > begin - checked_before(length_) - request.sample_hold;
 }
 
 std::vector<double> BlockReader::baseline(const storage::Archive& archive,
