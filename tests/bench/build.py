@@ -61,6 +61,8 @@ def main():
         for key, value in figures.items():
             print(f"{key:16} {value}")
         if "--suite" in sys.argv:
+            subprocess.run(["npm", "ci", "--prefix", source / "tests/e2e/browser", "--no-audit",
+                            "--no-fund"], stdout=subprocess.DEVNULL, check=True)
             clock = Clock()
             suite = subprocess.run(["ctest", "--test-dir", folder, "-j", str(3 * os.cpu_count()),
                                     "--output-on-failure"], stdout=subprocess.PIPE, text=True,
