@@ -46,13 +46,13 @@ SessionReader::SessionReader(Participant& participant, SharedSession session,
 
 SessionReader::Endpoint SessionReader::make_endpoint(bool transient_local) const {
   const Qos qos = reader_qos(profile_, options_, transient_local);
-  Endpoint ear;
-  ear.reader = session_->made(
+  Endpoint endpoint;
+  endpoint.reader = session_->made(
       dds_create_reader(session_->subscriber.get(), topic_.get(), qos.get(), nullptr),
       "dds_create_reader", profile_.topic, security::Direction::subscribe);
-  ear.has_samples = {dds_create_readcondition(ear.reader.get(), DDS_ANY_STATE),
-                     "dds_create_readcondition", profile_.topic};
-  return ear;
+  endpoint.has_samples = {dds_create_readcondition(endpoint.reader.get(), DDS_ANY_STATE),
+                          "dds_create_readcondition", profile_.topic};
+  return endpoint;
 }
 
 void SessionReader::meet_writers() {
@@ -76,8 +76,8 @@ void SessionReader::attach_to(dds_entity_t wait_set) {
 }
 
 void SessionReader::attach(dds_entity_t wait_set, const Endpoint& ear) const {
-  if (!ear.reader) return;
-  check(dds_waitset_attach(wait_set, ear.has_samples.get(), 0), "dds_waitset_attach",
+  if (!endpoint.reader) return;
+  check(dds_waitset_attach(wait_set, endpoint.has_samples.get(), 0), "dds_waitset_attach",
         profile_.topic);
 }
 
@@ -96,7 +96,7 @@ bool SessionReader::is_heard_by_first(dds_instance_handle_t writer) {
 
 std::size_t SessionReader::take_some(const Endpoint& ear, std::size_t max, const Visit& visit,
                                      const Ended& ended) {
-  const Loan loan(ear.reader.get(), max, profile_.topic);
+  const Loan loan(endpoint.reader.get(), max, profile_.topic);
   const bool is_second = &ear == &second_;
   for (std::size_t i = 0; i < loan.count; ++i) {
     const dds_sample_info_t& info = loan.infos[i];

@@ -79,8 +79,8 @@ class Judge {
   /// with.
   std::optional<Change> change(const League& league);
   /// Why the champion fails: since the last change it errs more than the mean of the outputs, or
-  /// than the simulator's own model; surely, or by the margin on reference_blocks at least. Absent
-  /// where it does not.
+  /// than the simulator's own model; with confidence, or by the margin on reference_blocks at
+  /// least. Absent where it does not.
   std::optional<Reason> failure(const League& league);
   /// The blocks of which the finding about `challenger`, one of the league's, is made. Requires a
   /// champion.

@@ -200,7 +200,8 @@ struct Glossary {
        "stays.",
        ""},
       {"worse_in_regime", "worse in an operating regime",
-       "The version is surely worse than the champion in an operating regime that this has served.",
+       "The version is worse than the champion, with confidence, in an operating regime that "
+       "this has served.",
        ""},
   };
 };

@@ -166,7 +166,7 @@ struct Catalogue {
        "{confidence_percent:g} %."},
 
       {not_better, "not_better", none,
-       "Not surely better than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
+       "Not shown to be better than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
        "{champion_mrse_percent:.3f} % on {blocks:d} blocks, log of the evidence {log_wealth:.2f} "
        "of "
        "{log_threshold:.2f}."},

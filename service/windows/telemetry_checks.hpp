@@ -57,7 +57,7 @@ class PlausibilityChecks {
   std::vector<BoundRelation> relations_;
 };
 
-/// Returns the share of `ticks` at which a fault was found; ticks without telemetry count too.
+/// Returns how many ranges in `ticks` were found faulty, however long, over the number of `ticks`.
 /// Requires at least one tick.
 double fault_share(const Plausibility& plausibility, identification::TickRange ticks);
 

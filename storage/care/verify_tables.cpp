@@ -206,7 +206,7 @@ void verify_source(Connection& connection, const Source& source, VerifyReport& r
   }
   if (run > counts.integer(1))
     add({}, {},
-        "it has gaps of run " + std::to_string(run) + " and began anew only " +
+        "it has gaps of run " + std::to_string(run) + " and began again only " +
             std::to_string(counts.integer(1)) + " times");
   if (const auto said = counts.integer<std::uint64_t>(0); said != missing)
     add({}, {},

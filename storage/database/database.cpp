@@ -47,7 +47,7 @@ void refuse_an_emptied_file(const fs::path& path, const std::optional<WriterLock
   else if (lock && lock->had_tables())
     found =
         "it is empty, and was not when it was written last; restore a backup, or remove it to "
-        "begin anew";
+        "begin again";
   else
     return;
   throw Error(Error::Kind::corrupt, "database " + path.string() + " was cut short: " + found);

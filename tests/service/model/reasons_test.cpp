@@ -68,7 +68,7 @@ const Example of_a_member[] = {
      "MRSE 5.000 % on 40 blocks of telemetry that it was not fitted to; champion 3 has 8.000 % "
      "there. The mean score is 0.438, and at least 0.200 with a confidence of 95 %."},
     {because<Code::not_better>(3, 5.0, 5.5, 40, 1.234, 5.678),
-     "Not surely better than champion 3: MRSE 5.000 % and 5.500 % on 40 blocks, log of the "
+     "Not shown to be better than champion 3: MRSE 5.000 % and 5.500 % on 40 blocks, log of the "
      "evidence 1.23 of 5.68."},
     {because<Code::within_margin>(3, 15.0, 5.0, 5.5, 40),
      "Better than champion 3 by less than the margin of 15 %: MRSE 5.000 % and 5.500 % on 40 "

@@ -192,7 +192,7 @@ TEST(DamagedFile, AnArchiveThatIsEmptyNowIsNotTakenForANewOne) {
   { const Database made(path, Mode::read_write); }
   write_file(path, "");
   EXPECT_THAT(opening(path), AllOf(StartsWith("corrupt: "), HasSubstr("it is empty"),
-                                   HasSubstr("remove it to begin anew")));
+                                   HasSubstr("remove it to begin again")));
   fs::remove(path);
   EXPECT_EQ(opening(path), "no error");
 }
