@@ -72,10 +72,10 @@ void SessionReader::attach_to(dds_entity_t wait_set) {
   wait_sets_.push_back(wait_set);
   check(dds_waitset_attach(wait_set, publications_.has_publications(), 0), "dds_waitset_attach",
         profile_.topic);
-  for (const Endpoint* ear : {&first_, &second_}) attach(wait_set, *ear);
+  for (const Endpoint* endpoint : {&first_, &second_}) attach(wait_set, *endpoint);
 }
 
-void SessionReader::attach(dds_entity_t wait_set, const Endpoint& ear) const {
+void SessionReader::attach(dds_entity_t wait_set, const Endpoint& endpoint) const {
   if (!endpoint.reader) return;
   check(dds_waitset_attach(wait_set, endpoint.has_samples.get(), 0), "dds_waitset_attach",
         profile_.topic);
@@ -94,10 +94,10 @@ bool SessionReader::is_heard_by_first(dds_instance_handle_t writer) {
   return keeps_history_[writer] = durability != DDS_DURABILITY_VOLATILE;
 }
 
-std::size_t SessionReader::take_some(const Endpoint& ear, std::size_t max, const Visit& visit,
+std::size_t SessionReader::take_some(const Endpoint& endpoint, std::size_t max, const Visit& visit,
                                      const Ended& ended) {
   const Loan loan(endpoint.reader.get(), max, profile_.topic);
-  const bool is_second = &ear == &second_;
+  const bool is_second = &endpoint == &second_;
   for (std::size_t i = 0; i < loan.count; ++i) {
     const dds_sample_info_t& info = loan.infos[i];
     if (info.valid_data && !(is_second && is_heard_by_first(info.publication_handle)))
@@ -110,9 +110,9 @@ std::size_t SessionReader::take_some(const Endpoint& ear, std::size_t max, const
 std::size_t SessionReader::take(std::size_t max, const Visit& visit, const Ended& ended) {
   meet_writers();
   std::size_t taken = 0;
-  for (const Endpoint* ear : {&first_, &second_}) {
-    while (ear->reader && taken < max) {
-      const std::size_t count = take_some(*ear, max - taken, visit, ended);
+  for (const Endpoint* endpoint : {&first_, &second_}) {
+    while (endpoint->reader && taken < max) {
+      const std::size_t count = take_some(*endpoint, max - taken, visit, ended);
       taken += count;
       if (count == 0) break;
     }
@@ -124,7 +124,7 @@ std::size_t SessionReader::take_until_quiet(dds_duration_t quiet, dds_duration_t
                                             const Visit& visit) {
   const Entity wait_set(dds_create_waitset(session_->participant.get()), "dds_create_waitset",
                         profile_.topic);
-  for (const Endpoint* ear : {&first_, &second_}) attach(wait_set.get(), *ear);
+  for (const Endpoint* endpoint : {&first_, &second_}) attach(wait_set.get(), *endpoint);
   const dds_time_t deadline = dds_time() + limit;
   std::size_t visited = 0;
   do {
@@ -156,9 +156,9 @@ SessionReader::~SessionReader() {
 std::uint32_t SessionReader::matched_writers() {
   meet_writers();
   std::set<dds_instance_handle_t> writers;
-  for (const Endpoint* ear : {&first_, &second_}) {
-    if (!ear->reader) continue;
-    const auto heard = matched(ear->reader.get(), profile_.topic);
+  for (const Endpoint* endpoint : {&first_, &second_}) {
+    if (!endpoint->reader) continue;
+    const auto heard = matched(endpoint->reader.get(), profile_.topic);
     writers.insert(heard.begin(), heard.end());
   }
   return static_cast<std::uint32_t>(writers.size());

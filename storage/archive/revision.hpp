@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "storage/chunks/chunk.hpp"
 #include "storage/database/sqlite.hpp"
 #include "storage/types/sample_columns.hpp"
 

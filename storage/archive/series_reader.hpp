@@ -10,6 +10,7 @@
 
 #include "storage/archive/chunk_bytes.hpp"
 #include "storage/archive/chunk_outline.hpp"
+#include "storage/chunks/chunk.hpp"
 #include "storage/database/sqlite.hpp"
 #include "storage/types/sample_columns.hpp"
 

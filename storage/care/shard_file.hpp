@@ -10,6 +10,7 @@
 #include <string>
 
 #include "storage/database/sqlite.hpp"
+#include "storage/types/telemetry.hpp"
 
 namespace reident::storage {
 
