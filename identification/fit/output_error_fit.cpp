@@ -101,12 +101,7 @@ double correlated_rows_of_errors(const Fitted& fitted, const Record& record,
         record.y.middleRows(of_segment.begin, of_segment.size()) -
         free_run(fitted.model, record, of_segment, fitted.x0[i]);
   }
-  double most = 1;
-  for (Index q = 0; q < errors.cols(); ++q) {
-    Series series(errors.col(q), ranges);
-    most = std::max(most, correlated_rows(series));
-  }
-  return most;
+  return most_correlated_rows(errors, ranges);
 }
 
 Response response_of(const Fitted& fitted, Index rows) {

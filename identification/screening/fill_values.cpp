@@ -57,6 +57,24 @@ bool another_jumps(const std::vector<Channel>& channels, std::size_t self,
   return false;
 }
 
+/// The lowest of some values, how many they are, and the lowest of the others.
+struct Lowest {
+  double value = std::numeric_limits<double>::infinity(), next = value;
+  Index count = 0;
+
+  void add(double other) {
+    if (other < value) {
+      next = value;
+      value = other;
+      count = 1;
+    } else if (other == value) {
+      ++count;
+    } else {
+      next = std::min(next, other);
+    }
+  }
+};
+
 }  // namespace
 
 std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self) {
@@ -92,36 +110,19 @@ std::vector<double> fill_values(const Vector& values) {
   std::vector<double> found;
   double above = -infinity, below = infinity;  // the values that are left lie between
   while (true) {
-    double low = infinity, next_low = infinity, high = -infinity, next_high = -infinity;
-    Index lows = 0, highs = 0;
+    Lowest low, high;  // the highest is the lowest of the other sign
     for (const double value : values) {
       if (!(value > above && value < below)) continue;
-      if (value < low) {
-        next_low = low;
-        low = value;
-        lows = 1;
-      } else if (value == low) {
-        ++lows;
-      } else {
-        next_low = std::min(next_low, value);
-      }
-      if (value > high) {
-        next_high = high;
-        high = value;
-        highs = 1;
-      } else if (value == high) {
-        ++highs;
-      } else {
-        next_high = std::max(next_high, value);
-      }
+      low.add(value);
+      high.add(-value);
     }
-    if (!(low < high)) return found;
-    if (lows >= least_fills && stands_for_none(low, next_low, high)) {
-      found.push_back(low);
-      above = low;
-    } else if (highs >= least_fills && stands_for_none(high, low, next_high)) {
-      found.push_back(high);
-      below = high;
+    if (!(low.value < -high.value)) return found;
+    if (low.count >= least_fills && stands_for_none(low.value, low.next, -high.value)) {
+      found.push_back(low.value);
+      above = low.value;
+    } else if (high.count >= least_fills && stands_for_none(-high.value, low.value, -high.next)) {
+      found.push_back(-high.value);
+      below = -high.value;
     } else {
       return found;
     }

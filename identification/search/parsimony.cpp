@@ -42,16 +42,10 @@ Matrix uncorrelated_mixtures(const Matrix& errors) {
   return found.converged ? Matrix(found.vectors.transpose()) : Matrix::Identity(p, p);
 }
 
-/// Rows that count as one in the errors of the output where they last longest.
-double longest_correlation(const Matrix& errors, const std::vector<Segment>& segments) {
+std::vector<RowRange> ranges_of(const std::vector<Segment>& segments) {
   std::vector<RowRange> ranges;
   for (const Segment& segment : segments) ranges.push_back({segment.begin, segment.end});
-  double most = 1;
-  for (Index q = 0; q < errors.cols(); ++q) {
-    Series series(errors.col(q), ranges);
-    most = std::max(most, correlated_rows(series));
-  }
-  return most;
+  return ranges;
 }
 
 Response mixed(Response fit, const Matrix& mixtures) {
@@ -102,13 +96,16 @@ Index parameters_of(Index n, Index m, Index p, bool direct, Index segments) {
 }
 
 RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows)
-    : mixtures_(uncorrelated_mixtures(errors_of(fit, record, rows))),
+    : RicherFit(fit, direct, record, rows, errors_of(fit, record, rows)) {}
+
+RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows,
+                     const Matrix& errors)
+    : mixtures_(uncorrelated_mixtures(errors)),
       mixed_{record.period_s, record.u, record.y * mixtures_.transpose(), record.segments},
       rows_(rows),
       colours_(colours_of(mixed(fit, mixtures_), mixed_, rows)),
       squares_(whitened_squares(fit, direct)),
-      correlated_rows_(
-          longest_correlation(errors_of(fit, record, rows), segments_from(record, rows))) {}
+      correlated_rows_(most_correlated_rows(errors, ranges_of(segments_from(record, rows)))) {}
 
 Vector RicherFit::whitened_squares(const Response& fit, bool direct) const {
   const int most = fit.model.order() == 0 ? 0 : steps;

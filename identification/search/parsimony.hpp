@@ -34,6 +34,10 @@ class RicherFit {
   static constexpr int steps = 25;
 
  private:
+  /// With the errors of the fit.
+  RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows,
+            const Matrix& errors);
+
   /// Fits again and returns the sums (p) of the squared errors, made white.
   Vector whitened_squares(const Response& fit, bool direct) const;
 

@@ -130,6 +130,15 @@ double correlated_rows(Series& series) {
   return windowed_sum(series, [&series](Index lag) { return series.autocorrelation(lag); });
 }
 
+double most_correlated_rows(const Matrix& columns, const std::vector<RowRange>& segments) {
+  double most = 1;
+  for (Index q = 0; q < columns.cols(); ++q) {
+    Series series(columns.col(q), segments);
+    most = std::max(most, correlated_rows(series));
+  }
+  return most;
+}
+
 CorrelationSummary summary(const Correlogram& correlogram) {
   const Index lags = correlogram.r.size();
   if (lags == 0) return {};

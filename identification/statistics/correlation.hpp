@@ -60,6 +60,8 @@ double bartlett_factor(Series& a, Series& b);
 /// Returns 1 + 2 sum r(k), at least 1: the rows that determine the mean as one independent row
 /// does.
 double correlated_rows(Series& series);
+/// Returns the most of them among the columns (N x p), whose rows are in these segments.
+double most_correlated_rows(const Matrix& columns, const std::vector<RowRange>& segments);
 
 /// A correlogram in a few figures.
 struct CorrelationSummary {

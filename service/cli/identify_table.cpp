@@ -179,7 +179,7 @@ void sort_rows(IdentifyTable& table) {
   }
 }
 
-/// Of a column's values at one time the first counts, as in an import. Others are said.
+/// Leaves the first of a column's values at one time, as an import does, and warns of others.
 void leave_out_contradictions(IdentifyTable& table) {
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     auto& [value, is_blank] = table.columns[c];

@@ -54,9 +54,9 @@ class SessionReader {
   };
 
   Endpoint make_endpoint(bool transient_local) const;
-  void attach(dds_entity_t wait_set, const Endpoint& ear) const;
+  void attach(dds_entity_t wait_set, const Endpoint& endpoint) const;
   /// One loan's worth; returns how many were removed, those that are skipped included.
-  std::size_t take_some(const Endpoint& ear, std::size_t max, const Visit& visit,
+  std::size_t take_some(const Endpoint& endpoint, std::size_t max, const Visit& visit,
                         const Ended& ended);
   /// Whether the writer keeps history, so that the first reader hears it too. False for one that is
   /// gone: a sample twice is better than none.

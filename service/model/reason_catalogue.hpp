@@ -178,7 +178,8 @@ struct Catalogue {
        "regimes "
        "that this version has not met."},
       {worse_in_regime, "worse_in_regime", none,
-       "Surely worse than champion {champion:d} in an operating regime that this one has served."},
+       "Worse than champion {champion:d}, with confidence, in an operating regime that this one "
+       "has served."},
       {bias_unverified, "bias_unverified", none,
        "Better than champion {champion:d} but for what a biased sensor of {sensors} would show "
        "too; no relation binds it. Waits for an operator's approval."},

@@ -95,6 +95,22 @@ nlohmann::ordered_json to_json(const std::vector<Reason>& reasons) {
   return list;
 }
 
+std::string_view past(storage::DecisionKind kind) {
+  switch (kind) {
+    case storage::DecisionKind::approve:
+      return "approved";
+    case storage::DecisionKind::reject:
+      return "rejected";
+    case storage::DecisionKind::wait:
+      return "left waiting";
+    case storage::DecisionKind::roll_back:
+      return "rolled back to";
+    case storage::DecisionKind::withdraw:
+      break;
+  }
+  return "withdrawn";
+}
+
 std::string last_code(const storage::Decision& decision) {
   const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
   if (!evidence.is_object() || !evidence.contains("reasons") || evidence["reasons"].empty())

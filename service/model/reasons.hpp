@@ -114,6 +114,9 @@ std::string sentence(const Reason& reason);
 /// Returns all sentences, one after the other; empty without reasons.
 std::string sentences(const std::vector<Reason>& reasons);
 
+/// Returns what was done to the version, for sentences, such as "rolled back to".
+std::string_view past(storage::DecisionKind kind);
+
 /// The code of the last reason of a decision; empty where it holds none.
 std::string last_code(const storage::Decision& decision);
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "service/model/reasons.hpp"
 #include "service/review/evidence.hpp"
 #include "service/review/stored_league.hpp"
 

@@ -51,7 +51,7 @@ class SeriesReader {
   Extent extent_of(std::int64_t batch, std::int64_t series);
 
   sqlite::Connection& connection_;
-  /// Of fragments, by batch and series: a batch does not change until it goes.
+  /// By batch and series. They are kept since a batch does not change until it goes.
   std::map<std::pair<std::int64_t, std::int64_t>, Extent> extents_;
   ChunkBytes bytes_;
   ChunkDecoder decoder_;

@@ -24,22 +24,6 @@ std::string_view name(DecisionKind kind) {
   throw std::logic_error("a decision without a name");
 }
 
-std::string_view past(DecisionKind kind) {
-  switch (kind) {
-    case DecisionKind::approve:
-      return "approved";
-    case DecisionKind::reject:
-      return "rejected";
-    case DecisionKind::wait:
-      return "left waiting";
-    case DecisionKind::roll_back:
-      return "rolled back to";
-    case DecisionKind::withdraw:
-      break;
-  }
-  return "withdrawn";
-}
-
 std::optional<DecisionKind> decision_kind(std::string_view name) {
   const auto found = std::find_if(kinds.begin(), kinds.end(),
                                   [&](const auto& kind) { return kind.second == name; });

@@ -53,8 +53,6 @@ struct NewVersion {
 enum class DecisionKind { approve, reject, wait, roll_back, withdraw };
 /// The kind as the database holds it, such as "roll_back".
 std::string_view name(DecisionKind kind);
-/// What was done to the version, for sentences, such as "rolled back to".
-std::string_view past(DecisionKind kind);
 /// The kind of that name; absent where no kind has it.
 std::optional<DecisionKind> decision_kind(std::string_view name);
 

@@ -9,6 +9,7 @@
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/history/telemetry_champion.hpp"
+#include "service/model/reasons.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"

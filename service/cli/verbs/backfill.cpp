@@ -69,7 +69,8 @@ Duration suitable_phase_of(const storage::Archive& archive, const std::string& s
   return suitable_phase(channels, equipment.sample_period);
 }
 
-/// Says which equipment has columns that come behind its ticks, which no option of this mends.
+/// Says which equipment has parameters that come behind its ticks: a key of the configuration
+/// mends that.
 void say_phases(storage::Database& database, const Config& config, const BackfillRequest& request) {
   const storage::Archive archive(database);
   for (const SpacecraftConfig& spacecraft : config.spacecraft)

@@ -11,6 +11,7 @@
 #include "service/cli/verb.hpp"
 #include "service/model/diagnostics_json.hpp"
 #include "service/model/model_json.hpp"
+#include "service/model/reasons.hpp"
 #include "service/operations/commands.hpp"
 #include "service/review/evidence.hpp"
 #include "service/support/time_text.hpp"

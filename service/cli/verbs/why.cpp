@@ -11,6 +11,7 @@
 #include "service/cli/output/table.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
+#include "service/model/reasons.hpp"
 #include "service/operations/commands.hpp"
 #include "service/review/evidence.hpp"
 #include "service/review/verdict.hpp"

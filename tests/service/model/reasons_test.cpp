@@ -76,7 +76,7 @@ const Example of_a_member[] = {
     {because<Code::not_covered>(3, 24.6),
      "Champion 3 has served 25 % of its time in operating regimes that this version has not met."},
     {because<Code::worse_in_regime>(3),
-     "Surely worse than champion 3 in an operating regime that this one has served."},
+     "Worse than champion 3, with confidence, in an operating regime that this one has served."},
     {because<Code::bias_unverified>(3, "V_BUS, I_BUS"),
      "Better than champion 3 but for what a biased sensor of V_BUS, I_BUS would show too; no "
      "relation binds it. Waits for an operator's approval."},
