@@ -531,6 +531,40 @@ def soak(figures):
     return [table(["what", "figure"], rows)]
 
 
+@section("web", "The operators' page",
+         "A year of one parameter at 1 Hz has 31.5 million samples. The plot of a year has five "
+         "signals, the champions and all decisions. Times are the 95 % quantile of 30, unless the "
+         "table says otherwise, in Debian's Chromium or of the answer alone.")
+def web(figures):
+    rows = [("bytes of the page in all, gzip", "bytes", 90_000), ("requests for it", "requests", 8),
+            ("of them to another origin", "foreign", 0),
+            ("overview of 20 equipment, empty cache, until it can be used, median, ms",
+             "overview_ms", 600),
+            ("the same, ms", "overview_p95_ms", 1000),
+            ("the tenth tab of one browser, ms", "tenth_tab_ms", 1000),
+            ("a year of one parameter: answer, ms", "year_ms", 200),
+            ("the same: bytes", "year_bytes", 16384),
+            ("plot of a year, until it is drawn, ms", "plot_year_ms", 1000),
+            ("the same, median, ms", "plot_year_median_ms", "-"),
+            ("from a key that moves it until the next frame is done, ms", "pan_ms", "-"),
+            ("decision until 50 viewers have heard it, ms", "decision_to_viewers_ms", 1500),
+            ("100 viewers: memory of the page's server, MiB", "viewers_mib", 64),
+            ("the same: share of a core", "viewers_core", 0.1),
+            ("the same: an overview's answer, ms", "viewers_answer_ms", 100),
+            ("ingest with 100 viewers and 4 endless year queries, over ingest without",
+             "ingest_ratio", "at least 0.95"),
+            ("SQLite's log meanwhile, at most, MiB", "log_mib", 64),
+            ("normal requests with 200 slow connections of each kind, ms", "slow_p95_ms", 100),
+            *((f"until 200 connections with a slow {kind} are closed, s", f"slow_{kind}_closed_s", 15)
+              for kind in ("head", "body", "read")),
+            ("a tab's heap after 86,400 updates, MB more", "heap_mb", 5),
+            ("scrape of 100 equipment, ms", "scrape_ms", 20),
+            ("the same: bytes", "scrape_bytes", 200_000)]
+    return [table(["what", "measured", "bound"],
+                  [[label, figure(figures[key]) if isinstance(figures[key], Decimal)
+                    else figures[key], bound] for label, key, bound in rows])]
+
+
 @section("fuzz", "Fuzzing",
          "libFuzzer with the address and undefined-behaviour sanitizers. Every target goes on from "
          "what earlier runs found worth keeping. What was found before has tests.")

@@ -244,6 +244,7 @@ def live(build, folder, repetitions):
         figures["decision_to_viewers_ms"] = p95(times)
         viewers.stop()
         figures |= browser(page.url, "live")
+        figures |= browser(page.url, "tabs", min(repetitions, 10))
         viewers = Viewers(page.port, 100)
         wait_until(lambda: page.json("/api/v1/service")["page"]["streams"] >= 100, "100 viewers")
         used, begun = page.processor_s(), time.monotonic()

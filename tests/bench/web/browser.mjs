@@ -1,6 +1,6 @@
 // Figures of the page in Debian's Chromium, as one JSON object.
 //
-//   browser.mjs URL first|plot|live [REPETITIONS]
+//   browser.mjs URL first|plot|tabs|live [REPETITIONS]
 import { createRequire } from "node:module";
 
 const require = createRequire(new URL("../../e2e/browser/package.json", import.meta.url));
@@ -38,7 +38,7 @@ async function first() {
   figures.overview_p95_ms = p95(times);
 }
 
-/** The plot of a year: until the last line is drawn; then the time of frames while it is moved. */
+/** The plot of a year: until the last line is drawn; then from a key that moves it to the frame. */
 async function plot() {
   const page = await (await browser.newContext({ viewport: { width: 1280, height: 900 } })).newPage();
   const answer = await (await fetch(`${url}api/v1/equipment?spacecraft=BENCH&equipment=E1`)).json();
@@ -56,6 +56,41 @@ async function plot() {
   }
   figures.plot_year_ms = p95(times);
   figures.plot_year_median_ms = median(times);
+  const closer = page.waitForResponse((response) => response.url().includes("timeline"));
+  await page.keyboard.press("+");  // the whole year has no place to move to
+  await closer;
+  const moved = await page.evaluate(async (count) => {
+    const times = [];
+    for (let i = 0; i < count; i++) {
+      const begun = await new Promise(requestAnimationFrame);
+      const isMoved = new Promise((done) => addEventListener("hashchange", done, { once: true }));
+      dispatchEvent(new KeyboardEvent("keydown", { key: i % 2 ? "ArrowRight" : "ArrowLeft" }));
+      await isMoved;
+      await new Promise(requestAnimationFrame);
+      await new Promise((done) => setTimeout(done));
+      times.push(performance.now() - begun);
+      await new Promise((done) => setTimeout(done, 300));  // the answer's own drawing is apart
+    }
+    return times;
+  }, Number(repetitions));
+  figures.pan_ms = p95(moved);
+}
+
+/** The tenth tab of one browser. */
+async function tabs() {
+  const times = [];
+  for (let i = 0; i < Number(repetitions); i++) {
+    const context = await browser.newContext();
+    for (let tab = 1; tab <= 10; tab++) {
+      const page = await context.newPage();
+      const begun = performance.now();
+      await page.goto(url);
+      await page.waitForSelector("main a[data-row]");
+      if (tab === 10) times.push(performance.now() - begun);
+    }
+    await context.close();
+  }
+  figures.tenth_tab_ms = p95(times);
 }
 
 /** The heap of a tab that hears the service, as after a day: state is replaced, not kept. */
@@ -78,6 +113,6 @@ async function live() {
   figures.heap_mb = (await heap() - before) / 1e6;
 }
 
-await { first, plot, live }[what]();
+await { first, plot, tabs, live }[what]();
 await browser.close();
 console.log(JSON.stringify(figures));

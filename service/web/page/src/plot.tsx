@@ -217,7 +217,7 @@ export function Plot(properties: PlotProperties) {
   }, [properties.marks, properties.stretches, properties.excluded]);
 
   // A range alone: the lines that are there move within the frame, before the new ones come.
-  useEffect(() => {
+  useLayoutEffect(() => {
     for (const { plot } of drawn.current) plot.setScale("x", { min: properties.begin, max: properties.end });
   }, [properties.begin, properties.end]);
 
