@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "identification/simulation/scores.hpp"
+#include "service/config/config.hpp"
 #include "service/history/readers.hpp"
 
 namespace reident {

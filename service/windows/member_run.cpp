@@ -8,6 +8,7 @@
 #include "identification/simulation/free_run.hpp"
 #include "identification/simulation/hole_bridging.hpp"
 #include "identification/simulation/initial_state.hpp"
+#include "identification/simulation/segment_run.hpp"
 #include "identification/simulation/square_changes.hpp"
 #include "identification/statistics/comparison.hpp"
 
@@ -38,11 +39,7 @@ class Run {
   Matrix over(const Segment& segment) {
     if (tick_ != segment.first_tick) x_ = state_at(segment);
     Matrix outputs(segment.size(), model_.outputs());
-    for (Index k = 0; k < segment.size(); ++k) {
-      const Vector du = record_.u.row(segment.begin + k).transpose() - model_.u0;
-      outputs.row(k) = (model_.C * x_ + model_.D * du + model_.y0).transpose();
-      x_ = (model_.A * x_ + model_.B * du).eval();
-    }
+    x_ = run_segment(model_, record_, segment, std::move(x_), outputs, 0);
     tick_ = segment.first_tick + segment.size();
     square_errors_ += (record_.y.middleRows(segment.begin, segment.size()) - outputs)
                           .colwise()

@@ -10,6 +10,7 @@
 #include "service/support/progress.hpp"
 #include "service/support/size_text.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
 #include "storage/archive/holdings.hpp"
 #include "storage/care/split.hpp"

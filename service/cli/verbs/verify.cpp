@@ -15,6 +15,7 @@
 #include "service/support/progress.hpp"
 #include "service/support/sha256.hpp"
 #include "service/support/stop_signal.hpp"
+#include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
 #include "service/windows/provenance.hpp"
 
