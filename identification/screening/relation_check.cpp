@@ -82,11 +82,16 @@ std::vector<Inconsistency> inconsistencies(const Record& residual, double tolera
     }
   };
   take(0, tolerance, level_rows, false);
-  std::vector<double> tolerable;
-  std::copy_if(r.begin(), r.end(), std::back_inserter(tolerable),
-               [tolerance](double value) { return std::abs(value) <= tolerance; });
-  if (static_cast<Index>(tolerable.size()) >= shift_rows)
-    take(median(tolerable), shift_share * tolerance, shift_rows, true);
+  const double limit = shift_share * tolerance;
+  // With most rows within half the limit their median is too, and nothing else is beyond the limit
+  // of it.
+  if (2 * (r.array().abs() > limit / 2).count() > shift_rows) {
+    std::vector<double> tolerable;
+    std::copy_if(r.begin(), r.end(), std::back_inserter(tolerable),
+                 [tolerance](double value) { return std::abs(value) <= tolerance; });
+    if (static_cast<Index>(tolerable.size()) >= shift_rows)
+      take(median(tolerable), limit, shift_rows, true);
+  }
   std::stable_sort(found.begin(), found.end(), [](const Inconsistency& a, const Inconsistency& b) {
     return a.ticks.begin < b.ticks.begin;
   });
