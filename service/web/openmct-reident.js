@@ -13,6 +13,7 @@
 const namespace = "reident";
 const silentMs = 5000;  // heartbeats come each second
 const slowMs = 10_000;  // between two looks for what no event tells
+const sharedMs = 1000;  // that an answer for all parameters serves
 const usualBins = 500;
 
 const encoded = (part) => encodeURIComponent(part).replace(/~/g, "%7E").replace(/%/g, "$");
@@ -35,6 +36,7 @@ class Api {
     this.listeners = new Set();
     this.source = null;
     this.heard = 0;  // when the last heartbeat came [ms]
+    this.known = null;  // the answer of series()
   }
 
   async ask(view, parameters, signal) {
@@ -45,9 +47,16 @@ class Api {
     return body;
   }
 
+  /** What telemetry there is. Who asks within a moment shares an answer: a folder asks for each of its parameters. */
+  series() {
+    const forget = () => setTimeout(() => { this.known = null; }, sharedMs);
+    this.known ??= this.ask("series", {}).finally(forget);
+    return this.known;
+  }
+
   /** The newest sample of a parameter, with its unit and limits. */
   async last(spacecraft, parameter, signal) {
-    const { series } = await this.ask("series", {}, signal);
+    const { series } = await this.series();
     const known = series.find((one) => one.spacecraft === spacecraft && one.parameter === parameter && one.origin === "real");
     return this.ask("telemetry", { spacecraft, parameter, begin: known?.last, bins: 1 }, signal);
   }
@@ -191,7 +200,7 @@ function compositionOf(api) {
     async load({ identifier }) {
       const [spacecraft, second] = partsOf(identifier);
       if (second === "telemetry") {
-        const { series } = await api.ask("series", {});
+        const { series } = await api.series();
         return series.filter((one) => one.spacecraft === spacecraft && one.origin === "real").map((one) => identifierOf(spacecraft, second, one.parameter));
       }
       if (second !== undefined) {
@@ -199,7 +208,7 @@ function compositionOf(api) {
         return [identifierOf(spacecraft, second, "error"), identifierOf(spacecraft, second, "decisions"),
                 ...[...outputs.map(({ name }) => name), ...parameters].map((name) => identifierOf(spacecraft, "telemetry", name))];
       }
-      const [{ series }, { equipment }] = await Promise.all([api.ask("series", {}), api.ask("overview", {})]);
+      const [{ series }, { equipment }] = await Promise.all([api.series(), api.ask("overview", {})]);
       if (spacecraft === undefined) return [...new Set([...series, ...equipment].map((one) => one.spacecraft))].sort().map((name) => identifierOf(name));
       return [...equipment.filter((one) => one.spacecraft === spacecraft && one.attempts > 0).map((one) => identifierOf(spacecraft, one.equipment)),
               identifierOf(spacecraft, "telemetry")];

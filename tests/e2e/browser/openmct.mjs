@@ -29,7 +29,9 @@ const html = `<!doctype html><meta charset="utf-8"><title>Open MCT</title><scrip
   window.started = new Promise((started) => openmct.on("start", started));
   openmct.start();
 </script>`;
+let seriesAsked = 0;
 const server = createServer((request, response) => {
+  if (request.url.startsWith("/reident/api/v1/series")) seriesAsked++;
   if (request.url.startsWith("/reident/")) {
     const asked = ask(new URL(request.url.slice("/reident".length), url), { method: request.method, headers: { ...request.headers, host: new URL(url).host } }, (answer) => {
       response.writeHead(answer.statusCode, answer.headers);
@@ -98,6 +100,10 @@ check(found.minmax.every(({ utc }) => utc >= begin && utc < end), "points are in
 check(found.latest.length === 1 && Math.abs(found.latest[0].utc - Date.parse(stored.last)) < 1, `the latest is ${JSON.stringify(found.latest)}`);
 check(found.decisions.length > 0 && found.decisions.every(({ kind, actor }) => kind && actor), "decisions have who and what");
 check(found.limits.CRITICAL !== undefined, "limits are told");
+
+const askedBefore = seriesAsked;
+await page.evaluate((keys) => Promise.all(keys.map((key) => window.openmct.objects.get({ namespace: "reident", key }))), found.telemetry);
+check(found.telemetry.length > 1 && seriesAsked - askedBefore <= 1, `${found.telemetry.length} parameters share an answer, not ${seriesAsked - askedBefore}`);
 
 await page.waitForFunction(() => window.heard.points.length > 0);
 check(await page.evaluate(async ({ spacecraft, parameter }) =>
