@@ -531,6 +531,33 @@ def soak(figures):
     return [table(["what", "figure"], rows)]
 
 
+@section("scale", "A constellation, and a billion samples",
+         "What an archive costs is the processor time of an append, a window or a month's question, "
+         "over that in an archive of a million samples (a month's: of a month). Split and verify are "
+         "elapsed time. A shard has the telemetry of a closed year.")
+def scale(figures):
+    names = {"discovery_s": "services and simulators until all have found each other, s",
+             "idle_core": "idle: share of a core",
+             "fleet_status_s": "`reident fleet status` of all, median, s",
+             "service_mib": "memory of a service, MiB",
+             "windows": "windows of the sweep",
+             "one_core_s": "the sweep on one core, s", "two_cores_s": "on two, s",
+             "sweep_speedup": "one over two",
+             "two_cores_equal": "two cores give the bits of one",
+             "sweep_equal": "a Slurm array of two nodes does, with tasks requeued and a node drained",
+             "growth_samples": "samples of the large archive", "growth_bytes": "its bytes",
+             "billion_append": "append", "billion_window": "window of 15,000 rows",
+             "billion_month": "a month in SQL", "billion_append_of_shards": "append, with a shard",
+             "billion_window_of_shards": "window, with a shard",
+             "billion_month_of_shards": "a month in SQL, with a shard",
+             "split_s": "`reident archive split` of a year, s",
+             "verify_day_s": "`reident verify --known` after a day more, s"}
+    cell = lambda value: {True: "yes", False: "no"}[value] if isinstance(value, bool) else (
+        f"{value:,}" if isinstance(value, int) else figure(value))
+    return [table(["what", "figure"], [[label, cell(figures[key])]
+                                       for key, label in names.items() if key in figures])]
+
+
 @section("web", "The operators' page",
          "A year of one parameter at 1 Hz has 31.5 million samples. The plot of a year has five "
          "signals, the champions and all decisions. Times are the 95 % quantile of 30, unless the "
