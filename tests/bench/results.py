@@ -188,6 +188,21 @@ def archive(figures):
             table(["what", "archive", "plain table", "ratio"], rows)]
 
 
+@section("import", "Importing a file",
+         "Processor time of `reident import` of a file of BUPT-1, each into a new database, in turns "
+         "with the SQLite shell's `.import`, which takes the cells as texts, and with the build of "
+         "another commit.")
+def import_file(figures):
+    get = figures.get
+    rows = [["`reident import`", figure(get("import_s")) + " s",
+             f"{millions(get('samples_a_second'))} million samples a second"],
+            ["the same, of the other commit", figure(get("other_s")) + " s",
+             f"ratio {figure(get('import_over_other'))}"],
+            ["SQLite's `.import`", figure(get("sqlite_s")) + " s",
+             f"ratio {figure(get('import_over_sqlite'))}"]]
+    return [table([f"{get('samples'):,} samples in {get('file_bytes'):,} bytes", "time", ""], rows)]
+
+
 @section("simulator", "The simulators' side",
          "A model of order 6 with 4 inputs and 1 output. `ddsperf ping` sends messages of a "
          "version's size. Pings back to back have threads that never sleep.")

@@ -32,6 +32,10 @@
 #                                         100 million samples, or N, or a billion, and is made in
 #                                         FOLDER.
 #                                         The last line is one JSON object
+#   tests/bench/run.sh import FILE.csv [--other BUILD] [--runs N]
+#                                         `reident import` of a file compared with the SQLite shell's,
+#                                         and with the build of another commit.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh screening FILE.csv --input NAME... --output NAME... [--time NAME] [--window ROWS]
 #                                         what the screens for sensor faults leave out of a file's
 #                                         telemetry, as one JSON object
@@ -129,6 +133,11 @@ case $what in
       { echo "$1 is no folder of telemetry" >&2; exit 2; }
     arguments=(build/release "$@")
     targets=(reident_archive_bench reident_bench_publisher reidentd)
+    ;;
+  import)
+    [ $# -gt 0 ] || usage
+    arguments=(build/release "$@")
+    targets=(reident)
     ;;
   screening)
     [ $# -gt 0 ] || usage
