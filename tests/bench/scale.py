@@ -141,6 +141,8 @@ def main():
         if arguments.services:
             (site := Path(folder) / "site").mkdir()
             figures |= site_of_services.measure(arguments.build, arguments.services, site)
+            (live := Path(folder) / "live").mkdir()
+            figures |= site_of_services.measure_live(arguments.build, arguments.services, live)
             print(figures, flush=True)
         if arguments.spacecraft:
             (sweeps := Path(folder) / "sweeps").mkdir()

@@ -24,7 +24,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "bench"))
 
-from site_of_services import DOMAIN, Site, cpu_s, resident_mib, wait_until  # noqa: E402
+from site_of_services import DOMAIN, cpu_s, plant_site, resident_mib, wait_until  # noqa: E402
 
 DRAWN_OUT_TO = (10, 100, 1000)
 HOURS_OF_WINDOWS = 14  # two windows of each equipment of the reference spacecraft
@@ -58,11 +58,10 @@ def wait_s(seconds):
 
 
 def constellation(arguments, folder, count):
-    site = Site(arguments.build, folder, count)
+    site = plant_site(arguments.build, folder, count)
     try:
         found, before, begin = {}, traffic(), time.monotonic()
-        services = [site.start("daemon/reidentd", name, name, "--config",
-                               site.configurations / f"{name}.toml")[0] for name in site.names]
+        services = site.start_services()
         simulators = [site.start("client/reident-simulator", name, f"{name}-clients",
                                  "--spacecraft", name, "--equipment", "PLANT", "--name", "trainer",
                                  "--domain", str(DOMAIN), "--partition", f"operations/{name}",
@@ -83,9 +82,7 @@ def constellation(arguments, folder, count):
             process.send_signal(signal.SIGTERM)
         for process, _ in simulators:
             process.wait(60)
-        sources = [site.start("satcs/satcs-reference", name, f"{name}-clients", "--spacecraft",
-                              name, "--domain", str(DOMAIN), "--partition", f"operations/{name}",
-                              "--speed", "1")[0] for name in site.names]
+        sources = [site.start_source(name, "--speed", "1")[0] for name in site.names]
         wait_s(10)
         live, own = Interval(services), Interval(sources)
         wait_s(arguments.seconds)
