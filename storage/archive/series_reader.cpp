@@ -9,15 +9,13 @@
 #include "storage/archive/revision.hpp"
 #include "storage/chunks/fragment.hpp"
 #include "storage/chunks/overlay.hpp"
+#include "storage/database/schema.hpp"
 
 namespace reident::storage {
 namespace {
 
 constexpr Time earliest = std::numeric_limits<Time>::min();
 constexpr Time latest = std::numeric_limits<Time>::max();
-
-// Far above what any configuration lets wait: a number beyond it is a damaged one.
-constexpr std::int64_t most_batches = 1 << 24;
 
 // Chunks do not overlap: the one that `begin` may lie in is the last that starts no later.
 constexpr std::string_view chunks_in_range =
@@ -89,7 +87,7 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
     from = std::max(batches.integer(0), batches.integer(2));
     to = batches.integer(1);
   }
-  if (to - from > most_batches)
+  if (to - from > schema::most_batches)
     throw Error(
         Error::Kind::corrupt,
         "database " + connection_.path() + " has recent samples of batches " +
@@ -101,6 +99,14 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
     const Extent extent = extent_of(batch, series);
     if (extent.first <= last && extent.last >= first && row.bind(batch, series).step()) use(row);
   }
+}
+
+std::vector<SeriesReader::Extent> SeriesReader::recent(std::int64_t series) {
+  std::vector<Extent> found;
+  each_recent(series, earliest, latest, [&found](const sqlite::Query& row) {
+    found.push_back({row.integer(0), row.integer(1)});
+  });
+  return found;
 }
 
 SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedColumns wanted,

@@ -42,8 +42,6 @@ class Counter {
   /// Chunks that meet the bins, with one on either side, and what is recent over or between them.
   std::vector<Piece> pieces();
 
-  std::vector<Piece> recent();
-
   void count_chunk(const Piece& chunk);
 
   std::vector<Time> times_of(const Piece& chunk);
@@ -86,7 +84,9 @@ std::vector<BinCounts> Counter::run(Time until) {
 }
 
 std::vector<Piece> Counter::pieces() {
-  std::vector<Piece> found = recent();
+  std::vector<Piece> found;
+  for (const SeriesReader::Extent& recent : access_.reader().recent(series_.id))
+    found.push_back({.first = recent.first, .last = recent.last});
   sqlite::Query row = impl_.connection->query(
       "SELECT first_time, last_time, shard, data, samples, step, gap_limit FROM chunk "
       "WHERE series = ?1 "
@@ -112,26 +112,6 @@ std::vector<Piece> Counter::pieces() {
     }
   }
   return joined;
-}
-
-std::vector<Piece> Counter::recent() {
-  std::vector<Piece> found;
-  std::int64_t batch = 0, last_batch = -1;
-  {
-    sqlite::Query batches = impl_.connection->query(
-        "SELECT max((SELECT moved FROM series WHERE id = ?) + 1, min(batch)), max(batch) "
-        "FROM recent",
-        series_.id);
-    if (!batches.step() || batches.is_null(1)) return found;
-    batch = batches.integer(0);
-    last_batch = batches.integer(1);
-  }
-  sqlite::Query row = impl_.connection->query(
-      "SELECT first_time, last_time FROM recent WHERE batch = ? AND series = ?");
-  for (; batch <= last_batch; ++batch)
-    if (row.bind(batch, series_.id).step())
-      found.push_back({.first = row.integer(0), .last = row.integer(1)});
-  return found;
 }
 
 void Counter::count_chunk(const Piece& chunk) {

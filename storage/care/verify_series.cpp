@@ -339,7 +339,7 @@ void SeriesVerifier::compare_sources() {
     if (!row.bind(source, spacecraft_, origin_).step())
       add("samples", first_, last_,
           "samples name the source " + std::to_string(source) + ", which does not exist",
-          "restore_samples the table source from a backup");
+          "restore the table source from a backup");
 }
 
 }  // namespace reident::storage

@@ -183,8 +183,17 @@ const std::vector<ArchiveFile::Fragment>& ArchiveFile::fragments(const SeriesNam
   if (!is_new) return place->second;
   Statement& batches = prepared(batches_, "SELECT min(batch), max(batch) FROM main.recent");
   if (!batches.bind().step() || batches.is_null(0)) return place->second;
-  const std::int64_t begin = std::max(batches.integer(0), series.moved + 1);
   const std::int64_t last = batches.integer(1);
+  if (last <= series.moved) return place->second;
+  const std::int64_t begin = std::max(batches.integer(0), series.moved + 1);
+  if (last - begin > schema::most_batches) {
+    const std::string file = archive_name(connection_);
+    throw QueryError(SQLITE_CORRUPT_VTAB, "telemetry: " + file + " has recent samples of batches " +
+                                              std::to_string(begin) + " to " +
+                                              std::to_string(last) +
+                                              ", more than there can be; 'reident verify " + file +
+                                              "' lists what is damaged");
+  }
   Statement& fragment = prepared(
       fragment_, "SELECT first_time, last_time FROM main.recent WHERE batch = ?1 AND series = ?2");
   for (std::int64_t batch = begin; batch <= last; ++batch)

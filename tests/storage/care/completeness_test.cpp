@@ -148,6 +148,16 @@ TEST_F(CompletenessTest, CountsAreThoseOfReadingEverything) {
   }
 }
 
+TEST_F(CompletenessTest, ADamagedNumberOfABatchIsNamedAndNotCountedUpTo) {
+  send(regular(start, start + 10 * second));
+  send(regular(start + 10 * second, start + 20 * second));
+  rows(path, "UPDATE recent SET batch = 9000000000000000000 WHERE batch = 2");
+  EXPECT_THAT(error_of([&] {
+                counts(TimeBins({start, start + hour}, hour));
+              }),
+              ::testing::StartsWith("corrupt: "));
+}
+
 TEST(TimeBins, BeginAtMultiplesOfTheirLengthBefore1970Too) {
   const TimeBins bins({-day - hour, day + 1}, day);
   ASSERT_EQ(bins.count(), 4U);
