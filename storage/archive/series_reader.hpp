@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "storage/chunks/chunk.hpp"
 #include "storage/database/sqlite.hpp"
 #include "storage/types/sample_columns.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 
@@ -31,8 +31,8 @@ class SeriesReader {
 
   /// Times of the first and the last sample; those of no fragment meet no range.
   struct Extent {
-    Time first = std::numeric_limits<Time>::max();
-    Time last = std::numeric_limits<Time>::min();
+    Time first = latest_time;
+    Time last = earliest_time;
   };
   /// The fragments of the series that are not in chunks, ascending by batch.
   std::vector<Extent> recent(std::int64_t series);

@@ -7,6 +7,7 @@
 #include "storage/archive/damage.hpp"
 #include "storage/chunks/sample_gaps.hpp"
 #include "storage/database/connection.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -93,7 +94,7 @@ std::vector<Piece> Counter::pieces() {
       "AND first_time >= coalesce((SELECT max(first_time) FROM chunk WHERE series = ?1 AND "
       "last_time < ?2 AND first_time < ?2), ?4) AND first_time <= coalesce((SELECT "
       "min(first_time) FROM chunk WHERE series = ?1 AND first_time >= ?3), ?3)",
-      series_.id, bins_.range().begin, bins_.range().end, std::numeric_limits<Time>::min());
+      series_.id, bins_.range().begin, bins_.range().end, earliest_time);
   while (row.step())
     found.push_back({row.integer(0),
                      row.integer(1),
@@ -140,8 +141,7 @@ std::vector<Time> Counter::times_of(const Piece& chunk) {
 }
 
 void Counter::count_decoded(const Piece& piece) {
-  const TimeRange range{
-      piece.first, piece.last == std::numeric_limits<Time>::max() ? piece.last : piece.last + 1};
+  const TimeRange range{piece.first, just_after(piece.last)};
   const std::vector<Time> times =
       access_.reader().read(series_.id, range, {false, false, false}).time;
   count_times(times);

@@ -6,6 +6,7 @@
 #include "storage/chunks/fragment.hpp"
 #include "storage/chunks/overlay.hpp"
 #include "storage/database/schema.hpp"
+#include "storage/types/time_ends.hpp"
 #include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
@@ -38,8 +39,7 @@ std::string archive_name(sqlite3* connection) {
 
 /// A half-open range that ends at the latest time includes it: it may hold one sample more.
 TimeRange range_of(TimeBounds bounds) {
-  constexpr Time latest = std::numeric_limits<Time>::max();
-  return {bounds.first, bounds.last == latest ? latest : bounds.last + 1};
+  return {bounds.first, just_after(bounds.last)};
 }
 
 bool meet(TimeBounds a, TimeBounds b) {
