@@ -176,7 +176,11 @@ void Counter::add_gap(const SampleGap& gap, Time step) {
   if (gap.begin >= range.begin) {
     BinCounts& counts = counts_[bins_.of(gap.begin)];
     ++counts.gaps;
-    counts.longest_gap = std::max(counts.longest_gap, gap.end - gap.begin);
+    // The distance of two times can be twice as large as a Time holds.
+    const auto between =
+        static_cast<std::uint64_t>(gap.end) - static_cast<std::uint64_t>(gap.begin);
+    counts.longest_gap = std::max(counts.longest_gap,
+                                  static_cast<Time>(std::min<std::uint64_t>(between, latest_time)));
   }
   const double length = distance(gap.begin, gap.end);
   const double missing = std::max(1.0, std::round(length / static_cast<double>(step)) - 1);

@@ -1,5 +1,6 @@
 #include "storage/care/completeness.hpp"
 
+#include <limits>
 #include <random>
 
 #include "tests/storage/fixture.hpp"
@@ -146,6 +147,12 @@ TEST_F(CompletenessTest, CountsAreThoseOfReadingEverything) {
                 static_cast<double>(length / (10 * second)), 1.0)
         << bin;
   }
+}
+
+TEST_F(CompletenessTest, AGapThatIsLongerThanATimeHoldsIsAsLongAsThat) {
+  constexpr Time least = std::numeric_limits<Time>::min(), most = std::numeric_limits<Time>::max();
+  send(regular(least, least + 10 * second));
+  EXPECT_EQ(counts(TimeBins({least, most}, 100 * 365 * day), most).at(0).longest_gap, most);
 }
 
 TEST_F(CompletenessTest, ADamagedNumberOfABatchIsNamedAndNotCountedUpTo) {
