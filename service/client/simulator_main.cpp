@@ -3,19 +3,17 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "service/client/simulator.hpp"
+#include "service/support/command_line.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
-#include "service/support/terminal.hpp"
-#include "service/support/version.hpp"
 
 namespace {
 
 constexpr const char* about =
-    "Runs the approved models of a spacecraft's equipment beside its live telemetry: each new\n"
-    "version takes over while it runs, and the running error is printed beside each version.\n\n"
+    "Runs the approved models of a spacecraft's equipment along with its live telemetry: each new\n"
+    "version takes over while it runs, and the running error of each version is printed.\n\n"
     "Example:\n"
     "  reident-simulator --spacecraft CBERS4 --equipment BDR --equipment BAT1 --name trainer-1\n\n"
     "Exit status: 0 stopped by SIGINT or SIGTERM; 1 failure; 2 bad request.\n";
@@ -53,7 +51,6 @@ void add_options(CLI::App& app, reident::SimulatorOptions& options, std::string&
       "Correct each model by the measured outputs, as a trainer that follows the satellite does "
       "(the models run free)");
   app.add_flag("--json", options.json, "One JSON object a line");
-  app.set_version_flag("--version", std::string(reident::program_version()));
 }
 
 }  // namespace
@@ -66,15 +63,7 @@ int main(int argc, char** argv) {
   double report_s = 5;
   CLI::App app(about, "reident-simulator");
   add_options(app, options, cache, report_s);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    const reident::FoldedOutput folded(false);
-    fmt::print("{}", app.help());
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto status = reident::parse_command_line(app, argc, argv)) return *status;
   if (!cache.empty()) options.cache = cache;
   options.report_period =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(report_s));

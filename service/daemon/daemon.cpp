@@ -143,7 +143,7 @@ Daemon::Daemon(const Config& config, Clock clock, Clock uptime)
       ingest_(std::in_place, participant_, config, queue_, simulators_, clock_) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      kept_.push_back(window_cache_of(spacecraft.name, equipment));
+      kept_.push_back({window_cache_of(spacecraft.name, equipment), {}});
   storage::Database database(config.database, storage::Database::Mode::read_only);
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
@@ -181,7 +181,7 @@ void Daemon::start() {
     identification_threads_.push_back(spawn("identify", [this] { identify_windows(); }));
   desk_thread_ = spawn("command", [this] { answer_operators(); });
   history_thread_ = spawn("history", [this] { answer_history(); });
-  monitor_thread_ = spawn("monitor", [this] { watch_champions(); });
+  league_thread_ = spawn("league", [this] { keep_leagues(); });
   if (pair_) pair_thread_ = spawn("pair", [this] { pair_->run(); });
 }
 
@@ -206,14 +206,14 @@ void Daemon::identify_windows() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Archive archive(database);
   const storage::Registry registry(database);
-  std::string last_error;  // said once, not at each try
   while (const auto job = feed_.next()) {
     bool completed = false;
+    RepeatedError& failure = kept_[job->window.equipment].failure;
     try {
       completed = identify(*job, archive, registry);
-      last_error.clear();
+      failure.succeeded();
     } catch (const storage::Error& error) {
-      if (error.what() != std::exchange(last_error, error.what()))
+      if (failure.is_news(error.what()))
         log::error("identify", "window put off; it is tried again",
                    {{"equipment", *job->spacecraft + "/" + job->equipment->name},
                     {"error", error.what()}});
@@ -249,7 +249,7 @@ bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archiv
   const AttemptContext context = attempt_context(registry);
   try {
     const auto attempt =
-        attempt_window(job, archive, registry, kept_[job.window.equipment], context);
+        attempt_window(job, archive, registry, kept_[job.window.equipment].windows, context);
     if (attempt) publish(*attempt);
     return attempt.has_value();
   } catch (const Stopped&) {
@@ -366,7 +366,7 @@ void Daemon::answer_history() {
       [&database](const HistoryQuery& query) { return history::answer(database, query); });
 }
 
-void Daemon::watch_champions() {
+void Daemon::keep_leagues() {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Archive archive(database);
   const storage::Registry registry(database);
@@ -429,7 +429,7 @@ bool Daemon::stop() {
   history_desk_.stop();
   if (history_thread_.joinable()) history_thread_.join();
   feed_.stop();
-  if (monitor_thread_.joinable()) monitor_thread_.join();
+  if (league_thread_.joinable()) league_thread_.join();
   if (pair_) pair_->stop();
   if (pair_thread_.joinable()) pair_thread_.join();
   ingest_->stop();

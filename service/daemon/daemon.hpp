@@ -7,10 +7,9 @@
 //                                        '- writer <-----' then publisher
 //   command desk thread -> writer thread, then publisher, then the reply
 //   history desk thread (a read-only database) -> pages of rows to whoever asks
-//   league thread (a read-only database) -> writer thread, for scores and decisions; publisher,
-//   when
-//                                           the champion changes; window feed, when the equipment
-//                                           does
+//   league thread (a read-only database) -> writer thread, for scores and decisions; publisher
+//                                           when the champion changes, window feed when the
+//                                           equipment does
 //   pair thread, where the service is one of two: who leads; rows to and from the other one
 //                                           through the writer. Without leadership nothing is
 //                                           recorded but telemetry, and nothing published
@@ -31,6 +30,7 @@
 #include "service/daemon/league_watch.hpp"
 #include "service/daemon/pair.hpp"
 #include "service/daemon/publisher.hpp"
+#include "service/daemon/repeated_error.hpp"
 #include "service/daemon/service_watch.hpp"
 #include "service/daemon/simulator_book.hpp"
 #include "service/daemon/telemetry_watch.hpp"
@@ -83,7 +83,7 @@ class Daemon {
   storage::CommandOutcome hand_over(const storage::Command& command);
   void answer_operators();
   void answer_history();
-  void watch_champions();
+  void keep_leagues();
 
   const Config& config_;
   const Clock clock_, uptime_;
@@ -103,10 +103,15 @@ class Daemon {
   std::optional<Pair> pair_;
   std::optional<ServiceWatch> watch_;
   std::optional<Ingest> ingest_;  // ends before the middleware hears again
+  /// What the jobs of one equipment leave for the next.
+  struct Kept {
+    WindowCache windows;
+    RepeatedError failure;
+  };
   /// By equipment, which has one job at a time: the job's thread owns its entry.
-  std::vector<WindowCache> kept_;
+  std::vector<Kept> kept_;
 
-  std::thread ingest_thread_, writer_thread_, desk_thread_, history_thread_, monitor_thread_,
+  std::thread ingest_thread_, writer_thread_, desk_thread_, history_thread_, league_thread_,
       pair_thread_;
   std::vector<std::thread> identification_threads_;
   std::atomic<bool> stopping_ = false;

@@ -95,8 +95,9 @@ void LeagueWatch::look(const storage::Archive& archive, const storage::Registry&
     if (reached == INT64_MIN) continue;  // none of its telemetry has come
     try {
       advance(i, archive, registry, reached - settle_, context);
+      watched_[i]->failure.succeeded();
     } catch (const storage::Error& error) {
-      if (error.what() != std::exchange(last_error_, error.what()))
+      if (watched_[i]->failure.is_news(error.what()))
         log::error("league", "versions cannot be scored; it is tried again",
                    {{"equipment", *watched_[i]->spacecraft + "/" + watched_[i]->equipment->name},
                     {"error", error.what()}});

@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "service/daemon/repeated_error.hpp"
 #include "service/daemon/window_feed.hpp"
 #include "service/operations/league_keeper.hpp"
 
 namespace reident {
 
-/// How the daemon's threads write and what they are told.
+/// How the daemon's threads write, and what they ask.
 struct LeagueContext {
   using Task = std::function<void(storage::Registry&, storage::Archive&)>;
   /// Runs a task on the thread that writes the database, and returns when it is done.
@@ -60,11 +61,11 @@ class LeagueWatch {
     std::optional<LeagueKeeper> keeper;
     std::atomic<bool> is_outdated = false;  // the keeper
     std::atomic<bool> is_failing = false;
+    RepeatedError failure{};  // of look()
   };
   const Duration settle_;
   WindowFeed& feed_;
   std::vector<std::unique_ptr<Watched>> watched_;  // in the configuration's order
-  std::string last_error_;                         // said once, not at each look
 };
 
 }  // namespace reident

@@ -17,11 +17,10 @@
 #include "service/daemon/daemon.hpp"
 #include "service/daemon/service_manager.hpp"
 #include "service/support/allocator.hpp"
+#include "service/support/command_line.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
-#include "service/support/terminal.hpp"
 #include "service/support/utc_clock.hpp"
-#include "service/support/version.hpp"
 
 namespace {
 
@@ -110,19 +109,10 @@ int main(int argc, char** argv) {
       "and publishes those that pass the gate.\n\n"
       "Example:\n  reidentd --config reident.toml\n");
   app.name("reidentd");
-  app.set_version_flag("--version", std::string(reident::program_version()));
   std::string path;
   app.add_option("-c,--config", path, "Configuration file (see `reident check-config`)")
       ->required();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    const reident::FoldedOutput folded(false);
-    fmt::print("{}", app.help());
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : exit_bad_request;
-  }
+  if (const auto status = reident::parse_command_line(app, argc, argv)) return *status;
 
   const auto loaded = reident::load_config(path);
   if (const auto* mistakes = std::get_if<std::vector<reident::ConfigMistake>>(&loaded)) {

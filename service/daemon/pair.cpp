@@ -47,14 +47,14 @@ Pair::Pair(const Config& config, Clock clock, dds::Participant& participant, Arc
 
 void Pair::run() {
   thread_ = std::this_thread::get_id();
-  std::string last_error;  // said once
+  RepeatedError failure;
   while (!stopping_) {
     ready_.wait(turn_interval);
     try {
       turn();
-      last_error.clear();
+      failure.succeeded();
     } catch (const storage::Error& error) {
-      if (error.what() != std::exchange(last_error, error.what()))
+      if (failure.is_news(error.what()))
         log::error("pair", "the registry cannot be read; it is tried again",
                    {{"error", error.what()}});
     } catch (const std::future_error&) {  // the archive's thread has ended
@@ -96,10 +96,9 @@ void Pair::turn() {
     rule_.hear_partner(partner->standing, partner->heard);
   const Standing ours = replication_.standing();
   take(rule_.look(ours, now), ours);
-  if (std::string failure = taking_over_.finish(); !failure.empty() && failure != failure_) {
+  if (const std::string failure = taking_over_.finish();
+      !failure.empty() && take_over_failure_.is_news(failure))
     log::error("pair", "a term cannot be recorded; it is tried again", {{"error", failure}});
-    failure_ = std::move(failure);
-  }
   bool hands_over = false;
   {
     const MutexLock lock(mutex_);
@@ -151,6 +150,7 @@ void Pair::take_over(const Standing& ours) {
         may_record_ = true;
       },
       [this, term] {
+        take_over_failure_.succeeded();
         rule_.took_over(term);
         const auto strength =
             std::min<std::int64_t>(term, std::numeric_limits<std::int32_t>::max());

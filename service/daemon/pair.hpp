@@ -14,6 +14,7 @@
 
 #include "service/config/config.hpp"
 #include "service/daemon/leadership_rule.hpp"
+#include "service/daemon/repeated_error.hpp"
 #include "service/daemon/replication.hpp"
 #include "service/support/mutex.hpp"
 
@@ -81,7 +82,7 @@ class Pair {
   Replication replication_;
   LeadershipRule rule_;
   PostedTask taking_over_;
-  std::string failure_;  // to take over, as the log has it
+  RepeatedError take_over_failure_;
   PostedTask sign_of_life_;
   Instant life_seen_{};
   Instant next_saying_{}, next_overruled_check_{};

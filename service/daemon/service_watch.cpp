@@ -208,7 +208,11 @@ void ServiceWatch::keep(std::vector<storage::SimulatorState> changes) {
       posted_.get();
       kept_ = posted_alarms_;
       posted_changes_.clear();
-    } catch (const std::exception&) {  // the status says why; it is tried again
+      failure_.succeeded();
+    } catch (const std::exception& error) {
+      if (failure_.is_news(error.what()))
+        log::error("alarm", "what was noticed cannot be recorded; it is tried again",
+                   {{"error", error.what()}});
       changes.insert(changes.begin(), posted_changes_.begin(), posted_changes_.end());
       posted_changes_.clear();
     }

@@ -12,6 +12,7 @@
 #include "service/daemon/archive_writer.hpp"
 #include "service/daemon/pair.hpp"
 #include "service/daemon/publisher.hpp"
+#include "service/daemon/repeated_error.hpp"
 #include "service/daemon/simulator_book.hpp"
 #include "service/daemon/telemetry_watch.hpp"
 #include "service/dds/dds.hpp"
@@ -37,7 +38,7 @@ class ServiceWatch {
   explicit ServiceWatch(Parts parts);
 
   /// Finds what is wrong and has the registry keep what is news. An alarm that cannot be kept, as
-  /// on a full disk, is tried again at the next look.
+  /// on a full disk, is tried again at the next look, and the log says why.
   void look();
 
   /// What look() found, one alarm a line: "code SPACECRAFT/EQUIPMENT: text"; as many as a status
@@ -70,6 +71,7 @@ class ServiceWatch {
   std::future<void> posted_;
   std::vector<storage::Alarm> posted_alarms_;
   std::vector<storage::SimulatorState> posted_changes_;
+  RepeatedError failure_;  // to record them
 };
 
 }  // namespace reident

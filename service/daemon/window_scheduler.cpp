@@ -47,7 +47,7 @@ void WindowScheduler::touched(std::size_t equipment, storage::Time time, storage
 
 void WindowScheduler::reached(std::size_t equipment, storage::Time time) {
   Equipment& state = equipment_[equipment];
-  state.reached = std::max(state.reached, std::min(time, time_bound));
+  state.reached = std::max(state.reached, std::clamp(time, -time_bound, time_bound));
 }
 
 void WindowScheduler::ask(std::size_t equipment, storage::Time end, std::string cause,

@@ -44,7 +44,8 @@ class WindowScheduler {
 
   /// A new sample of the equipment at `time` was stored.
   void touched(std::size_t equipment, storage::Time time, storage::Time now);
-  /// Telemetry of the equipment has reached `time`; it never goes back.
+  /// Telemetry of the equipment has reached `time`; it never goes back. Beyond the year 2200, or as
+  /// long before 1970, it counts as these.
   void reached(std::size_t equipment, storage::Time time);
   /// Asks for the window that ends at `end`, and begins at `begin` where that is given.
   void ask(std::size_t equipment, storage::Time end, std::string cause, storage::Time now,

@@ -37,7 +37,6 @@ class RemoteHistory {
                                           std::chrono::milliseconds timeout);
 
  private:
-  void send();
   /// The reply to the last question, if it has come; a malformed one as a refusal.
   std::optional<HistoryReply> take();
 

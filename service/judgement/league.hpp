@@ -1,5 +1,5 @@
 // The rule by which a version becomes champion: the conditions R1 to R5, from the records of the
-// champion and of its challengers (service/DESIGN.md, "The gate"; identification/METHOD.md, section
+// champion and of its challengers (service/DESIGN.md, "Gate"; identification/METHOD.md, section
 // 19, has the proof).
 //
 // A record is what a version's free run erred on each block of telemetry that nothing of it was

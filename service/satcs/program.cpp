@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "service/support/command_line.hpp"
 #include "service/support/csv.hpp"
 #include "service/support/log.hpp"
 #include "service/support/rate_text.hpp"
 #include "service/support/stop_signal.hpp"
 #include "service/support/terminal.hpp"
 #include "service/support/time_text.hpp"
-#include "service/support/version.hpp"
 
 namespace reident::satcs {
 namespace {
@@ -186,18 +186,7 @@ void add_publisher_options(CLI::App& app, Sender& sender, PublisherOptions& opti
 }
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
-  app.set_version_flag("--version", std::string(program_version()));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    const FoldedOutput folded(false);
-    fmt::print("{}", app.help());
-    return exit_complete;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return complain(app, fmt::format("{}; see {} --help", error.what(), app.get_name()),
-                    exit_bad_request);
-  }
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
   try {
     return work();
   } catch (const BadRequest& error) {

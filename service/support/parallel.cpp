@@ -4,7 +4,9 @@
 #include <cassert>
 #include <exception>
 #include <pthread.h>
+#include <sched.h>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "service/support/mutex.hpp"
@@ -98,7 +100,11 @@ void WorkerPool::help_until_stopped() {
 }
 
 std::size_t usable_cores() {
-  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0)
+    return std::max<std::size_t>(1, static_cast<std::size_t>(CPU_COUNT(&allowed)));
+  return std::max<std::size_t>(1, std::thread::hardware_concurrency());  // above 1024 cores
 }
 
 }  // namespace reident

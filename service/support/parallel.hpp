@@ -45,7 +45,8 @@ class WorkerPool {
   std::vector<std::thread> threads_;
 };
 
-/// Returns how many cores this process may use (its CPU affinity counts), at least 1.
+/// Returns how many cores the calling thread may use by its CPU affinity, as taskset, systemd's
+/// CPUAffinity or a container's cpuset give it; at least 1.
 std::size_t usable_cores();
 
 }  // namespace reident

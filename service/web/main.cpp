@@ -11,10 +11,9 @@
 #include <fmt/format.h>
 
 #include "service/config/config.hpp"
+#include "service/support/command_line.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
-#include "service/support/terminal.hpp"
-#include "service/support/version.hpp"
 #include "service/web/site.hpp"
 
 namespace {
@@ -83,7 +82,6 @@ void declare(CLI::App& app, Arguments& arguments) {
                  "on a secured domain: folder of the page's certificate")
       ->envname("REIDENT_SECURITY");
   app.name("reident-web");
-  app.set_version_flag("--version", std::string(program_version()));
   app.add_option("-c,--config", arguments.config,
                  "the service's configuration: its database, DDS domain, partition and name");
   app.add_option("--address", options.address,
@@ -173,14 +171,6 @@ int main(int argc, char** argv) {
       "Example:\n  reident-web --config reident.toml\n");
   Arguments arguments;
   declare(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    const FoldedOutput folded(false);
-    fmt::print("{}", app.help());
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : exit_bad_request;
-  }
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
   return run(arguments, signal);
 }

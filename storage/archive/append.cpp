@@ -7,6 +7,7 @@
 #include <string>
 
 #include "storage/archive/revision.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -263,11 +264,8 @@ void Append::keep_what_was(std::int64_t series, std::span<const Time> changed,
 }
 
 void Append::add_late_range(std::int64_t series, TimeRange range) {
-  constexpr Time least = std::numeric_limits<Time>::min(), most = std::numeric_limits<Time>::max();
-  const Time from =
-      range.begin < least + late_merge_distance ? least : range.begin - late_merge_distance;
-  const Time until =
-      range.end > most - late_merge_distance ? most : range.end + late_merge_distance;
+  const Time from = earlier(range.begin, late_merge_distance);
+  const Time until = later(range.end, late_merge_distance);
   {
     sqlite::Query near = connection_.query(
         "DELETE FROM late_range WHERE series = ? AND begin_time <= ? AND end_time >= ? "

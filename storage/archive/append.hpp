@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -19,13 +18,8 @@
 
 namespace reident::storage {
 
-/// Just after `time`, for the end of a range.
-constexpr Time just_after(Time time) {
-  return time == std::numeric_limits<Time>::max() ? time : time + 1;
-}
-
 /// Late samples of a series no further apart than this are marked as one range.
-inline constexpr Time late_merge_distance = Time{600} * 1'000'000'000;
+inline constexpr Time late_merge_distance = 600 * second_ns;
 
 /// Used once, within a transaction of the caller.
 class Append {

@@ -6,6 +6,7 @@
 #include "storage/archive/append.hpp"
 #include "storage/archive/archive_access.hpp"
 #include "storage/database/connection.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {

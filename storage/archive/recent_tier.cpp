@@ -4,13 +4,10 @@
 
 #include "storage/archive/damage.hpp"
 #include "storage/chunks/fragment.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
-namespace {
-
-constexpr TimeRange all_times{std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()};
-
-}  // namespace
+namespace {}  // namespace
 
 RecentTier::RecentTier(sqlite::Connection& connection) : connection_(connection) {
   load_series();

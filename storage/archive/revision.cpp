@@ -1,10 +1,10 @@
 #include "storage/archive/revision.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "storage/archive/damage.hpp"
 #include "storage/chunks/overlay.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -39,7 +39,7 @@ void remove(SampleColumns& samples, const std::vector<Time>& landed) {
 void keep_revision(sqlite::Connection& connection, ChunkEncoder& encoder, std::int64_t series,
                    std::int64_t batch, const Revision& revision) {
   const SampleColumns& replaced = revision.replaced;
-  Time first = std::numeric_limits<Time>::max(), last = std::numeric_limits<Time>::min();
+  Time first = latest_time, last = earliest_time;
   std::vector<std::uint8_t> landed_bytes, replaced_bytes;
   for (const std::vector<Time>* times : {&revision.landed, &replaced.time}) {
     if (times->empty()) continue;

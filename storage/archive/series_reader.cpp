@@ -1,7 +1,6 @@
 #include "storage/archive/series_reader.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -9,15 +8,11 @@
 #include "storage/archive/revision.hpp"
 #include "storage/chunks/fragment.hpp"
 #include "storage/chunks/overlay.hpp"
+#include "storage/database/schema.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
-
-constexpr Time earliest = std::numeric_limits<Time>::min();
-constexpr Time latest = std::numeric_limits<Time>::max();
-
-// Far above what any configuration lets wait: a number beyond it is a damaged one.
-constexpr std::int64_t most_batches = 1 << 24;
 
 // Chunks do not overlap: the one that `begin` may lie in is the last that starts no later.
 constexpr std::string_view chunks_in_range =
@@ -38,10 +33,6 @@ std::uint64_t identity_of(std::span<const std::uint8_t> chunk) {
   if (chunk.size() < begin + length) return identity;
   for (const std::uint8_t byte : chunk.subspan(begin, length)) identity = identity << 8 | byte;
   return identity;
-}
-
-TimeRange from_to(Time first, Time last) {
-  return {first, last == latest ? latest : last + 1};
 }
 
 SampleRange range_of(std::int64_t series, const sqlite::Query& row) {
@@ -89,7 +80,7 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
     from = std::max(batches.integer(0), batches.integer(2));
     to = batches.integer(1);
   }
-  if (to - from > most_batches)
+  if (to - from > schema::most_batches)
     throw Error(
         Error::Kind::corrupt,
         "database " + connection_.path() + " has recent samples of batches " +
@@ -103,11 +94,19 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
   }
 }
 
+std::vector<SeriesReader::Extent> SeriesReader::recent(std::int64_t series) {
+  std::vector<Extent> found;
+  each_recent(series, earliest_time, latest_time, [&found](const sqlite::Query& row) {
+    found.push_back({row.integer(0), row.integer(1)});
+  });
+  return found;
+}
+
 SampleColumns SeriesReader::read(std::int64_t series, TimeRange range, WantedColumns wanted,
                                  std::optional<std::int64_t> as_of) {
   SampleColumns samples;
-  if (range.begin >= range.end && range.end != latest) return samples;
-  const Time last = range.end == latest ? latest : range.end - 1;
+  if (range.begin >= range.end && range.end != latest_time) return samples;
+  const Time last = last_of(range);
   sqlite::ReadTransaction snapshot(connection_);
   {
     sqlite::Query row = connection_.query(chunks_in_range, series, range.begin, last);
@@ -188,11 +187,11 @@ std::optional<Time> SeriesReader::first_at_or_after(std::int64_t series, Time ti
         "SELECT min(first_time) FROM chunk WHERE series = ? AND first_time >= ?", series, time);
     if (row.step() && !row.is_null(0)) found = row.integer(0);
   }
-  each_recent(series, time, latest, [&](const sqlite::Query& row) {
-    if (row.integer(0) >= time) found = std::min(found.value_or(latest), row.integer(0));
+  each_recent(series, time, latest_time, [&](const sqlite::Query& row) {
+    if (row.integer(0) >= time) found = std::min(found.value_or(latest_time), row.integer(0));
   });
   // What straddles `time` may hold an earlier one than those that start behind it.
-  look_into(from_to(time, found.value_or(latest)));
+  look_into({time, just_after(found.value_or(latest_time))});
   return found;
 }
 
@@ -206,12 +205,12 @@ std::optional<Time> SeriesReader::last_at_or_before(std::int64_t series, Time ti
         series, time);
     if (row.step()) found = row.integer(1) <= time ? row.integer(1) : row.integer(0);
   }
-  each_recent(series, earliest, time, [&](const sqlite::Query& row) {
+  each_recent(series, earliest_time, time, [&](const sqlite::Query& row) {
     const Time known = row.integer(1) <= time ? row.integer(1) : row.integer(0);
-    found = std::max(found.value_or(earliest), known);
+    found = std::max(found.value_or(earliest_time), known);
   });
   if (!found) return std::nullopt;
-  const SampleColumns samples = read(series, from_to(*found, time), {false, false, false});
+  const SampleColumns samples = read(series, {*found, just_after(time)}, {false, false, false});
   if (samples.empty())
     throw damage(connection_, {series, *found, time, 0},
                  {ChunkError::Kind::damaged, "holds other samples than its row says"});

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "storage/chunks/chunk.hpp"
 #include "storage/database/sqlite.hpp"
 #include "storage/types/sample_columns.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 
@@ -29,6 +29,14 @@ class SeriesReader {
   SampleColumns read(std::int64_t series, TimeRange range, WantedColumns wanted = {},
                      std::optional<std::int64_t> as_of = std::nullopt);
 
+  /// Times of the first and the last sample; those of no fragment meet no range.
+  struct Extent {
+    Time first = latest_time;
+    Time last = earliest_time;
+  };
+  /// The fragments of the series that are not in chunks, ascending by batch.
+  std::vector<Extent> recent(std::int64_t series);
+
   /// The chunks that lie in `range` and within which nothing recent lies, ascending.
   std::vector<ChunkOutline> outlines(std::int64_t series, TimeRange range);
   /// Puts the samples of a chunk in the place of those that `samples` held. False where the chunk
@@ -39,15 +47,11 @@ class SeriesReader {
   std::optional<Time> last_at_or_before(std::int64_t series, Time time);
 
  private:
-  /// Calls `use(first, last, bytes, row)` for each fragment that meets [first, last].
+  /// Calls `use(row)` for each fragment that meets [first, last]; the row has the times of its
+  /// first and last sample, their number and the bytes.
   template <typename Use>
   void each_recent(std::int64_t series, Time first, Time last, const Use& use);
 
-  /// Times of the first and the last sample; those of no fragment meet no range.
-  struct Extent {
-    Time first = std::numeric_limits<Time>::max();
-    Time last = std::numeric_limits<Time>::min();
-  };
   Extent extent_of(std::int64_t batch, std::int64_t series);
 
   sqlite::Connection& connection_;

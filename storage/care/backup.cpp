@@ -8,6 +8,7 @@
 
 #include "storage/archive/chunk_bytes.hpp"
 #include "storage/database/connection.hpp"
+#include "storage/database/file_guard.hpp"
 #include "storage/database/partial_file.hpp"
 #include "storage/database/writer_lock.hpp"
 
@@ -25,12 +26,6 @@ struct Finish {
   throw Error(Error::Kind::cannot_open, "backup " + copy.string() + " " + why);
 }
 
-bool has_content(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
-  return !error && size > 0;
-}
-
 void refuse_the_source(const fs::path& source, const fs::path& copy) {
   std::error_code error;
   if (fs::equivalent(source, copy, error))
@@ -46,7 +41,7 @@ void refuse_foreign_log(const fs::path& copy) {
   for (const char* companion : {"-wal", "-journal"})
     if (const fs::path log = copy.string() + companion; has_content(log))
       refuse(copy, "cannot be written: " + log.string() +
-                       " stands beside it, so that a database of that name is in use or was not "
+                       " is next to it, so that a database of that name is in use or was not "
                        "closed; end what uses it, or name another file");
 }
 
@@ -173,7 +168,7 @@ BackupReport checked(const fs::path& source, const fs::path& copy, const fs::pat
     throw Error(Error::Kind::corrupt,
                 "backup " + copy.string() +
                     " did not come out whole, and was not kept: the database " + source.string() +
-                    " is damaged ('reident verify' tells where), or the disk fails (" +
+                    " is damaged ('reident verify' shows where), or the disk fails (" +
                     error.what() + ")");
   }
 }

@@ -1,14 +1,12 @@
 #include "storage/care/chunk_walk.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
+
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
-
-constexpr Time earliest = std::numeric_limits<Time>::min();
-constexpr Time latest = std::numeric_limits<Time>::max();
 
 /// The time before which samples are too old, of each spacecraft.
 std::map<std::string, Time> cutoffs(sqlite::Connection& connection, Time keep, Time now) {
@@ -18,7 +16,7 @@ std::map<std::string, Time> cutoffs(sqlite::Connection& connection, Time keep, T
       "GROUP BY spacecraft");
   while (row.step()) {
     const Time newest = std::min(row.integer(1), now);
-    result[row.text(0)] = newest < earliest + keep ? earliest : newest - keep;
+    result[row.text(0)] = earlier(newest, keep);
   }
   return result;
 }
@@ -49,7 +47,7 @@ ChunkWalk::ChunkWalk(sqlite::Connection& connection, const RetentionRule& rule,
     sqlite::Query row = connection.query(
         "SELECT id, spacecraft, parameter FROM series WHERE first_time IS NOT NULL");
     while (row.step()) {
-      Place place{row.integer(0), row.text(1), row.integer<std::uint32_t>(2), {}, earliest};
+      Place place{row.integer(0), row.text(1), row.integer<std::uint32_t>(2), {}, earliest_time};
       if (const auto found = old.find(place.spacecraft); found != old.end())
         place.cutoff = found->second;
       places_.push_back(std::move(place));
@@ -67,15 +65,16 @@ void ChunkWalk::protect(const std::vector<ProtectedRange>& protection) {
 }
 
 bool ChunkWalk::is_kept(const Place& place, const ChunkRow& row) const {
-  const auto found = std::partition_point(
-      place.kept.begin(), place.kept.end(),
-      [&row](const TimeRange& range) { return range.end <= row.first && range.end != latest; });
+  const auto found =
+      std::partition_point(place.kept.begin(), place.kept.end(), [&row](const TimeRange& range) {
+        return range.end <= row.first && range.end != latest_time;
+      });
   return found != place.kept.end() && found->begin <= row.last;
 }
 
 void ChunkWalk::pass(Place& place) {
   const Time first = place.next->row.first;
-  place.from = first == latest ? std::nullopt : std::optional(first + 1);
+  place.from = first == latest_time ? std::nullopt : std::optional(first + 1);
   place.next.reset();
 }
 

@@ -7,6 +7,7 @@
 #include "storage/archive/damage.hpp"
 #include "storage/chunks/sample_gaps.hpp"
 #include "storage/database/connection.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -41,8 +42,6 @@ class Counter {
  private:
   /// Chunks that meet the bins, with one on either side, and what is recent over or between them.
   std::vector<Piece> pieces();
-
-  std::vector<Piece> recent();
 
   void count_chunk(const Piece& chunk);
 
@@ -86,14 +85,16 @@ std::vector<BinCounts> Counter::run(Time until) {
 }
 
 std::vector<Piece> Counter::pieces() {
-  std::vector<Piece> found = recent();
+  std::vector<Piece> found;
+  for (const SeriesReader::Extent& recent : access_.reader().recent(series_.id))
+    found.push_back({.first = recent.first, .last = recent.last});
   sqlite::Query row = impl_.connection->query(
       "SELECT first_time, last_time, shard, data, samples, step, gap_limit FROM chunk "
       "WHERE series = ?1 "
       "AND first_time >= coalesce((SELECT max(first_time) FROM chunk WHERE series = ?1 AND "
       "last_time < ?2 AND first_time < ?2), ?4) AND first_time <= coalesce((SELECT "
       "min(first_time) FROM chunk WHERE series = ?1 AND first_time >= ?3), ?3)",
-      series_.id, bins_.range().begin, bins_.range().end, std::numeric_limits<Time>::min());
+      series_.id, bins_.range().begin, bins_.range().end, earliest_time);
   while (row.step())
     found.push_back({row.integer(0),
                      row.integer(1),
@@ -112,26 +113,6 @@ std::vector<Piece> Counter::pieces() {
     }
   }
   return joined;
-}
-
-std::vector<Piece> Counter::recent() {
-  std::vector<Piece> found;
-  std::int64_t batch = 0, last_batch = -1;
-  {
-    sqlite::Query batches = impl_.connection->query(
-        "SELECT max((SELECT moved FROM series WHERE id = ?) + 1, min(batch)), max(batch) "
-        "FROM recent",
-        series_.id);
-    if (!batches.step() || batches.is_null(1)) return found;
-    batch = batches.integer(0);
-    last_batch = batches.integer(1);
-  }
-  sqlite::Query row = impl_.connection->query(
-      "SELECT first_time, last_time FROM recent WHERE batch = ? AND series = ?");
-  for (; batch <= last_batch; ++batch)
-    if (row.bind(batch, series_.id).step())
-      found.push_back({.first = row.integer(0), .last = row.integer(1)});
-  return found;
 }
 
 void Counter::count_chunk(const Piece& chunk) {
@@ -160,8 +141,7 @@ std::vector<Time> Counter::times_of(const Piece& chunk) {
 }
 
 void Counter::count_decoded(const Piece& piece) {
-  const TimeRange range{
-      piece.first, piece.last == std::numeric_limits<Time>::max() ? piece.last : piece.last + 1};
+  const TimeRange range{piece.first, just_after(piece.last)};
   const std::vector<Time> times =
       access_.reader().read(series_.id, range, {false, false, false}).time;
   count_times(times);
@@ -196,7 +176,11 @@ void Counter::add_gap(const SampleGap& gap, Time step) {
   if (gap.begin >= range.begin) {
     BinCounts& counts = counts_[bins_.of(gap.begin)];
     ++counts.gaps;
-    counts.longest_gap = std::max(counts.longest_gap, gap.end - gap.begin);
+    // The distance of two times can be twice as large as a Time holds.
+    const auto between =
+        static_cast<std::uint64_t>(gap.end) - static_cast<std::uint64_t>(gap.begin);
+    counts.longest_gap = std::max(counts.longest_gap,
+                                  static_cast<Time>(std::min<std::uint64_t>(between, latest_time)));
   }
   const double length = distance(gap.begin, gap.end);
   const double missing = std::max(1.0, std::round(length / static_cast<double>(step)) - 1);

@@ -1,15 +1,14 @@
 #include "storage/care/retention.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
-#include "storage/archive/append.hpp"
 #include "storage/archive/archive_access.hpp"
 #include "storage/archive/series_ends.hpp"
 #include "storage/care/chunk_walk.hpp"
 #include "storage/care/split.hpp"
 #include "storage/database/connection.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -148,7 +147,7 @@ bool Retention::step() {
           .run(series.samples, series.first, series.last, series.id);
       // What changed late in time of which nothing is left serves nobody.
       db.query("DELETE FROM revision WHERE series = ? AND last_time < ?")
-          .run(series.id, series.first.value_or(std::numeric_limits<Time>::max()));
+          .run(series.id, series.first.value_or(latest_time));
     }
     done.bytes_in_use = bytes_in_use(db);
     done.protected_chunks = walk_->passed();

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <limits>
 #include <vector>
 
 #include "storage/archive/chunk_bytes.hpp"
@@ -10,6 +9,7 @@
 #include "storage/chunks/sample_gaps.hpp"
 #include "storage/database/partial_file.hpp"
 #include "storage/database/schema.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -27,11 +27,11 @@ constexpr std::string_view chunks_of_year =
 std::pair<Time, Time> times_of(std::int64_t year) {
   const auto begin = [](std::int64_t of) {
     using namespace std::chrono;
-    constexpr std::int64_t most_days = std::numeric_limits<Time>::max() / day;
+    constexpr std::int64_t most_days = latest_time / day;
     const std::int64_t days =
         sys_days(std::chrono::year(static_cast<int>(of)) / 1 / 1).time_since_epoch().count();
-    if (days < -most_days) return std::numeric_limits<Time>::min();
-    return days > most_days ? std::numeric_limits<Time>::max() : days * day;
+    if (days < -most_days) return earliest_time;
+    return days > most_days ? latest_time : days * day;
   };
   return {begin(year), begin(year + 1) - 1};
 }
@@ -39,8 +39,8 @@ std::pair<Time, Time> times_of(std::int64_t year) {
 /// Counts what will be in the file, and names it.
 std::optional<ShardFile> describe(Connection& database, std::int64_t year) {
   ShardFile file{.year = year};
-  file.first = std::numeric_limits<Time>::max();
-  file.last = std::numeric_limits<Time>::min();
+  file.first = latest_time;
+  file.last = earliest_time;
   std::vector<std::uint8_t> digests;
   const auto add = [&digests](std::uint64_t number) {
     for (int shift = 0; shift < 64; shift += 8)

@@ -1,11 +1,10 @@
 #include "storage/care/source_removal.hpp"
 
-#include <limits>
-
 #include "storage/archive/archive_access.hpp"
 #include "storage/archive/holdings.hpp"
 #include "storage/archive/series_ends.hpp"
 #include "storage/database/connection.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -48,9 +47,8 @@ bool clean_some(Archive& archive, std::int64_t id, std::int64_t source, std::opt
     std::uint64_t here = 0;
     bool more = true;
     for (std::size_t looked = 0; looked < chunks_of_transaction && more; ++looked) {
-      constexpr Time earliest = std::numeric_limits<Time>::min();
-      auto row = at ? chunks.after(id, *at) : chunks.at_or_before(id, earliest);
-      if (!at && !row) row = chunks.after(id, earliest);
+      auto row = at ? chunks.after(id, *at) : chunks.at_or_before(id, earliest_time);
+      if (!at && !row) row = chunks.after(id, earliest_time);
       more = row.has_value();
       if (!more) break;
       at = row->last;

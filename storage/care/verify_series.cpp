@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "storage/chunks/checksum.hpp"
 #include "storage/chunks/fragment.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
-
-constexpr TimeRange all_times{std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()};
 
 constexpr const char* restore_samples =
     "restore these samples from a backup, or import them again with 'reident import'; what is "
@@ -339,7 +337,7 @@ void SeriesVerifier::compare_sources() {
     if (!row.bind(source, spacecraft_, origin_).step())
       add("samples", first_, last_,
           "samples name the source " + std::to_string(source) + ", which does not exist",
-          "restore_samples the table source from a backup");
+          "restore the table source from a backup");
 }
 
 }  // namespace reident::storage

@@ -7,6 +7,7 @@
 
 #include "storage/chunks/bytes.hpp"
 #include "storage/chunks/checksum.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -183,8 +184,7 @@ std::vector<std::uint8_t> ChunkEncoder::encode(const ChunkSamples& samples) {
 
 std::optional<ChunkError> ChunkDecoder::decode(std::span<const std::uint8_t> bytes,
                                                const ChunkTarget& target) {
-  return decode(bytes, {std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()},
-                target);
+  return decode(bytes, all_times, target);
 }
 
 std::optional<ChunkError> ChunkDecoder::decode(std::span<const std::uint8_t> bytes, TimeRange range,
@@ -234,9 +234,8 @@ std::optional<ChunkDecoder::Selection> ChunkDecoder::decode_times(Bytes part,
       !sum_up_times(times_, summary.last_time))
     return std::nullopt;
   const auto begin = std::lower_bound(times_.begin(), times_.end(), range.begin);
-  const auto end = range.end == std::numeric_limits<Time>::max()
-                       ? times_.end()
-                       : std::lower_bound(begin, times_.end(), range.end);
+  const auto end =
+      range.end == latest_time ? times_.end() : std::lower_bound(begin, times_.end(), range.end);
   if (begin >= end) return Selection{};
   if (out != nullptr) out->insert(out->end(), begin, end);
   return Selection{times_.size(), static_cast<std::size_t>(begin - times_.begin()),
@@ -254,8 +253,7 @@ ChunkDecoder::Selection ChunkDecoder::steady_times(const ChunkSummary& summary, 
     return static_cast<std::size_t>((bits(time) - bits(summary.first_time) - 1) / step + 1);
   };
   const std::size_t begin = before(range.begin);
-  const std::size_t end =
-      range.end == std::numeric_limits<Time>::max() ? summary.count : before(range.end);
+  const std::size_t end = range.end == latest_time ? summary.count : before(range.end);
   if (begin >= end) return {};
   if (out != nullptr) {
     const std::size_t old = out->size();

@@ -4,10 +4,10 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
-#include <limits>
 
 #include "storage/chunks/bytes.hpp"
 #include "storage/chunks/checksum.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
 namespace {
@@ -114,7 +114,7 @@ std::optional<ChunkError> decode_fragment(Bytes bytes, TimeRange range, const Ch
   Fragment fragment;
   if (auto error = read_fragment(bytes, fragment)) return error;
   const auto first = std::lower_bound(fragment.time.begin(), fragment.time.end(), range.begin);
-  const bool to_the_end = range.end == std::numeric_limits<Time>::max();
+  const bool to_the_end = range.end == latest_time;
   const auto last =
       to_the_end ? fragment.time.end() : std::lower_bound(first, fragment.time.end(), range.end);
   const auto begin = static_cast<std::size_t>(first - fragment.time.begin());

@@ -11,6 +11,10 @@ namespace reident::storage::schema {
 inline constexpr std::int64_t application_id = 0x72656964;  // "reid"
 inline constexpr std::int64_t version = 9;                  // kept in SQLite's user_version
 
+/// The batches of the table `recent` are numbered within so many. Far above what any configuration
+/// lets wait: a number beyond it is a damaged one, and nobody counts up to it.
+inline constexpr std::int64_t most_batches = 1 << 24;
+
 /// A table whose rows the services of a pair share, and the columns that name a row in the journal.
 struct JournalledTable {
   std::string_view name;

@@ -3,10 +3,12 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fcntl.h>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <unistd.h>
 
 #include <sys/file.h>
@@ -55,6 +57,18 @@ void share_with_owner(int descriptor, const std::filesystem::path& database) {
   if (::fchown(descriptor, owner.st_uid, owner.st_gid) != 0) return;
 }
 
+// Whoever asks whether the lock is held shares it for an instant: such a one is waited for.
+bool take(int descriptor) {
+  constexpr int tries = 1000;
+  for (int i = 0; ::flock(descriptor, LOCK_EX | LOCK_NB) != 0; ++i) {
+    if (errno != EWOULDBLOCK || i == tries || ::flock(descriptor, LOCK_SH | LOCK_NB) != 0)
+      return false;
+    ::flock(descriptor, LOCK_UN);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
 }  // namespace
 
 WriterLock::WriterLock(const std::filesystem::path& database) {
@@ -62,7 +76,7 @@ WriterLock::WriterLock(const std::filesystem::path& database) {
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) cannot_lock(file, errno);
   share_with_owner(descriptor_, database);
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+  if (!take(descriptor_)) {
     const int system_error = errno;
     const std::string who = holder(descriptor_);
     ::close(descriptor_);
@@ -72,13 +86,17 @@ WriterLock::WriterLock(const std::filesystem::path& database) {
   }
   // Whoever removed the database begins again.
   had_tables_ = std::filesystem::exists(database) && tells_of_tables(descriptor_);
-  if (!had_tables_ && ::ftruncate(descriptor_, 0) != 0) cannot_lock(file, errno);
+  if (!had_tables_ && ::ftruncate(descriptor_, 0) != 0) {
+    const int system_error = errno;
+    ::close(descriptor_);
+    cannot_lock(file, system_error);
+  }
   std::string pid = std::to_string(::getpid());
   pid.resize(pid_line - 1, ' ');
   if (::pwrite(descriptor_, (pid + "\n").data(), pid_line, 0) < 0) return;
 }
 
-// The shared lock is held for an instant: a writer that begins then tries again.
+// The shared lock is held for an instant, which a writer that begins then waits for.
 bool WriterLock::is_held(const std::filesystem::path& database) {
   const int descriptor = ::open((database.string() + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return false;

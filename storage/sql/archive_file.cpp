@@ -6,6 +6,7 @@
 #include "storage/chunks/fragment.hpp"
 #include "storage/chunks/overlay.hpp"
 #include "storage/database/schema.hpp"
+#include "storage/types/time_ends.hpp"
 #include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
@@ -38,8 +39,7 @@ std::string archive_name(sqlite3* connection) {
 
 /// A half-open range that ends at the latest time includes it: it may hold one sample more.
 TimeRange range_of(TimeBounds bounds) {
-  constexpr Time latest = std::numeric_limits<Time>::max();
-  return {bounds.first, bounds.last == latest ? latest : bounds.last + 1};
+  return {bounds.first, just_after(bounds.last)};
 }
 
 bool meet(TimeBounds a, TimeBounds b) {
@@ -183,8 +183,17 @@ const std::vector<ArchiveFile::Fragment>& ArchiveFile::fragments(const SeriesNam
   if (!is_new) return place->second;
   Statement& batches = prepared(batches_, "SELECT min(batch), max(batch) FROM main.recent");
   if (!batches.bind().step() || batches.is_null(0)) return place->second;
-  const std::int64_t begin = std::max(batches.integer(0), series.moved + 1);
   const std::int64_t last = batches.integer(1);
+  if (last <= series.moved) return place->second;
+  const std::int64_t begin = std::max(batches.integer(0), series.moved + 1);
+  if (last - begin > schema::most_batches) {
+    const std::string file = archive_name(connection_);
+    throw QueryError(SQLITE_CORRUPT_VTAB, "telemetry: " + file + " has recent samples of batches " +
+                                              std::to_string(begin) + " to " +
+                                              std::to_string(last) +
+                                              ", more than there can be; 'reident verify " + file +
+                                              "' lists what is damaged");
+  }
   Statement& fragment = prepared(
       fragment_, "SELECT first_time, last_time FROM main.recent WHERE batch = ?1 AND series = ?2");
   for (std::int64_t batch = begin; batch <= last; ++batch)

@@ -5,13 +5,12 @@
 #include <utility>
 
 #include "storage/sql/utc_bounds.hpp"
+#include "storage/types/time_ends.hpp"
 #include "storage/types/utc_text.hpp"
 
 namespace reident::storage::sql {
 namespace {
 
-constexpr Time earliest = std::numeric_limits<Time>::min();
-constexpr Time latest = std::numeric_limits<Time>::max();
 constexpr TimeBounds none{0, -1};
 constexpr double two_to_63 = 9223372036854775808.0;
 
@@ -22,17 +21,17 @@ bool is_lower_bound(Comparison comparison) {
 /// Those times that are at least `from`, or below it: what compares true with a number between
 /// `from - 1` and `from`, where `exact` says that it is `from` itself.
 TimeBounds beside(Time from, bool exact, Comparison comparison) {
-  const TimeBounds after = from == latest ? none : TimeBounds{from + 1, latest};
-  const TimeBounds before = from == earliest ? none : TimeBounds{earliest, from - 1};
+  const TimeBounds after = from == latest_time ? none : TimeBounds{from + 1, latest_time};
+  const TimeBounds before = from == earliest_time ? none : TimeBounds{earliest_time, from - 1};
   switch (comparison) {
     case Comparison::above:
-      return exact ? after : TimeBounds{from, latest};
+      return exact ? after : TimeBounds{from, latest_time};
     case Comparison::from:
-      return {from, latest};
+      return {from, latest_time};
     case Comparison::below:
       return before;
     case Comparison::to:
-      return exact ? TimeBounds{earliest, from} : before;
+      return exact ? TimeBounds{earliest_time, from} : before;
     case Comparison::equal:
     case Comparison::in:
       break;

@@ -13,6 +13,7 @@
 
 #include "storage/sql/sqlite_api.hpp"
 #include "storage/types/telemetry.hpp"
+#include "storage/types/time_ends.hpp"
 
 namespace reident::storage::sql {
 
@@ -27,8 +28,8 @@ enum class Comparison : char {
 
 /// Times from `first` to `last`, both included; empty where first > last.
 struct TimeBounds {
-  Time first = std::numeric_limits<Time>::min();
-  Time last = std::numeric_limits<Time>::max();
+  Time first = earliest_time;
+  Time last = latest_time;
 
   bool empty() const { return first > last; }
   void clear() { *this = {0, -1}; }

@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "storage/types/time_ends.hpp"
+
 namespace reident::storage::sql {
 namespace {
 
@@ -48,8 +50,7 @@ std::optional<Time> Summaries::bucket_of(Time time) const {
   if (!request_.step) return std::nullopt;
   const std::int64_t step = *request_.step;
   const std::int64_t above = time % step < 0 ? time % step + step : time % step;
-  constexpr Time earliest = std::numeric_limits<Time>::min();
-  return time < earliest + above ? earliest : time - above;
+  return earlier(time, above);
 }
 
 bool Summaries::next() {

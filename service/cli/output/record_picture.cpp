@@ -29,9 +29,10 @@ polyline{stroke-linejoin:round;stroke-linecap:round}
 void draw_legend(Svg& svg, bool has_change) {
   double x = 20;
   for (const auto& [css_class, label] :
-       {std::pair("score",
-                  "score of a block: 1, it errs nothing beside the champion; -1, the reverse"),
-        std::pair("mean", "mean so far"), std::pair("lower", "sure mean so far"),
+       {std::pair(
+            "score",
+            "score of a block: 1, it errs nothing compared with the champion; -1, the reverse"),
+        std::pair("mean", "mean so far"), std::pair("lower", "its lower confidence bound"),
         std::pair("change", "change of the equipment")}) {
     const std::string_view kind = css_class;
     if (kind == "change" && !has_change) continue;

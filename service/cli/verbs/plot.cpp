@@ -174,9 +174,9 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("-o,--output", arguments->output,
                      "file to write, - for standard output (EQUIPMENT-vVERSION.svg)");
   add_replace_option(command, arguments->replace);
-  command.add_flag(
-      "--record", arguments->record,
-      "draw its record beside the champion's instead: scores, mean, sure mean, change");
+  command.add_flag("--record", arguments->record,
+                   "draw its record beside the champion's instead: scores, mean, lower confidence "
+                   "bound, change");
   command.add_option("--with", arguments->with, "number of another version, drawn too")
       ->check(above_zero());
   add_range_options(command, arguments->range, "the window of the version");

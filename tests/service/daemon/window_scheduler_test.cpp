@@ -189,6 +189,10 @@ TEST_F(Scheduler, SurvivesTimesFromTheEndsOfTheScale) {
     scheduler.touched(0, time, 100);
     EXPECT_FALSE(scheduler.next(std::numeric_limits<storage::Time>::max() / 2));
   }
+  scheduler.reached(0, std::numeric_limits<storage::Time>::min() + 1);
+  constexpr storage::Time century = 3'155'760'000'000'000'000;
+  EXPECT_GT(scheduler.reached(0), std::numeric_limits<storage::Time>::min() + century / 2)
+      << "whoever takes a settle time off it stays in the scale";
 }
 
 TEST(SchedulerOfSeveral, GivesTheOldestWindowOfAllEquipmentFirst) {

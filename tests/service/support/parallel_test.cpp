@@ -3,6 +3,7 @@
 #include <atomic>
 #include <latch>
 #include <numeric>
+#include <sched.h>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -110,8 +111,15 @@ TEST(WorkerPool, OfOneThreadRunsTasksInOrderOnTheCallersOwn) {
   EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3));
 }
 
-TEST(UsableCores, AreOneAtLeast) {
+TEST(UsableCores, AreThoseThatTheAffinityLeaves) {
   EXPECT_GE(usable_cores(), 1U);
+  std::thread([] {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(static_cast<std::size_t>(sched_getcpu()), &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    EXPECT_EQ(usable_cores(), 1U);
+  }).join();
 }
 
 }  // namespace

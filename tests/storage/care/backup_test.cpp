@@ -187,7 +187,7 @@ TEST_F(Backup, RefusesANameBesideWhichTheLogOfAnotherFileStands) {
   for (const char* suffix : {"-wal", "-journal"}) {
     write_file(copy.string() + suffix, "frames");
     for (const bool replace : {false, true})
-      EXPECT_THAT(refusal(copy, replace), HasSubstr("stands beside it"));
+      EXPECT_THAT(refusal(copy, replace), HasSubstr("is next to it"));
     fs::remove(copy.string() + suffix);
   }
   const Database other(copy, Mode::read_write);

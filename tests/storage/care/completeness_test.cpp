@@ -1,5 +1,6 @@
 #include "storage/care/completeness.hpp"
 
+#include <limits>
 #include <random>
 
 #include "tests/storage/fixture.hpp"
@@ -146,6 +147,22 @@ TEST_F(CompletenessTest, CountsAreThoseOfReadingEverything) {
                 static_cast<double>(length / (10 * second)), 1.0)
         << bin;
   }
+}
+
+TEST_F(CompletenessTest, AGapThatIsLongerThanATimeHoldsIsAsLongAsThat) {
+  constexpr Time least = std::numeric_limits<Time>::min(), most = std::numeric_limits<Time>::max();
+  send(regular(least, least + 10 * second));
+  EXPECT_EQ(counts(TimeBins({least, most}, 100 * 365 * day), most).at(0).longest_gap, most);
+}
+
+TEST_F(CompletenessTest, ADamagedNumberOfABatchIsNamedAndNotCountedUpTo) {
+  send(regular(start, start + 10 * second));
+  send(regular(start + 10 * second, start + 20 * second));
+  rows(path, "UPDATE recent SET batch = 9000000000000000000 WHERE batch = 2");
+  EXPECT_THAT(error_of([&] {
+                counts(TimeBins({start, start + hour}, hour));
+              }),
+              ::testing::StartsWith("corrupt: "));
 }
 
 TEST(TimeBins, BeginAtMultiplesOfTheirLengthBefore1970Too) {

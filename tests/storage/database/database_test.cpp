@@ -1,7 +1,9 @@
 // What may be opened, how, and what is said of the rest.
 #include "storage/database/database.hpp"
 
+#include <atomic>
 #include <csignal>
+#include <thread>
 #include <unistd.h>
 
 #include <sys/stat.h>
@@ -201,6 +203,19 @@ TEST(Database, RefusesASecondWriterInItsOwnProcess) {
   const fs::path path = folder / "a.db";
   const Database writer(path, Mode::read_write);
   EXPECT_EQ(opening(path, Mode::read_write), in_use_by(path, std::to_string(::getpid())));
+}
+
+TEST(Database, IsOpenedForWritingWhileOthersAskWhetherItHasAWriter) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.db";
+  make_archive(path);
+  std::atomic<bool> ended = false;
+  std::thread asking([&] {
+    while (!ended) Database::has_writer(path);
+  });
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(opening(path, Mode::read_write), "no error");
+  ended = true;
+  asking.join();
 }
 
 TEST(Database, FreesTheLockWhenItsWriterEndsInWhateverWay) {

@@ -334,6 +334,15 @@ TEST_F(SqlExtensionTest, ADamagedFragmentEndsTheQuestionToo) {
   EXPECT_THAT(ask("SELECT value FROM telemetry WHERE time > 20000000000"), IsEmpty());
 }
 
+TEST_F(SqlExtensionTest, ADamagedNumberOfABatchIsNamedAndNotCountedUpTo) {
+  append_ramp(10);
+  append_ramp(20);
+  rows(path, "UPDATE recent SET batch = 9000000000000000000 WHERE batch = 2");
+  for (const char* question : {"SELECT value FROM telemetry", "SELECT mean FROM telemetry_summary"})
+    EXPECT_THAT(ask(question), ElementsAre(AllOf(HasSubstr("error 267: telemetry: "),
+                                                 HasSubstr("'reident verify"))));
+}
+
 TEST_F(SqlExtensionTest, AStatementSeesOneStateOfTheFileWhateverIsWritten) {
   append_ramp(50);
   const SqlUser user(path);

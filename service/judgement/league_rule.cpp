@@ -1,0 +1,274 @@
+#include "service/judgement/league_rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "service/judgement/offset.hpp"
+
+namespace reident {
+namespace {
+
+using identification::dependence;
+using identification::Index;
+using identification::log_wealth;
+using identification::lower_mean;
+using identification::ScoreSeries;
+using identification::Vector;
+using storage::Block;
+using storage::BlockScore;
+using storage::Time;
+using Code = ReasonCode;
+
+/// The score of an error that is less by the margin.
+double margin_of(const EquipmentConfig& limits) {
+  const double rest = 1 - limits.margin_percent / 100;
+  return (1 - rest * rest) / (1 + rest * rest);
+}
+
+/// A member against the champion without what an offset explains of its error in each last cycle: a
+/// constant, or with `effect` above 0 that of a sensor.
+struct WithoutOffset {
+  Scores scores;
+  double explained = 0;  // share of what the member errs less; the mean over the outputs
+};
+
+WithoutOffset without_offset(const League& league, const Member& member, const Comparison& compared,
+                             std::size_t effect, const SensorPast& past) {
+  WithoutOffset found;
+  std::vector<double> gained, explained;  // by output
+  for (const std::size_t i : compared.blocks) {
+    OffsetFit fit(effect, past);
+    for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
+      if (const BlockScore* score = find(*league.champion, league.blocks[k].range.begin);
+          score && counts(league.blocks[k]))
+        fit.add(phase_of(league.blocks[k]), *score);
+    const Time begin = league.blocks[i].range.begin;
+    const BlockScore& own = *find(member, begin);
+    const BlockScore& champion = *find(*league.champion, begin);
+    BlockScore rest = champion;
+    rest.square = fit.rest(champion);
+    found.scores.add(squares_of(own, rest));
+    gained.resize(rest.square.size(), 0);
+    explained.resize(rest.square.size(), 0);
+    for (std::size_t q = 0; q < gained.size(); ++q) {
+      gained[q] += champion.square[q] - own.square[q];
+      explained[q] += champion.square[q] - rest.square[q];
+    }
+  }
+  for (std::size_t q = 0; q < gained.size(); ++q)
+    if (gained[q] > 0) found.explained += explained[q] / gained[q] / double(gained.size());
+  return found;
+}
+
+/// The past of the sensor `effect` is the champion's record before `since`; where that is short,
+/// its first cycles. Blocks from before schema 8 say nothing of it.
+SensorPast past_of(const League& league, std::size_t effect, Time since) {
+  std::vector<std::size_t> phases;
+  std::vector<const BlockScore*> scores;
+  for_each_score(league, *league.champion, INT64_MIN, 0,
+                 [&](std::size_t, const Block& block, const BlockScore& score) {
+                   if (!has_effect(score, effect) ||
+                       (block.range.begin >= since && scores.size() >= reference_blocks))
+                     return;
+                   phases.push_back(phase_of(block));
+                   scores.push_back(&score);
+                 });
+  return {effect, phases, scores};
+}
+
+/// Share of the champion's blocks from `since` on that are in regimes which the member has not met.
+double uncovered_share(const League& league, const std::vector<int>& regimes, const Member& member,
+                       Time since) {
+  std::map<int, std::pair<double, bool>> by_regime;  // champion's blocks; met by the member
+  double all = 0;
+  for (std::size_t i = 0; i < league.blocks.size(); ++i) {
+    if (regimes[i] < 0) continue;
+    auto& [served, met] = by_regime[regimes[i]];
+    const Time begin = league.blocks[i].range.begin;
+    if (begin >= since && find(*league.champion, begin)) ++served, ++all;
+    met = met || begin >= member.window.begin;
+  }
+  double uncovered = 0;
+  for (const auto& [regime, of] : by_regime)
+    if (!of.second) uncovered += of.first;
+  return all > 0 ? uncovered / all : 0;
+}
+
+bool worse_in_a_regime(const Comparison& compared, const std::vector<int>& regimes, double assumed,
+                       const EquipmentConfig& limits) {
+  std::map<int, std::vector<double>> losses;
+  for (std::size_t i = 0; i < compared.blocks.size(); ++i)
+    losses[regimes[compared.blocks[i]]].push_back(-compared.scores.values()[i]);
+  const double threshold = std::log(static_cast<double>(losses.size()) / error_probability(limits));
+  return std::any_of(losses.begin(), losses.end(), [&](const auto& of_regime) {
+    const ScoreSeries loss = series(of_regime.second, assumed);
+    return lower_mean(loss, dependence(loss), threshold) > margin_of(limits);
+  });
+}
+
+/// R4, on the record.
+std::optional<Reason> inadmissible(const Finding& finding, const EquipmentConfig& limits) {
+  if (!std::isfinite(finding.mrse_percent)) return because<Code::not_finite>();
+  if (finding.mrse_percent > limits.max_mrse_percent)
+    return because<Code::error_above_limit>(finding.mrse_percent, limits.max_mrse_percent);
+  if (!(finding.fit_percent > 0)) return because<Code::not_better_than_mean>(finding.fit_percent);
+  return std::nullopt;
+}
+
+/// R2. Uncovered blocks count as if they were lost entirely.
+std::optional<Reason> unproved_somewhere(Standard& standard, const Member& member,
+                                         const Comparison& compared, Finding& finding) {
+  const std::int64_t champion = standard.league.champion->version;
+  const std::vector<int>& regimes = standard.regimes_of_blocks();
+  finding.uncovered_share = uncovered_share(standard.league, regimes, member, standard.since);
+  if (finding.lower_score * (1 - finding.uncovered_share) < largest_score * finding.uncovered_share)
+    return because<Code::not_covered>(champion, 100 * finding.uncovered_share);
+  if (worse_in_a_regime(compared, regimes, standard.assumed, standard.limits))
+    return because<Code::worse_in_regime>(champion);
+  return std::nullopt;
+}
+
+/// R3. What is left without an offset has to be enough, whichever sensor's it is. The effect of a
+/// sensor in a derived input is known to the first order alone: so it must not explain more than
+/// half of what the member errs less, either.
+std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
+                                  const Comparison& compared, Finding& finding) {
+  constexpr double most_explained = 0.5;
+  const League& league = standard.league;
+  if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty()) return std::nullopt;
+  bool may_be = false;
+  for (std::size_t effect = 0; effect <= league.derived_sensors.size(); ++effect) {
+    if (effect > 0 && !std::ranges::count(league.unbound, league.derived_sensors[effect - 1]))
+      continue;
+    const WithoutOffset without =
+        without_offset(league, member, compared, effect,
+                       effect > 0 ? past_of(league, effect, standard.since) : SensorPast());
+    const ScoreSeries scores = series(without.scores.values(), standard.assumed);
+    const double wealth = log_wealth(scores, dependence(scores), 0);
+    const double mean = scores.scores.mean();
+    may_be = may_be || !(wealth > finding.log_threshold && mean > margin_of(standard.limits)) ||
+             (effect > 0 && without.explained > most_explained);
+    if (effect > 0 && wealth >= finding.wealth_without_offset) continue;
+    finding.mean_without_offset = mean;
+    finding.wealth_without_offset = wealth;
+  }
+  if (!may_be) return std::nullopt;
+  std::string sensors;
+  for (const std::string& name : league.unbound) sensors += (sensors.empty() ? "" : ", ") + name;
+  return because<Code::bias_unverified>(league.champion->version, sensors);
+}
+
+/// R5.
+std::optional<Reason> too_soon(const Standard& standard, const Member& member) {
+  const Member& champion = *standard.league.champion;
+  const Duration since = member.window.end - champion.window.end;
+  if (since <= 0 || since >= standard.limits.min_interval) return std::nullopt;
+  return because<Code::too_soon>(since, champion.version, standard.limits.min_interval);
+}
+
+}  // namespace
+
+ScoreSeries series(const std::vector<double>& scores, double assumed) {
+  return {Eigen::Map<const Vector>(scores.data(), std::ssize(scores)), largest_score,
+          blocks_of_cycle, assumed};
+}
+
+double error_probability(const EquipmentConfig& limits) {
+  return 1 - limits.confidence_percent / 100;
+}
+
+double log_threshold(const League& league, const Member& member, Time since,
+                     const EquipmentConfig& limits) {
+  constexpr double share_behind = 0.75;
+  const bool is_behind = member.window.begin >= since;
+  double k = 0;
+  for (const storage::TimeRange& window : league.admitted)
+    k += is_behind ? window.begin >= since && window.end <= member.window.end
+                   : window.begin < since && window.end >= member.window.end;
+  return std::log(std::max(1.0, k) * (k + 1) / error_probability(limits) /
+                  (is_behind ? share_behind : 1 - share_behind));
+}
+
+Finding judge_first(const League& league, const Member& member, const EquipmentConfig& limits) {
+  Finding finding;
+  finding.version = member.version;
+  Sums own;
+  Comparison simulator;
+  for_each_score(league, member, INT64_MIN, 0,
+                 [&](std::size_t i, const Block& block, const BlockScore& score) {
+                   ++finding.blocks;
+                   own.add(block, score.square);
+                   simulator.add(i, block, score, block.baseline_square);
+                 });
+  finding.mrse_percent = own.mrse_percent();
+  finding.fit_percent = own.fit_percent();
+  finding.baseline_mrse_percent = simulator.other.mrse_percent();
+  finding.recent_score = finding.log_wealth = -finding.mrse_percent;
+  const ScoreSeries scores = series(simulator.scores.values(), 0);
+  if (scores.scores.size() > 0) {
+    finding.dependence = dependence(scores);
+    finding.log_wealth = log_wealth(scores, finding.dependence, 0);
+    finding.log_threshold = log_threshold(league, member, INT64_MIN, limits);
+    finding.mean_score = scores.scores.mean();
+  }
+  finding.obstacle = [&]() -> std::optional<Reason> {
+    if (finding.blocks < blocks_of_cycle)
+      return because<Code::too_few_blocks>(finding.blocks, std::int64_t{blocks_of_cycle});
+    if (auto reason = inadmissible(finding, limits)) return reason;
+    const bool is_known = scores.scores.size() > 0;
+    const double error = is_known ? simulator.one.mrse_percent() : finding.mrse_percent;
+    const double rival =
+        is_known ? finding.baseline_mrse_percent : limits.baseline_mrse_percent.value_or(INFINITY);
+    const bool is_better = is_known ? finding.log_wealth > finding.log_threshold &&
+                                          finding.mean_score > margin_of(limits)
+                                    : error < rival;
+    if (!is_better) return because<Code::not_better_than_simulator>(error, rival);
+    return std::nullopt;
+  }();
+  return finding;
+}
+
+Finding judge_against_champion(Standard& standard, const Member& member,
+                               const Comparison& compared) {
+  const EquipmentConfig& limits = standard.limits;
+  const std::int64_t champion = standard.league.champion->version;
+  Finding finding;
+  finding.version = member.version;
+  finding.blocks = std::ssize(compared.blocks);
+  finding.log_threshold = log_threshold(standard.league, member, standard.since, limits);
+  const auto not_better = [&] {
+    return because<Code::not_better>(champion, finding.mrse_percent, finding.champion_mrse_percent,
+                                     finding.blocks, finding.log_wealth, finding.log_threshold);
+  };
+  if (compared.blocks.empty()) {
+    finding.obstacle = not_better();
+    return finding;
+  }
+  const ScoreSeries scores = series(compared.scores.values(), standard.assumed);
+  finding.dependence = dependence(scores);
+  finding.log_wealth = log_wealth(scores, finding.dependence, 0);
+  finding.mean_score = scores.scores.mean();
+  finding.mrse_percent = compared.one.mrse_percent();
+  finding.fit_percent = compared.one.fit_percent();
+  finding.champion_mrse_percent = compared.other.mrse_percent();
+  const Index recent = std::min<Index>(scores.scores.size(), 2 * blocks_of_cycle);
+  finding.recent_score = scores.scores.tail(recent).mean();
+  finding.obstacle = [&]() -> std::optional<Reason> {
+    if (auto reason = inadmissible(finding, limits)) return reason;
+    if (!(finding.log_wealth > finding.log_threshold)) return not_better();
+    if (!(finding.mean_score > margin_of(limits)))
+      return because<Code::within_margin>(champion, limits.margin_percent, finding.mrse_percent,
+                                          finding.champion_mrse_percent, finding.blocks);
+    finding.lower_score = lower_mean(scores, finding.dependence, finding.log_threshold);
+    if (auto reason = unproved_somewhere(standard, member, compared, finding)) return reason;
+    if (auto reason = may_be_bias(standard, member, compared, finding)) return reason;
+    return too_soon(standard, member);
+  }();
+  return finding;
+}
+
+}  // namespace reident
