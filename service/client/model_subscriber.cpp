@@ -38,7 +38,8 @@ bool Subscription::includes(const storage::EquipmentName& name) const {
 
 ModelSubscriber::ModelSubscriber(dds::Participant& participant, Subscription subscription,
                                  std::optional<ModelCache> cache)
-    : subscription_(std::move(subscription)),
+    : participant_(participant),
+      subscription_(std::move(subscription)),
       cache_(std::move(cache)),
       versions_(participant),
       acknowledgements_(participant),
@@ -193,11 +194,15 @@ const ModelSubscriber::Verified* ModelSubscriber::newest(
 
 std::string ModelSubscriber::unpublished_text(const storage::EquipmentName& equipment) const {
   const std::string name = equipment.spacecraft + "/" + equipment.equipment;
-  return versions_.matched_writers() > 0
-             ? "a service is heard, and none publishes a version of " + name +
-                   ": it has no champion yet, or the name is another ('reident overview')"
-             : "no service is heard, and so no version of " + name +
-                   ": look at the domain and the partition, and whether reidentd runs";
+  if (versions_.matched_writers() > 0)
+    return "a service is heard, and none publishes a version of " + name +
+           ": it has no champion yet, or the name is another ('reident overview')";
+  if (participant_.misses_security())
+    return "the domain is secured, and this simulator has no certificate: no version of " + name +
+           " comes, and no service hears it; name its folder by security_folder, --security or "
+           "REIDENT_SECURITY ('reident security grant' makes one)";
+  return "no service is heard, and so no version of " + name +
+         " comes: look at the domain and the partition, and whether reidentd runs";
 }
 
 }  // namespace reident

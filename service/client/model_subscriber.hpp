@@ -81,8 +81,8 @@ class ModelSubscriber {
   /// The newest version of an equipment that was verified; null where none came yet. Valid until
   /// the next poll().
   const Verified* newest(const storage::EquipmentName& equipment) const;
-  /// What a simulator that has no version of the equipment after `version_within` is told: whether
-  /// a service is heard in the partition, and where to look.
+  /// What a simulator is told that after `version_within` has no version of the equipment, or one
+  /// that was kept: whether a service is heard in the partition, and where to look.
   std::string unpublished_text(const storage::EquipmentName& equipment) const;
 
  private:
@@ -105,6 +105,7 @@ class ModelSubscriber {
   /// Sends the acknowledgement of an equipment as it stands now.
   void tell(const storage::EquipmentName& equipment);
 
+  const dds::Participant& participant_;
   Subscription subscription_;
   std::optional<ModelCache> cache_;
   bool handed_out_kept_ = false;

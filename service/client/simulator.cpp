@@ -123,8 +123,9 @@ void Simulator::report_unpublished() const {
   const std::string& spacecraft = options_.subscription.spacecraft;
   for (const std::string& equipment : wanted)
     if (std::none_of(equipment_.begin(), equipment_.end(), [&](const auto& running) {
-          return matches(spacecraft, running.first.spacecraft) &&
-                 matches(equipment, running.first.equipment);
+          const auto& [name, run] = running;
+          return !run.told.from_cache && matches(spacecraft, name.spacecraft) &&
+                 matches(equipment, name.equipment);
         }))
       report_.unpublished({spacecraft, equipment},
                           models_.unpublished_text({spacecraft, equipment}));

@@ -118,7 +118,8 @@ void SimulatorClient::tell_unpublished() {
     if (!run.say_unpublished || SteadyClock::now() < *run.say_unpublished) continue;
     run.say_unpublished.reset();
     const storage::EquipmentName name{run.runner->spacecraft(), run.runner->equipment()};
-    if (models_.newest(name) != nullptr) continue;
+    const auto* newest = models_.newest(name);
+    if (newest != nullptr && !newest->arrival.from_cache) continue;
     SimulatorEvent event;
     event.kind = SimulatorEvent::Kind::unpublished;
     event.equipment = name;

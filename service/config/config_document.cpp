@@ -292,19 +292,19 @@ std::vector<const toml::table*> TableReader::sections(std::string_view key) {
 
 void TableReader::refuse_unknown_keys(std::initializer_list<FormerKey> former) {
   const std::vector<std::string> known(known_.begin(), known_.end());
-  for (const auto& [key, node] : table_) {
-    if (known_.contains(key.str())) continue;
-    const auto* of_before = std::find_if(
-        former.begin(), former.end(), [&](const FormerKey& one) { return one.key == key.str(); });
+  for (const auto& entry : table_) {
+    const std::string_view key = entry.first.str();
+    if (known_.contains(key)) continue;
+    const auto* of_before = std::find_if(former.begin(), former.end(),
+                                         [&](const FormerKey& one) { return one.key == key; });
     if (of_before != former.end()) {
-      mistake(key.str(), fmt::format("{} is no key any more: {}", key.str(), of_before->remedy));
+      mistake(key, fmt::format("{} is no key any more: {}", key, of_before->remedy));
       continue;
     }
-    const std::string_view meant = nearest(key.str(), known);
-    mistake(key.str(),
-            !meant.empty()
-                ? fmt::format("{} is not known; did you mean {}?", key.str(), meant)
-                : fmt::format("{} is not known; known here: {}", key.str(), joined(known)));
+    const std::string_view meant = nearest(key, known);
+    mistake(key, !meant.empty()
+                     ? fmt::format("{} is not known; did you mean {}?", key, meant)
+                     : fmt::format("{} is not known; known here: {}", key, joined(known)));
   }
 }
 

@@ -97,6 +97,15 @@ Objects objects_of(Connection& connection) {
   return objects;
 }
 
+const Objects& expected_objects() {
+  static const Objects expected = [] {
+    Connection model(":memory:", ":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY);
+    model.execute(schema::creation());
+    return objects_of(model);
+  }();
+  return expected;
+}
+
 struct Rule {
   const char* check;
   const char* rows;  // SQL: spacecraft, name, origin (or NULL), first, last (or NULL), what
@@ -232,10 +241,9 @@ bool verify_pages(Connection& connection, bool quick, VerifyReport& report,
 }
 
 void verify_schema(Connection& connection, VerifyReport& report) {
-  Connection model(":memory:", ":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY);
-  model.execute(schema::creation());
   const sqlite::ReadTransaction snapshot(connection);
-  const Objects expected = objects_of(model), found = objects_of(connection);
+  const Objects& expected = expected_objects();
+  const Objects found = objects_of(connection);
   const auto add = [&](const auto& object, const char* what) {
     report.add({.check = "schema",
                 .what = "the " + object.first + " " + object.second + " " + what,

@@ -15,12 +15,14 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 # The largest input: what is read is longer for some than for others.
 LONGEST = {"csv_fuzz": 1024, "config_fuzz": 2048}
 SLOWEST_S = 60  # an input that takes longer is a find
+MEMORY = Path("/dev/shm")  # for the databases of some, which each input writes again
 
 
 def fuzz(build, name, arguments):
@@ -28,13 +30,14 @@ def fuzz(build, name, arguments):
     for folder in corpus, finds:
         folder.mkdir(parents=True, exist_ok=True)
     begin = time.monotonic()
-    done = subprocess.run(
-        ["nice", "-n", "19", build / "tests/fuzz" / name, corpus, f"-runs={arguments.runs}",
-         f"-max_total_time={arguments.seconds}", f"-max_len={LONGEST.get(name, 512)}",
-         f"-timeout={SLOWEST_S}", "-rss_limit_mb=3000", f"-artifact_prefix={finds}/",
-         "-print_final_stats=1", "-verbosity=0"],
-        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-        errors="replace", check=False)
+    with tempfile.TemporaryDirectory(dir=MEMORY if MEMORY.is_dir() else None) as folder:
+        done = subprocess.run(
+            ["nice", "-n", "19", build / "tests/fuzz" / name, corpus, f"-runs={arguments.runs}",
+             f"-max_total_time={arguments.seconds}", f"-max_len={LONGEST.get(name, 512)}",
+             f"-timeout={SLOWEST_S}", "-rss_limit_mb=3000", f"-artifact_prefix={finds}/",
+             "-print_final_stats=1", "-verbosity=0"],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+            errors="replace", check=False, env={**os.environ, "TMPDIR": folder})
     if done.returncode != 0:
         print(f"{name}:\n{done.stderr[-6000:]}", flush=True)
     runs = re.search(r"stat::number_of_executed_units:\s*(\d+)", done.stderr)

@@ -7,7 +7,8 @@ pair of services whose leader is killed or hangs, intruders, and a soak.
 Runs the parts (the programs in the folder operations, all of them by default) one after the other.
 Options but `--quick` are those of one part.
 Each prints one JSON object as its last line. What a part cannot measure on this machine it names in
-`left_out`, with the reason. The last line here is the union of all.
+`left_out`, with the reason. The last line here is the union of all, and the exit status is 1 where
+one of them failed, after which the others go on.
 """
 
 import json
@@ -19,15 +20,17 @@ FOLDER = Path(__file__).resolve().with_suffix("")
 
 
 def run(part, arguments):
-    """The object of its last line."""
+    """Whether it succeeded, and the object of its last line, if it has one."""
     last = ""
     with subprocess.Popen([sys.executable, str(FOLDER / f"{part}.py"), *arguments],
                           stdout=subprocess.PIPE, text=True) as running:
         for last in running.stdout:
             print(last, end="", flush=True)
-    if running.returncode != 0:
-        sys.exit(f"{part} failed")
-    return json.loads(last)
+    try:
+        figures = json.loads(last)
+    except json.JSONDecodeError:
+        return False, {}
+    return running.returncode == 0, figures
 
 
 def main():
@@ -39,13 +42,17 @@ def main():
     parts = sorted(path.stem for path in FOLDER.glob("[a-z]*.py"))
     if unknown := set(wanted) - set(parts):
         sys.exit(f"no such part: {', '.join(unknown)}; there are {', '.join(parts)}")
-    figures, left_out = {}, {}
+    figures, left_out, failed = {}, {}, []
     for part in wanted or parts:
-        of_part = run(part, [build, *options])
+        succeeded, of_part = run(part, [build, *options])
+        if not succeeded:
+            print(f"{part} failed", flush=True)
+            failed.append(part)
         left_out.update(of_part.pop("left_out", {}))
         figures.update(of_part)
     left_out.update({part: "not asked for" for part in parts if wanted and part not in wanted})
-    print(json.dumps({**figures, "left_out": left_out}))
+    print(json.dumps({**figures, "failed": failed, "left_out": left_out}))
+    sys.exit(bool(failed))
 
 
 if __name__ == "__main__":

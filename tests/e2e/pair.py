@@ -131,6 +131,10 @@ class PairOfServices(EndToEnd):
             role(follower) == "follows" and statuses[follower]["pair"]["lag"] == 0
             and statuses[strength]["pair"]["lag"] == 0))
 
+    def alarms_of(self, strength, host=None):
+        """None where it is not heard at the moment."""
+        return self.statuses(host).get(strength, {"alarms": []})["alarms"]
+
     def start_both(self):
         for strength in 2, 1:
             self.start_side(strength)

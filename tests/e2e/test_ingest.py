@@ -254,9 +254,9 @@ class Faults(EndToEnd):
         self.assertEqual(source.terminate()[0], 128 + signal.SIGTERM, source.text())
         self.wait_idle()
         lost = json.loads(source.out.read_text())["lost"][-1]  # before, some may have come too early
-        holes = self.query("SELECT first, last, time_before, time_after FROM telemetry_gap")
-        self.assertEqual(len(holes), 1, holes)
-        first, last, before, after = holes[0]
+        *early, (first, last, before, after) = self.query(
+            "SELECT first, last, time_before, time_after FROM telemetry_gap ORDER BY first")
+        self.assertLessEqual(len(early), 1, early)
         self.assertEqual(after - before, (last - first + 2) * NS, "a frame each second")
         # The source learns a moment later who hears it, and who does not.
         self.assertAlmostEqual(lost["frames"], last - first + 1, delta=100)

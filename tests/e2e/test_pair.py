@@ -139,8 +139,7 @@ class Pair(PairOfServices, test_web.WebCase):
         self.start_side(2)
         wait_until(lambda: self.leads(2), "2 leads")
         self.start_side(1)
-        wait_until(lambda: any("cannot_follow" in alarm
-                               for alarm in self.statuses()[1]["alarms"]), "it says so")
+        wait_until(lambda: any("cannot_follow" in alarm for alarm in self.alarms_of(1)), "it says so")
         self.start_web(config="2.toml")
         wait_until(lambda: any(alarm["code"] == "cannot_follow" and "reident-1" in alarm["text"]
                                for alarm in self.api("overview")["alarms"]), "and so does the page")
@@ -195,8 +194,8 @@ class Pair(PairOfServices, test_web.WebCase):
         overruled = self.ask(2, "SELECT service, version FROM overruled_decision "
                                 "WHERE kind = 'approve'")
         self.assertIn(("reident-2", champions[2]), overruled)
-        wait_until(lambda: any(alarm.startswith("overruled: ") for alarm in
-                               self.statuses(hosts[1])[1]["alarms"]), "an alarm says so")
+        wait_until(lambda: any(alarm.startswith("overruled: ")
+                               for alarm in self.alarms_of(1, hosts[1])), "an alarm says so")
 
 
 if __name__ == "__main__":

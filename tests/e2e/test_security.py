@@ -83,14 +83,20 @@ class SecuredLoop(Secured):
         status, text = self.configured("simulators", "--security", ana, "--json")
         self.assertEqual([one["simulator"] for one in json.loads(text)["simulators"]], ["trainer"])
 
-    def test_without_a_certificate_commands_say_that_the_domain_is_secured(self):
+    def test_without_a_certificate_programs_say_that_the_domain_is_secured(self):
         self.configure_secured(self.site.grant("service", "reident-1"))
         self.start_daemon()
-        for arguments in (["status"], ["simulators"], ["--remote", "history"],
-                          ["hold", "PLANT"]):
+        simulator = self.start_simulator("trainer")
+        for arguments in (["status", "--timeout", 3], ["simulators"],
+                          ["--remote", "history", "--timeout", 3],
+                          ["hold", "PLANT", "--timeout", 3]):
             status, text = self.reident(*arguments, *self.endpoint())
             self.assertEqual(status, 2, text)
             self.assertIn("REIDENT_SECURITY", text)
+        told = wait_until(simulator.out.read_text, "the simulator says why it has no version")
+        event = json.loads(told.splitlines()[0])
+        self.assertEqual((event["event"], event["equipment"]), ("unpublished", "PLANT"))
+        self.assertIn("REIDENT_SECURITY", event["reason"])
 
     def test_a_role_that_may_not_order_is_refused(self):
         self.configure_secured(self.site.grant("service", "reident-1"))

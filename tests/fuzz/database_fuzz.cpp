@@ -1,6 +1,5 @@
 // A database with any damage is opened for reading and read, or refused with a reason; whatever it
 // holds, nothing but storage's error ends a read. The bytes are places and new bytes of a good one.
-// TMPDIR is best in memory.
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -89,9 +88,9 @@ void look(const Action& action) {
 void read(Database& database) {
   const Archive archive(database);
   const Registry registry(database);
-  constexpr TimeRange always{std::numeric_limits<Time>::min(), std::numeric_limits<Time>::max()};
   for (std::uint32_t id = 1; id <= 3; ++id) {
-    look([&] { archive.read_with_sources("SAT", Origin::real, id, always); });
+    // A range of all time makes room for millions of samples, which takes longer than all else.
+    look([&] { archive.read_with_sources("SAT", Origin::real, id, {-hour, hour}); });
     look([&] { archive.first_at_or_after("SAT", Origin::real, id, 100 * second_ns); });
   }
   look([&] { archive.parameters("SAT"); });

@@ -332,6 +332,7 @@ def main():
                                 "hold the same programs under a lower number, next to a database "
                                 "of schema 3"}}
     print(json.dumps(figures))
+    sys.exit(not all(figures["package_steps"].values()))
 
 
 if __name__ == "__main__":

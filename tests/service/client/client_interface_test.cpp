@@ -13,6 +13,7 @@
 
 #include "tests/service/client/live_telemetry.hpp"
 #include "tests/service/dds/dds_fixture.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace reident::test::client_interface_test {
 namespace {
@@ -103,13 +104,25 @@ TEST_F(ClientInterface, RunsAVersionFromTheStepAfterItCameAndReportsIt) {
   EXPECT_EQ(told->running.since, swapped.time_ns);
 }
 
-TEST_F(ClientInterface, SaysOnceThatNobodyPublishesAnEquipment) {
+TEST_F(ClientInterface, SaysOnceThatNobodyPublishesAnEquipmentAlsoWhereAVersionWasKept) {
+  const TemporaryFolder folder;
+  open(folder.path());
+  EquipmentModel battery = example_model();
+  battery.equipment = "BAT1";
+  versions_->write(version_of(1, battery));
+  event(Kind::available);
+  client_.reset();
+  versions_.emplace(service_);  // a service that knows no battery
   versions_->write(example_version(1));
+  open(folder.path());
   Runner published(*client_, "CBERS4", "BDR", inputs, outputs);
-  Runner runner(*client_, "CBERS4", "BRD", inputs, outputs);
-  const ClientEvent said = event(Kind::unpublished);
-  EXPECT_EQ(said.spacecraft + "/" + said.equipment, "CBERS4/BRD");
-  EXPECT_THAT(said.text, HasSubstr("CBERS4/BRD"));
+  Runner kept(*client_, "CBERS4", "BAT1", inputs, outputs);
+  Runner unknown(*client_, "CBERS4", "BRD", inputs, outputs);
+  for (const std::string name : {"BAT1", "BRD"}) {
+    const ClientEvent said = event(Kind::unpublished);
+    EXPECT_EQ(said.equipment, name);
+    EXPECT_THAT(said.text, HasSubstr("CBERS4/" + name));
+  }
   while (const auto next = client_->next_event(100)) EXPECT_NE(next->kind, Kind::unpublished);
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <string>
 
 #include <dds/dds.h>
@@ -14,11 +15,13 @@
 
 namespace {
 
-dds_qos_t* state_qos() {
-  dds_qos_t* qos = dds_create_qos();
-  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(10));
-  dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
-  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
+
+Qos state_qos() {
+  Qos qos(dds_create_qos(), dds_delete_qos);
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(10));
+  dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
   return qos;
 }
 
@@ -27,7 +30,7 @@ template <class Print>
 int take_one(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition,
              const Print& print) {
   const dds_entity_t subscriber = dds_create_subscriber(participant, partition, nullptr);
-  const dds_entity_t reader = dds_create_reader(subscriber, topic, state_qos(), nullptr);
+  const dds_entity_t reader = dds_create_reader(subscriber, topic, state_qos().get(), nullptr);
   const dds_entity_t wait_set = dds_create_waitset(participant);
   dds_waitset_attach(wait_set, dds_create_readcondition(reader, DDS_ANY_STATE), 0);
   if (dds_waitset_wait(wait_set, nullptr, 0, DDS_SECS(20)) <= 0) return 3;
@@ -62,7 +65,7 @@ int hear(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partitio
 int say(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* partition,
         const void* sample) {
   const dds_entity_t publisher = dds_create_publisher(participant, partition, nullptr);
-  const dds_entity_t writer = dds_create_writer(publisher, topic, state_qos(), nullptr);
+  const dds_entity_t writer = dds_create_writer(publisher, topic, state_qos().get(), nullptr);
   if (dds_write(writer, sample) != DDS_RETCODE_OK) return 5;
   dds_sleepfor(DDS_SECS(60));
   return 0;
@@ -125,10 +128,10 @@ int main(int argc, char** argv) {
       participant, about_versions ? &reident_ModelVersion_desc : &reident_ModelAcknowledgement_desc,
       about_versions ? "reident/ModelVersion" : "reident/ModelAcknowledgement", nullptr, nullptr);
   if (topic < 0) return 1;
-  dds_qos_t* partition = dds_create_qos();
-  dds_qset_partition1(partition, argv[3]);
-  if (std::strcmp(argv[1], "read") == 0) return read(participant, topic, partition);
-  if (std::strcmp(argv[1], "write") == 0) return write(participant, topic, partition);
-  if (std::strcmp(argv[1], "hear") == 0) return hear(participant, topic, partition);
-  return acknowledge(participant, topic, partition);
+  const Qos partition(dds_create_qos(), dds_delete_qos);
+  dds_qset_partition1(partition.get(), argv[3]);
+  if (std::strcmp(argv[1], "read") == 0) return read(participant, topic, partition.get());
+  if (std::strcmp(argv[1], "write") == 0) return write(participant, topic, partition.get());
+  if (std::strcmp(argv[1], "hear") == 0) return hear(participant, topic, partition.get());
+  return acknowledge(participant, topic, partition.get());
 }

@@ -96,7 +96,7 @@ enum {
                                    not what the runner declares: see reident_accept */
   REIDENT_EVENT_CACHE = 5,      /* the file of last good versions could not be read or written */
   REIDENT_EVENT_FAULT = 6,      /* the middleware failed; the runs go on */
-  REIDENT_EVENT_UNPUBLISHED = 7 /* no version came within 5 s after a runner was opened */
+  REIDENT_EVENT_UNPUBLISHED = 7 /* none was published within 5 s after a runner was opened */
 };
 
 /* One event. What does not belong to its kind is 0 or "". */

@@ -17,7 +17,7 @@ class EventKind(enum.IntEnum):
     OFFERED = 4  # its signals differ from those that run: Runner.accept() takes it
     CACHE = 5  # the file of last good versions could not be read or written
     FAULT = 6  # the middleware would not; the runs go on
-    UNPUBLISHED = 7  # no version came within 5 s after a runner was opened
+    UNPUBLISHED = 7  # none was published within 5 s after a runner was opened
 
 
 class Flags(enum.IntFlag):
