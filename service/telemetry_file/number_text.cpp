@@ -89,7 +89,8 @@ bool take_exponent(std::string_view& text, std::string& plain, unsigned& spellin
   std::size_t at = 1;
   if (at < text.size() && (text[at] == '+' || text[at] == '-')) ++at;
   const std::size_t digits = leading_digits(text.substr(at));
-  if (digits == 0) return false;
+  // 6D91 is hexadecimal.
+  if (digits == 0 || (d && at == 1 && plain.find('.') == std::string::npos)) return false;
   plain += 'e';
   plain += text.substr(text[1] == '+' ? 2 : 1, at + digits - (text[1] == '+' ? 2 : 1));
   text.remove_prefix(at + digits);
