@@ -17,6 +17,7 @@
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/version.hpp"
+#include "service/windows/ticks.hpp"
 #include "storage/archive/holdings.hpp"
 
 namespace reident {
@@ -144,6 +145,7 @@ Daemon::Daemon(const Config& config, Clock clock, Clock uptime)
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
       kept_.push_back(window_cache_of(spacecraft.name, equipment));
+  is_advised_.resize(kept_.size());
   storage::Database database(config.database, storage::Database::Mode::read_only);
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
@@ -244,9 +246,21 @@ AttemptContext Daemon::attempt_context(const storage::Registry& registry) {
           &leagues_};
 }
 
+/// Says once of each equipment which ticks suit its telemetry.
+void Daemon::advise(const WindowFeed::Job& job, const storage::Archive& archive) {
+  char& is_advised = is_advised_[job.window.equipment];
+  if (is_advised) return;
+  const auto advice =
+      advised_phase(archive, *job.spacecraft, *job.equipment, job.window.window.end);
+  if (!advice) return;
+  is_advised = true;
+  log::warning("identify", *advice, {{"equipment", *job.spacecraft + "/" + job.equipment->name}});
+}
+
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
                       const storage::Registry& registry) {
   const AttemptContext context = attempt_context(registry);
+  advise(job, archive);
   try {
     const auto attempt =
         attempt_window(job, archive, registry, kept_[job.window.equipment], context);

@@ -70,6 +70,7 @@ class Daemon {
   /// For the thread whose database `registry` reads.
   AttemptContext attempt_context(const storage::Registry& registry);
   /// False when the service stops before the window is decided.
+  void advise(const WindowFeed::Job& job, const storage::Archive& archive);
   bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
                 const storage::Registry& registry);
   /// What follows from an attempt that was committed.
@@ -105,6 +106,7 @@ class Daemon {
   std::optional<Ingest> ingest_;  // ends before the middleware hears again
   /// By equipment, which has one job at a time: the job's thread owns its entry.
   std::vector<WindowCache> kept_;
+  std::vector<char> is_advised_;  // whether the log says which ticks suit its telemetry
 
   std::thread ingest_thread_, writer_thread_, desk_thread_, history_thread_, monitor_thread_,
       pair_thread_;
