@@ -240,7 +240,14 @@ std::optional<std::int64_t> take_clock(Parts& text, bool has_passed = false) {
     if (!hours || separator == '\0' || !minutes) return std::nullopt;
     hour = *hours;
     minute = *minutes;
-    if (text.take(separator)) {
+    Parts ahead = text.saved();
+    if (separator == ':' && ahead.take_any(".,") != '\0' && ahead.digits() > 0) {
+      // Parts of a second stand behind seconds: 59:30.5 are minutes and seconds.
+      if (!has_passed || hour > 59) return std::nullopt;
+      second = minute;
+      minute = hour;
+      hour = 0;
+    } else if (text.take(separator)) {
       const auto seconds = text.whole(2, 2);
       if (!seconds) return std::nullopt;
       second = *seconds;

@@ -122,6 +122,9 @@ TEST(TelemetryClock, ReadsWhatIsSaidOfIt) {
   EXPECT_EQ(first_time("a,b", {"2024061,43200", "2024061,43260"}, columns), "2024-03-01T12:00:00Z");
   EXPECT_EQ(first_time("a,b", {"2024061,120000", "2024061,120010"}, columns),
             "2024-03-01T12:00:00Z");
+  TimeOptions named;
+  named.column = "tnum";
+  EXPECT_EQ(first_time("tnum", {"739310.9166666666"}, named), "2024-02-28T22:00:00Z");
   columns.column = "day,sod";
   EXPECT_EQ(first_time("day,sod", {"2024061,43200.5"}, columns), "2024-03-01T12:00:00.5Z");
 }
@@ -133,6 +136,7 @@ TEST(TelemetryClock, ReadsTimesThatHavePassedAsTheyAreWritten) {
                                          {"elapsed", "1 02:00:10", "2024-02-29T02:00:10Z"},
                                          {"t", "01:02:00:10", "2024-02-29T02:00:10Z"},
                                          {"t", "26:00:10", "2024-02-29T02:00:10Z"},
+                                         {"Time", "59:10.5", "2024-02-28T00:59:10.5Z"},
                                          {"Time", "10 sec", "2024-02-28T00:00:10Z"},
                                          {"t (min)", "0.166667", "2024-02-28T00:00:10Z"},
                                          {"Time [h]", "0.00277778", "2024-02-28T00:00:10Z"}})
