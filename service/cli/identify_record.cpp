@@ -7,9 +7,9 @@
 
 #include "identification/samples/grid.hpp"
 #include "identification/samples/tick_ranges.hpp"
-#include "service/cli/identify_ticks.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/support/time_text.hpp"
+#include "service/windows/ticks.hpp"
 
 namespace reident::cli {
 namespace {

@@ -17,6 +17,7 @@
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/version.hpp"
+#include "service/windows/ticks.hpp"
 #include "storage/archive/holdings.hpp"
 
 namespace reident {
@@ -143,7 +144,7 @@ Daemon::Daemon(const Config& config, Clock clock, Clock uptime)
       ingest_(std::in_place, participant_, config, queue_, simulators_, clock_) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      kept_.push_back({window_cache_of(spacecraft.name, equipment), {}});
+      kept_.push_back({window_cache_of(spacecraft.name, equipment)});
   storage::Database database(config.database, storage::Database::Mode::read_only);
   const storage::Registry registry(database);
   feed_.recover(storage::Archive(database), registry);
@@ -244,9 +245,21 @@ AttemptContext Daemon::attempt_context(const storage::Registry& registry) {
           &leagues_};
 }
 
+/// Says once of each equipment which ticks suit its telemetry.
+void Daemon::advise(const WindowFeed::Job& job, const storage::Archive& archive) {
+  bool& is_advised = kept_[job.window.equipment].is_advised;
+  if (is_advised) return;
+  const auto advice =
+      advised_phase(archive, *job.spacecraft, *job.equipment, job.window.window.end);
+  if (!advice) return;
+  is_advised = true;
+  log::warning("identify", *advice, {{"equipment", *job.spacecraft + "/" + job.equipment->name}});
+}
+
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
                       const storage::Registry& registry) {
   const AttemptContext context = attempt_context(registry);
+  advise(job, archive);
   try {
     const auto attempt =
         attempt_window(job, archive, registry, kept_[job.window.equipment].windows, context);

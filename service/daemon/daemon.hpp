@@ -70,6 +70,7 @@ class Daemon {
   /// For the thread whose database `registry` reads.
   AttemptContext attempt_context(const storage::Registry& registry);
   /// False when the service stops before the window is decided.
+  void advise(const WindowFeed::Job& job, const storage::Archive& archive);
   bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
                 const storage::Registry& registry);
   /// What follows from an attempt that was committed.
@@ -106,7 +107,8 @@ class Daemon {
   /// What the jobs of one equipment leave for the next.
   struct Kept {
     WindowCache windows;
-    RepeatedError failure;
+    RepeatedError failure{};
+    bool is_advised = false;  // whether the log says which ticks suit its telemetry
   };
   /// By equipment, which has one job at a time: the job's thread owns its entry.
   std::vector<Kept> kept_;

@@ -72,11 +72,18 @@ bool is_missing(std::string_view cell, const std::vector<std::string>& missing) 
   });
 }
 
+/// What programs write for no value in a column of numbers.
+bool means_no_value(std::string_view word) {
+  constexpr std::array<std::string_view, 10> words = {"NA",   "N/A",  "<NA>", "#N/A", "NULL",
+                                                      "null", "None", "\\N",  "NaT",  "missing"};
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 /// "1 (ON)" and "ON (1)": the word and its number.
 std::optional<std::pair<std::string, double>> coded_state(std::string_view cell) {
+  if (cell.empty() || (cell.back() != ')' && cell.back() != ']')) return std::nullopt;
   const auto open = cell.find_first_of("([");
-  if (open == std::string_view::npos || (cell.back() != ')' && cell.back() != ']'))
-    return std::nullopt;
+  if (open == std::string_view::npos) return std::nullopt;
   const std::string_view outside = trimmed(cell.substr(0, open));
   const std::string_view within = trimmed(cell.substr(open + 1, cell.size() - open - 2));
   if (outside.empty() || within.empty()) return std::nullopt;
@@ -274,9 +281,13 @@ Cell read_cell(std::string_view text, const CellFormat& format) {
   }
   if (format.spelling == 0 && format.style.decimal == '.') {
     if (const auto value = plain_number(text)) return {Cell::Kind::number, *value, false};
-    return {trimmed(text).empty() ? Cell::Kind::blank : Cell::Kind::bad, 0, false};
+    const std::string_view word = trimmed(text);
+    if (means_no_value(word)) return {Cell::Kind::missing, 0, false};
+    return {word.empty() ? Cell::Kind::blank : Cell::Kind::bad, 0, false};
   }
   if (trimmed(text).empty()) return {};
+  if (format.kind == CellFormat::Kind::number && means_no_value(trimmed(text)))
+    return {Cell::Kind::missing, 0, false};
   const auto number = read_number(text, format.style);
   if (!number || (number->spelling & ~(format.spelling | grouped | decimal_comma)) != 0)
     return {Cell::Kind::bad, 0, false};

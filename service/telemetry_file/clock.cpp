@@ -112,6 +112,13 @@ std::optional<std::int64_t> Clock::read_number_of(std::string_view cell) const {
     with_point = without_thousands(cell, has_decimal_comma_ ? ',' : '.');
     cell = with_point;
   }
+  if (const auto at = cell.find_first_of("Dd");
+      at != std::string_view::npos && at + 1 < cell.size() &&
+      std::string_view("+-0123456789").find(cell[at + 1]) != std::string_view::npos) {
+    with_point = cell;  // 0.5D+02
+    with_point[at] = 'e';
+    cell = with_point;
+  }
   const auto serial = [&](std::int64_t origin_days, std::int64_t half_days = 0) {
     return rounded(parse_count(cell, day_ns, origin_days * day_s + half_days * day_s / 2),
                    quantum_ns_);

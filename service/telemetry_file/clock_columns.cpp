@@ -171,7 +171,11 @@ bool ClockFinder::counts_seconds(std::size_t c) const {
 /// A date and a time of day side by side.
 bool ClockFinder::find_date_and_clock() {
   const auto date = part(TimePart::date);
-  return date && join(*date, clock_beside(*date));
+  if (!date) return false;
+  auto clock = clock_beside(*date);
+  if (!clock && is_date_alone(first_cell(*date).first, clock_.order_))
+    clock = part(TimePart::second_of_day);
+  return join(*date, clock);
 }
 
 /// The time of day that belongs to a column of dates alone.
@@ -236,6 +240,8 @@ std::optional<Problem> ClockFinder::choose_columns() {
     if (!read_number(first_cell(c).first, head_.style) &&
         read_date_text(first_cell(c).first, clock_.order_))
       return choose({c});
+  // Below the first name stands the unit of a time.
+  if (!head_.names.empty() && hint_of({}, unit(0)).unit_ns && holds_time(0)) return choose({0});
   return Problem{head_.lines.empty() ? 0 : head_.lines.front(),
                  "no column looks like a time; name it with --time (the columns are: " +
                      joined(head_.names) + ")"};

@@ -314,7 +314,8 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
   for (const TimeFormat format : {TimeFormat::filetime, TimeFormat::dotnet, TimeFormat::jd,
                                   TimeFormat::matlab, TimeFormat::excel, TimeFormat::mjd}) {
     if (!in_window(values, format, second_ns)) continue;
-    const bool is_fine = decimals >= min_serial_decimals && is_named_like_a_time(head_.names[c]);
+    const bool is_fine = decimals >= min_serial_decimals &&
+                         (options_.column || is_named_like_a_time(head_.names[c]));
     if (format != TimeFormat::filetime && format != TimeFormat::dotnet &&
         format != TimeFormat::jd && !is_fine)
       continue;

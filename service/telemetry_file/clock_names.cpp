@@ -32,9 +32,9 @@ std::optional<std::int64_t> unit_of(const std::string& word) {
       {"usec", 1000},      {"\xC2\xB5s", 1000}, {"microseconds", 1000}, {"ms", ms},
       {"msec", ms},        {"millis", ms},      {"milliseconds", ms},   {"millisec", ms},
       {"millisecond", ms}, {"micros", 1000},    {"microsecond", 1000},  {"s", s},
-      {"sec", s},          {"secs", s},         {"seconds", s},         {"min", 60 * s},
-      {"minutes", 60 * s}, {"h", 3600 * s},     {"hours", 3600 * s},    {"d", 86400 * s},
-      {"days", 86400 * s}};
+      {"sec", s},          {"secs", s},         {"second", s},          {"seconds", s},
+      {"min", 60 * s},     {"minutes", 60 * s}, {"h", 3600 * s},        {"hours", 3600 * s},
+      {"d", 86400 * s},    {"days", 86400 * s}};
   const auto found = units.find(word);
   return found == units.end() ? std::nullopt : std::optional(found->second);
 }
@@ -134,8 +134,8 @@ bool is_named_like_a_time(std::string_view name) {
     }
     all += word;
   }
-  constexpr std::array<std::string_view, 8> hints = {"time",  "unix", "date",  "utc",
-                                                     "epoch", "zeit", "datum", "stamp"};
+  constexpr std::array<std::string_view, 9> hints = {"time", "unix",  "date",  "utc",    "epoch",
+                                                     "zeit", "datum", "stamp", "elapsed"};
   return std::any_of(hints.begin(), hints.end(),
                      [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
 }
@@ -182,6 +182,9 @@ TimePart part_of(std::string_view name) {
       {"data", TimePart::date},
       {"fecha", TimePart::date},
       {"utcdate", TimePart::date},
+      {"yyyyddd", TimePart::date},
+      {"yyyydoy", TimePart::date},
+      {"yyyymmdd", TimePart::date},
       {"dateutc", TimePart::date},
       {"time", TimePart::clock},
       {"clock", TimePart::clock},

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include "service/support/text.hpp"
 #include "service/telemetry_file/time_units.hpp"
@@ -197,7 +198,7 @@ std::optional<std::int64_t> take_year_last(Parts& text, DateOrder order, char& s
     const bool is_short = text.digits() == 2;
     first = text.whole(1, 2);
     separator = text.take_any("-/. ");
-    if (is_short && (separator == '-' || separator == '/') && text.digits() == 3) {
+    if (is_short && separator != ' ' && text.digits() == 3) {
       const auto days = days_of_ordinal(2000 + *first, text.number(3));  // 24-059T22:00
       return text.empty() ? std::nullopt : days;
     }
@@ -239,7 +240,14 @@ std::optional<std::int64_t> take_clock(Parts& text, bool has_passed = false) {
     if (!hours || separator == '\0' || !minutes) return std::nullopt;
     hour = *hours;
     minute = *minutes;
-    if (text.take(separator)) {
+    Parts ahead = text.saved();
+    if (separator == ':' && ahead.take_any(".,") != '\0' && ahead.digits() > 0) {
+      // Parts of a second stand behind seconds: 59:30.5 are minutes and seconds.
+      if (!has_passed || hour > 59) return std::nullopt;
+      second = minute;
+      minute = hour;
+      hour = 0;
+    } else if (text.take(separator)) {
       const auto seconds = text.whole(2, 2);
       if (!seconds) return std::nullopt;
       second = *seconds;
@@ -362,6 +370,25 @@ std::string_view without_brackets(std::string_view cell) {
   return has_brackets ? trimmed(cell.substr(1, cell.size() - 2)) : cell;
 }
 
+/// 2024\u5E7402\u670828\u65E5 22\u664200\u520600\u79D2 as 2024-02-28 22:00:00.
+std::string without_ideographs(std::string_view cell) {
+  constexpr std::array<std::pair<std::string_view, char>, 7> meanings = {{{"\xE5\xB9\xB4", '-'},
+                                                                          {"\xE6\x9C\x88", '-'},
+                                                                          {"\xE6\x97\xA5", ' '},
+                                                                          {"\xE6\x99\x82", ':'},
+                                                                          {"\xE6\x97\xB6", ':'},
+                                                                          {"\xE5\x88\x86", ':'},
+                                                                          {"\xE7\xA7\x92", ' '}}};
+  std::string text;
+  while (!cell.empty()) {
+    const auto* found = std::find_if(meanings.begin(), meanings.end(),
+                                     [&](const auto& one) { return cell.starts_with(one.first); });
+    text += found == meanings.end() ? cell.front() : found->second;
+    cell.remove_prefix(found == meanings.end() ? 1 : found->first.size());
+  }
+  return std::string(trimmed(text));
+}
+
 }  // namespace
 
 std::optional<std::int64_t> read_offset(std::string_view text) {
@@ -371,6 +398,8 @@ std::optional<std::int64_t> read_offset(std::string_view text) {
 }
 
 std::optional<DateText> read_date_text(std::string_view cell, DateOrder order) {
+  if (cell.size() > 6 && cell.substr(4).starts_with("\xE5\xB9\xB4"))  // the year's ideograph
+    return read_date_text(without_ideographs(cell), order);
   Parts text(without_brackets(cell));
   DateText read;
   if (text.digits() <= 5 && cell.find(':') != std::string_view::npos)
@@ -392,6 +421,7 @@ std::optional<DateText> read_date_text(std::string_view cell, DateOrder order) {
       !(separator != '\0' && text.take(separator)) && !text.take_any(":/-"))
     return std::nullopt;
   text.take_blanks();
+  if (text.take('@')) text.take_blanks();  // Feb 28, 2024 @ 22:00
   const auto clock = take_clock(text);
   if (!clock || !take_offset(text, read.offset_ns)) return std::nullopt;
   return with_day(read, *days, *clock);

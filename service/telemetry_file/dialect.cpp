@@ -2,190 +2,14 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "service/support/text.hpp"
-#include "service/telemetry_file/clock_names.hpp"
 #include "service/telemetry_file/head_lines.hpp"
+#include "service/telemetry_file/header_finder.hpp"
 #include "service/telemetry_file/row_shape.hpp"
 
 namespace reident::telemetry_file {
 namespace {
-
-constexpr std::size_t rows_above_a_header = 5;  // of metadata that look like data
-
-/// Which columns of the rows hold values.
-std::vector<bool> value_columns(const HeadLines& lines, const std::string& comment,
-                                std::size_t usual) {
-  std::vector<const HeadLine*> rows;  // each text once: a header may come again
-  std::set<std::string_view> seen;
-  for (const HeadLine& line : lines)
-    if (!is_comment(line, comment) && line.cells.size() >= usual && seen.insert(line.text).second)
-      rows.push_back(&line);
-  std::vector<std::size_t> values(usual), cells(usual);
-  for (std::size_t i = rows.size() / 2; i < rows.size(); ++i)
-    for (std::size_t c = 0; c < usual; ++c) {
-      if (trimmed(rows[i]->cells[c]).empty()) continue;
-      ++cells[c];
-      if (looks_like_value(rows[i]->cells[c])) ++values[c];
-    }
-  std::vector<bool> result(usual);
-  for (std::size_t c = 0; c < usual; ++c) result[c] = values[c] * 2 > cells[c];
-  return result;
-}
-
-/// Whether a line is a row: a value stands in a column of values.
-bool is_row(const HeadLine& line, const std::vector<bool>& values) {
-  for (std::size_t c = 0; c < values.size() && c < line.cells.size(); ++c)
-    if (values[c] && looks_like_value(line.cells[c])) return true;
-  return false;
-}
-
-/// Where a name stands in the column that all rows begin with, numbers are names of parameters.
-bool names_parameters(const HeadLine& line, const std::vector<bool>& values) {
-  const auto first = std::find(values.begin(), values.end(), true);
-  if (first == values.end()) return true;
-  const std::string& cell = line.cells[static_cast<std::size_t>(first - values.begin())];
-  return !trimmed(cell).empty() && !looks_like_value(cell) &&
-         trimmed(cell).find_first_of("0123456789#") == std::string_view::npos;
-}
-
-/// HeadLines by their number among those of the usual number of cells.
-class Head {
- public:
-  Head(const HeadLines& lines, const std::string& comment, std::size_t usual)
-      : lines_(lines),
-        comment_(comment),
-        usual_(usual),
-        values_(value_columns(lines, comment, usual)) {}
-
-  bool has_cells(std::size_t i) const {
-    const HeadLine& line = lines_[i];
-    if (is_blank(line) || is_comment(line, comment_)) return false;
-    const std::size_t count = line.cells.size();
-    return count == usual_ || (count == usual_ + 1 && trimmed(line.cells.back()).empty());
-  }
-  /// A line of names, units or descriptions.
-  bool is_text(std::size_t i, bool is_first) const {
-    if (!has_cells(i)) return false;
-    if (std::find(values_.begin(), values_.end(), true) == values_.end()) return is_first;
-    if (!is_row(lines_[i], values_)) return true;
-    return is_first && names_parameters(lines_[i], values_);
-  }
-  /// The first line of the rows: behind the last lines of text at the top.
-  std::size_t first_row() const {
-    std::size_t rows = 0, last_text = lines_.size();
-    std::set<std::string_view> seen;
-    bool is_first = true;
-    for (std::size_t i = 0; i < lines_.size() && rows <= rows_above_a_header; ++i) {
-      if (!has_cells(i)) continue;
-      if (is_text(i, is_first)) {
-        if (seen.insert(lines_[i].text).second) last_text = i;
-      } else {
-        ++rows;
-      }
-      is_first = false;
-    }
-    for (std::size_t i = last_text == lines_.size() ? 0 : last_text + 1; i < lines_.size(); ++i)
-      if (has_cells(i) ||
-          (!is_blank(lines_[i]) && !is_comment(lines_[i], comment_) && last_text != lines_.size()))
-        return i;
-    return lines_.size();
-  }
-  /// The lines of text right above the rows, the upper one first.
-  std::vector<std::size_t> block_above(std::size_t first_row) const {
-    std::vector<std::size_t> block;
-    for (std::size_t i = first_row; i-- > 0;) {
-      if (is_blank(lines_[i]) || is_comment(lines_[i], comment_)) {
-        if (block.empty()) continue;
-        break;
-      }
-      if (!is_text(i, true)) break;
-      block.insert(block.begin(), i);
-    }
-    return block;
-  }
-
- private:
-  const HeadLines& lines_;
-  const std::string& comment_;
-  std::size_t usual_;
-  std::vector<bool> values_;
-};
-
-/// Whether a word says of what clock a column of times is, as MEZ, or how they are written.
-bool is_of_a_clock(std::string_view word) {
-  const std::string_view pattern = "dDmMyYhHsSaAjJ.-/: T";
-  const bool is_pattern =
-      word.find_first_not_of(pattern) == std::string_view::npos &&
-      (word.find("yy") != std::string_view::npos || word.find("YY") != std::string_view::npos ||
-       word.find("hh") != std::string_view::npos || word.find("HH") != std::string_view::npos);
-  return is_pattern || zone_hint_of({}, word);
-}
-
-bool are_units(const HeadLine& line) {
-  bool any = false;
-  for (const std::string& cell : line.cells) {
-    const std::string_view word = trimmed(cell);
-    if (word.empty() || word == "-") continue;
-    if (!is_unit_word(word) && !is_of_a_clock(word)) return false;
-    any = true;
-  }
-  return any;
-}
-
-/// Whether no name has a blank in it, as those of programs.
-bool are_identifiers(const HeadLine& line) {
-  return std::none_of(line.cells.begin(), line.cells.end(), [](const std::string& cell) {
-    return trimmed(cell).find(' ') != std::string_view::npos;
-  });
-}
-
-bool are_names(const HeadLine& line) {
-  std::set<std::string_view> seen;
-  std::size_t empty = 0;
-  for (const std::string& cell : line.cells) {
-    if (trimmed(cell).empty())
-      ++empty;
-    else if (!seen.insert(trimmed(cell)).second)
-      return false;
-  }
-  return empty <= 1;
-}
-
-/// The header among lines of text: the one with the names that are wanted; the one above units;
-/// the upper of two, whose lower one describes, unless the upper one alone has blanks in its names.
-std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& block,
-                      const std::vector<std::string>& wanted) {
-  for (const std::size_t i : block) {
-    const auto& cells = lines[i].cells;
-    const bool has_all = std::all_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
-      return std::any_of(cells.begin(), cells.end(),
-                         [&](const std::string& cell) { return trimmed(cell) == name; });
-    });
-    if (!wanted.empty() && has_all) return i;
-  }
-  std::vector<std::size_t> names;  // without the units
-  for (const std::size_t i : block)
-    if (!are_units(lines[i])) names.push_back(i);
-  if (names.empty()) return block.front();
-  const std::size_t last = names.back();
-  if (names.size() == 1) return last;
-  const HeadLine& above = lines[names[names.size() - 2]];
-  const bool is_pair = names.size() == 2 && are_names(above) &&
-                       above.text.find_first_of(":=") == std::string_view::npos &&
-                       std::none_of(above.cells.begin(), above.cells.end(), looks_like_value);
-  const bool describes =
-      !are_identifiers(above) && are_identifiers(lines[last]) && are_names(lines[last]);
-  return is_pair && !describes ? names.front() : last;
-}
-
-Error whole_file(const std::string& name, std::string_view what) {
-  return {name + ": " + std::string(what)};
-}
-Error at_line(const std::string& name, std::uint64_t line, std::string_view what) {
-  return {name + ":" + std::to_string(line) + ": " + std::string(what)};
-}
 
 std::optional<Error> take_names(Dialect& dialect, const DialectOptions& options,
                                 std::vector<std::string> cells, const std::string& name) {
@@ -194,6 +18,10 @@ std::optional<Error> take_names(Dialect& dialect, const DialectOptions& options,
       if (c == '\n' || c == '\r') c = ' ';
     cell = std::string(trimmed(cell));
   }
+  if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
+        return cell.size() > 2 && cell.front() == '\'' && cell.back() == '\'';
+      }))
+    for (std::string& cell : cells) cell = cell.substr(1, cell.size() - 2);
   const std::size_t usual = dialect.layout.cells;
   if (!options.names.empty()) {
     if (options.names.size() != usual)
@@ -202,7 +30,9 @@ std::optional<Error> take_names(Dialect& dialect, const DialectOptions& options,
                          " names, the rows have " + std::to_string(usual) + " cells");
     cells = options.names;
   }
-  if (cells.size() == usual + 1 && cells.back().empty()) cells.pop_back();
+  for (; cells.size() > usual; cells.pop_back())
+    if (!cells.back().empty())
+      dialect.without_cells.insert(dialect.without_cells.begin(), cells.back());
   auto sorted = cells;
   std::sort(sorted.begin(), sorted.end());
   for (auto twin = std::adjacent_find(sorted.begin(), sorted.end()); twin != sorted.end();
@@ -215,89 +45,9 @@ std::optional<Error> take_names(Dialect& dialect, const DialectOptions& options,
   return std::nullopt;
 }
 
-/// The names in a comment right above the rows, as "# time, i_load".
-std::optional<std::size_t> header_in_comment(HeadLines& lines, std::size_t first_row,
-                                             char separator, const std::string& comment,
-                                             std::size_t usual) {
-  for (std::size_t i = first_row; i-- > 0;) {
-    if (is_blank(lines[i])) continue;
-    if (!is_comment(lines[i], comment)) return std::nullopt;
-    std::string text(trimmed(lines[i].text.substr(comment.size())));
-    std::vector<std::string_view> cells;
-    if (split_cells(text, separator, cells)) return std::nullopt;
-    HeadLine& line = lines[i];
-    line.cells.assign(cells.begin(), cells.end());
-    if (cells.size() == usual && are_names(line)) return i;
-    return std::nullopt;
-  }
-  return std::nullopt;
-}
-
-/// A line right above the rows that holds names, more or less than there are cells.
-const HeadLine* names_of_other_count(const HeadLines& lines, std::size_t first_row,
-                                     const Layout& layout) {
-  for (std::size_t i = std::min(first_row, lines.size()); i-- > 0;) {
-    if (is_blank(lines[i]) || is_comment(lines[i], layout.comment)) continue;
-    const auto& cells = lines[i].cells;
-    const bool is_text = cells.size() > 1 && cells.size() != layout.cells &&
-                         std::none_of(cells.begin(), cells.end(), looks_like_value);
-    return is_text ? &lines[i] : nullptr;
-  }
-  return nullptr;
-}
-
-struct Found {
-  std::size_t first_row = 0;
-  std::optional<std::size_t> header, units;
-};
-
-std::variant<Found, Error> find_header(HeadLines& lines, const Dialect& dialect,
-                                       const DialectOptions& options, const std::string& name) {
-  const Layout& layout = dialect.layout;
-  const Head head(lines, layout.comment, layout.cells);
-  Found found;
-  if (options.header_line) {
-    const std::uint64_t wanted = *options.header_line;
-    if (wanted > lines.size())
-      return whole_file(name, "--header " + std::to_string(wanted) + " is behind the last line");
-    if (wanted > 0) found.header = static_cast<std::size_t>(wanted) - 1;
-    found.first_row = found.header ? *found.header + 1 : 0;
-    while (found.first_row < lines.size() &&
-           (!head.has_cells(found.first_row) || head.is_text(found.first_row, false))) {
-      if (found.header && head.has_cells(found.first_row) && are_units(lines[found.first_row]))
-        found.units = found.first_row;
-      ++found.first_row;
-    }
-    return found;
-  }
-  found.first_row = head.first_row();
-  const auto block = head.block_above(found.first_row);
-  if (block.empty()) {
-    found.header =
-        header_in_comment(lines, found.first_row, layout.separator, layout.comment, layout.cells);
-    if (found.header || !options.names.empty()) return found;
-    const HeadLine& line = lines[std::min(found.first_row, lines.size() - 1)];
-    if (const HeadLine* other = names_of_other_count(lines, found.first_row, layout))
-      return at_line(
-          name, other->number,
-          "the line has " + std::to_string(other->cells.size()) + " names, the rows have " +
-              std::to_string(layout.cells) +
-              " cells; name all columns with --names NAME,NAME,..., or write the file with a "
-              "separator that stands in no cell (a comma cannot separate decimal commas)");
-    return at_line(name, line.number,
-                   "the line holds values ('" + std::string(line.text.substr(0, 40)) +
-                       "'), and no line above it names the columns; name them with --names "
-                       "NAME,NAME,..., or say with --header N which line does");
-  }
-  found.header = header_in(lines, block, options.wanted);
-  for (const std::size_t i : block)
-    if (i > *found.header && are_units(lines[i])) found.units = i;
-  return found;
-}
-
 /// Takes the line of units that was given in place of the one that was found.
 std::optional<Error> take_units(const HeadLines& lines, std::optional<std::uint64_t> wanted,
-                                const std::string& name, Found& found) {
+                                const std::string& name, HeaderPlace& found) {
   if (!wanted) return std::nullopt;
   found.units.reset();
   if (*wanted == 0) return std::nullopt;
@@ -330,7 +80,8 @@ std::optional<Error> refuse_one_cell(const HeadLines& lines, const Layout& layou
   const std::string_view text = trimmed(first->text);
   if (text.starts_with('<') || text.starts_with('{') || text.starts_with("[{") || text == "[")
     return at_line(name, first->number,
-                   "the text is HTML, XML or JSON and no table of cells; write it as CSV first");
+                   "the text is HTML, XML or JSON and no table of cells; write it as CSV first, as "
+                   "jq -r '[.time, .value] | @csv' does of JSON with these members");
   if (layout.cells == 0 && options.names.empty())
     return at_line(name, first->number,
                    "no line can be cut into cells, since their quotes are not paired ('" +
@@ -371,11 +122,11 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
   if (auto error = refuse_one_cell(lines, layout, options, name)) return *std::move(error);
   if (!options.names.empty() && layout.cells == 0) layout.cells = options.names.size();
   join_cells(lines, layout);
-  auto found = find_header(lines, dialect, options, name);
+  auto found = find_header(lines, layout, options, name);
   if (const auto* error = std::get_if<Error>(&found)) return *error;
-  if (auto error = take_units(lines, options.units_line, name, std::get<Found>(found)))
+  if (auto error = take_units(lines, options.units_line, name, std::get<HeaderPlace>(found)))
     return *std::move(error);
-  const auto& [first_row, header, units] = std::get<Found>(found);
+  const auto& [first_row, header, units] = std::get<HeaderPlace>(found);
   std::vector<std::string> cells;
   if (header) {
     const HeadLine& line = lines[*header];
@@ -416,7 +167,8 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
 
 std::string describe(const Dialect& dialect) {
   static const std::map<char, std::string> words = {
-      {',', "commas"}, {';', "semicolons"}, {'\t', "tabs"}, {'|', "bars"}, {' ', "blanks"}};
+      {',', "commas"}, {';', "semicolons"}, {'\t', "tabs"},
+      {'|', "bars"},   {' ', "blanks"},     {wide_blanks, "two blanks or more"}};
   const auto word = words.find(dialect.layout.separator);
   std::string text = word == words.end()
                          ? "separated by '" + std::string(1, dialect.layout.separator) + "'"
@@ -425,6 +177,7 @@ std::string describe(const Dialect& dialect) {
   text += dialect.header_line == 0 ? ", no header"
                                    : ", header in line " + std::to_string(dialect.header_line);
   if (dialect.units_line != 0) text += ", units in line " + std::to_string(dialect.units_line);
+  if (!dialect.without_cells.empty()) text += ", no cells of " + joined(dialect.without_cells);
   if (dialect.layout.line_end == '\r') text += ", lines end in CR";
   if (!dialect.layout.comment.empty()) text += ", comments begin with " + dialect.layout.comment;
   return text;

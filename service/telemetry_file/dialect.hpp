@@ -29,11 +29,12 @@ struct Dialect {
   Layout layout;
   std::vector<std::string> columns;  // names in the order of the file; no two equal but empty ones
   std::vector<std::string> units;    // from the row of units; as many as columns, or none
-  std::uint64_t header_line = 0;     // 0: none
-  std::uint64_t units_line = 0;      // 0: none
-  std::uint64_t first_line = 1;      // of the rows
-  std::uint64_t first_position = 0;  // in bytes of the text
-  std::uint64_t lines_above = 0;     // above the header: titles, metadata, comments
+  std::vector<std::string> without_cells;  // names at the header's end that no row has a cell of
+  std::uint64_t header_line = 0;           // 0: none
+  std::uint64_t units_line = 0;            // 0: none
+  std::uint64_t first_line = 1;            // of the rows
+  std::uint64_t first_position = 0;        // in bytes of the text
+  std::uint64_t lines_above = 0;           // above the header: titles, metadata, comments
 };
 
 /// Finds the dialect of the text that `head` is the beginning of; `name` stands for the file. An

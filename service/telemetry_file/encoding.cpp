@@ -39,6 +39,26 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+/// Whether the bytes beyond ASCII are characters of two bytes in Shift JIS, most of which have none
+/// of ASCII: in Windows-1252, signs such as quotes and dashes stand beside letters.
+bool is_shift_jis(std::string_view text) {
+  std::size_t wide = 0, others = 0;  // pairs of bytes beyond ASCII, and what else goes beyond it
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned first = at(text, i);
+    if (first < 0x80) continue;
+    const bool leads = (first >= 0x81 && first <= 0x9F) || (first >= 0xE0 && first <= 0xFC);
+    if (!leads || i + 1 == text.size()) {
+      if (first < 0xA1 || first > 0xDF) return i + 1 == text.size() && wide > others;
+      ++others;  // a half-width katakana
+      continue;
+    }
+    const unsigned second = at(text, ++i);
+    if (second < 0x40 || second == 0x7F || second > 0xFC) return false;
+    ++(first <= 0x9F && second >= 0x80 ? wide : others);
+  }
+  return wide > others;
+}
+
 /// The shares of zeros at even and odd places.
 std::array<double, 2> zeros(std::string_view head) {
   std::array<double, 2> counts = {0, 0};
@@ -56,6 +76,7 @@ std::string find_encoding(std::string_view head) {
   if (odd > 0.7 && even < 0.2) return "UTF-16LE";
   if (even > 0.7 && odd < 0.2) return "UTF-16BE";
   if (is_utf8(head)) return "UTF-8";
+  if (is_shift_jis(head)) return "SHIFT_JIS";
   const bool has_c1 = std::any_of(head.begin(), head.end(), [](char c) {
     return static_cast<unsigned char>(c) >= 0x80 && static_cast<unsigned char>(c) < 0xA0;
   });

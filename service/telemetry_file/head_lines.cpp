@@ -52,17 +52,15 @@ HeadLines lines_of(const RowReader::Head& head, char line_end) {
 
 bool is_blank(const HeadLine& line) {
   const std::string_view text = trimmed(line.text);
-  // A ruled line below the header is none either.
-  return text.find_first_not_of("-+|=: \t") == std::string_view::npos &&
-         (text.empty() || text.find("--") != std::string_view::npos ||
-          text.find("==") != std::string_view::npos);
+  return text.empty() || is_ruled(text);
 }
 
 std::string find_comment(const HeadLines& lines) {
   for (const HeadLine& line : lines) {
     if (is_blank(line)) continue;
     for (const std::string_view mark : {"#", "%", "//", "\"#", "!"})
-      if (line.text.starts_with(mark)) return std::string(mark);
+      if (line.text.starts_with(mark) && !line.text.starts_with("\"#\""))  // a name
+        return std::string(mark);
     if (looks_like_value(line.text.substr(0, line.text.find_first_of(",;\t|")))) break;
   }
   // Among rows, where few lines begin so.
@@ -104,10 +102,9 @@ std::size_t usual_cells(const HeadLines& lines, const std::string& comment) {
 
 namespace {
 
-/// How well a separator cuts the lines: the share of lines with the usual number of cells, and of
-/// values among those cells.
-double quality_of(HeadLines& lines, char separator, const std::string& comment) {
-  split(lines, separator);
+/// How well the lines were cut: the share of lines with the usual number of cells, and of values
+/// among those cells.
+double quality_of(const HeadLines& lines, char separator, const std::string& comment) {
   const std::size_t usual = usual_cells(lines, comment);
   if (usual < 2) return 0;
   double all = 0, fitting = 0, cells = 0, values = 0;
@@ -122,12 +119,12 @@ double quality_of(HeadLines& lines, char separator, const std::string& comment) 
       values += looks_like_value(cell) ? 1 : 0;
     }
   }
-  return fitting / all * (0.2 + values / std::max(1.0, cells)) * (separator == ' ' ? 0.9 : 1);
+  return fitting / all * (0.2 + values / std::max(1.0, cells)) *
+         (is_of_blanks(separator) ? 0.9 : 1);
 }
 
-/// Whether a separator cuts all lines, the first of which holds names, into equally many cells.
-bool cuts_all(HeadLines& lines, char separator, const std::string& comment) {
-  split(lines, separator);
+/// Whether all lines, the first of which holds names, were cut into equally many cells.
+bool are_alike(const HeadLines& lines, const std::string& comment) {
   const auto holds_cells = [&](const HeadLine& line) {
     return !is_blank(line) && !is_comment(line, comment);
   };
@@ -139,6 +136,15 @@ bool cuts_all(HeadLines& lines, char separator, const std::string& comment) {
          });
 }
 
+/// Whether a line of names was cut into as many cells as most lines.
+bool has_names(const HeadLines& lines, const std::string& comment) {
+  const std::size_t usual = usual_cells(lines, comment);
+  return std::any_of(lines.begin(), lines.end(), [&](const HeadLine& line) {
+    return !is_blank(line) && !is_comment(line, comment) && line.cells.size() == usual &&
+           std::none_of(line.cells.begin(), line.cells.end(), looks_like_value);
+  });
+}
+
 }  // namespace
 
 char find_separator(HeadLines& lines, const std::string& comment) {
@@ -148,10 +154,12 @@ char find_separator(HeadLines& lines, const std::string& comment) {
   bool may_be_blanks = std::none_of(lines.begin(), lines.end(), [](const HeadLine& line) {
     return line.text.find('\t') != std::string_view::npos;
   });
-  for (const char separator : {',', ';', '|'})
-    may_be_blanks = may_be_blanks && !cuts_all(lines, separator, comment);
-  for (const char separator : {',', ';', '\t', '|', ' '}) {
-    if (separator == ' ' && !may_be_blanks) continue;
+  for (const char separator : {',', ';', '\t', '|', ' ', wide_blanks}) {
+    if (is_of_blanks(separator) && !may_be_blanks) continue;
+    split(lines, separator);
+    if (separator != '\t' && !is_of_blanks(separator) && are_alike(lines, comment))
+      may_be_blanks = false;
+    if (separator == wide_blanks && !has_names(lines, comment)) continue;
     const double quality = quality_of(lines, separator, comment);
     if (quality > most + 1e-9) {
       most = quality;
@@ -232,11 +240,16 @@ bool looks_like_value(std::string_view cell) {
   constexpr std::string_view minus = "\xE2\x88\x92";
   if (cell.starts_with(minus)) cell.remove_prefix(minus.size());
   if (cell.starts_with('"')) cell.remove_prefix(1);
-  if (cell.empty() ||
-      std::string_view("0123456789+-.(,").find(cell.front()) == std::string_view::npos)
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (cell.empty() || (!is_digit(cell.front()) &&
+                       std::string_view("+-.(,").find(cell.front()) == std::string_view::npos))
     return false;
-  if (cell.find_first_of("0123456789") == std::string_view::npos) return false;
-  if (cell.find_first_of(";|\t\"") != std::string_view::npos) return false;
+  std::size_t digits = 0;
+  for (const char c : cell) {
+    if (c == ';' || c == '|' || c == '\t' || c == '"') return false;
+    digits += is_digit(c) ? 1U : 0U;
+  }
+  if (digits == 0) return false;
   const bool has_clock = cell.find(':') != std::string_view::npos;
   if (cell.find(' ') != std::string_view::npos && !has_clock) {
     // A group of thousands or a unit may stand apart, another number may not.
@@ -247,14 +260,12 @@ bool looks_like_value(std::string_view cell) {
     return is_group || rest.find_first_of("0123456789") == std::string_view::npos ||
            cell.find_first_of("-/.") == 4;
   }
-  const std::size_t digits = static_cast<std::size_t>(
-      std::count_if(cell.begin(), cell.end(), [](char c) { return c >= '0' && c <= '9'; }));
   if (has_clock) {
     // A comma is the mark of a part of a second.
     const auto comma = cell.find(',');
     if (comma == std::string_view::npos) return true;
     const std::string_view part = cell.substr(comma + 1);
-    return comma > cell.rfind(':') && !part.empty() && part.front() >= '0' && part.front() <= '9' &&
+    return comma > cell.rfind(':') && !part.empty() && is_digit(part.front()) &&
            part.find_first_of(",.") == std::string_view::npos;
   }
   return digits * 2 + 8 >= cell.size();
@@ -279,7 +290,7 @@ bool is_unit_word(std::string_view word) {
       " % pct rpm N Nm T nT uT m km mm m/s km/s kg g s sec ms us ns "
       "min h d UTC utc ISO ISO8601 counts DN LSB bool enum 1 dB dBm Volt Volts volts Amp "
       "Amps amps Ampere Celsius seconds Seconds J l/min lux Gs G mT raw n/a none unix time "
-      "date datetime ";
+      "date datetime second volt ampere ";
   return words.find(" " + std::string(word) + " ") != std::string_view::npos;
 }
 

@@ -17,8 +17,13 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
+bool is_ascii(char c) {
+  return (c & 0x80) == 0;
+}
+
 std::string_view without_blanks(std::string_view text) {
   text = trimmed(text);
+  if (text.empty() || (is_ascii(text.front()) && is_ascii(text.back()))) return text;
   for (const std::string_view blank : wide_blanks) {
     while (text.starts_with(blank)) text.remove_prefix(blank.size());
     while (text.ends_with(blank)) text.remove_suffix(blank.size());
@@ -33,6 +38,7 @@ int take_sign(std::string_view& text, unsigned& spelling) {
     text.remove_prefix(1);
     return sign;
   }
+  if (text.empty() || is_ascii(text.front())) return 0;
   for (const std::string_view minus : minuses)
     if (text.starts_with(minus)) {
       text.remove_prefix(minus.size());
@@ -44,7 +50,8 @@ int take_sign(std::string_view& text, unsigned& spelling) {
 
 /// Takes a mark between groups off the front; empty where none is there.
 std::string_view group_mark(std::string_view text, char thousands) {
-  if (thousands == ' ') {
+  if (text.empty()) return {};
+  if (thousands == ' ' && !is_ascii(text.front())) {
     for (const std::string_view blank : wide_blanks)
       if (text.starts_with(blank)) return text.substr(0, blank.size());
   }
@@ -82,7 +89,8 @@ bool take_exponent(std::string_view& text, std::string& plain, unsigned& spellin
   std::size_t at = 1;
   if (at < text.size() && (text[at] == '+' || text[at] == '-')) ++at;
   const std::size_t digits = leading_digits(text.substr(at));
-  if (digits == 0) return false;
+  // 6D91 is hexadecimal.
+  if (digits == 0 || (d && at == 1 && plain.find('.') == std::string::npos)) return false;
   plain += 'e';
   plain += text.substr(text[1] == '+' ? 2 : 1, at + digits - (text[1] == '+' ? 2 : 1));
   text.remove_prefix(at + digits);

@@ -5,6 +5,8 @@
 #include <cstring>
 
 #include "service/support/text.hpp"
+#include "service/telemetry_file/date_text.hpp"
+#include "service/telemetry_file/number_text.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -17,18 +19,30 @@ bool blank(char c) {
   return c == ' ' || c == '\t';
 }
 
+/// Whether a cell may end at the byte.
 bool separates(char c, char separator) {
-  return separator == ' ' ? blank(c) : c == separator;
+  return is_of_blanks(separator) ? blank(c) : c == separator;
 }
 
 std::size_t plain_end(std::span<const char> line, std::size_t at, char separator) {
-  if (separator != ' ') {
+  if (!is_of_blanks(separator)) {
     const void* found = std::memchr(line.data() + at, separator, line.size() - at);
     return found ? static_cast<std::size_t>(static_cast<const char*>(found) - line.data())
                  : line.size();
   }
-  while (at < line.size() && !blank(line[at])) ++at;
+  const auto ends = [&] {
+    return blank(line[at]) &&
+           (separator == ' ' || line[at] == '\t' || at + 1 == line.size() || blank(line[at + 1]));
+  };
+  while (at < line.size() && !ends()) ++at;
   return at;
+}
+
+/// Whether a cell is words, as "(240 rows)", and no time or number.
+bool is_wording(std::string_view cell) {
+  return !plain_number(cell) && !read_date_text(cell, DateOrder::day_first) &&
+         std::any_of(cell.begin(), cell.end(),
+                     [](char c) { return (c | 0x20) >= 'a' && (c | 0x20) <= 'z'; });
 }
 
 }  // namespace
@@ -69,6 +83,13 @@ std::string_view name(Damage damage) {
   return names[static_cast<std::size_t>(damage)];
 }
 
+bool is_ruled(std::string_view text) {
+  if (text.empty() || std::string_view("-+|=:").find(text.front()) == std::string_view::npos)
+    return false;
+  return text.find_first_not_of("-+|=: \t") == std::string_view::npos &&
+         (text.find("--") != std::string_view::npos || text.find("==") != std::string_view::npos);
+}
+
 std::string comment_advice(std::string_view line) {
   for (const std::string_view mark : comment_marks)
     if (line.starts_with(mark))
@@ -81,7 +102,7 @@ std::optional<std::string_view> split_cells(std::span<char> line, char separator
   cells.clear();
   std::size_t at = 0;
   const auto pass_blanks = [&] {
-    while (separator == ' ' && at < line.size() && blank(line[at])) ++at;
+    while (is_of_blanks(separator) && at < line.size() && blank(line[at])) ++at;
   };
   pass_blanks();
   while (true) {
@@ -106,7 +127,7 @@ std::optional<std::string_view> split_cells(std::span<char> line, char separator
     }
     pass_blanks();
     if (at == line.size()) return std::nullopt;
-    if (separator != ' ') ++at;
+    if (!is_of_blanks(separator)) ++at;
   }
 }
 
@@ -226,9 +247,9 @@ RowReader::Step RowReader::find_row_end(std::size_t& row_end, bool& is_cut) {
   }
 }
 
-/// Whether a line is a comment or the header again.
+/// Whether a line is blank, ruled, a comment or the header again.
 bool RowReader::is_passed_over(std::string_view text) {
-  if (text.empty()) return true;
+  if (text.empty() || is_ruled(trimmed(text))) return true;
   if (!layout_.comment.empty() && text.starts_with(layout_.comment)) return true;
   if (layout_.header.empty() || text != layout_.header) return false;
   if (repeated_headers_++ == 0) first_repeated_header_ = next_line_;
@@ -299,7 +320,10 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
     damage_ = Damage::nul_bytes;
     return Step::error;
   }
-  if (is_cut_short) {
+  const std::string advice = comment_advice(text);
+  const bool is_footer = !wrong && cells_.size() == 1 && layout_.cells > 1 &&
+                         is_wording(cells_.front()) && is_at_end();
+  if (is_cut_short || is_footer) {
     cut_line_ = line_;
     return Step::end;
   }
@@ -309,8 +333,18 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
                   std::to_string(layout_.cells) +
                   "; mend the row (a cell with the separator in it needs quotes), or leave such "
                   "rows out with --skip-bad-lines" +
-                  comment_advice(text),
+                  advice,
               Damage::cell_count);
+}
+
+/// Whether nothing but blank lines follows. The row's bytes are gone where they do not.
+bool RowReader::is_at_end() {
+  while (buffer_.find_first_not_of("\r\n \t", begin_) == std::string::npos) {
+    const Step filled = fill();
+    row_begin_ = row_end_ = begin_;
+    if (filled != Step::row) return filled == Step::end;
+  }
+  return false;
 }
 
 }  // namespace reident::telemetry_file

@@ -23,9 +23,15 @@ struct Place {
   std::size_t begin = 0, end = 0;
 };
 
+/// The separator of columns whose cells and names have single blanks in them: two blanks or more.
+inline constexpr char wide_blanks = '\f';
+constexpr bool is_of_blanks(char separator) {
+  return separator == ' ' || separator == wide_blanks;
+}
+
 /// How a text is cut into rows and cells.
 struct Layout {
-  char separator = ',';     // a blank: any number of blanks and tabs
+  char separator = ',';     // a blank: any number of blanks and tabs; wide_blanks
   char line_end = '\n';     // '\n' also ends lines with a CR before it; '\r' alone
   std::string comment;      // what lines begin with that are no rows; empty: none do
   std::string header;       // a line of this text is no row; empty: there is none
@@ -48,6 +54,9 @@ bool place_cells(std::string_view line, const std::vector<Place>& places,
 
 /// Makes one cell of the first two, which follow each other in one text. Requires two cells.
 void join_date(std::vector<std::string_view>& cells);
+
+/// Whether a line is ruled, as "-----+-----" below a header. Requires a text without blanks around.
+bool is_ruled(std::string_view text);
 
 /// What lines of comments begin with.
 inline constexpr std::array<std::string_view, 4> comment_marks = {"#", "%", "//", "!"};
@@ -96,7 +105,9 @@ class RowReader {
   const TextSource& source() const { return source_; }
   std::uint64_t repeated_headers() const { return repeated_headers_; }
   std::uint64_t first_repeated_header() const { return first_repeated_header_; }  // its line
-  std::uint64_t cut_line() const { return cut_line_; }  // the last line, which was cut; 0: none was
+  std::uint64_t cut_line() const {
+    return cut_line_;
+  }  // the last line, which is cut or no row; 0: none is
 
  private:
   Step fail(std::uint64_t at_line, std::string_view what, Damage damage);
@@ -104,7 +115,7 @@ class RowReader {
   Step find_row_end(std::size_t& row_end, bool& is_cut);
   bool find_plain_row_end(std::size_t& row_end) const;
   bool is_passed_over(std::string_view text);
-  Step read_row();
+  bool is_at_end();
   Step take_row(std::size_t row_end, std::size_t following, bool is_cut);
 
   TextSource source_;

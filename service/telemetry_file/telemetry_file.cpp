@@ -6,6 +6,7 @@
 
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
+#include "service/telemetry_file/date_text.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -56,6 +57,7 @@ struct TelemetryFile::Impl {
     error = std::move(why);
     return Step::error;
   }
+  std::vector<std::string> other_readings() const;
   bool is_another_header() const;
   Step fail_at_header();
   Step read_time();
@@ -278,10 +280,42 @@ std::vector<std::string> TelemetryFile::unnamed_columns() const {
   return sentences;
 }
 
+/// Where times and names may be read otherwise: columns of other times beside the clock, names in a
+/// one-byte encoding that are no words of Latin letters.
+std::vector<std::string> TelemetryFile::Impl::other_readings() const {
+  std::vector<std::string> sentences, others;
+  for (std::size_t c = 0; clock && c < formats.size(); ++c) {
+    const auto& own = head_columns[clock->columns().front()];
+    if (clock->uses(c) || formats[c].kind != CellFormat::Kind::text || head_columns[c].empty())
+      continue;
+    const auto date = read_date_text(head_columns[c].front(), DateOrder::day_first);
+    if (date && date->has_date && head_columns[c] != own) others.push_back(dialect.columns[c]);
+  }
+  if (!others.empty())
+    sentences.push_back(fmt::format(
+        "{}: there are other times in {}; each value is taken at '{}' (--time names another "
+        "column)",
+        rows.source().name(), joined(others), dialect.columns[clock->columns().front()]));
+  std::size_t latin = 0, other = 0;
+  for (const std::string& column : dialect.columns)
+    for (const char c : column) {
+      latin += (c | 0x20) >= 'a' && (c | 0x20) <= 'z' ? 1U : 0U;
+      other += (c & 0xC0) == 0xC0 ? 1U : 0U;  // begins a character beyond ASCII
+    }
+  const std::string encoding = rows.source().encoding();
+  if (!options.encoding && other > latin &&
+      (encoding == "ISO-8859-1" || encoding == "WINDOWS-1252"))
+    sentences.push_back(
+        fmt::format("{}: the names were read in {}; where they are not such letters, --encoding "
+                    "names another, as GB18030, CP949 or CP1251",
+                    rows.source().name(), encoding));
+  return sentences;
+}
+
 std::vector<std::string> TelemetryFile::remarks() const {
   const RowReader& rows = impl_->rows;
   if (impl_->made_of) return impl_->made_of->remarks;
-  std::vector<std::string> remarks;
+  std::vector<std::string> remarks = impl_->other_readings();
   if (rows.repeated_headers() > 0)
     remarks.push_back(
         fmt::format("{}:{}: the header stands here again, as where files were joined ({} in all)",
@@ -292,7 +326,7 @@ std::vector<std::string> TelemetryFile::remarks() const {
         "beginning of daylight saving; --time-zone names its zone",
         rows.source().name(), impl_->watch->hour_ahead_line()));
   if (rows.cut_line() > 0)
-    remarks.push_back(fmt::format("{}:{}: the last line was cut and is left out",
+    remarks.push_back(fmt::format("{}:{}: the last line was cut, or is no row, and is left out",
                                   rows.source().name(), rows.cut_line()));
   return remarks;
 }
@@ -312,11 +346,14 @@ TelemetryFile::Step TelemetryFile::next() {
 /// Whether a row names columns in another order, as where another file was joined.
 bool TelemetryFile::Impl::is_another_header() const {
   const auto is_name = [&](std::string_view cell) {
-    return std::find(dialect.columns.begin(), dialect.columns.end(), trimmed(cell)) !=
-           dialect.columns.end();
+    cell = trimmed(cell);
+    return !cell.empty() &&
+           std::find(dialect.columns.begin(), dialect.columns.end(), cell) != dialect.columns.end();
   };
   const auto cells = rows.cells();
-  if (dialect.header_line == 0 || !is_name(cells.front())) return false;
+  const auto first = std::find_if(cells.begin(), cells.end(),
+                                  [](std::string_view cell) { return !trimmed(cell).empty(); });
+  if (dialect.header_line == 0 || first == cells.end() || !is_name(*first)) return false;
   const auto names = std::count_if(cells.begin(), cells.end(), is_name);
   const bool is_same =
       std::equal(cells.begin(), cells.end(), dialect.columns.begin(), dialect.columns.end(),

@@ -37,7 +37,8 @@ std::variant<TextSource, Error> TextSource::open(const std::filesystem::path& pa
   if (!source.file_) return *source.failed(cannot_open(errno));
   const auto size = std::filesystem::file_size(path, ignored);
   if (!ignored) source.size_ = size;
-  std::string head(evidence_bytes, '\0');
+  const bool is_small = !ignored && size > 0 && size < evidence_bytes;  // a pipe has no size
+  std::string head(is_small ? size + 1 : evidence_bytes, '\0');
   head.resize(std::fread(head.data(), 1, head.size(), source.file_.get()));
   if (std::ferror(source.file_.get()) != 0)
     return *source.failed("cannot be read: " + message_of(errno));

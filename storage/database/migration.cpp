@@ -16,8 +16,9 @@ void migrate(sqlite::Connection& connection, std::int64_t version) {
   if (version < 7) connection.execute(schema::from_6_to_7());
   if (version >= 6 && version < 8) connection.execute(schema::bias_effects_of_8());
   if (version < 8) connection.execute(schema::from_7_to_8());
-  if (version >= 3) connection.execute(schema::chunks_of_9());
-  connection.execute(schema::shards_of_9());
+  if (version >= 3 && version < 9) connection.execute(schema::chunks_of_9());
+  if (version < 9) connection.execute(schema::shards_of_9());
+  connection.execute(schema::series_view_of_10());
   connection.execute(schema::user_version());
 }
 

@@ -248,8 +248,8 @@ std::string joined(std::initializer_list<std::string_view> parts) {
 std::string creation() {
   return joined({telemetry_tables, sample_tables, late_tables, import_table, registry_tables,
                  decision_table, decision_of_4, score_tables, operator_tables, notice_tables,
-                 telemetry_views, hole_view, removal_view, lineage_view, registry_views,
-                 reason_view, notice_views}) +
+                 series_view, telemetry_views, hole_view, removal_view, lineage_view,
+                 registry_views, reason_view, notice_views}) +
          append_only("attempt", "id = NEW.id") +
          append_only("version",
                      "attempt = NEW.attempt OR (spacecraft = NEW.spacecraft AND "
@@ -321,6 +321,10 @@ CREATE TABLE shard (
 
 std::string chunks_of_9() {
   return "ALTER TABLE chunk ADD COLUMN shard INTEGER NOT NULL DEFAULT 0;";
+}
+
+std::string series_view_of_10() {
+  return joined({"DROP VIEW telemetry_series;", series_view});
 }
 
 std::string user_version() {

@@ -9,7 +9,7 @@
 namespace reident::storage::schema {
 
 inline constexpr std::int64_t application_id = 0x72656964;  // "reid"
-inline constexpr std::int64_t version = 9;                  // kept in SQLite's user_version
+inline constexpr std::int64_t version = 10;                 // kept in SQLite's user_version
 
 /// The batches of the table `recent` are numbered within so many. Far above what any configuration
 /// lets wait: a number beyond it is a damaged one, and nobody counts up to it.
@@ -53,6 +53,7 @@ std::string from_7_to_8();
 std::string bias_effects_of_8();  // from_5_to_6() makes these too
 std::string shards_of_9();
 std::string chunks_of_9();  // from_2_to_3() makes these too
+std::string series_view_of_10();
 
 /// The statement that makes a trigger which aborts an event on a table.
 std::string guard(const std::string& table, const std::string& event, const std::string& condition);

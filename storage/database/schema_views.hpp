@@ -36,15 +36,18 @@ CREATE VIEW simulator_now AS
                 AND other.equipment = last.equipment);
 )sql";
 
-inline constexpr std::string_view telemetry_views = R"sql(
+inline constexpr std::string_view series_view = R"sql(
 CREATE VIEW telemetry_series AS
   SELECT series.spacecraft,
          coalesce(parameter.name, CAST(series.parameter AS TEXT)) AS parameter,
-         iif(origin, 'simulated', 'real') AS origin, unit, samples, first_time, last_time
+         iif(origin, 'simulated', 'real') AS origin, nullif(unit, '') AS unit, samples, first_time,
+         last_time
   FROM series
   LEFT JOIN parameter ON parameter.spacecraft = series.spacecraft
                       AND parameter.id = series.parameter;
+)sql";
 
+inline constexpr std::string_view telemetry_views = R"sql(
 -- Sequence numbers are kept with the highest bit inverted (SCHEMA.md).
 CREATE VIEW telemetry_source AS
   SELECT spacecraft, name AS source, iif(origin, 'simulated', 'real') AS origin, frames, samples,

@@ -43,7 +43,7 @@ class Ingest(EndToEnd):
         csv = plant.write(self.folder / "t.csv", lines)
         self.configure([plant.equipment(window="1h", slide="1h")])
         self.start_daemon()
-        summary = self.replay_all(csv)
+        summary = self.replay_all(csv, "--invalid-blanks")
         self.assertEqual((summary["frames"], summary["samples"]), (3000, 9000))
         state = self.wait_idle()
         self.assertEqual(state["samples_stored"], 9000)

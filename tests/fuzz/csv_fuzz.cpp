@@ -37,7 +37,7 @@ Rows rows_of(TelemetryFile& file) {
       continue;
     }
     require(file.cells().size() == file.columns().size());
-    require(file.line() > line && file.bytes_read() <= file.size());
+    require(file.line() > line);
     line = file.line();
     for (std::size_t c = 0; c < file.columns().size(); ++c) file.cell(c);
     rows.emplace_back(file.cells().begin(), file.cells().end());
@@ -45,11 +45,9 @@ Rows rows_of(TelemetryFile& file) {
   return rows;
 }
 
-/// As a table of its samples, every cell comes from a line of the text.
-void check_table(const std::string& text) {
-  static const reident::test::MemoryFile memory;
-  memory.write(text);
-  auto opened = open_as_table(memory.path(), {}, true);
+/// As a table of its samples, every cell comes from a line of the text, in whatever encoding.
+void check_table(const std::string& path, const std::string& text) {
+  auto opened = open_as_table(path, {}, true);
   auto* table = std::get_if<TelemetryFile>(&opened);
   if (!table || !table->has_samples_of_their_own()) return;
   const auto lines = static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n') +
@@ -88,19 +86,22 @@ void check_cell(const std::string& cell) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const reident::test::MemoryFile memory;
   const std::string text(reinterpret_cast<const char*>(data), size);
-  check_table(text);
-  auto opened = TelemetryFile::of_text(text, "fuzz", {});
+  memory.write(text);
+  auto opened = TelemetryFile::open(memory.path(), {});
   if (const auto* error = std::get_if<Error>(&opened)) {
     require(!error->message.empty());
     return 0;
   }
+  const auto& file = std::get<TelemetryFile>(opened);
+  if (file.has_rows() && find_long_layout(file)) check_table(memory.path(), text);
+  if (std::get<TelemetryFile>(opened).find_time())  // none: its rows alone
+    opened = TelemetryFile::open(memory.path(), {});
   const Rows rows = rows_of(std::get<TelemetryFile>(opened));
   for (const auto& row : rows) {
     for (const auto& cell : row) check_cell(cell);
   }
-  auto timed = TelemetryFile::of_text(text, "fuzz", {});
-  if (!std::get<TelemetryFile>(timed).find_time()) rows_of(std::get<TelemetryFile>(timed));
   ReadingOptions commas;
   commas.dialect.separator = ',';
   commas.dialect.header_line = 1;

@@ -7,8 +7,8 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/file_errors.hpp"
-#include "service/cli/identify_ticks.hpp"
 #include "service/cli/output/stored_version.hpp"
+#include "service/cli/phase_advice.hpp"
 #include "service/cli/time_options.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
@@ -18,7 +18,6 @@
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
-#include "service/windows/window_data.hpp"
 
 namespace reident::cli::backfill_verb {
 namespace {
@@ -52,41 +51,6 @@ std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
                              joined(names))};
 }
 
-/// The phase that suits the newest telemetry of an equipment (identify_ticks.hpp); 0: none is
-/// asked.
-Duration suitable_phase_of(const storage::Archive& archive, const std::string& spacecraft,
-                           const EquipmentConfig& equipment) {
-  constexpr std::int64_t ticks = 2000;
-  const auto extent = archive.extent(spacecraft, storage::Origin::real);
-  if (!extent || equipment.phase != 0) return 0;
-  std::vector<std::vector<std::int64_t>> channels;
-  for (const std::string& name : parameters_of(equipment))
-    if (const auto parameter = archive.parameter(spacecraft, name))
-      channels.push_back(archive
-                             .read(spacecraft, storage::Origin::real, parameter->id,
-                                   {extent->end - ticks * equipment.sample_period, extent->end})
-                             .time);
-  return suitable_phase(channels, equipment.sample_period);
-}
-
-/// Says which equipment has parameters that come behind its ticks: a key of the configuration
-/// mends that.
-void say_phases(storage::Database& database, const Config& config, const BackfillRequest& request) {
-  const storage::Archive archive(database);
-  for (const SpacecraftConfig& spacecraft : config.spacecraft)
-    for (const EquipmentConfig& equipment : spacecraft.equipment) {
-      if ((!request.spacecraft.empty() && request.spacecraft != spacecraft.name) ||
-          (!request.equipment.empty() && request.equipment != equipment.name))
-        continue;
-      if (const Duration phase = suitable_phase_of(archive, spacecraft.name, equipment))
-        print_error(
-            "reident: {}: not all parameters have come at the multiples of {}; phase = \"{}\" for "
-            "the equipment puts its ticks where they have, as reident identify does",
-            full_name({spacecraft.name, equipment.name}), duration_text(equipment.sample_period),
-            duration_text(phase));
-    }
-}
-
 void print(const BackfillProgress& progress, bool json) {
   if (json) {
     const nlohmann::ordered_json object = {
@@ -117,7 +81,10 @@ int run(const Arguments& arguments) {
           {fmt::format("{} is the database of a pair of services, whose leader alone "
                        "records attempts: it tries what it has telemetry of by itself",
                        config->database.string())});
-    say_phases(database, *config, std::get<BackfillRequest>(request));
+    const auto& wanted = std::get<BackfillRequest>(request);
+    for (const std::string& sentence :
+         advised_phases(database, *config, wanted.spacecraft, wanted.equipment))
+      print_error("reident: {}", sentence);
     WorkerPool workers(usable_cores());
     Progress bar;
     const BackfillProgress progress = backfill(

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/phase_advice.hpp"
 #include "service/cli/verb.hpp"
 #include "service/dds/network_cut.hpp"
 #include "service/security/material.hpp"
@@ -114,6 +116,18 @@ std::vector<ConfigMistake> mistakes_of_security(const Config& config) {
   return mistakes;
 }
 
+/// What the telemetry in the database says of the configuration; the service may run. A database
+/// that cannot be read says nothing of it but that.
+std::vector<std::string> advice(const Config& config) {
+  if (!std::filesystem::exists(config.database)) return {};
+  try {
+    storage::Database database(config.database, storage::Database::Mode::read_only);
+    return advised_phases(database, config);
+  } catch (const storage::Error& error) {
+    return {error.what()};
+  }
+}
+
 void print_summary(const Config& config) {
   fmt::print("service {} on domain {}, partition {}; database {}\n", config.service_name,
              config.domain, config.partition, config.database.string());
@@ -132,6 +146,7 @@ void print_summary(const Config& config) {
                  signals_text(equipment)});
   fmt::print("{}", table.text(terminal_width()));
   print_relations(config);
+  for (const std::string& sentence : advice(config)) print_error("reident: {}", sentence);
 }
 
 ordered_json derived_json(const std::vector<DerivedInput>& inputs) {
@@ -187,7 +202,8 @@ void print_summary_json(const Config& config) {
               {"database", config.database.string()},
               {"digest", config.digest},
               {"equipment", list},
-              {"relations", relations_json(config)}});
+              {"relations", relations_json(config)},
+              {"advice", advice(config)}});
 }
 
 int run(const Arguments& arguments) {

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "service/cli/config_options.hpp"
 #include "service/cli/output/throughput.hpp"
+#include "service/cli/phase_advice.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/support/progress.hpp"
@@ -113,6 +115,14 @@ int undo(const Arguments& arguments) {
   return with_writable_database(arguments.database, take_back, storage::Database::Mode::update);
 }
 
+/// Where the configuration names the database.
+std::vector<std::string> advice(storage::Database& database, const DatabaseOptions& options) {
+  if (options.database) return {};
+  const auto chosen = chosen_config(options.config);
+  const auto* config = std::get_if<std::optional<Config>>(&chosen);
+  return config && *config ? advised_phases(database, **config) : std::vector<std::string>{};
+}
+
 int run(Arguments& arguments) {
   if (arguments.undo) return undo(arguments);
   if (const auto refusal = complete(arguments)) return refuse(*refusal);
@@ -135,6 +145,8 @@ int run(Arguments& arguments) {
     const auto& report = std::get<ImportReport>(imported);
     if (!arguments.json) print_error("{}: {}", arguments.import.file.string(), report.found);
     for (const std::string& remark : report.remarks) print_error("reident: {}", remark);
+    for (const std::string& sentence : advice(database, arguments.database))
+      print_error("reident: {}", sentence);
     for (const std::string& message : report.first_bad_lines)
       print_error("reident: left out: {}", message);
     if (arguments.json)

@@ -151,7 +151,7 @@ std::variant<ReplayPlan, Error> plan_replay(const ReplayOptions& options) {
   ReplayPlan plan;
   plan.file = options.file;
   plan.reading = options.reading;
-  plan.skip_blanks = options.skip_blanks || reader.has_samples_of_their_own();
+  plan.invalid_blanks = options.invalid_blanks && !reader.has_samples_of_their_own();
   plan.skip_bad_lines = options.skip_bad_lines;
   plan.time_column = reader.columns()[reader.clock().columns().front()];
   plan.found = reader.found();
@@ -202,7 +202,8 @@ bool ReplayStream::next(storage::TelemetryFrame& frame) {
   frame.samples.clear();
   for (const auto& column : plan_.columns) {
     const Cell cell = reader_.cell(column.position);
-    if ((plan_.skip_blanks && cell.kind == Cell::Kind::blank) || cell.kind == Cell::Kind::missing)
+    if ((!plan_.invalid_blanks && cell.kind == Cell::Kind::blank) ||
+        cell.kind == Cell::Kind::missing)
       continue;
     const bool is_value = cell.kind == Cell::Kind::number && std::isfinite(cell.value);
     const auto quality = !is_value         ? storage::Quality::invalid

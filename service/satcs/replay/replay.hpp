@@ -43,7 +43,7 @@ struct ReplayOptions {
   /// Unmapped columns keep their names; otherwise a unit at the end of a name becomes the
   /// parameter's unit: bus_u_mv is bus_u in mV.
   bool keep_names = false;
-  bool skip_blanks = false;          // a blank cell is no sample, and not an invalid one
+  bool invalid_blanks = false;       // a blank cell is an invalid sample, and not none
   std::vector<std::string> only;     // columns to replay; empty: all
   std::optional<ReplayBound> start;  // rows with start <= time < end
   std::optional<ReplayBound> end;
@@ -59,7 +59,7 @@ struct ReplayPlan {
   telemetry_file::ReadingOptions reading;
   std::string time_column;  // the first of those that hold the time
   std::vector<Column> columns;
-  bool skip_blanks = false;
+  bool invalid_blanks = false;
   bool skip_bad_lines = false;
   std::vector<std::string> left_out;  // columns without a single number
   std::string found;                  // how the file is read
@@ -75,7 +75,7 @@ std::variant<ReplayPlan, csv::Error> plan_replay(const ReplayOptions& options);
 
 /// Rows in the order of the file, whatever their times are, each received when it was generated. A
 /// cell without a finite number becomes a sample of quality invalid whose value is NaN, or none
-/// where it is blank and blanks are skipped, or its value is one that the options name as missing.
+/// where it is blank and the options do not say otherwise, or stands for no value.
 /// A number with a flag of limits behind it is out of limits.
 class ReplayStream : public FrameStream {
  public:

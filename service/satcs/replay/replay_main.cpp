@@ -52,9 +52,9 @@ void add_replay_options(CLI::App& app, ReplayOptions& options) {
       ->allow_extra_args(false);
   app.add_flag("--keep-names", options.keep_names,
                "Do not take units from names (bus_u_mv is bus_u in mV)");
-  app.add_flag("--skip-blanks", options.skip_blanks,
-               "A blank cell is no sample, as of a parameter that comes more seldom than others,\n"
-               "instead of an invalid one");
+  app.add_flag("--invalid-blanks,!--skip-blanks", options.invalid_blanks,
+               "A blank cell is an invalid sample, which ends the hold of the one before it.\n"
+               "By default (--skip-blanks) it is none, as in reident import");
   app.add_option("--only", options.only, "Columns to publish, separated by commas")
       ->delimiter(',')
       ->type_name("COLUMNS");

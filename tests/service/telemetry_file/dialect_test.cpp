@@ -90,6 +90,12 @@ TEST(TelemetryDialect, IsFoundFromTheFirstRows) {
            Found{"time  u     v\n----- ----- -----\n", " ", false, 1, 0, 3},
            Found{"time,17,18\n", ",", false, 1, 0, 2},
            Found{"Time of it,Load current,Bus voltage\ntime,u,v\n", ",", false, 2, 0, 3},
+           Found{"# time u v\n# s A V\n", " ", false, 1, 2, 3},
+           Found{"x-axis,1,2\nsecond,Ampere,Volt\n", ",", false, 1, 2, 3},
+           Found{"TOA5,KRN\ntime,u,v\nTS,A,V\n,Avg,Avg\n", ",", false, 2, 0, 5},
+           Found{"\"#\",\"u, A\",\"v, V\"\n", ",", false, 1, 0, 2},
+           Found{"Time,Load current,Bus\ns,A,V\nComments,,filtered\n", ",", false, 1, 2, 4},
+           Found{"***End_of_Header***\t\t\nX_Value\tu\tv\tComment\n", "\t", false, 2, 0, 3},
        }) {
     RowReader rows(TextSource::of_text(file_of(c.above, c.separator, c.decimal_commas), "t.csv"));
     const auto head = rows.head(1 << 20);
@@ -153,6 +159,10 @@ TEST(TelemetryDialect, OfLinesThatAreNoCellsIsRefusedWithTheRemedy) {
         {"\"time,u\"\n\"2024-02-28,1.5\"\n\"2024-02-29,1.6\"\n",
          "t.csv:1: the line is one quoted cell"},
         {"{\"time\":1,\"u\":2}\n{\"time\":2,\"u\":3}\n", "t.csv:1: the text is HTML"},
+        {"2024-02-28 u=1 v=2\n2024-02-29 u=3 v=4\n2024-03-01 u=5 v=6\n",
+         "t.csv:1: the line holds pairs"},
+        {"eps,sat=1 u=1,v=2 17\neps,sat=1 u=3,v=4 18\neps,sat=1 u=5,v=6 19\n",
+         "t.csv:1: the line holds pairs"},
         {"time,u,v\n2024-02-28,1,5,2,5\n2024-02-29,1,6,2,6\n",
          "t.csv:1: the line has 3 names, the rows have 5 cells"}}) {
     const auto opened = TelemetryFile::of_text(text, "t.csv", {});
@@ -187,6 +197,41 @@ TEST(TelemetryDialect, OfFixedWidthKeepsBlankCellsInTheirColumns) {
   }
 }
 
+TEST(TelemetryDialect, OfNamesAndCellsWithSingleBlanksIsCutAtWideOnes) {
+  std::string text =
+      "28 Feb 2024 23:10:00\n\n    Time (UTCG)             I Load (A)    V_Bus (V)\n"
+      "------------------------    ----------    ---------\n";
+  for (int row = 0; row < 8; ++row)
+    text +=
+        fmt::format("28 Feb 2024 22:00:0{}.000      {:10.6f}    {:9.6f}\n", row, 6.5 + row, 28.0);
+  auto opened = TelemetryFile::of_text(text, "t.txt", {});
+  ASSERT_TRUE(std::holds_alternative<TelemetryFile>(opened)) << std::get<Error>(opened).message;
+  auto& file = std::get<TelemetryFile>(opened);
+  ASSERT_FALSE(file.find_time());
+  EXPECT_THAT(file.columns(), ElementsAre("Time (UTCG)", "I Load (A)", "V_Bus (V)"));
+  ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+  EXPECT_EQ(time_text(file.time_ns()), "2024-02-28T22:00:00Z");
+  EXPECT_EQ(file.cell(1).value, 6.5);
+}
+
+TEST(TelemetryDialect, OfWhatDatabasesPrintLeavesOutRulesAndTheFooter) {
+  for (const auto& [rule, bar, footer, remarks] :
+       {std::tuple("+----+----+\n", "|", "", 0U), {"", "", "(3 rows)\n\n", 1U}}) {
+    std::string text = fmt::format("{0}{1}time|u{1}\n{0}", rule, bar);
+    if (*rule == '\0') text += "--------+----\n";
+    for (const char* row : {"2024-02-28|1", "2024-02-29|2", "2024-03-01|3"})
+      text += fmt::format("{0}{1}{0}\n", bar, row);
+    text += rule;
+    auto opened = TelemetryFile::of_text(text + footer, "t.txt", {});
+    ASSERT_TRUE(std::holds_alternative<TelemetryFile>(opened)) << std::get<Error>(opened).message;
+    auto& file = std::get<TelemetryFile>(opened);
+    for (int row = 0; row < 3; ++row)
+      ASSERT_EQ(file.next(), TelemetryFile::Step::row) << file.error().message;
+    EXPECT_EQ(file.next(), TelemetryFile::Step::end) << file.error().message;
+    EXPECT_EQ(file.remarks().size(), remarks) << text;
+  }
+}
+
 TEST(TelemetryDialect, LeavesNumbersOfRowsWithoutAName) {
   auto opened = TelemetryFile::of_text(
       "\"time\" \"u\"\n\"1\" \"2024-02-28T22:00:00Z\" 1.5\n\"2\" \"2024-02-28T22:00:10Z\" 1.6\n",
@@ -195,6 +240,19 @@ TEST(TelemetryDialect, LeavesNumbersOfRowsWithoutAName) {
   auto& file = std::get<TelemetryFile>(opened);
   EXPECT_THAT(file.columns(), ElementsAre("", "time", "u"));
   EXPECT_EQ(file.unnamed_columns().size(), 1U);
+}
+
+TEST(TelemetryDialect, SaysWhatMayBeReadOtherwise) {
+  const auto remarks = [](const std::string& text) {
+    auto opened = TelemetryFile::of_text(text, "t.csv", {});
+    auto& file = std::get<TelemetryFile>(opened);
+    EXPECT_FALSE(file.find_time());
+    return file.remarks();
+  };
+  const std::string rows = "2024-02-28T22:00:00Z,1,2024-02-28T22:00:03Z,2\n";
+  EXPECT_THAT(remarks("t,u,received,v\n" + rows),
+              ElementsAre(HasSubstr("other times in received")));
+  EXPECT_THAT(remarks("t,u,v\n2024-02-28T22:00:00Z,1,2\n"), ElementsAre());
 }
 
 TEST(TelemetryDialect, EndsLinesWithAnyNumberOfCarriageReturns) {
@@ -213,6 +271,8 @@ TEST(TelemetryDialect, OfOneSampleARowIsKnownByTheNamesAndWords) {
   };
   EXPECT_TRUE(layout("time,parameter,value\n2024-02-28,u,1\n"));
   EXPECT_TRUE(layout("Zeit;Parameter;Wert\n28.02.2024;u;1,5\n"));
+  EXPECT_TRUE(layout("Parameter;Sample Time;Raw;Eng\nu;2024-02-28;15;1.5\n"));
+  EXPECT_TRUE(layout("VarName;TimeString;VarValue\nu;28.02.2024;1,5\n"));
   EXPECT_TRUE(layout("_time,_value,_field,_measurement\n2024-02-28,1,u,eps\n"));
   EXPECT_FALSE(layout("time,signal,value\n2024-02-28,1.5,2.5\n")) << "two quantities";
   EXPECT_FALSE(layout("time,u,v\n2024-02-28,1.5,2.5\n"));
@@ -293,6 +353,7 @@ TEST(TelemetryCells, ThatDoNotAgreeAreBad) {
   EXPECT_EQ(read_cell(cells[7], format_of(cells)).kind, Cell::Kind::bad);
   EXPECT_EQ(format_of({"SUN", "ECLIPSE"}).kind, CellFormat::Kind::text);
   EXPECT_EQ(read_cell("", format_of(cells)).kind, Cell::Kind::blank);
+  EXPECT_EQ(read_cell(" <NA> ", format_of(cells)).kind, Cell::Kind::missing);
   EXPECT_EQ(read_cell("OFF", format_of({"ON", "ON"})).value, 0) << "the other state comes later";
 }
 

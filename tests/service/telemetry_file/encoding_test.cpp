@@ -18,6 +18,8 @@ TEST(TelemetryEncoding, IsWhatTheBytesShow) {
   EXPECT_EQ(find_encoding("T\x96"
                           "bus (\x80)"),
             "WINDOWS-1252");
+  EXPECT_EQ(find_encoding("\x93\xFA\x8E\x9E,\x93\x64\x97\xAC[A],\x93\x64\x88\xB3[V]"), "SHIFT_JIS");
+  EXPECT_EQ(find_encoding("\x93Strom\x94 \x85 \x96 I, \xE9tat"), "WINDOWS-1252");
   EXPECT_EQ(find_encoding("\xFF\xFEt\0i\0"s), "UTF-16LE");
   EXPECT_EQ(find_encoding("t\0i\0m\0e\0"s), "UTF-16LE");
   EXPECT_EQ(find_encoding("\0t\0i\0m\0e"s), "UTF-16BE");

@@ -50,6 +50,13 @@ TEST_F(SqlTest, SeriesSourcesAndGapsHaveViews) {
                           "CB4|station|real|0|5|18446744073709551614|20|30"));
 }
 
+TEST_F(SqlTest, UnitThatIsNotKnownIsNull) {
+  append({frame(1, 10, {{1, Quality::good, 28}, {7, Quality::good, 3}})});
+  rows(path, "UPDATE parameter SET unit = ''");
+  EXPECT_THAT(ask("SELECT parameter, unit FROM telemetry_series ORDER BY parameter"),
+              ElementsAre("7|NULL", "V_BUS|NULL"));
+}
+
 TEST_F(SqlTest, VersionsChampionAndHistoryHaveViews) {
   version(7, DecisionKind::approve);
   version(9, DecisionKind::wait);

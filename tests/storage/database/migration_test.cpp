@@ -149,9 +149,9 @@ INSERT INTO decision VALUES
 }
 
 // Version 5 differs from 4 in the qualities that a file may hold, 6 has the records of versions,
-// 7 what the service noticed, 8 what two services of a pair share and the effects of biases, and 9
-// shards.
-TEST(MigrationFrom4To8, AddsTheRecordsAndChangesNothingElse) {
+// 7 what the service noticed, 8 what two services of a pair share and the effects of biases, 9
+// shards, and 10 no unit that is not known.
+TEST(MigrationFrom4To9, AddsTheRecordsAndChangesNothingElse) {
   const TemporaryFolder folder;
   const auto path = folder / "old.db";
   const char* schema = "SELECT type, name, sql FROM sqlite_master ORDER BY type, name";
@@ -178,9 +178,12 @@ TEST(MigrationFrom4To8, AddsTheRecordsAndChangesNothingElse) {
     without_pairs += "DROP TRIGGER " + std::string(table) + "_journal; ";
   const std::string without_effects = "ALTER TABLE score DROP COLUMN bias_effects; ";
   const std::string without_shards = "DROP TABLE shard; ALTER TABLE chunk DROP COLUMN shard; ";
-  for (const std::string old : {"4", "5", "6", "7", "8"}) {
-    rows(path, without_shards + (old == "8" ? "" : without_pairs) +
-                   (old == "8"   ? ""
+  const std::string series_view_of_9 =
+      "DROP VIEW telemetry_series; CREATE VIEW telemetry_series AS SELECT unit FROM parameter; ";
+  for (const std::string old : {"4", "5", "6", "7", "8", "9"}) {
+    rows(path, series_view_of_9 + (old == "9" ? "" : without_shards) +
+                   (old >= "8" ? "" : without_pairs) +
+                   (old >= "8"   ? ""
                     : old >= "6" ? without_effects
                                  : without_records) +
                    (old >= "7" ? "" : without_notices) + "PRAGMA user_version = " + old);

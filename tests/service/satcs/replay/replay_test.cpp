@@ -148,7 +148,8 @@ TEST_F(Replay, SendsOneSampleARowAsTheTableThatItStandsFor) {
   write("time,name,value\n10,u,1\n20,u,2\n10,v,5\n");
   EXPECT_THAT(parameters(), ElementsAre("u:", "v:"));
   EXPECT_EQ(plan().rows, 2U);
-  EXPECT_TRUE(plan().skip_blanks) << "v has no sample at 20";
+  options_.invalid_blanks = true;
+  EXPECT_FALSE(plan().invalid_blanks) << "v has no sample at 20";
 }
 
 TEST_F(Replay, RefusesWhatCannotBeReplayed) {
@@ -213,6 +214,7 @@ TEST_F(Replay, RefusesAPipeBecauseItReadsTwice) {
 
 TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
   write("t,a,b\n10,1,x\n9.5,,2\n9.5,nan,-0.5\n20,1e400,3\n");
+  options_.invalid_blanks = true;
   const auto replayed = plan();
   EXPECT_EQ(replayed.rows, 4U);
   ReplayStream stream(replayed, {"station", storage::Origin::simulated, 7});
@@ -247,9 +249,8 @@ TEST_F(Replay, GivesEveryRowInTheOrderOfTheFile) {
   EXPECT_EQ(stream.progress(), 1);
 }
 
-TEST_F(Replay, SkipsBlankCellsWhereAsked) {
+TEST_F(Replay, TakesBlankCellsForNoSamplesAsAnImportDoes) {
   write("t,a,b\n1,1, \n2,,nan\n3,4,5\n");
-  options_.skip_blanks = true;
   ReplayStream stream(plan(), {"station"});
   storage::TelemetryFrame frame;
   ASSERT_TRUE(stream.next(frame));

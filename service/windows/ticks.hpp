@@ -3,10 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-namespace reident::cli {
+#include "service/config/config.hpp"
+#include "storage/types/sample_reader.hpp"
+
+namespace reident {
 
 /// Returns the step of times: the median, or where they are rounded or jitter about a grid, the
 /// roundest period of a grid that goes with all of them. Requires steps, and none below 1.
@@ -18,4 +23,10 @@ std::int64_t usual_step(std::span<const std::int64_t> steps_ns);
 std::int64_t suitable_phase(const std::vector<std::vector<std::int64_t>>& channels_ns,
                             std::int64_t period_ns);
 
-}  // namespace reident::cli
+/// Where the configuration leaves an equipment's ticks on the multiples of its period, and its
+/// newest telemetry before `end` suits others: one sentence with the key that mends it.
+std::optional<std::string> advised_phase(const storage::SampleReader& telemetry,
+                                         const std::string& spacecraft,
+                                         const EquipmentConfig& equipment, storage::Time end);
+
+}  // namespace reident

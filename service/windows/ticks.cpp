@@ -1,11 +1,15 @@
-#include "service/cli/identify_ticks.hpp"
+#include "service/windows/ticks.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "service/support/floor_divide.hpp"
+#include <fmt/format.h>
 
-namespace reident::cli {
+#include "service/support/floor_divide.hpp"
+#include "service/support/time_text.hpp"
+#include "service/windows/window_data.hpp"
+
+namespace reident {
 namespace {
 
 constexpr std::size_t least_steps = 10;    // that show a grid
@@ -90,4 +94,25 @@ std::int64_t suitable_phase(const std::vector<std::vector<std::int64_t>>& channe
   return roundest(begin, begin + width / 10) % period_ns;
 }
 
-}  // namespace reident::cli
+std::optional<std::string> advised_phase(const storage::SampleReader& telemetry,
+                                         const std::string& spacecraft,
+                                         const EquipmentConfig& equipment, storage::Time end) {
+  constexpr std::int64_t ticks = 2000;
+  if (equipment.phase != 0) return std::nullopt;
+  std::vector<std::vector<std::int64_t>> channels;
+  for (const std::string& name : parameters_of(equipment))
+    if (const auto parameter = telemetry.parameter(spacecraft, name))
+      channels.push_back(telemetry
+                             .read(spacecraft, storage::Origin::real, parameter->id,
+                                   {end - ticks * equipment.sample_period, end})
+                             .time);
+  const Duration phase = suitable_phase(channels, equipment.sample_period);
+  if (phase == 0) return std::nullopt;
+  return fmt::format(
+      "{}/{}: not all parameters have come at the multiples of {}; phase = \"{}\" for the "
+      "equipment "
+      "puts its ticks where they have, as reident identify does",
+      spacecraft, equipment.name, duration_text(equipment.sample_period), duration_text(phase));
+}
+
+}  // namespace reident

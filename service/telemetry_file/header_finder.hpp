@@ -1,0 +1,31 @@
+// Finds the names of the columns above the rows, or in a comment. Private to this folder.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "service/telemetry_file/dialect.hpp"
+#include "service/telemetry_file/head_lines.hpp"
+
+namespace reident::telemetry_file {
+
+/// Numbers of lines among the head's.
+struct HeaderPlace {
+  std::size_t first_row = 0;
+  std::optional<std::size_t> header, units;
+};
+
+/// Finds the header of lines that were cut into cells; where it is in a comment, that is cut too.
+/// An error where there is none and no names are given.
+std::variant<HeaderPlace, Error> find_header(HeadLines& lines, const Layout& layout,
+                                             const DialectOptions& options,
+                                             const std::string& name);
+
+/// What is wrong with a file as a whole, or in a line of it.
+Error whole_file(const std::string& name, std::string_view what);
+Error at_line(const std::string& name, std::uint64_t line, std::string_view what);
+
+}  // namespace reident::telemetry_file
