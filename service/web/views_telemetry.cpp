@@ -89,7 +89,7 @@ Json gaps_view(const Stored& stored, const HttpRequest& request) {
     list.push_back({{"spacecraft", spacecraft},
                     {"begin", time_value(outage.range.begin)},
                     {"end", time_value(outage.range.end)},
-                    {"seconds", static_cast<double>(length(found[i])) * 1e-9},
+                    {"seconds", static_cast<double>(length(found[i])) / 1e9},
                     {"parameters", outage.parameters},
                     {"of", parameters[spacecraft]}});
   }

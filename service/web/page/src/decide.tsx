@@ -25,6 +25,7 @@ export function Decide({ spacecraft, equipment, champion, actions }: DecidePrope
   const [failure, setFailure] = useState("");
   // What was shown when the form was opened is what is decided on: another champion since is refused.
   const shown = useRef(champion);
+  if (done?.ok) shown.current = champion;  // what one decided oneself is no surprise
   const requesters = useRef(new Map<string, string>());
   const allowed = actions.filter((one) => may(session, one.role, spacecraft));
   if (actions.length === 0) return null;

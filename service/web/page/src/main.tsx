@@ -96,7 +96,7 @@ function Pulse() {
   const age = ageOf(service);
   if (age > freshSeconds) return <span class="pulse bad" role="status">service {status.service} silent for {durationText(age)}</span>;
   if (status.last_error) return <a class="pulse bad" href="#/service" role="status">{status.last_error}</a>;
-  return <span class="pulse"><span class="good">●</span> {status.service}{status.pair && ` ${status.pair.role}`}; telemetry to {timeText(status.newest_telemetry)} {zone}{Number(status.windows_pending) > 0 && `; ${status.windows_pending} windows pending`}{Math.abs(clockError()) > 60 && <span class="act">; this computer's clock is off by {durationText(Math.abs(clockError()))}</span>}</span>;
+  return <span class="pulse"><span class="good">●</span> {status.service}{status.pair && ` ${status.pair.role}`}; telemetry to <span class="whole">{timeText(status.newest_telemetry)} {zone}</span>{Number(status.windows_pending) > 0 && `; ${status.windows_pending} windows pending`}{Math.abs(clockError()) > 60 && <span class="act">; this computer's clock is off by {durationText(Math.abs(clockError()))}</span>}</span>;
 }
 
 function moveInRows(step: number): void {

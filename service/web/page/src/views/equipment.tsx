@@ -2,7 +2,7 @@
 import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ask, isAbout, useAnswer, type Equipment, type Run, type Telemetry, type Timeline, type VersionLine } from "../api";
 import { Decide } from "../decide";
-import { figure, isoOf, secondsOf, timeText } from "../format";
+import { figure, isoOf, secondsOf, timeOfSeconds, timeText } from "../format";
 import { decisionColumns, Figure, kindText, Loaded, Status, statusText, useZone } from "../parts";
 import { Plot, type Level, type Mark, type Panel, type Stretch } from "../plot";
 import { levelsOf, pointsOf } from "../series";
@@ -108,6 +108,29 @@ function panelsOf(equipment: Equipment, drawn: Drawn, kept: Kept): Panel[] {
 /** What the gate refused or left waiting changes nothing in orbit: the tables below have it. */
 const changesWhatRuns = (kind: string) => kind === "approve" || kind === "roll_back" || kind === "withdraw";
 
+/** Ranges without those that overlap, ascending. */
+function united(ranges: [number, number][]): [number, number][] {
+  const whole: [number, number][] = [];
+  for (const [begin, end] of ranges.sort((a, b) => a[0] - b[0])) {
+    const last = whole[whole.length - 1];
+    if (last && begin <= last[1]) last[1] = Math.max(last[1], end);
+    else whole.push([begin, end]);
+  }
+  return whole;
+}
+
+const mostExcluded = 4;
+
+/** What the hatched stretches are. */
+function Excluded({ timeline, origin, zone }: { timeline: Timeline; origin: number; zone: string }) {
+  const longest = [...timeline.excluded].sort((a, b) => b.end_s - b.begin_s - (a.end_s - a.begin_s));
+  if (longest.length === 0) return null;
+  return (
+    <p class="note">Not believed: {longest.slice(0, mostExcluded).map((one) => `${one.parameters.join(", ")} (${one.check}) from ${timeOfSeconds(origin + one.begin_s)} to ${timeOfSeconds(origin + one.end_s)} ${zone}`).join("; ")}
+      {longest.length > mostExcluded && `; and ${longest.length - mostExcluded} shorter`}. <a href={link("telemetry", { begin: timeline.range.begin, end: timeline.range.end })}>Why</a></p>
+  );
+}
+
 /** The plot, or its figures as a table. */
 function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; parameters: Record<string, string>; turn: number }) {
   const zone = useZone();
@@ -127,7 +150,7 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
   const stretches = useMemo<Stretch[]>(() => (timeline?.champions ?? []).map((champion, index) => ({
     begin: origin + champion.begin_s, end: origin + champion.end_s, label: champion.version, colour: index % 2 ? "--strip-b" : "--strip-a",
   })), [timeline]);
-  const excluded = useMemo<[number, number][]>(() => (timeline?.excluded ?? []).map((one) => [origin + one.begin_s, origin + one.end_s]), [timeline]);
+  const excluded = useMemo(() => united((timeline?.excluded ?? []).map((one) => [origin + one.begin_s, origin + one.end_s])), [timeline]);
   const asTable = parameters.show === "table";
 
   const move = useCallback((from: number, to: number) => {
@@ -178,6 +201,7 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
       {asTable ? panels.map((panel) => <Figures panel={panel} zone={zone} />)
         : panels.length > 0 && <Plot begin={begin} end={end} panels={panels} marks={marks} stretches={stretches} excluded={excluded} onRange={move} />}
       <p class="legend"><span class="swatch gap" /> nothing came <span class="swatch excluded" /> excluded by screening <span class="swatch strip" /> champion</p>
+      {timeline && <Excluded timeline={timeline} origin={origin} zone={zone} />}
     </section>
   );
 }

@@ -1,6 +1,6 @@
 // What of the telemetry is missing, and which sensors screening did not believe.
-import { useAnswer } from "../api";
-import { durationText, figure, timeText } from "../format";
+import { useAnswer, type Range } from "../api";
+import { durationText, figure, secondsOf, timeText } from "../format";
 import { Loaded, useZone } from "../parts";
 import { Table } from "../table";
 import { link } from "../url";
@@ -36,6 +36,9 @@ export interface TelemetryRange {
 
 const around = (begin: string, end: string, spacecraft: string, equipment: string) => link("equipment", { spacecraft, equipment, begin, end });
 
+/** It lasts at the end of the range. */
+const isOpen = (gap: Gap, range: Range) => secondsOf(gap.end) >= secondsOf(range.end) - 1;
+
 function LeftOut({ count, what }: { count: number; what: string }) {
   return count > 0 ? <p class="note">{count} shorter {what} not listed.</p> : null;
 }
@@ -66,15 +69,15 @@ export function Disbelieved({ begin, end }: TelemetryRange) {
 
 export function Gaps({ begin, end }: TelemetryRange) {
   const zone = useZone();
-  const answer = useAnswer<{ gaps: Gap[]; left_out: number }>("gaps", { begin, end, rows: "25" });
+  const answer = useAnswer<{ range: Range; gaps: Gap[]; left_out: number }>("gaps", { begin, end, rows: "25" });
   return (
     <Loaded answer={answer}>
-      {({ gaps, left_out }) => (
+      {({ range, gaps, left_out }) => (
         <>
           <Table name="gaps" caption="Gaps, the longest first" rows={gaps} empty="Nothing is missing." columns={[
             { title: "spacecraft", text: (row) => row.spacecraft },
             { title: `from (${zone})`, text: (row) => timeText(row.begin), isTime: true },
-            { title: `to (${zone})`, text: (row) => timeText(row.end), isTime: true },
+            { title: `to (${zone})`, text: (row) => `${isOpen(row, range) ? "still at " : ""}${timeText(row.end)}`, isTime: true },
             { title: "length", text: (row) => durationText(row.seconds), isNumber: true },
             { title: "of", text: (row) => (row.parameters.length === row.of ? `all ${row.of} parameters` : `${row.parameters.length} of ${row.of}: ${row.parameters.join(", ")}`),
               cell: (row) => (row.parameters.length === row.of ? <>all {row.of} parameters</> : <>{row.parameters.length} of {row.of}: {row.parameters.slice(0, 6).join(", ")}{row.parameters.length > 6 && " …"}</>), isWide: true },
