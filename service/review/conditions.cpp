@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "service/model/glossary.hpp"
+
 namespace reident {
 namespace {
 
@@ -46,7 +48,8 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
       {"R1",
        fmt::format("mean score above {:.3f} ({:g} % less error)",
                    (1 - rest * rest) / (1 + rest * rest), limits.margin_percent),
-       fmt::format("{:.3f}", finding.mean_score),
+       fmt::format("{:.3f}; MRSE {:.3g} % against {:.3g} %", finding.mean_score,
+                   finding.mrse_percent, finding.champion_mrse_percent),
        {}},
       {"R2",
        "sure gain outweighs regimes that it has not met",
@@ -65,6 +68,13 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
     if (i <= place) conditions[i].holds = i < place;
     if (i > place) conditions[i].found.clear();
   }
+  if (place == 6)
+    if (const auto* entry = explanation_of(obstacle)) conditions[6].found = entry->words;
+  // Asked, it holds with more than the threshold alone (Judge).
+  Condition& bias = conditions[5];
+  if (bias.holds == true && limits.bias == BiasPolicy::wait &&
+      finding.wealth_without_offset <= finding.log_threshold)
+    bias.found = "not asked: relations bind the sensors";
   return conditions;
 }
 

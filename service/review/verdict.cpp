@@ -26,6 +26,7 @@ Finding finding_in(const nlohmann::ordered_json& evidence) {
   read("uncovered_share", finding.uncovered_share);
   read("log_wealth_without_offset", finding.wealth_without_offset);
   read("mrse_percent", finding.mrse_percent);
+  read("champion_mrse_percent", finding.champion_mrse_percent);
   read("fit_percent", finding.fit_percent);
   return finding;
 }
@@ -35,9 +36,14 @@ Finding finding_in(const nlohmann::ordered_json& evidence) {
 Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& story) {
   const auto record = stored_record(history, story);
   if (record)
-    if (const auto finding = finding_now(*record, story)) {
+    if (auto finding = finding_now(*record, story)) {
+      if (!finding->obstacle &&
+          last_code(story.decisions.back()) == name(ReasonCode::waits_for_operator))
+        finding->obstacle =
+            because<ReasonCode::waits_for_operator>(finding->mrse_percent, finding->blocks);
       const std::string_view code = finding->obstacle ? name(finding->obstacle->code) : "";
-      return {finding->obstacle ? "Waits. " + sentence(*finding->obstacle)
+      const bool asks = code == name(ReasonCode::waits_for_operator);  // its sentence says so
+      return {finding->obstacle ? (asks ? "" : "Waits. ") + sentence(*finding->obstacle)
                                 : "Waits, and all conditions on its record hold.",
               conditions_of(*finding, code, record->limits)};
     }

@@ -27,7 +27,9 @@ constexpr std::array routes{
     Route{"/api/v1/version", version_view},     Route{"/api/v1/timeline", timeline_view},
     Route{"/api/v1/telemetry", telemetry_view}, Route{"/api/v1/run", run_view},
     Route{"/api/v1/events", events_view},       Route{"/api/v1/simulators", simulators_view},
-    Route{"/api/v1/series", series_view},       Route{"/api/v1/completeness", completeness_view}};
+    Route{"/api/v1/series", series_view},       Route{"/api/v1/completeness", completeness_view},
+    Route{"/api/v1/gaps", gaps_view},           Route{"/api/v1/excluded", excluded_view},
+    Route{"/api/v1/commands", commands_view}};
 
 constexpr std::array<std::string_view, 11> others = {
     "/page.js",         "/page.css",      "/api/v1/overview", "/api/v1/service",

@@ -32,6 +32,12 @@ Json telemetry_view(const Stored& stored, const HttpRequest& request);
 Json run_view(const Stored& stored, const HttpRequest& request);
 /// Decisions about any equipment, the newest first, a page at a time.
 Json events_view(const Stored& stored, const HttpRequest& request);
+/// What operators ordered and what the service replied, the newest first.
+Json commands_view(const Stored& stored, const HttpRequest& request);
+/// When no telemetry came, and of which parameters; the longest gaps of the range.
+Json gaps_view(const Stored& stored, const HttpRequest& request);
+/// Which sensors screening did not believe, since when and until when.
+Json excluded_view(const Stored& stored, const HttpRequest& request);
 /// The series that are archived.
 Json series_view(const Stored& stored, const HttpRequest& request);
 /// What came of one parameter and what is missing, day by day.

@@ -1,13 +1,36 @@
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "service/web/questions.hpp"
 #include "service/web/views.hpp"
+#include "storage/registry/kept_commands.hpp"
 
 namespace reident::web {
 namespace {
 
 constexpr storage::Time day = 86'400 * storage::second_ns;
 constexpr std::int64_t usual_rows = 100, most_rows = 1000, most_days = 4000;
+
+/// The kinds of decisions that `kind` names, with commas between them; none: all.
+std::vector<storage::DecisionKind> kinds_of(const HttpRequest& request) {
+  std::vector<storage::DecisionKind> kinds;
+  std::string_view rest = request.parameter("kind");
+  while (!rest.empty()) {
+    const std::string_view word = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+    const auto kind = storage::decision_kind(word);
+    if (!kind)
+      throw BadRequest(
+          fmt::format("there is no kind {:.40} of decisions; there are approve, reject, "
+                      "wait, roll_back and withdraw",
+                      word));
+    kinds.push_back(*kind);
+  }
+  return kinds;
+}
 
 }  // namespace
 
@@ -19,18 +42,13 @@ Json events_view(const Stored& stored, const HttpRequest& request) {
     filter.range = range_of(request, {INT64_MIN / 2, INT64_MAX / 2});
   filter.newest_first = true;
   if (const auto before = number_of(request, "before", 1, INT64_MAX, 0)) filter.beyond = before;
-  const auto kind = request.parameter("kind");
-  if (!kind.empty() && !storage::decision_kind(kind))
-    throw BadRequest(
-        fmt::format("there is no kind {:.40} of decisions; there are approve, reject, "
-                    "wait, roll_back and withdraw",
-                    kind));
+  const auto kinds = kinds_of(request);
   const auto actor = request.parameter("by");  // "gate", "operator", or a name
   const auto rows = static_cast<std::size_t>(number_of(request, "rows", 1, most_rows, usual_rows));
   Json list = Json::array(), next;
   stored.registry.each_decision(filter, [&](storage::Decision&& decision) {
     const bool is_gate = decision.actor == "gate";
-    if ((!kind.empty() && storage::name(decision.kind) != kind) ||
+    if ((!kinds.empty() && !std::ranges::count(kinds, decision.kind)) ||
         (!actor.empty() && decision.actor != actor && (actor != "operator" || is_gate)))
       return true;
     if (list.size() == rows) {
@@ -48,6 +66,26 @@ Json events_view(const Stored& stored, const HttpRequest& request) {
     return true;
   });
   return {{"events", std::move(list)}, {"before", std::move(next)}};
+}
+
+Json commands_view(const Stored& stored, const HttpRequest& request) {
+  const auto rows = static_cast<std::size_t>(number_of(request, "rows", 1, most_rows, usual_rows));
+  const auto range = range_of(request, {INT64_MIN / 2, INT64_MAX / 2});
+  Json list = Json::array();
+  auto kept = storage::kept_commands(stored.database, range, rows + 1);
+  const bool is_cut = kept.size() > rows;
+  if (is_cut) kept.pop_back();
+  for (const auto& [command, time, outcome] : kept)
+    list.push_back({{"time", time_value(time)},
+                    {"action", command.action},
+                    {"spacecraft", command.spacecraft},
+                    {"equipment", command.equipment},
+                    {"version", command.version > 0 ? id_value(command.version) : Json()},
+                    {"actor", command.actor},
+                    {"reason", command.reason},
+                    {"ok", outcome.ok},
+                    {"reply", outcome.reply}});
+  return {{"commands", std::move(list)}, {"is_cut", is_cut}};
 }
 
 Json series_view(const Stored& stored, const HttpRequest&) {

@@ -8,6 +8,7 @@
 #include "service/review/evidence.hpp"
 #include "service/review/model_run.hpp"
 #include "service/review/stored_version.hpp"
+#include "service/web/disbelieved.hpp"
 #include "service/web/questions.hpp"
 #include "service/web/views.hpp"
 #include "service/windows/block_reader.hpp"
@@ -144,21 +145,15 @@ std::vector<Reign> reigns_of(const Stored& stored, const EquipmentName& name, Ti
 
 /// What screening left out of windows that meet the range; of each window the longest ones.
 Json excluded_in(const std::vector<storage::Attempt>& attempts, TimeRange range) {
+  DisbelievedSensors sensors(0);
+  for (const storage::Attempt& attempt : attempts) sensors.add(attempt);
   Json list = Json::array();
-  Time until = INT64_MIN;  // neighbouring windows overlap and say the same again
-  for (const storage::Attempt& attempt : attempts) {
-    const auto evidence = evidence_of(attempt);
-    const auto longest = evidence.value(Json::json_pointer("/implausible/longest"), Json::array());
-    for (const Json& one : longest) {
-      const TimeRange found{one.value("begin_ns", Time{0}), one.value("end_ns", Time{0})};
-      if (found.begin < until || found.begin >= range.end || found.end <= range.begin) continue;
-      list.push_back({{"begin_s", seconds(found.begin, range.begin)},
-                      {"end_s", seconds(found.end, range.begin)},
-                      {"check", one.value("check", "")},
-                      {"parameters", one.value("parameters", Json::array())}});
-    }
-    until = std::max(until, attempt.window.end);
-  }
+  for (const Disbelieved& one : std::move(sensors).take())
+    if (one.range.begin < range.end && one.range.end > range.begin)
+      list.push_back({{"begin_s", seconds(one.range.begin, range.begin)},
+                      {"end_s", seconds(one.range.end, range.begin)},
+                      {"check", one.check},
+                      {"parameters", one.parameters}});
   return list;
 }
 

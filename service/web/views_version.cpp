@@ -79,6 +79,11 @@ Json version_view(const Stored& stored, const HttpRequest& request) {
   Json view = name_value(name);
   view["version"] = id_value(number);
   view["status"] = story->version.status;
+  view["asks_operator"] =
+      std::ranges::any_of(stored.history.waiting(), [&](const history::WaitingRow& row) {
+        return row.decision.version == number && row.decision.equipment == name.equipment &&
+               row.decision.spacecraft == name.spacecraft;
+      });
   view["champion"] = champion ? id_value(champion->version) : Json();
   view["held"] = story->hold ? Json(story->hold->actor) : Json();
   view["verdict"] = verdict.sentence;

@@ -38,6 +38,8 @@ class Counter {
         counts_(bins.count()) {}
 
   std::vector<BinCounts> run(Time until);
+  /// The gaps that run() met.
+  std::vector<TimeRange> take_gaps() && { return std::move(gaps_); }
 
  private:
   /// Chunks that meet the bins, with one on either side, and what is recent over or between them.
@@ -66,6 +68,7 @@ class Counter {
   const SeriesInfo& series_;
   const TimeBins& bins_;
   std::vector<BinCounts> counts_;
+  std::vector<TimeRange> gaps_;
   ChunkDecoder decoder_;
   SamplingMeter meter_;
   std::optional<Time> last_;  // the last sample so far, and how those before it are sampled
@@ -173,6 +176,7 @@ void Counter::count_times(const std::vector<Time>& times) {
 void Counter::add_gap(const SampleGap& gap, Time step) {
   const TimeRange range = bins_.range();
   if (gap.end <= range.begin || gap.begin >= range.end || step <= 0) return;
+  gaps_.push_back({gap.begin, gap.end});
   if (gap.begin >= range.begin) {
     BinCounts& counts = counts_[bins_.of(gap.begin)];
     ++counts.gaps;
@@ -200,6 +204,14 @@ void Counter::add_gap(const SampleGap& gap, Time step) {
 std::vector<BinCounts> completeness(const Database& database, const SeriesInfo& series,
                                     const TimeBins& bins, Time until) {
   return Counter(database, series, bins).run(until);
+}
+
+std::vector<TimeRange> gaps(const Database& database, const SeriesInfo& series, TimeRange range,
+                            Time until) {
+  const TimeBins whole(range, range.end - range.begin);
+  Counter counter(database, series, whole);
+  counter.run(until);
+  return std::move(counter).take_gaps();
 }
 
 }  // namespace reident::storage

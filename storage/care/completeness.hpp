@@ -22,4 +22,9 @@ namespace reident::storage {
 std::vector<BinCounts> completeness(const Database& database, const SeriesInfo& series,
                                     const TimeBins& bins, Time until);
 
+/// The gaps of the series that meet `range`, each between the samples beside it, ascending; the
+/// last one, up to `until`, is there as completeness() counts it. Throws Error (corrupt) likewise.
+std::vector<TimeRange> gaps(const Database& database, const SeriesInfo& series, TimeRange range,
+                            Time until);
+
 }  // namespace reident::storage

@@ -180,12 +180,15 @@ class Web(WebCase):
                          [str(one) for one, in
                           self.query("SELECT id FROM decision ORDER BY id DESC LIMIT 100")])
 
-    def test_extremes_are_those_of_the_samples_to_the_bit_and_gaps_are_named(self):
-        self.configure([plant.equipment()])
+    def test_extremes_are_those_of_the_samples_to_the_bit_and_gaps_and_lies_are_named(self):
+        self.configure([plant.equipment()], relations=[
+            {"name": "pair", "expression": "out - load", "tolerance": 0.1}])
         self.start_daemon()
         rows = [row for row in plant.rows(count=1900) if not 700 <= row[0] - plant.START_S < 800]
         rows[5][3] = 1e300
         csv = plant.write(self.folder / "gap.csv", rows)
+        self.replay_all(plant.write(self.folder / "lost.csv", rows[:20]), "--wait-readers", 1,
+                        spacecraft="LOST")
         self.replay_all(csv, "--wait-readers", 1)
         self.wait_idle()
         self.start_web()
@@ -207,6 +210,18 @@ class Web(WebCase):
                 self.assertIn((value, at), bin_samples)
             if answer["bin_s"] <= 100:
                 self.assertEqual(answer["gaps"], [[699, 800]])
+        found = self.api("gaps", begin=begin, end=end)
+        self.assertEqual([(one["spacecraft"], one["seconds"], sorted(one["parameters"]), one["of"])
+                          for one in found["gaps"]], [("LOST", 1880, ["drive", "load", "out"], 3),
+                                                      ("SAT", 101, ["drive", "load", "out"], 3)])
+        self.assertEqual(found["left_out"], 0)
+        self.assertEqual(self.api("gaps", begin=begin, end=begin + 10)["gaps"], [])
+        lies = self.api("excluded", begin=begin, end=end)["excluded"]
+        self.assertEqual({(one["check"], one["relation"], *one["parameters"], *one["equipment"])
+                          for one in lies}, {("relation", "pair", "out", "load", "PLANT"),
+                                             ("spike", "", "out", "PLANT")})
+        self.assertEqual([one["lasts"] for one in lies][0], True)
+        self.assertEqual(self.api("excluded", begin=end + 10**6, end=end + 10**6 + 1)["excluded"], [])
 
     def test_what_is_decided_comes_as_an_event_and_a_viewer_who_was_away_gets_the_newest(self):
         self.flown(approval="by_hand")
@@ -415,6 +430,9 @@ class Web(WebCase):
         status, _, answer = answers[loser]
         text = answer["reply"] if status == 200 else answer["error"]["message"]
         self.assertRegex(text, rf"(by {winner} at|by {winner};)", answers)
+        ordered = {one["actor"]: one for one in self.api("commands")["commands"]}
+        self.assertEqual((ordered[winner]["ok"], ordered[winner]["version"]), (True, str(version)))
+        self.assertFalse(loser in ordered and ordered[loser]["ok"])
 
     def test_certificates_and_a_trusted_proxy_say_who_it_is(self):
         self.configure([plant.equipment()])

@@ -150,6 +150,38 @@ if (account) {
   report.reply = await page.locator("form.decide [role=status]").textContent();
   check(keys <= 25, `${keys} keys`);
   await page.waitForFunction(() => document.querySelector(".status")?.textContent === "champion");
+  // The same words again are another order, once the first was answered.
+  await page.goto(`${url}${addresses.equipment}`);
+  await page.waitForSelector("form.decide");
+  await page.getByLabel("Reason").fill("training");
+  for (const label of ["Hold the champion", "Release", "Hold the champion", "Release"]) {
+    await page.getByRole("button", { name: label }).click();
+    await page.waitForFunction((old) => [...document.querySelectorAll("form.decide button")].every((button) => button.textContent !== old), label);
+  }
+  await page.context().close();
+}
+
+// What is no time, no view and no range is said, and the rest of the page stays. A decision leads to
+// its version; what is missing and what operators ordered is there.
+{
+  const page = await open();
+  const shown = async (address, selector) => {
+    await page.goto("about:blank");
+    await page.goto(url + address);
+    await page.waitForSelector(selector);
+  };
+  await shown(`#/equipment?${named}&begin=nonsense`, "main .error");
+  await page.waitForSelector(".u-wrap canvas");
+  await shown(`#/equipment?${named}&begin=2020-09-13T13:00:00Z&end=2020-09-13T12:00:00Z`, "main .error");
+  await page.waitForSelector(".u-wrap canvas");
+  await shown("#/handover?begin=x&end=y", "main .error");
+  await shown("#/%3Cb%3E?%E0%A4%A", "main .error");
+  await shown("#/events?kind=approve,roll_back", "main td a[href*='version?']");
+  await page.click("main td a[href*='version?']");
+  await page.waitForSelector(".verdict");
+  await shown("#/telemetry", "section[aria-label], main h2");
+  for (const caption of ["Sensors that are not believed", "Gaps", "Completeness"])
+    await page.getByRole("heading", { name: caption }).waitFor();
   await page.context().close();
 }
 

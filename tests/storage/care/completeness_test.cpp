@@ -70,6 +70,23 @@ TEST_F(CompletenessTest, WhatIsMissingCountsWhereItWouldStand) {
   }
 }
 
+TEST_F(CompletenessTest, GapsAreNamedByTheSamplesBesideThemAndTheLastReachesTheEnd) {
+  std::vector<Time> times = regular(start, start + 6 * hour);
+  std::erase_if(times, [](Time time) { return start + hour <= time && time < start + 2 * hour; });
+  send(times);
+  const std::vector<TimeRange> all = {{start + hour - second, start + 2 * hour},
+                                      {start + 6 * hour - second, start + 7 * hour}};
+  for (const bool compacted : {false, true}) {
+    SCOPED_TRACE(compacted);
+    if (compacted) archive.compact();
+    const SeriesInfo series = all_series(database).at(0);
+    EXPECT_EQ(gaps(database, series, {start, start + day}, start + 7 * hour), all);
+    EXPECT_EQ(gaps(database, series, {start, start + day}, series.last), std::vector{all[0]});
+    EXPECT_EQ(gaps(database, series, {start + 3 * hour, start + 4 * hour}, series.last),
+              std::vector<TimeRange>());
+  }
+}
+
 TEST_F(CompletenessTest, LateSamplesThatAreStillRecentFillTheirGap) {
   send(regular(start, start + 2 * hour));
   send(regular(start + 4 * hour, start + 6 * hour));

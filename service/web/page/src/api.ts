@@ -17,22 +17,29 @@ export class Refused extends Error {
 export async function ask<T>(path: string, parameters: Record<string, string | undefined>, signal?: AbortSignal): Promise<T> {
   const query = new URLSearchParams();
   for (const [name, value] of Object.entries(parameters)) if (value) query.set(name, value);
-  const answer = await fetch(`/api/v1/${path}?${query}`, { signal });
+  const answer = await fetch(`/api/v1/${path}?${query}`, { signal }).catch((error) => {
+    throw signal?.aborted ? error : new Error("The page's server does not answer: it was stopped, or the network is cut.");
+  });
   const body = await answer.json();
   if (!answer.ok) throw new Refused(body.error?.message ?? answer.statusText, body.error?.code ?? "");
   return body;
 }
 
-/** The answer to a question, asked again when a change comes that `isNews` says is one of it. */
+/**
+ * The answer to a question, asked again when a change comes that `isNews` says is one of it, and with
+ * the first sign of life of the service that comes `refresh` seconds after the last answer.
+ */
 export function useAnswer<T>(path: string | null, parameters: Record<string, string | undefined>,
-                             isNews: (change: Change) => boolean = () => false): Answer<T> {
+                             isNews: (change: Change) => boolean = () => false, refresh = Infinity): Answer<T> {
   const [answer, set] = useState<Answer<T>>({ data: null, error: "", loading: true });
   const [turn, setTurn] = useState(0);
   const timer = useRef<number>();
+  const asked = useRef(0);
   const key = JSON.stringify([path, parameters]);
   useEffect(() => {
     if (path === null) return;
     const abort = new AbortController();
+    asked.current = performance.now();
     set((before) => ({ ...before, loading: true }));
     ask<T>(path, parameters, abort.signal)
       .then((data) => set({ data, error: "", loading: false }))
@@ -43,7 +50,10 @@ export function useAnswer<T>(path: string | null, parameters: Record<string, str
   }, [key, turn]);
   const isFirst = useRef(true);  // what is known already is no news
   useChanges((change) => {
-    if (!isNews(change) || isFirst.current) return;
+    const isOld = change.event === "service" && performance.now() - asked.current > 1000 * refresh;
+    // The database or the page's server went away, or is back.
+    const isOther = (change.event === "database" && (change.data.error !== "" || answer.error !== "")) || (change.event === "connection" && change.data.open === true && answer.error !== "");
+    if ((!isNews(change) && !isOld && !isOther) || isFirst.current) return;
     clearTimeout(timer.current);
     timer.current = window.setTimeout(() => setTurn((n) => n + 1), 100);
   });
@@ -181,6 +191,7 @@ export interface Version {
   equipment: string;
   version: string;
   status: string;
+  asks_operator: boolean;
   champion: string | null;
   held: string | null;
   verdict: string;

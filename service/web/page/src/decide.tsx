@@ -21,10 +21,11 @@ export function Decide({ spacecraft, equipment, champion, actions }: DecidePrope
   const session = useSession();
   const [reason, setReason] = useState("");
   const [sending, setSending] = useState("");
-  const [done, setDone] = useState<{ ok: boolean; reply: string } | null>(null);
+  const [done, setDone] = useState<{ action: string; ok: boolean; reply: string } | null>(null);
   const [failure, setFailure] = useState("");
   // What was shown when the form was opened is what is decided on: another champion since is refused.
   const shown = useRef(champion);
+  if (done?.ok) shown.current = champion;  // what one decided oneself is no surprise
   const requesters = useRef(new Map<string, string>());
   const allowed = actions.filter((one) => may(session, one.role, spacecraft));
   if (actions.length === 0) return null;
@@ -36,7 +37,9 @@ export function Decide({ spacecraft, equipment, champion, actions }: DecidePrope
     setSending(one.action);
     setFailure("");
     try {
-      setDone(await order(requesters.current.get(key)!, { action: one.action, spacecraft, equipment, version: one.version, champion: shown.current, reason }));
+      const reply = await order(requesters.current.get(key)!, { action: one.action, spacecraft, equipment, version: one.version, champion: shown.current, reason });
+      requesters.current.delete(key);  // answered: the same words later are another order
+      setDone({ action: one.action, ...reply });
     } catch (error) {
       setFailure(String((error as Error).message ?? error));
     }
@@ -49,7 +52,7 @@ export function Decide({ spacecraft, equipment, champion, actions }: DecidePrope
       <p class="note">Champion now: {shown.current ?? "none"}{shown.current !== champion && <span class="bad"> – {champion ?? "none"} rules since; read again, then <a href={location.hash} onClick={() => location.reload()}>open the form again</a></span>}</p>
       <div class="toolbar">
         {allowed.map((one) => (
-          <button type="button" disabled={sending !== "" || (done?.ok ?? false) || (one.needsReason && reason.trim() === "")} onClick={() => send(one)}>
+          <button type="button" disabled={sending !== "" || (done?.ok === true && done.action === one.action) || (one.needsReason && reason.trim() === "")} onClick={() => send(one)}>
             {sending === one.action ? "Sent …" : one.label}
           </button>
         ))}

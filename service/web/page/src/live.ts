@@ -1,6 +1,7 @@
 // What changes, as it changes. A browser gives one origin six connections: so one tab hears the server
 // and passes on to the others what it hears. Where a browser cannot do that, each tab asks now and then.
 import { useEffect, useRef } from "preact/hooks";
+import { secondsOf } from "./format";
 
 export interface Change {
   event: "service" | "registry" | "database" | "connection";
@@ -14,6 +15,18 @@ const pollInterval = 2000;
 const listeners = new Set<Listener>();
 const latest = new Map<string, Change>();
 
+let ahead = 0;  // [s] the service's clock, of this computer's
+
+/** The time by the service's clock [s], as soon as a service was heard. */
+export function serviceNow(): number {
+  return Date.now() / 1000 + ahead;
+}
+
+/** How far this computer's clock is off [s]. */
+export function clockError(): number {
+  return -ahead;
+}
+
 function keyOf({ event, data }: Change): string {
   return [event, data.service, data.spacecraft, data.equipment].join("/");
 }
@@ -22,6 +35,8 @@ function announce(change: Change): void {
   const key = keyOf(change);
   if (JSON.stringify(latest.get(key)) === JSON.stringify(change)) return;  // said again on a new connection
   latest.set(key, change);
+  if (change.event === "service" && (change.data.age_s as number) < 5)
+    ahead = secondsOf(change.data.time as string) + (change.data.age_s as number) - Date.now() / 1000;
   listeners.forEach((listener) => listener(change));
 }
 

@@ -1,11 +1,11 @@
 // The frame around the views: where one is, what the service does, keys.
 import { render } from "preact";
 import "./page.css";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useErrorBoundary, useRef, useState } from "preact/hooks";
 import type { Service } from "./api";
 import { durationText, timeText, toggleZone } from "./format";
 import { Who } from "./decide";
-import { begin, useChanges } from "./live";
+import { begin, clockError, useChanges } from "./live";
 import { useZone } from "./parts";
 import { learn } from "./session";
 import { go, link, usePlace, type Place } from "./url";
@@ -54,6 +54,16 @@ function View({ view, parameters }: Place) {
   }
 }
 
+/** A view that cannot be drawn says so, and leaves the rest of the page. */
+function Guarded(place: Place) {
+  const [error, forget] = useErrorBoundary();
+  useEffect(() => {
+    if (error) forget();
+  }, [link(place.view, place.parameters)]);
+  if (error) return <p class="error" role="alert">This address cannot be shown ({String(error.message ?? error)}). <a href="#/overview">Overview</a></p>;
+  return <View {...place} />;
+}
+
 interface Heard {
   status: Service;
   heard: number;  // [s]
@@ -86,7 +96,7 @@ function Pulse() {
   const age = ageOf(service);
   if (age > freshSeconds) return <span class="pulse bad" role="status">service {status.service} silent for {durationText(age)}</span>;
   if (status.last_error) return <a class="pulse bad" href="#/service" role="status">{status.last_error}</a>;
-  return <span class="pulse"><span class="good">●</span> {status.service}{status.pair && ` ${status.pair.role}`}; telemetry to {timeText(status.newest_telemetry)} {zone}{Number(status.windows_pending) > 0 && `; ${status.windows_pending} windows pending`}</span>;
+  return <span class="pulse"><span class="good">●</span> {status.service}{status.pair && ` ${status.pair.role}`}; telemetry to <span class="whole">{timeText(status.newest_telemetry)} {zone}</span>{Number(status.windows_pending) > 0 && `; ${status.windows_pending} windows pending`}{Math.abs(clockError()) > 60 && <span class="act">; this computer's clock is off by {durationText(Math.abs(clockError()))}</span>}</span>;
 }
 
 function moveInRows(step: number): void {
@@ -159,7 +169,7 @@ function Page() {
           <button type="button" class="quiet" onClick={() => setHelp(true)} aria-label="keys">?</button>
         </span>
       </header>
-      <main id="main" tabIndex={-1}><View {...place} /></main>
+      <main id="main" tabIndex={-1}><Guarded {...place} /></main>
       {help && <Help close={() => setHelp(false)} />}
     </>
   );

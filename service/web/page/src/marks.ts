@@ -27,6 +27,19 @@ export function hatch(plot: uPlot, begin: number, end: number, colour: string): 
   ctx.restore();
 }
 
+/** Text on a ground of the panel's colour, so that lines behind it do not cross it. */
+function write(ctx: CanvasRenderingContext2D, text: string, x: number, y: number): void {
+  const width = ctx.measureText(text).width, pad = 2 * devicePixelRatio;
+  const left = ctx.textAlign === "right" ? x - width : x;
+  const colour = ctx.fillStyle;
+  ctx.globalAlpha = 0.85;
+  ctx.fillStyle = colourOf("--panel");
+  ctx.fillRect(left - pad, y - 10 * devicePixelRatio, width + 2 * pad, 13 * devicePixelRatio);
+  ctx.globalAlpha = 1;
+  ctx.fillStyle = colour;
+  ctx.fillText(text, x, y);
+}
+
 export function drawLevels(plot: uPlot, panel: Panel): void {
   const { ctx, bbox } = plot;
   ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
@@ -42,7 +55,7 @@ export function drawLevels(plot: uPlot, panel: Panel): void {
     ctx.stroke();
     ctx.setLineDash([]);
     ctx.textAlign = "right";
-    ctx.fillText(level.label, bbox.left + bbox.width - 4 * devicePixelRatio, y - 3 * devicePixelRatio);
+    if (level.label) write(ctx, level.label, bbox.left + bbox.width - 4 * devicePixelRatio, y - 3 * devicePixelRatio);
   }
 }
 
@@ -90,7 +103,7 @@ export function drawMarks(plot: uPlot, marks: Mark[], named: boolean): void {
     ctx.stroke();
     ctx.setLineDash([]);
     if (!named || x < free) continue;
-    ctx.fillText(mark.label, x + 3 * devicePixelRatio, bbox.top + bbox.height - 5 * devicePixelRatio);
+    write(ctx, mark.label, x + 3 * devicePixelRatio, bbox.top + bbox.height - 5 * devicePixelRatio);
     free = x + ctx.measureText(mark.label).width + 8 * devicePixelRatio;
   }
 }

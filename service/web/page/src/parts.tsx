@@ -39,22 +39,30 @@ export function kindText(kind: string): string {
   return words[kind] ?? kind;
 }
 
-export function Status({ status }: { status: string }) {
-  const shown = status === "approved" ? "champion" : status;
-  return <span class={`status ${status}`}>{shown}</span>;
+/** A version that waits either asks an operator, or telemetry is yet to show whether it is better. */
+export function statusText(status: string, asksOperator: boolean): string {
+  if (status === "waiting") return asksOperator ? "waits for an operator" : "challenger";
+  return status === "approved" ? "champion" : status;
 }
 
-export function decisionColumns(zone: string, named: boolean): Column<Decision>[] {
+export function Status({ status, asksOperator }: { status: string; asksOperator: boolean }) {
+  const kind = status === "waiting" && !asksOperator ? "challenger" : status;
+  return <span class={`status ${kind}`}>{statusText(status, asksOperator)}</span>;
+}
+
+/** `about`: the equipment that all rows are of; without, each row names its own. */
+export function decisionColumns(zone: string, about?: { spacecraft?: string; equipment?: string }): Column<Decision>[] {
+  const versionOf = (row: Decision) => link("version", { spacecraft: about?.spacecraft ?? row.spacecraft, equipment: about?.equipment ?? row.equipment, version: row.version });
   return [
     { title: `time (${zone})`, text: (row) => timeText(row.time), isTime: true },
-    ...(named ? [{
+    ...(!about ? [{
       title: "equipment", text: (row: Decision) => `${row.spacecraft}/${row.equipment}`,
       cell: (row: Decision) => <a href={link("equipment", { spacecraft: row.spacecraft, equipment: row.equipment })}>{row.spacecraft}/{row.equipment}</a>,
     }] : []),
     { title: "decision", text: (row) => kindText(row.kind), cell: (row) => <span class={`event ${row.kind}`}>{kindText(row.kind)}</span> },
-    { title: "version", text: (row) => row.version, isNumber: true },
+    { title: "version", text: (row) => row.version, cell: (row) => <a href={versionOf(row)}>{row.version}</a>, isNumber: true },
     { title: "by", text: (row) => row.actor },
-    { title: "reason", text: (row) => row.reason },
+    { title: "reason", text: (row) => row.reason, isWide: true },
   ];
 }
 

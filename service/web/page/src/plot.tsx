@@ -150,7 +150,8 @@ function draw(panel: Panel, place: Place, properties: () => PlotProperties): Dra
   const title = document.createElement("div");
   title.className = "panel-title";
   title.textContent = panel.title;
-  for (const line of panel.lines) {
+  const keys = new Map(panel.lines.map((line) => [line.label, line]));
+  for (const line of keys.values()) {
     const key = document.createElement("span");
     key.className = "key";
     const sample = document.createElement("i");

@@ -52,6 +52,23 @@ export function levelsOf(from: number[], to: number[], values: (number | null)[]
   return [times, levels];
 }
 
+/** The times at which a line of blocks breaks: between blocks that do not follow each other. */
+export function broken(times: number[], values: (number | null)[]): Points {
+  const steps = times.slice(1).map((time, index) => time - times[index]!).sort((a, b) => a - b);
+  const usual = steps[Math.floor(steps.length / 2)] ?? 0;
+  const points: Points = [[], []];
+  times.forEach((time, index) => {
+    const before = times[index - 1];
+    if (before !== undefined && time - before > 1.5 * usual) {
+      points[0].push((before + time) / 2);
+      points[1].push(null);
+    }
+    points[0].push(time);
+    points[1].push(values[index] ?? null);
+  });
+  return points;
+}
+
 /** One table of several lines; what a line has no value for does not break it. */
 export function joined(lines: Points[]): uPlot.AlignedData {
   if (lines.length === 0 || lines.every(([times]) => times.length === 0)) return [[]] as unknown as uPlot.AlignedData;

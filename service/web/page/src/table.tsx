@@ -7,10 +7,11 @@ export interface Column<Row> {
   cell?: (row: Row) => ComponentChildren;       // as shown, where that is more
   isNumber?: boolean;
   isTime?: boolean;
+  isWide?: boolean;                             // words, which need room
 }
 
-function classOf<Row>({ isNumber, isTime }: Column<Row>): string {
-  return isNumber ? "number" : isTime ? "time" : "";
+function classOf<Row>({ isNumber, isTime, isWide }: Column<Row>): string {
+  return isNumber ? "number" : isTime ? "time" : isWide ? "wide" : "";
 }
 
 export function csvOf<Row>(columns: Column<Row>[], rows: Row[]): string {

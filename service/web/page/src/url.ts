@@ -1,5 +1,6 @@
 // The whole state of a view stands in the address, so that a link shows what its sender saw.
 import { useEffect, useState } from "preact/hooks";
+import { secondsOf } from "./format";
 
 export interface Place {
   view: string;
@@ -9,6 +10,14 @@ export interface Place {
 export function placeOf(hash: string): Place {
   const [path = "", query = ""] = hash.replace(/^#\/?/, "").split("?");
   return { view: path || "overview", parameters: Object.fromEntries(new URLSearchParams(query)) };
+}
+
+/** The range that an address names, as far as it does, and what is wrong with it: then it is left out. */
+export function rangeIn({ begin, end }: Record<string, string>): { begin?: string; end?: string; wrong: string } {
+  for (const time of [begin, end])
+    if (time && isNaN(secondsOf(time))) return { wrong: `${time.slice(0, 60)} is no time; write it as 2025-01-31T12:00:00Z.` };
+  if (begin && end && !(secondsOf(begin) < secondsOf(end))) return { wrong: `The range would begin at ${begin} and end at ${end}; let it end later.` };
+  return { begin, end, wrong: "" };
 }
 
 /** An address within the page. Parameters that are empty are left out. */

@@ -1,10 +1,11 @@
 // What came and what is missing: a calendar for each parameter, one after the other.
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useMemo, useState } from "preact/hooks";
 import { ask, useAnswer } from "../api";
-import { count, durationText, secondsOf, timeText } from "../format";
+import { count, durationText, isoOf, secondsOf, timeText } from "../format";
 import { Loaded, useZone } from "../parts";
 import { Table } from "../table";
-import { change } from "../url";
+import { change, rangeIn } from "../url";
+import { Disbelieved, Gaps } from "./quality";
 
 interface Series {
   spacecraft: string;
@@ -24,6 +25,8 @@ interface Days {
 }
 
 const cell = 12;
+const usualDays = 30;  // as of the server
+const usualRows = 20;
 
 function level(came: number, missing: number): string {
   if (came + missing === 0) return "none";
@@ -75,7 +78,7 @@ function All({ series }: { series: Series[] }) {
   const zone = useZone();
   const days = useDays(series);
   return (
-    <Table name="completeness" caption="Telemetry" rows={series} empty="No telemetry is archived." columns={[
+    <Table name="completeness" caption="Completeness of each parameter" rows={series} empty="No telemetry is archived." columns={[
       { title: "parameter", text: (row) => `${row.spacecraft} ${row.parameter}${row.origin === "real" ? "" : ` (${row.origin})`}` },
       { title: "days (UTC)", text: (row) => String(days[keyOf(row)]?.begin.length ?? ""),
         cell: (row) => (days[keyOf(row)] ? <Calendar name={row.parameter} days={days[keyOf(row)]!} /> : <span class="unknown">…</span>) },
@@ -89,20 +92,47 @@ function All({ series }: { series: Series[] }) {
   );
 }
 
+/** Of gaps and disbelieved sensors; the calendars are of all telemetry. */
+function Range({ series, begin, end }: { series: Series[]; begin?: string; end?: string }) {
+  const zone = useZone();
+  const times = series.filter((one) => one.origin === "real");
+  if (times.length === 0) return null;
+  const last = Math.max(...times.map((one) => secondsOf(one.last))), first = Math.min(...times.map((one) => secondsOf(one.first)));
+  const until = end ? secondsOf(end) : last + 1;
+  const from = begin ? secondsOf(begin) : until - usualDays * 86400;
+  const span = (name: string, days: number) => <button type="button" onClick={() => change({ begin: isoOf(until - days * 86400), end: isoOf(until) })}>{name}</button>;
+  return (
+    <div class="toolbar" role="toolbar" aria-label="range of time">
+      <span>{timeText(isoOf(from))} to {timeText(isoOf(until))} {zone}</span>
+      {span("1 d", 1)}{span("7 d", 7)}{span("30 d", 30)}
+      <button type="button" onClick={() => change({ begin: isoOf(first), end: isoOf(last + 1) })}>all</button>
+      <button type="button" onClick={() => change({ begin: isoOf(2 * from - until), end: isoOf(from) })} aria-label="earlier">←</button>
+      <button type="button" onClick={() => change({ begin: isoOf(until), end: isoOf(2 * until - from) })} aria-label="later">→</button>
+    </div>
+  );
+}
+
 export function CompletenessView({ parameters }: { parameters: Record<string, string> }) {
   const answer = useAnswer<{ series: Series[] }>("series", {});
   const [shown, setShown] = useState<Series[]>([]);
-  const { find = "" } = parameters;
+  const { find = "", rows } = parameters;
+  const asked = rangeIn(parameters);
   useEffect(() => setShown((answer.data?.series ?? []).filter((one) => keyOf(one).toLowerCase().includes(find.toLowerCase()))), [answer.data, find]);
+  const part = useMemo(() => (rows === "all" ? shown : shown.slice(0, usualRows)), [shown, rows]);
   return (
     <Loaded answer={answer}>
       {() => (
         <>
+          {asked.wrong && <p class="error" role="alert">{asked.wrong} Shown are the last 30 days.</p>}
+          <Range series={answer.data!.series} begin={asked.begin} end={asked.end} />
+          <Disbelieved begin={asked.begin} end={asked.end} />
+          <Gaps begin={asked.begin} end={asked.end} />
           <form class="toolbar" onSubmit={(event) => event.preventDefault()}>
             <label>parameter <input type="search" value={find} onInput={(event) => change({ find: (event.target as HTMLInputElement).value }, true)} /></label>
           </form>
           <p class="legend">days: <span class="swatch full" /> complete <span class="swatch most" /> 95 % <span class="swatch half" /> half <span class="swatch little" /> less</p>
-          <All series={shown} />
+          <All series={part} />
+          {part.length < shown.length && <p>{part.length} of {shown.length} parameters. <button type="button" onClick={() => change({ rows: "all" }, true)}>show all</button></p>}
         </>
       )}
     </Loaded>

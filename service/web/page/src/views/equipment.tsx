@@ -2,12 +2,13 @@
 import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ask, isAbout, useAnswer, type Equipment, type Run, type Telemetry, type Timeline, type VersionLine } from "../api";
 import { Decide } from "../decide";
-import { figure, isoOf, secondsOf, timeText } from "../format";
-import { decisionColumns, Figure, kindText, Loaded, Status, useZone } from "../parts";
+import { figure, isoOf, secondsOf, timeOfSeconds, timeText } from "../format";
+import { decisionColumns, Figure, kindText, Loaded, Status, statusText, useZone } from "../parts";
 import { Plot, type Level, type Mark, type Panel, type Stretch } from "../plot";
 import { levelsOf, pointsOf } from "../series";
 import { Table } from "../table";
-import { change, link } from "../url";
+import { Figures, isKey } from "../figures";
+import { change, link, rangeIn } from "../url";
 
 const runSpan = 3 * 86400;  // free runs of longer ranges are of blocks alone
 
@@ -15,12 +16,13 @@ interface Drawn {
   timeline: Timeline | null;
   run: Run | null;
   runError: string;
-  telemetry: Record<string, Telemetry | null>;
+  failure: string;  // why the axis has no events, or a parameter no telemetry
+  telemetry: Record<string, Telemetry>;
 }
 
 /** What the plot shows, signal by signal as the answers come. */
 function useDrawn(equipment: Equipment, begin: number, end: number, bins: string, version: string | null, turn: number): Drawn {
-  const [drawn, set] = useState<Drawn>({ timeline: null, run: null, runError: "", telemetry: {} });
+  const [drawn, set] = useState<Drawn>({ timeline: null, run: null, runError: "", failure: "", telemetry: {} });
   const { spacecraft, equipment: name } = equipment;
   useEffect(() => {
     const abort = new AbortController();
@@ -28,12 +30,14 @@ function useDrawn(equipment: Equipment, begin: number, end: number, bins: string
     const put = (part: (before: Drawn) => Partial<Drawn>) => {
       if (!abort.signal.aborted) set((before) => ({ ...before, ...part(before) }));
     };
+    const failed = (error: Error) => put(() => ({ failure: String(error.message ?? error) }));
+    put(() => ({ failure: "" }));
     ask<Timeline>("timeline", { spacecraft, equipment: name, ...range }, abort.signal)
-      .then((timeline) => put(() => ({ timeline })), () => put(() => ({ timeline: null })));
+      .then((timeline) => put(() => ({ timeline })), failed);
     for (const parameter of [...equipment.outputs.map((one) => one.name), ...equipment.parameters])
       ask<Telemetry>("telemetry", { spacecraft, parameter, ...range }, abort.signal)
         .then((answer) => put(({ telemetry }) => ({ telemetry: { ...telemetry, [parameter]: answer } })),
-              () => put(({ telemetry }) => ({ telemetry: { ...telemetry, [parameter]: null } })));
+              failed);
     if (!version || end - begin > runSpan) put(() => ({ run: null, runError: version ? "a free run is drawn over at most three days; the record below is of all of the range" : "" }));
     else
       ask<Run>("run", { spacecraft, equipment: name, version, ...range }, abort.signal)
@@ -90,10 +94,10 @@ function panelsOf(equipment: Equipment, drawn: Drawn, kept: Kept): Panel[] {
     if (last?.approved_error_percent) levels.push({ value: last.approved_error_percent, label: `version ${last.version} when approved`, colour: "--good" });
     push([timeline], {
       title: "error of the champion over its last cycle, on what it was not fitted to", unit: "MRSE %", height: 130, levels,
-      lines: timeline.records.filter((record) => record.from_s.length > 0).flatMap((record, index) => [
-        { label: index === 0 ? "champion" : `version ${record.version}`, points: levelsOf(record.from_s, record.to_s, record.error_percent, begin), colour: "--run", width: 2 },
+      lines: timeline.records.filter((record) => record.from_s.length > 0).flatMap((record) => [
+        { label: "champion", points: levelsOf(record.from_s, record.to_s, record.error_percent, begin), colour: "--run", width: 2 },
         ...(record.simulator_percent.some((value) => value !== null)
-          ? [{ label: index === 0 ? "simulator's own model" : "", points: levelsOf(record.from_s, record.to_s, record.simulator_percent, begin), colour: "--simulator", dash: [4, 3] }] : []),
+          ? [{ label: "simulator's own model", points: levelsOf(record.from_s, record.to_s, record.simulator_percent, begin), colour: "--simulator", dash: [4, 3] }] : []),
       ]),
     });
   }
@@ -104,9 +108,27 @@ function panelsOf(equipment: Equipment, drawn: Drawn, kept: Kept): Panel[] {
 /** What the gate refused or left waiting changes nothing in orbit: the tables below have it. */
 const changesWhatRuns = (kind: string) => kind === "approve" || kind === "roll_back" || kind === "withdraw";
 
-function keyed(event: KeyboardEvent): boolean {
-  const target = event.target as HTMLElement;
-  return !event.ctrlKey && !event.altKey && !event.metaKey && !/^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName);
+/** Ranges without those that overlap, ascending. */
+function united(ranges: [number, number][]): [number, number][] {
+  const whole: [number, number][] = [];
+  for (const [begin, end] of ranges.sort((a, b) => a[0] - b[0])) {
+    const last = whole[whole.length - 1];
+    if (last && begin <= last[1]) last[1] = Math.max(last[1], end);
+    else whole.push([begin, end]);
+  }
+  return whole;
+}
+
+const mostExcluded = 4;
+
+/** What the hatched stretches are. */
+function Excluded({ timeline, origin, zone }: { timeline: Timeline; origin: number; zone: string }) {
+  const longest = [...timeline.excluded].sort((a, b) => b.end_s - b.begin_s - (a.end_s - a.begin_s));
+  if (longest.length === 0) return null;
+  return (
+    <p class="note">Not believed: {longest.slice(0, mostExcluded).map((one) => `${one.parameters.join(", ")} (${one.check}) from ${timeOfSeconds(origin + one.begin_s)} to ${timeOfSeconds(origin + one.end_s)} ${zone}`).join("; ")}
+      {longest.length > mostExcluded && `; and ${longest.length - mostExcluded} shorter`}. <a href={link("telemetry", { begin: timeline.range.begin, end: timeline.range.end })}>Why</a></p>
+  );
 }
 
 /** The plot, or its figures as a table. */
@@ -114,8 +136,9 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
   const zone = useZone();
   const extent = equipment.telemetry!;
   const last = secondsOf(extent.end);
-  const begin = parameters.begin ? secondsOf(parameters.begin) : Math.max(secondsOf(extent.begin), last - 86400);
-  const end = parameters.end ? secondsOf(parameters.end) : last;
+  const asked = rangeIn(parameters);
+  const end = asked.end ? secondsOf(asked.end) : asked.begin ? Math.max(last, secondsOf(asked.begin) + 86400) : last;
+  const begin = asked.begin ? secondsOf(asked.begin) : Math.max(Math.min(secondsOf(extent.begin), end - 1), end - 86400);
   const version = parameters.version ?? equipment.line.champion;
   const bins = String(Math.min(1000, Math.max(200, Math.round(innerWidth / 2))));
   const drawn = useDrawn(equipment, begin, end, bins, version, turn);
@@ -127,7 +150,7 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
   const stretches = useMemo<Stretch[]>(() => (timeline?.champions ?? []).map((champion, index) => ({
     begin: origin + champion.begin_s, end: origin + champion.end_s, label: champion.version, colour: index % 2 ? "--strip-b" : "--strip-a",
   })), [timeline]);
-  const excluded = useMemo<[number, number][]>(() => (timeline?.excluded ?? []).map((one) => [origin + one.begin_s, origin + one.end_s]), [timeline]);
+  const excluded = useMemo(() => united((timeline?.excluded ?? []).map((one) => [origin + one.begin_s, origin + one.end_s])), [timeline]);
   const asTable = parameters.show === "table";
 
   const move = useCallback((from: number, to: number) => {
@@ -139,7 +162,7 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
 
   useEffect(() => {
     const pressed = (event: KeyboardEvent) => {
-      if (!keyed(event)) return;
+      if (!isKey(event)) return;
       const width = end - begin, middle = (begin + end) / 2;
       const places = equipment.decisions.filter((one) => (changesWhatRuns(one.kind) || one.actor !== "gate") && one.telemetry).map((one) => secondsOf(one.telemetry!)).sort((a, b) => a - b);
       const beside = (at: number | undefined) => at !== undefined && move(at - width / 2, at + width / 2);
@@ -172,22 +195,15 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
         <button type="button" onClick={() => move(begin - (end - begin) / 2, end + (end - begin) / 2)} aria-label="farther">−</button>
         <button type="button" aria-pressed={asTable} onClick={() => change({ show: asTable ? undefined : "table" })}>table</button>
       </div>
+      {asked.wrong && <p class="error" role="alert">{asked.wrong} Shown is the usual range.</p>}
+      {drawn.failure && <p class="error" role="alert">{drawn.failure}</p>}
       {drawn.runError && <p class="note">{drawn.runError}</p>}
       {asTable ? panels.map((panel) => <Figures panel={panel} zone={zone} />)
         : panels.length > 0 && <Plot begin={begin} end={end} panels={panels} marks={marks} stretches={stretches} excluded={excluded} onRange={move} />}
       <p class="legend"><span class="swatch gap" /> nothing came <span class="swatch excluded" /> excluded by screening <span class="swatch strip" /> champion</p>
+      {timeline && <Excluded timeline={timeline} origin={origin} zone={zone} />}
     </section>
   );
-}
-
-function Figures({ panel, zone }: { panel: Panel; zone: string }) {
-  const rows = panel.lines.flatMap((line) => line.points[0].map((time, index) => ({ line: line.label, time, value: line.points[1][index] }))).filter((row) => row.value !== null && row.value !== undefined);
-  return <Table name={panel.title} caption={`${panel.title} [${panel.unit}]`} rows={rows}
-    columns={[
-      { title: `time (${zone})`, text: (row) => timeText(isoOf(row.time)), isTime: true },
-      { title: "line", text: (row) => row.line },
-      { title: `value [${panel.unit}]`, text: (row) => String(row.value), isNumber: true },
-    ]} />;
 }
 
 /** Error of each version with its 95 % interval. */
@@ -221,13 +237,17 @@ function VersionErrors({ versions }: { versions: VersionLine[] }) {
 
 export function EquipmentView({ parameters }: { parameters: Record<string, string> }) {
   const zone = useZone();
-  const { spacecraft, equipment: name } = parameters;
+  const { spacecraft, equipment: name, versions: shown } = parameters;
   const answer = useAnswer<Equipment>("equipment", { spacecraft, equipment: name }, isAbout(spacecraft, name));
   const turn = answer.data?.decisions.length ?? 0;  // a decision draws again what is shown
   return (
     <Loaded answer={answer}>
       {(equipment) => {
         const line = equipment.line;
+        const asks = (row: VersionLine) => line.waiting.includes(row.version);
+        // The newest, and of the others those that run, ran or ask for somebody.
+        const versions = [...equipment.versions].reverse().filter((row, index) => shown === "all" || index < 10 || row.status === "approved" || row.status === "superseded" || asks(row));
+        const telling = equipment.decisions.filter((one) => changesWhatRuns(one.kind) || one.actor !== "gate").reverse();
         return (
           <>
             <div class="title">
@@ -242,18 +262,20 @@ export function EquipmentView({ parameters }: { parameters: Record<string, strin
               { action: "identify_now", label: "Identify now", role: "operator", needsReason: false },
             ]} />
             <VersionErrors versions={equipment.versions} />
-            <Table name={`versions-${name}`} caption="Versions" rows={[...equipment.versions].reverse()}
+            <Table name={`versions-${name}`} caption={`Versions, the newest first${versions.length < equipment.versions.length ? `: ${versions.length} of ${line.versions}` : ""}`} rows={versions}
               href={(row) => link("version", { spacecraft, equipment: name, version: row.version })}
               columns={[
                 { title: "version", text: (row) => row.version },
-                { title: "status", text: (row) => row.status, cell: (row) => <Status status={row.status} /> },
+                { title: "status", text: (row) => statusText(row.status, asks(row)), cell: (row) => <Status status={row.status} asksOperator={asks(row)} /> },
                 { title: "error %", text: (row) => figure(row.error_percent), isNumber: true },
                 { title: "95 % interval", text: (row) => (row.interval_percent ? `${figure(row.interval_percent[0])} to ${figure(row.interval_percent[1])}` : "–"), isNumber: true },
                 { title: "fit %", text: (row) => figure(row.fit_percent), isNumber: true },
                 { title: "order", text: (row) => String(row.order ?? "–"), isNumber: true },
                 { title: `window ends (${zone})`, text: (row) => timeText(row.window.end), isTime: true },
               ]} />
-            <Table name={`decisions-${name}`} caption="Decisions" rows={[...equipment.decisions].reverse()} columns={decisionColumns(zone, false)} />
+            {versions.length < equipment.versions.length && <p><button type="button" onClick={() => change({ versions: "all" }, true)}>show all {equipment.versions.length}</button></p>}
+            <Table name={`decisions-${name}`} caption="Decisions that changed what simulators run, or were made by an operator" rows={telling} columns={decisionColumns(zone, { spacecraft, equipment: name })} empty="None yet." />
+            <p><a href={link("events", { spacecraft, equipment: name })}>All {equipment.decisions.length} decisions, the gate's too</a></p>
           </>
         );
       }}

@@ -4,8 +4,10 @@ import { timeText } from "../format";
 import { decisionColumns, kindText, Loaded, useZone } from "../parts";
 import { Table } from "../table";
 import { change, link } from "../url";
+import { Commands } from "./commands";
 
 const kinds = ["approve", "reject", "wait", "roll_back", "withdraw"];
+const changes = "approve,roll_back,withdraw";
 
 function Choice({ name, label, options, value }: { name: string; label: string; options: [string, string][]; value: string }) {
   return (
@@ -51,14 +53,14 @@ export function EventsView({ parameters }: { parameters: Record<string, string> 
   return (
     <>
       <form class="toolbar" onSubmit={(event) => event.preventDefault()}>
-        <Choice name="kind" label="decision" value={kind ?? ""} options={[["", "any"], ...kinds.map((one): [string, string] => [one, kindText(one)])]} />
+        <Choice name="kind" label="decision" value={kind ?? ""} options={[["", "any"], [changes, "what changed a champion"], ...kinds.map((one): [string, string] => [one, kindText(one)])]} />
         <Choice name="by" label="by" value={by ?? ""} options={[["", "anybody"], ["gate", "the gate"], ["operator", "an operator"]]} />
         {equipment && <button type="button" onClick={() => change({ spacecraft: undefined, equipment: undefined, before: undefined })}>{spacecraft}/{equipment} ✕</button>}
       </form>
       <Loaded answer={answer}>
         {(data) => (
           <>
-            <Table name="events" caption="Decisions, the newest first" rows={data.events} columns={decisionColumns(zone, true)}
+            <Table name="events" caption={`Decisions, the newest first${begin || end ? `: ${timeText(begin)} to ${timeText(end)} ${zone}` : ""}`} rows={data.events} columns={decisionColumns(zone)}
               href={undefined} empty="No decision is of this kind." />
             <nav class="pages" aria-label="pages">
               {before && <a href={link("events", { ...parameters, before: undefined })}>newest</a>}
@@ -67,6 +69,7 @@ export function EventsView({ parameters }: { parameters: Record<string, string> 
           </>
         )}
       </Loaded>
+      {!equipment && !before && <Commands />}
       <Refusals />
     </>
   );

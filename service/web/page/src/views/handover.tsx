@@ -1,10 +1,13 @@
 // The handover of a shift: what changed, who decided, what waits, and what the next shift should know.
-import { useEffect, useState } from "preact/hooks";
-import { isDecision, useAnswer, type Decision, type EquipmentLine } from "../api";
-import { isoOf, secondsOf, timeText } from "../format";
-import { decisionColumns, Facts, Loaded, useZone } from "../parts";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { isDecision, useAnswer, type Alarm, type Decision, type EquipmentLine, type OverviewAnswer } from "../api";
+import { isoOf, secondsOf, timeOfSeconds, timeText } from "../format";
+import { serviceNow, useChanges } from "../live";
+import { decisionColumns, Loaded, useZone } from "../parts";
 import { saveFile, Table } from "../table";
-import { change, link } from "../url";
+import { change, link, rangeIn } from "../url";
+import { Commands } from "./commands";
+import { Disbelieved, Gaps } from "./quality";
 
 const shift = 8 * 3600;
 
@@ -27,23 +30,45 @@ function Note({ note, locked, begin, end }: { note: string; locked: boolean; beg
   );
 }
 
-function Waits({ lines }: { lines: EquipmentLine[] }) {
-  return <Table name="state" caption="At the end" rows={lines} empty="No equipment has a model yet." href={(row) => link("equipment", { spacecraft: row.spacecraft, equipment: row.equipment })} columns={[
-    { title: "equipment", text: (row) => `${row.spacecraft}/${row.equipment}` },
-    { title: "champion", text: (row) => row.champion ?? "none", isNumber: true },
-    { title: "waits for an operator", text: (row) => row.waiting.join(", ") || "nothing" },
-    { title: "held", text: (row) => (row.hold ? `by ${row.hold.actor}${row.hold.reason && `: ${row.hold.reason}`}` : "no") },
-    { title: "fails", text: (row) => row.failure ?? "no" },
-  ]} />;
+/** What asks for somebody as this is read: the past is not kept. */
+function Open({ lines, alarms, now, zone }: { lines: EquipmentLine[]; alarms: Alarm[]; now: number; zone: string }) {
+  const open = lines.filter((row) => row.waiting.length > 0 || row.hold || row.failure || !row.champion);
+  return (
+    <>
+      <Table name="open" caption={`What is open now, at ${timeOfSeconds(now)} ${zone}`} rows={open} empty="Nothing waits, is held or fails."
+        href={(row) => (row.attempts > 0 ? link("equipment", { spacecraft: row.spacecraft, equipment: row.equipment }) : undefined)} columns={[
+          { title: "equipment", text: (row) => `${row.spacecraft}/${row.equipment}` },
+          { title: "champion", text: (row) => row.champion ?? "none", isNumber: true },
+          { title: "waits for an operator", text: (row) => row.waiting.join(", ") || "nothing" },
+          { title: "held", text: (row) => (row.hold ? `by ${row.hold.actor}${row.hold.reason && `: ${row.hold.reason}`}` : "no") },
+          { title: "fails", text: (row) => row.failure ?? "no", isWide: true },
+        ]} />
+      <p class="note">{lines.length - open.length} of {lines.length} equipment have a champion, and nothing is open about them.</p>
+      <Table name="open-alarms" caption="Alarms now" rows={alarms} empty="None." columns={[
+        { title: "alarm", text: (row) => row.text },
+        { title: "about", text: (row) => [row.spacecraft, row.equipment].filter(Boolean).join("/") },
+        { title: `since (${zone})`, text: (row) => timeText(row.since), isTime: true },
+        { title: "seen by", text: (row) => row.acknowledged_by || "nobody" },
+      ]} />
+    </>
+  );
 }
 
 export function HandoverView({ parameters }: { parameters: Record<string, string> }) {
   const zone = useZone();
-  const [opened] = useState(() => Date.now() / 1000);
-  const end = parameters.end ?? isoOf(opened), begin = parameters.begin ?? isoOf(secondsOf(end) - shift);
+  const [opened, setOpened] = useState(serviceNow);
+  const isHeard = useRef(false);
+  useChanges(({ event }) => {
+    if (event !== "service" || isHeard.current) return;
+    isHeard.current = true;
+    setOpened(serviceNow());
+  });
+  const asked = rangeIn(parameters);
+  const end = asked.end ?? isoOf(asked.begin ? Math.max(opened, secondsOf(asked.begin) + shift) : opened);
+  const begin = asked.begin ?? isoOf(secondsOf(end) - shift);
   const locked = parameters.locked === "1";
-  const decided = useAnswer<{ events: Decision[] }>("events", { begin, end, rows: "1000" }, (change) => !parameters.end && isDecision(change));
-  const overview = useAnswer<{ equipment: EquipmentLine[] }>("overview", {}, isDecision);
+  const decided = useAnswer<{ events: Decision[]; before: string | null }>("events", { begin, end, kind: "approve,roll_back,withdraw", rows: "1000" }, (change) => !asked.end && isDecision(change));
+  const overview = useAnswer<OverviewAnswer>("overview", {}, isDecision);
   return (
     <>
       <div class="title"><h1>Handover</h1><span>{timeText(begin)} to {timeText(end)} {zone}</span></div>
@@ -53,24 +78,20 @@ export function HandoverView({ parameters }: { parameters: Record<string, string
           <button type="button" onClick={() => print()}>print</button>
         </div>
       )}
+      {asked.wrong && <p class="error" role="alert">{asked.wrong} Shown are the last hours.</p>}
       <section><Note note={parameters.note ?? ""} locked={locked} begin={begin} end={end} /></section>
       <Loaded answer={decided}>
-        {({ events }) => {
-          const changes = events.filter((one) => one.kind === "approve" || one.kind === "roll_back" || one.kind === "withdraw");
-          const people = events.filter((one) => one.actor !== "gate");
-          return (
-            <>
-              <Facts facts={[
-                ["decisions", String(events.length)], ["that changed what simulators run", String(changes.length)],
-                ["by operators", people.length === 0 ? "none" : `${people.length}: ${[...new Set(people.map((one) => one.actor))].join(", ")}`],
-              ]} />
-              <Table name="handover-changes" caption="What changed" rows={changes} columns={decisionColumns(zone, true)} empty="No champion changed." />
-              <Table name="handover-operators" caption="What operators decided" rows={people} columns={decisionColumns(zone, true)} empty="No operator decided." />
-            </>
-          );
-        }}
+        {({ events, before }) => (
+          <>
+            <Table name="handover-changes" caption="What changed in what simulators run" rows={events} columns={decisionColumns(zone)} empty="No champion changed." />
+            {before && <p class="note">There are more than {events.length}: take a shorter range.</p>}
+          </>
+        )}
       </Loaded>
-      <Loaded answer={overview}>{({ equipment }) => <Waits lines={equipment} />}</Loaded>
+      <Commands begin={begin} end={end} rows="1000" />
+      <Loaded answer={overview}>{({ equipment, alarms }) => <Open lines={equipment} alarms={alarms} now={opened} zone={zone} />}</Loaded>
+      <Disbelieved begin={begin} end={end} />
+      <Gaps begin={begin} end={end} />
     </>
   );
 }

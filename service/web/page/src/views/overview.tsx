@@ -20,9 +20,15 @@ function otherStates(): (news: Change) => boolean {
   };
 }
 
-function state(line: EquipmentLine): string {
+/** Errors, simulators and telemetry move without a decision: they are asked for again so often [s]. */
+const refresh = 20;
+
+const isAbout = (alarm: Alarm, line: EquipmentLine) => alarm.spacecraft === line.spacecraft && alarm.equipment === line.equipment;
+
+function state(line: EquipmentLine, alarms: Alarm[]): string {
   const texts = [];
   if (line.failure) texts.push("the champion fails");
+  for (const alarm of alarms) if (isAbout(alarm, line) && alarm.code !== "champion_failed") texts.push(`alarm ${alarm.code}`);
   if (line.waiting.length > 0) texts.push(`${line.waiting.length} wait${line.waiting.length === 1 ? "s" : ""}`);
   if (line.hold) texts.push(`held by ${line.hold.actor}`);
   if (line.attempts === 0) texts.push("no window was tried yet");
@@ -30,11 +36,13 @@ function state(line: EquipmentLine): string {
   return texts.join("; ") || "well";
 }
 
-function Alarms({ alarms, zone }: { alarms: Alarm[]; zone: string }) {
+const aboutText = (alarm: Alarm) => [alarm.spacecraft, alarm.equipment].filter(Boolean).join("/");
+
+function Alarms({ alarms, tried, zone }: { alarms: Alarm[]; tried: Set<string>; zone: string }) {
   return (
     <Table name="alarms" caption="Alarms" rows={alarms} rowClass={(alarm) => (alarm.acknowledged_by ? "" : "failing")} columns={[
       { title: "alarm", text: (alarm) => alarm.text },
-      { title: "about", text: (alarm) => [alarm.spacecraft, alarm.equipment].filter(Boolean).join("/") },
+      { title: "about", text: aboutText, cell: (alarm) => (alarm.equipment && tried.has(aboutText(alarm)) ? <a href={link("equipment", { spacecraft: alarm.spacecraft, equipment: alarm.equipment })}>{aboutText(alarm)}</a> : aboutText(alarm)) },
       { title: `since (${zone})`, text: (alarm) => timeText(alarm.since), isTime: true },
       { title: "seen by", text: (alarm) => alarm.acknowledged_by || "nobody" },
     ]} />
@@ -55,18 +63,18 @@ function Pair({ pair }: { pair: PairService[] }) {
 export function Overview() {
   const zone = useZone();
   const [isOther] = useState(otherStates);
-  const answer = useAnswer<OverviewAnswer>("overview", {}, (news) => isOther(news) || isDecision(news));
-  const columns: Column<EquipmentLine>[] = [
+  const answer = useAnswer<OverviewAnswer>("overview", {}, (news) => isOther(news) || isDecision(news), refresh);
+  const columns = (alarms: Alarm[]): Column<EquipmentLine>[] => [
     { title: "equipment", text: (line) => `${line.spacecraft}/${line.equipment}` },
     {
-      title: "state", text: state,
+      title: "state", text: (line) => state(line, alarms), isWide: true,
       cell: (line) => {
-        const act = line.failure || line.waiting.length > 0;
+        const act = line.waiting.length > 0 || alarms.some((alarm) => isAbout(alarm, line));
         return (
           <>
-            <span class={line.failure ? "bad" : act ? "act" : ""}>{state(line)}</span>
-            {line.waiting.length > 0 && <> <a href={link("version", { spacecraft: line.spacecraft, equipment: line.equipment, version: line.waiting[line.waiting.length - 1] })}>look</a></>}
-            {line.failure && <div class="detail">{line.failure}</div>}
+            <span class={line.failure ? "bad" : act ? "act" : ""}>{state(line, alarms)}</span>
+            {line.waiting.length > 0 && <>: {line.waiting.slice(-3).map((version) => <><a href={link("version", { spacecraft: line.spacecraft, equipment: line.equipment, version })}>{version}</a> </>)}</>}
+            {line.change && <div class="detail">telemetry changed {timeText(line.change)} {zone}</div>}
           </>
         );
       },
@@ -84,8 +92,8 @@ export function Overview() {
     <Loaded answer={answer}>
       {({ equipment, alarms, pair }) => (
         <>
-        {alarms.length > 0 && <Alarms alarms={alarms} zone={zone} />}
-        <Table name="overview" caption="Equipment" columns={columns}
+        {alarms.length > 0 && <Alarms alarms={alarms} tried={new Set(equipment.filter((line) => line.attempts > 0).map((line) => `${line.spacecraft}/${line.equipment}`))} zone={zone} />}
+        <Table name="overview" caption="Equipment" columns={columns(alarms)}
           rows={equipment}
           href={(line) => (line.attempts > 0 ? link("equipment", { spacecraft: line.spacecraft, equipment: line.equipment }) : undefined)}
           rowClass={(line) => (line.failure ? "failing" : "")}

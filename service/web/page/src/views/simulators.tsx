@@ -1,5 +1,5 @@
 // Who runs which version, and what was refused.
-import { useAnswer } from "../api";
+import { isDecision, useAnswer } from "../api";
 import { timeText } from "../format";
 import { Loaded, useZone } from "../parts";
 import { Table } from "../table";
@@ -33,11 +33,11 @@ function state(row: Simulator): string {
 
 export function SimulatorsView() {
   const zone = useZone();
-  const answer = useAnswer<{ simulators: Simulator[] }>("simulators", {}, (change) => change.event === "service" || change.event === "registry");
+  const answer = useAnswer<{ simulators: Simulator[] }>("simulators", {}, isDecision, 5);
   return (
     <Loaded answer={answer}>
       {({ simulators }) => (
-        <Table name="simulators" caption="Simulators" rows={simulators} empty="No simulator was heard by the service."
+        <Table name="simulators" caption={`Simulators: ${simulators.filter((row) => !isCurrent(row)).length} of ${simulators.length} do not run the champion`} rows={[...simulators].sort((a, b) => Number(isCurrent(a)) - Number(isCurrent(b)))} empty="No simulator was heard by the service."
           rowClass={(row) => (isCurrent(row) ? "" : "failing")}
           columns={[
             { title: "simulator", text: (row) => row.simulator },

@@ -1,10 +1,12 @@
 // One version: the verdict first, then what it rests on.
-import { useMemo } from "preact/hooks";
+import { useEffect, useMemo } from "preact/hooks";
 import { isAbout, useAnswer, type Version } from "../api";
 import { Decide, type Action } from "../decide";
 import { durationText, figure, percent, secondsOf, timeText } from "../format";
+import { Figures, isKey } from "../figures";
 import { decisionColumns, Facts, Loaded, Status, useZone } from "../parts";
 import { Plot, type Panel } from "../plot";
+import { broken } from "../series";
 import { Table } from "../table";
 import { change, link } from "../url";
 
@@ -28,7 +30,8 @@ function Poles({ poles }: { poles: [number, number][] }) {
   );
 }
 
-function Record({ version }: { version: Version }) {
+function Record({ version, asTable }: { version: Version; asTable: boolean }) {
+  const zone = useZone();
   const record = version.record;
   const drawn = useMemo(() => {
     if (!record || record.begin.length === 0) return null;
@@ -37,9 +40,9 @@ function Record({ version }: { version: Version }) {
       title: "score of each block", unit: "1 better, −1 worse", height: 190,
       levels: [{ value: 0, label: "as good", colour: "--quiet" }],
       lines: [
-        { label: "block", points: [times, record.score], colour: "--block", width: 0.6 },
-        { label: "mean so far", points: [times, record.mean], colour: "--run", width: 2 },
-        { label: "lower confidence bound", points: [times, record.lower], colour: "--good", width: 2 },
+        { label: "block", points: broken(times, record.score), colour: "--block", width: 0.6 },
+        { label: "mean so far", points: broken(times, record.mean), colour: "--run", width: 2 },
+        { label: "lower confidence bound", points: broken(times, record.lower), colour: "--good", width: 2 },
       ],
     }];
     return { panels, begin: times[0]!, end: times[times.length - 1]! + 1 };
@@ -47,12 +50,14 @@ function Record({ version }: { version: Version }) {
   const none = useMemo(() => [], []);
   const marks = useMemo(() => record?.change ? [{ at: secondsOf(record.change), label: "change", kind: "change" }] : [], [record]);
   if (!record || !drawn) return <p class="empty">No record against a champion: it was the first, was refused at its window, or waits for its first block.</p>;
-  const begin = Number(version_parameter("from") || drawn.begin), end = Number(version_parameter("to") || drawn.end);
+  const from = Number(version_parameter("from")), to = Number(version_parameter("to"));
+  const [begin, end] = from < to ? [from, to] : [drawn.begin, drawn.end];
   return (
     <>
       <p>Against version {record.against}, on {record.blocks} blocks that neither was fitted to.</p>
-      <Plot {...drawn} begin={begin} end={end} marks={marks} stretches={none} excluded={none as [number, number][]}
-        onRange={(from, to) => change({ from: from.toFixed(0), to: to.toFixed(0) })} />
+      <div class="toolbar"><button type="button" aria-pressed={asTable} onClick={() => change({ show: asTable ? undefined : "table" })}>table</button></div>
+      {asTable ? drawn.panels.map((panel) => <Figures panel={panel} zone={zone} />) : <Plot {...drawn} begin={begin} end={end} marks={marks} stretches={none} excluded={none as [number, number][]}
+        onRange={(from, to) => change({ from: from.toFixed(0), to: to.toFixed(0) })} />}
     </>
   );
 }
@@ -81,6 +86,14 @@ function actionsFor({ status, version }: Version): Action[] {
 export function VersionView({ parameters }: { parameters: Record<string, string> }) {
   const zone = useZone();
   const { spacecraft, equipment, version: number } = parameters;
+  const asTable = parameters.show === "table";
+  useEffect(() => {
+    const pressed = (event: KeyboardEvent) => {
+      if (event.key === "t" && isKey(event)) change({ show: asTable ? undefined : "table" });
+    };
+    addEventListener("keydown", pressed);
+    return () => removeEventListener("keydown", pressed);
+  }, [asTable]);
   const answer = useAnswer<Version>("version", { spacecraft, equipment, version: number }, isAbout(spacecraft, equipment));
   return (
     <Loaded answer={answer}>
@@ -93,7 +106,7 @@ export function VersionView({ parameters }: { parameters: Record<string, string>
           <>
             <div class="title">
               <h1><a href={link("equipment", { spacecraft, equipment })}>{spacecraft}/{equipment}</a> version {version.version}</h1>
-              <Status status={version.status} />
+              <Status status={version.status} asksOperator={version.asks_operator} />
             </div>
             <p class="verdict">{version.verdict}</p>
             <Decide spacecraft={spacecraft!} equipment={equipment!} champion={version.champion} actions={actionsFor(version)} />
@@ -126,10 +139,10 @@ export function VersionView({ parameters }: { parameters: Record<string, string>
                 ]} />
               </section>
             </div>
-            <section><h2>Record</h2><Record version={version} /></section>
+            <section><h2>Record</h2><Record version={version} asTable={asTable} /></section>
             <p><a href={link("equipment", { spacecraft, equipment, begin: version.window.begin, end: version.window.end, version: version.version })}>Its free run over its window</a></p>
             <section><h2>Poles</h2><Poles poles={version.poles} /></section>
-            <Table name={`decisions-${equipment}-${number}`} caption="Decisions" rows={version.decisions} columns={decisionColumns(zone, false)} />
+            <Table name={`decisions-${equipment}-${number}`} caption="Decisions" rows={version.decisions} columns={decisionColumns(zone, { spacecraft, equipment })} />
           </>
         );
       }}

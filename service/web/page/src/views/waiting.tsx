@@ -28,7 +28,7 @@ export function WaitingView() {
             { title: "version", text: (row) => `${row.spacecraft}/${row.equipment}@${row.version}` },
             { title: `since (${zone})`, text: (row) => timeText(row.since), isTime: true },
             { title: "error %", text: (row) => figure(row.error_percent), isNumber: true },
-            { title: "verdict", text: (row) => row.verdict },
+            { title: "verdict", text: (row) => row.verdict, isWide: true },
             { title: "supersedes", text: (row) => row.supersedes.join(", ") || "none" },
             { title: `window ends (${zone})`, text: (row) => timeText(row.window.end), isTime: true },
           ]} />

@@ -1,0 +1,24 @@
+#include "service/review/conditions.hpp"
+
+#include <gtest/gtest.h>
+
+namespace reident {
+namespace {
+
+TEST(Conditions, AQuestionThatWasNotAskedShowsNoFigure) {
+  Finding finding;
+  finding.log_threshold = 4;
+  EquipmentConfig limits;
+  const auto bias = [&](std::string_view obstacle) {
+    return conditions_of(finding, obstacle, limits).at(5);
+  };
+  EXPECT_EQ(bias("").holds, true);
+  EXPECT_EQ(bias("").found, "not asked: relations bind the sensors");
+  EXPECT_EQ(bias("bias_unverified").found, "0.00");
+  finding.wealth_without_offset = 7.5;
+  EXPECT_EQ(bias("").found, "7.50");
+  EXPECT_EQ(bias("not_better").holds, std::nullopt);
+}
+
+}  // namespace
+}  // namespace reident
