@@ -89,7 +89,8 @@ TEST_F(Programs, ReplayBringsEveryRowAndItsDescriptors) {
   dds::Reader<TelemetryFrame> frames(participant);
   dds::Reader<ParameterDescriptor> descriptors(participant);
   Child child(
-      replay("--speed max --json --first-sequence 501 --source station --origin simulated"));
+      replay("--speed max --json --invalid-blanks --first-sequence 501 --source station --origin "
+             "simulated"));
   const auto received = take_all(frames, 1000);
   ASSERT_EQ(received.size(), 1000U);
   for (std::uint64_t r = 0; r < 1000; ++r) {
@@ -128,7 +129,7 @@ TEST_F(Programs, ReplayAtFullSpeedLosesNothingToASlowReader) {
   dds::Reader<TelemetryFrame> frames(participant, {.max_samples = 32});
   dds::WaitSet wait_set(participant);
   wait_set.attach(frames);
-  Child child(replay("--speed max --json"));
+  Child child(replay("--speed max --json --invalid-blanks"));
   std::uint64_t next = 0;
   while (next < rows && !HasFailure() && wait_set.wait(20s)) {
     frames.take(3, [&](TelemetryFrame&& frame) {
