@@ -7,7 +7,6 @@
 #include "storage/types/time_ends.hpp"
 
 namespace reident::storage {
-namespace {}  // namespace
 
 RecentTier::RecentTier(sqlite::Connection& connection) : connection_(connection) {
   load_series();

@@ -209,10 +209,11 @@ TEST(Database, IsOpenedForWritingWhileOthersAskWhetherItHasAWriter) {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.db";
   make_archive(path);
-  std::atomic<bool> ended = false;
+  std::atomic<bool> begun = false, ended = false;
   std::thread asking([&] {
-    while (!ended) Database::has_writer(path);
+    for (; !ended; begun = true) Database::has_writer(path);
   });
+  while (!begun) std::this_thread::yield();
   for (int i = 0; i < 50; ++i) EXPECT_EQ(opening(path, Mode::read_write), "no error");
   ended = true;
   asking.join();
