@@ -185,6 +185,17 @@ if (account) {
   await page.context().close();
 }
 
+// What is not live says so.
+{
+  const context = await browser.newContext();
+  await context.route("**/api/v1/stream", (route) => route.abort());
+  const page = await context.newPage();
+  await page.goto(url);
+  await page.waitForSelector(".stale");
+  await page.waitForSelector(".pulse.bad");
+  await context.close();
+}
+
 // In two zones: UTC is shown first, and each label names the zone.
 for (const timezoneId of ["America/Sao_Paulo", "Asia/Shanghai"]) {
   const page = await open({ timezoneId });

@@ -75,11 +75,16 @@ const ageOf = (one: Heard) => Date.now() / 1000 - one.heard;
 /** One that lives comes before one that is silent, and of a pair the one that leads. */
 const rank = (one: Heard) => (ageOf(one) > freshSeconds ? 2 : one.status.pair && one.status.pair.role !== "leads" ? 1 : 0);
 
-/** Whether the service lives, and how far telemetry has come. */
-function Pulse() {
-  const zone = useZone();
+interface Life {
+  service?: Heard;
+  isOpen: boolean;    // the page's server answers
+  isSilent: boolean;  // no service is heard, for so long that none runs
+}
+
+function useLife(): Life {
   const [services, set] = useState<Record<string, Heard>>({});
   const [isOpen, setOpen] = useState(true);
+  const [opened] = useState(() => performance.now());
   const [, tick] = useState(0);
   useChanges(({ event, data }) => {
     if (event === "connection") setOpen(data.open as boolean);
@@ -89,14 +94,26 @@ function Pulse() {
     const timer = setInterval(() => tick((n) => n + 1), 1000);
     return () => clearInterval(timer);
   }, []);
-  if (!isOpen) return <span class="pulse bad" role="status">no connection to the page's server</span>;
   const service = Object.values(services).sort((a, b) => rank(a) - rank(b))[0];
-  if (!service) return <span class="pulse unknown">no service heard yet</span>;
+  const age = service ? ageOf(service) : (performance.now() - opened) / 1000;
+  return { service, isOpen, isSilent: age > freshSeconds };
+}
+
+/** Whether the service lives, and how far telemetry has come. */
+function Pulse() {
+  const zone = useZone();
+  const { service, isOpen, isSilent } = useLife();
+  if (!isOpen) return <span class="pulse bad" role="status">no connection to the page's server</span>;
+  if (!service) return isSilent ? <span class="pulse bad" role="status">no service is heard</span> : <span class="pulse unknown">no service heard yet</span>;
   const { status } = service;
-  const age = ageOf(service);
-  if (age > freshSeconds) return <span class="pulse bad" role="status">service {status.service} silent for {durationText(age)}</span>;
+  if (isSilent) return <span class="pulse bad" role="status">service {status.service} silent for {durationText(ageOf(service))}</span>;
   if (status.last_error) return <a class="pulse bad" href="#/service" role="status">{status.last_error}</a>;
   return <span class="pulse"><span class="good">●</span> {status.service}{status.pair && ` ${status.pair.role}`}; telemetry to <span class="whole">{timeText(status.newest_telemetry)} {zone}</span>{Number(status.windows_pending) > 0 && `; ${status.windows_pending} windows pending`}{Math.abs(clockError()) > 60 && <span class="act">; this computer's clock is off by {durationText(Math.abs(clockError()))}</span>}</span>;
+}
+
+function Stale() {
+  const { isOpen, isSilent } = useLife();
+  return isSilent || !isOpen ? <p class="stale">Not live: this is as it was stored or heard last.</p> : null;
 }
 
 function moveInRows(step: number): void {
@@ -169,7 +186,10 @@ function Page() {
           <button type="button" class="quiet" onClick={() => setHelp(true)} aria-label="keys">?</button>
         </span>
       </header>
-      <main id="main" tabIndex={-1}><Guarded {...place} /></main>
+      <main id="main" tabIndex={-1}>
+        <Stale />
+        <Guarded {...place} />
+      </main>
       {help && <Help close={() => setHelp(false)} />}
     </>
   );

@@ -2,12 +2,12 @@
 import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ask, isAbout, useAnswer, type Equipment, type Run, type Telemetry, type Timeline, type VersionLine } from "../api";
 import { Decide } from "../decide";
+import { Figures, isKey } from "../figures";
 import { figure, isoOf, secondsOf, timeOfSeconds, timeText } from "../format";
 import { decisionColumns, Figure, kindText, Loaded, Status, statusText, useZone } from "../parts";
 import { Plot, type Level, type Mark, type Panel, type Stretch } from "../plot";
 import { levelsOf, pointsOf } from "../series";
 import { Table } from "../table";
-import { Figures, isKey } from "../figures";
 import { change, link, rangeIn } from "../url";
 
 const runSpan = 3 * 86400;  // free runs of longer ranges are of blocks alone
@@ -262,7 +262,7 @@ export function EquipmentView({ parameters }: { parameters: Record<string, strin
               { action: "identify_now", label: "Identify now", role: "operator", needsReason: false },
             ]} />
             <VersionErrors versions={equipment.versions} />
-            <Table name={`versions-${name}`} caption={`Versions, the newest first${versions.length < equipment.versions.length ? `: ${versions.length} of ${line.versions}` : ""}`} rows={versions}
+            <Table name={`versions-${name}`} caption={`Versions, the newest first${versions.length < line.versions ? `: ${versions.length} of ${line.versions}` : ""}`} rows={versions}
               href={(row) => link("version", { spacecraft, equipment: name, version: row.version })}
               columns={[
                 { title: "version", text: (row) => row.version },

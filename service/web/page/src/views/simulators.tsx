@@ -23,6 +23,11 @@ interface Simulator {
 
 const isCurrent = (row: Simulator) => row.version !== null && row.version === row.champion;
 
+function summary(simulators: Simulator[]): string {
+  const old = simulators.filter((row) => !isCurrent(row)).length;
+  return simulators.length === 0 ? "Simulators" : old === 0 ? "Simulators: all run the champion" : `Simulators: ${old} of ${simulators.length} do not run the champion`;
+}
+
 function state(row: Simulator): string {
   const texts = [row.version === null ? "not running" : isCurrent(row) ? "current" : row.champion === null ? "no champion: what runs is no longer published" : `champion is ${row.champion}`];
   if (row.from_cache) texts.push("from file");
@@ -37,7 +42,7 @@ export function SimulatorsView() {
   return (
     <Loaded answer={answer}>
       {({ simulators }) => (
-        <Table name="simulators" caption={`Simulators: ${simulators.filter((row) => !isCurrent(row)).length} of ${simulators.length} do not run the champion`} rows={[...simulators].sort((a, b) => Number(isCurrent(a)) - Number(isCurrent(b)))} empty="No simulator was heard by the service."
+        <Table name="simulators" caption={summary(simulators)} rows={[...simulators].sort((a, b) => Number(isCurrent(a)) - Number(isCurrent(b)))} empty="No simulator was heard by the service."
           rowClass={(row) => (isCurrent(row) ? "" : "failing")}
           columns={[
             { title: "simulator", text: (row) => row.simulator },

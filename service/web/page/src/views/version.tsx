@@ -2,8 +2,8 @@
 import { useEffect, useMemo } from "preact/hooks";
 import { isAbout, useAnswer, type Version } from "../api";
 import { Decide, type Action } from "../decide";
-import { durationText, figure, percent, secondsOf, timeText } from "../format";
 import { Figures, isKey } from "../figures";
+import { durationText, figure, percent, secondsOf, timeText } from "../format";
 import { decisionColumns, Facts, Loaded, Status, useZone } from "../parts";
 import { Plot, type Panel } from "../plot";
 import { broken } from "../series";
