@@ -232,6 +232,7 @@ CellFormat find_format(std::span<const std::string_view> cells, const std::strin
     ++filled;
     const auto number = read_number(cell, style);
     const bool is_state = coded_state(cell).has_value();
+    if (!number && means_no_value(cell)) format.no_value = cell;
     if (!number || is_state) {
       if (words.size() < most_states) words.insert(std::string(cell));
       continue;
@@ -282,11 +283,11 @@ Cell read_cell(std::string_view text, const CellFormat& format) {
   if (format.spelling == 0 && format.style.decimal == '.') {
     if (const auto value = plain_number(text)) return {Cell::Kind::number, *value, false};
     const std::string_view word = trimmed(text);
-    if (means_no_value(word)) return {Cell::Kind::missing, 0, false};
+    if (!format.no_value.empty() && means_no_value(word)) return {Cell::Kind::missing, 0, false};
     return {word.empty() ? Cell::Kind::blank : Cell::Kind::bad, 0, false};
   }
   if (trimmed(text).empty()) return {};
-  if (format.kind == CellFormat::Kind::number && means_no_value(trimmed(text)))
+  if (!format.no_value.empty() && means_no_value(trimmed(text)))
     return {Cell::Kind::missing, 0, false};
   const auto number = read_number(text, format.style);
   if (!number || (number->spelling & ~(format.spelling | grouped | decimal_comma)) != 0)
@@ -309,6 +310,7 @@ std::string describe(const CellFormat& format) {
   add((format.spelling & true_minus) != 0, "U+2212 is minus");
   add((format.spelling & in_formula) != 0, "numbers as formulas");
   add(!format.unit.empty(), fmt::format("in {}", format.unit));
+  add(!format.no_value.empty(), fmt::format("{} is no value", format.no_value));
   add((format.spelling & with_suffix) != 0 && format.unit.empty(),
       "flags of limits behind numbers");
   return text;

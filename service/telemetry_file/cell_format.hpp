@@ -52,6 +52,7 @@ struct CellFormat {
   std::string unit;       // behind every number; empty: none, or flags
   StateMap states;
   std::vector<std::string> missing;
+  std::string no_value;            // the first word among numbers that is none, as NA; or empty
   std::vector<std::string> words;  // of a column of text: the first different ones, at most 5
   bool may_be_states = false;      // of a column of text: so few words that they may be states
 };

@@ -353,7 +353,10 @@ TEST(TelemetryCells, ThatDoNotAgreeAreBad) {
   EXPECT_EQ(read_cell(cells[7], format_of(cells)).kind, Cell::Kind::bad);
   EXPECT_EQ(format_of({"SUN", "ECLIPSE"}).kind, CellFormat::Kind::text);
   EXPECT_EQ(read_cell("", format_of(cells)).kind, Cell::Kind::blank);
-  EXPECT_EQ(read_cell(" <NA> ", format_of(cells)).kind, Cell::Kind::missing);
+  EXPECT_EQ(read_cell("NA", format_of(cells)).kind, Cell::Kind::bad);
+  cells[9] = "<NA>";
+  EXPECT_EQ(read_cell("NA ", format_of(cells)).kind, Cell::Kind::missing);
+  EXPECT_EQ(describe(format_of(cells)), "<NA> is no value");
   EXPECT_EQ(read_cell("OFF", format_of({"ON", "ON"})).value, 0) << "the other state comes later";
 }
 
