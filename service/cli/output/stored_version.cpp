@@ -113,10 +113,14 @@ std::variant<StoredVersion, Refusal> find_stored_version(const HistoryReader& hi
     if (const auto made = history.champion_decision(equipment)) number = made->version;
   auto story = number ? stored_version(history, equipment, *number) : std::nullopt;
   if (story) return *std::move(story);
-  return Refusal{fmt::format(
-      "{} has no {}; versions: {}", full_name(equipment),
-      subject.version ? fmt::format("version {}", *subject.version) : "approved version",
-      versions_text(history, equipment))};
+  const std::string name = full_name(equipment);
+  const std::string versions = versions_text(history, equipment);
+  if (subject.version)
+    return Refusal{
+        fmt::format("{} has no version {}; versions: {}", name, *subject.version, versions)};
+  const bool has_any = !history.summaries(equipment).empty();
+  return Refusal{fmt::format("{} has no approved version; versions: {}{}", name, versions,
+                             has_any ? "; name one as " + name + "@NUMBER" : "")};
 }
 
 int with_version(const HistoryAccessOptions& options, const std::string& subject,

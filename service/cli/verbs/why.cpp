@@ -227,10 +227,9 @@ int print(const history::HistoryReader& history, const StoredVersion& story, boo
   }
   fmt::print("{} version {}: {}\n", full_name({story.version.spacecraft, story.version.equipment}),
              story.version.number, story.version.status);
-  fmt::print("{}\n", fmt::join(wrapped(verdict.sentence, terminal_width()), "\n  "));
+  fmt::print("{}\n", verdict.sentence);
   if (!verdict.conditions.empty()) fmt::print("\n{}\n", table_of(verdict.conditions));
-  for (const std::string& sentence : sentences)
-    fmt::print("{}\n", fmt::join(wrapped(sentence, terminal_width()), "\n  "));
+  for (const std::string& sentence : sentences) fmt::print("{}\n", sentence);
   return exit_done;
 }
 

@@ -58,6 +58,9 @@ TEST_F(Program, HelpOfEveryVerbFitsIntoTheTerminal) {
       for (const std::string& line : lines)
         EXPECT_LE(display_width(line), columns) << command[0] << ": " << line;
     }
+  const auto lines = lines_on_terminal({"overview", "--help"}, 120);
+  EXPECT_THAT(lines, Contains(HasSubstr("over the last two cycles")))
+      << "a sentence is broken by the terminal alone";
 }
 
 TEST_F(Program, ShellsCompleteVerbsAndOptions) {
