@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <optional>
 
 #include "identification/fit/regression.hpp"
 #include "identification/fit/whitening.hpp"
+#include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "identification/statistics/correlation.hpp"
 
@@ -121,8 +123,16 @@ StateSpaceModel with_dynamics(const Matrix& A, const Matrix& C, const Record& re
           record.period_s};
 }
 
+bool is_within(const Matrix& A, double least_rate) {
+  const ComplexVector modes = eigenvalues(A);
+  return std::all_of(modes.begin(), modes.end(), [least_rate](const std::complex<double>& mode) {
+    return std::abs(mode) < 1 && !(std::abs(std::log(mode)) < least_rate);
+  });
+}
+
 /// At most `steps` Levenberg-Marquardt steps on A and C from those of `dynamics`.
-Fitted refined(const StateSpaceModel& dynamics, bool direct, const Target& target, int steps) {
+Fitted refined(const StateSpaceModel& dynamics, bool direct, const Target& target, int steps,
+               double least_rate) {
   const Columns columns{dynamics.order(), dynamics.inputs(), dynamics.outputs(), direct, true};
   Fitted best = fit(dynamics, direct, target, Accuracy::fast);
   double damping = 1e-3;
@@ -140,7 +150,7 @@ Fitted refined(const StateSpaceModel& dynamics, bool direct, const Target& targe
         moved_C.row(q) += solution->theta.segment(columns.output_map(q), columns.n).transpose();
       const Matrix moved_A = best.model.A + L * best.model.C;
       const StateSpaceModel moved = with_dynamics(moved_A, moved_C, target.record);
-      if (!is_well_formed(moved) || !(spectral_radius(moved) < 1)) continue;
+      if (!is_well_formed(moved) || !is_within(moved.A, least_rate)) continue;
       Fitted trial = fit(moved, columns.direct, target, Accuracy::fast);
       if (!(trial.sum_of_squares < best.sum_of_squares)) continue;
       best = std::move(trial);
@@ -180,10 +190,10 @@ Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowR
 }
 
 Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
-                         RowRange rows, int steps) {
+                         RowRange rows, int steps, double least_rate) {
   const std::vector<Segment> segments = segments_within(record, rows);
   return response_of(
-      refined(with_dynamics(A, C, record), direct, {record, segments, unknown}, steps),
+      refined(with_dynamics(A, C, record), direct, {record, segments, unknown}, steps, least_rate),
       rows.size());
 }
 
@@ -205,10 +215,10 @@ std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, R
 }
 
 Response refine_whitened(const Response& fit, bool direct, const Record& record, RowRange rows,
-                         int steps, const std::vector<ErrorColour>& colours) {
+                         int steps, const std::vector<ErrorColour>& colours, double least_rate) {
   const std::vector<Segment> segments = segments_within(record, rows);
   return response_of(refined(with_dynamics(fit.model.A, fit.model.C, record), direct,
-                             {record, segments, colours}, steps),
+                             {record, segments, colours}, steps, least_rate),
                      rows.size());
 }
 

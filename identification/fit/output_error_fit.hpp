@@ -33,9 +33,10 @@ Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Recor
 Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows);
 
 /// Fits like fit_response(), with A and C moved by at most `steps` Levenberg-Marquardt steps that
-/// lower the output error. The result is stable.
+/// lower the output error. The result is stable, and no step takes a mode below the least rate,
+/// |ln| [1/row] of an eigenvalue.
 Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
-                         RowRange rows, int steps);
+                         RowRange rows, int steps, double least_rate = 0);
 
 /// Returns the colour of the errors of a fit to `rows`, one for each output.
 std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows);
@@ -43,6 +44,6 @@ std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, R
 /// Refines a fit like refine_response(), where the errors have these colours: of the steps each
 /// lowers the sum of squares of the errors made white. `error` is that of these.
 Response refine_whitened(const Response& fit, bool direct, const Record& record, RowRange rows,
-                         int steps, const std::vector<ErrorColour>& colours);
+                         int steps, const std::vector<ErrorColour>& colours, double least_rate = 0);
 
 }  // namespace reident::identification

@@ -90,6 +90,7 @@ class Search {
         space_(space),
         for_each_(for_each),
         effort_(effort),
+        least_rate_(space.least_rate),
         m_(data.normalised.u.cols()),
         p_(data.normalised.y.cols()) {}
 
@@ -98,6 +99,8 @@ class Search {
  private:
   /// Scores every order, horizon and weighting with B and D from the compression.
   std::vector<Candidate> compressed_stage();
+  /// Whether the inputs drive slower modes than the candidates of the first stage have.
+  bool shows_slow_modes(const std::vector<Candidate>& compressed) const;
   void score_compressed(std::size_t fold, std::size_t horizon, std::vector<HeldOutErrors>& errors);
   /// Order, horizon and weighting of a place in the table of the first stage.
   Recipe recipe_at(std::size_t place) const;
@@ -134,6 +137,7 @@ class Search {
   const SearchSpace& space_;
   const ForEach& for_each_;
   SearchEffort& effort_;
+  double least_rate_;  // 0 once slow modes have shown
   Index m_, p_;
   std::vector<std::vector<StateSpaceModel>> models_;  // of the first stage, by fold and place
 };
@@ -146,6 +150,7 @@ Recipe Search::recipe_at(std::size_t place) const {
   recipe.order = least_order() + static_cast<int>(in_horizon % orders());
   recipe.stability = space_.stability;
   recipe.direct = space_.direct.front();
+  recipe.least_rate = least_rate_;
   return recipe;
 }
 
@@ -171,11 +176,11 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
       const std::size_t place = horizon_index * places_of_horizon() + w * orders() + i;
       const Recipe recipe = recipe_at(place);
       if (recipe.order > gamma.cols() - p_) break;
-      const Dynamics found = shift_invariant(gamma, p_, recipe.order, recipe.stability);
-      const auto A = stable_over(found.A, fold.fit.size());
-      if (!A) continue;
+      const auto found = shift_invariant_within({fold.fit.size(), recipe.least_rate}, gamma, p_,
+                                                recipe.order, recipe.stability);
+      if (!found) continue;
       StateSpaceModel& model = models_[fold_index][place];
-      model = with_response(projection, *A, found.C, recipe.direct, record.period_s);
+      model = with_response(projection, found->A, found->C, recipe.direct, record.period_s);
       set_operating_point(model, data_.normalisation, mean);
       errors[place] = quick_held_out_errors(model, record, fold);
     }
@@ -208,6 +213,22 @@ std::vector<Candidate> Search::compressed_stage() {
   return found;
 }
 
+bool Search::shows_slow_modes(const std::vector<Candidate>& compressed) const {
+  // With the most modes, since whatever is missing may look slow.
+  Candidate candidate = *std::max_element(
+      compressed.begin(), compressed.end(),
+      [](const auto& a, const auto& b) { return a.recipe.order < b.recipe.order; });
+  candidate.recipe.fit = ResponseFit::simulation;
+  const RowRange rows =
+      data_.folds.front().with_fit_of(affordable_rows_of_fold(candidate.recipe, 1)).fit;
+  // A mode near the least rate stands for a slower one: without it there is more to see.
+  const StateSpaceModel& model = models_[0][candidate.place];
+  const Dynamics fast = without_slow_modes({model.A, model.C}, 2 * least_rate_);
+  const Response fit =
+      fit_response(fast.A, fast.C, candidate.recipe.direct, data_.normalised, rows, Accuracy::fast);
+  return drives_slow_modes(fit, data_.normalised, rows, least_rate_ / 2);
+}
+
 HeldOutErrors Search::errors_on(const Candidate& candidate, std::size_t fold_index,
                                 Index rows_of_fold) const {
   const Record& record = data_.normalised;
@@ -229,7 +250,7 @@ Response Search::fit_of(const Candidate& candidate, std::size_t fold, RowRange r
   const StateSpaceModel& model = models_[fold][candidate.place];
   return recipe.refinement_steps > 0
              ? refine_response(model.A, model.C, recipe.direct, record, rows,
-                               recipe.refinement_steps)
+                               recipe.refinement_steps, recipe.least_rate)
              : fit_response(model.A, model.C, recipe.direct, record, rows, Accuracy::fast);
 }
 
@@ -347,7 +368,8 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
     simple.recipe.direct = order == 0 || winner.recipe.direct;
     simple.recipe.refinement_steps = order == 0 ? 0 : refinement_steps;
     simple.recipe.refined_rows = order == 0 ? 0 : rows * static_cast<Index>(folds());
-    if (!richer) richer.emplace(fit(rich), rich.recipe.direct, data_.normalised, fitted);
+    if (!richer)
+      richer.emplace(fit(rich), rich.recipe.direct, data_.normalised, fitted, least_rate_);
     const Index extra = std::max<Index>(1, parameters(winner.recipe) - parameters(simple.recipe));
     if (richer->refutes(fit(simple), simple.recipe.direct, extra)) return std::nullopt;
     std::vector<Candidate> result = scored({simple}, rows);
@@ -375,7 +397,11 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
 }
 
 std::vector<ScoredRecipe> Search::run() {
-  const std::vector<Candidate> compressed = compressed_stage();
+  std::vector<Candidate> compressed = compressed_stage();
+  if (least_rate_ > 0 && (compressed.empty() || shows_slow_modes(compressed))) {
+    least_rate_ = 0;
+    compressed = compressed_stage();
+  }
   std::vector<Candidate> found = simulated_stage(compressed);
   const std::vector<Candidate> refined = refined_stage(found);
   if (!refined.empty() && refined.front().error <= equal_errors * found.front().error)

@@ -32,6 +32,9 @@ struct SearchSpace {
   std::vector<bool> direct;       // D free, D zero, or both
   std::vector<ResponseFit> fits;  // either or both
   Stability stability = Stability::as_found;
+  /// |ln| [1/row] of an eigenvalue: slower modes are left out where nothing shows that the inputs
+  /// drive them. 0: none is.
+  double least_rate = 0;
 };
 
 /// What the search works on: a record of normalised channels, and for each fold the sums, in units,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/free_run.hpp"
@@ -40,6 +41,64 @@ Matrix uncorrelated_mixtures(const Matrix& errors) {
   if (p == 1 || !errors.allFinite()) return Matrix::Identity(p, p);
   const SymmetricEigen found = symmetric_eigen(errors.transpose() * errors);
   return found.converged ? Matrix(found.vectors.transpose()) : Matrix::Identity(p, p);
+}
+
+/// The states of x[t+1] = A x[t] + 1 u[t] for each of the inputs: they span what a system with
+/// this A makes of the inputs.
+Matrix states_of(const Matrix& A, const Matrix& inputs) {
+  const Index n = A.rows(), m = inputs.cols();
+  Matrix states(inputs.rows(), n * m);
+  Matrix x = Matrix::Zero(n, m);
+  for (Index t = 0; t < inputs.rows(); ++t) {
+    states.row(t) = x.reshaped().transpose();
+    x = A * x + Vector::Ones(n) * inputs.row(t);
+  }
+  return states;
+}
+
+/// The autoregression of a series by Burg's method, which does not shorten a drift as products of
+/// lags do. It has the largest order that the rows carry: one of the least BIC misses what drifts
+/// below other noise.
+Vector long_past(const Vector& values, const std::vector<Segment>& segments) {
+  const Index most = std::min<Index>(20, values.size() / 20);
+  Vector forwards = values.array() - values.mean(), backwards = forwards, past(0);
+  for (Index n = 1; n <= most; ++n) {
+    double products = 0, squares = 0;
+    for (const Segment& segment : segments)
+      for (Index t = segment.begin + n; t < segment.end; ++t) {
+        products += forwards(t) * backwards(t - 1);
+        squares += forwards(t) * forwards(t) + backwards(t - 1) * backwards(t - 1);
+      }
+    if (!(squares > 0)) break;
+    const double k = 2 * products / squares;
+    for (const Segment& segment : segments)
+      for (Index t = segment.end - 1; t >= segment.begin + n; --t) {
+        const double forward = forwards(t);
+        forwards(t) -= k * backwards(t - 1);
+        backwards(t) = backwards(t - 1) - k * forward;
+      }
+    Vector next(n);
+    for (Index i = 0; i < n - 1; ++i) next(i) = past(i) - k * past(n - 2 - i);
+    next(n - 1) = k;
+    past = std::move(next);
+  }
+  return past;
+}
+
+/// What the past (of an autoregression) leaves of the columns, less its mean in each segment; zero
+/// where the past is not whole.
+Matrix white(const Matrix& values, const Vector& past, const std::vector<Segment>& segments) {
+  Matrix result = Matrix::Zero(values.rows(), values.cols());
+  for (const Segment& segment : segments) {
+    const Index first = segment.begin + past.size(), count = segment.end - first;
+    if (count < 1) continue;
+    auto rows = result.middleRows(first, count);
+    rows = values.middleRows(first, count);
+    for (Index i = 0; i < past.size(); ++i)
+      rows -= past(i) * values.middleRows(first - 1 - i, count);
+    rows.rowwise() -= Eigen::RowVectorXd(rows.colwise().mean());
+  }
+  return result;
 }
 
 std::vector<RowRange> ranges_of(const std::vector<Segment>& segments) {
@@ -95,14 +154,16 @@ Index parameters_of(Index n, Index m, Index p, bool direct, Index segments) {
   return n * (m + p) + (direct ? m * p : 0) + p + n * segments;
 }
 
-RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows)
-    : RicherFit(fit, direct, record, rows, errors_of(fit, record, rows)) {}
+RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows,
+                     double least_rate)
+    : RicherFit(fit, direct, record, rows, least_rate, errors_of(fit, record, rows)) {}
 
 RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows,
-                     const Matrix& errors)
+                     double least_rate, const Matrix& errors)
     : mixtures_(uncorrelated_mixtures(errors)),
       mixed_{record.period_s, record.u, record.y * mixtures_.transpose(), record.segments},
       rows_(rows),
+      least_rate_(least_rate),
       colours_(colours_of(mixed(fit, mixtures_), mixed_, rows)),
       squares_(whitened_squares(fit, direct)),
       correlated_rows_(most_correlated_rows(errors, ranges_of(segments_from(record, rows)))) {}
@@ -110,7 +171,7 @@ RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, Row
 Vector RicherFit::whitened_squares(const Response& fit, bool direct) const {
   const int most = fit.model.order() == 0 ? 0 : steps;
   const Response white =
-      refine_whitened(mixed(fit, mixtures_), direct, mixed_, rows_, most, colours_);
+      refine_whitened(mixed(fit, mixtures_), direct, mixed_, rows_, most, colours_, least_rate_);
   const Matrix errors = errors_of(white, mixed_, rows_);
   const std::vector<Segment> segments = segments_from(mixed_, rows_);
   Vector squares(errors.cols());
@@ -126,6 +187,34 @@ bool RicherFit::refutes(const Response& simple, bool direct, Index extra) const 
   const Vector more = whitened_squares(simple, direct);
   const double ratio = count * ((more.array() + floor) / (squares_.array() + floor)).log().sum();
   return !(ratio <= chi_squared_quantile(0.9999, double(extra)));
+}
+
+bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows, double rate) {
+  const Index m = record.u.cols(), p = record.y.cols();
+  if (rows.size() < 4 * m * (2 + fit.model.order())) return true;
+  const std::vector<Segment> segments = segments_from(record, rows);
+  const Matrix inputs = record.u.middleRows(rows.begin, rows.size());
+  const Matrix slow = states_of(Matrix::Constant(1, 1, std::exp(-rate)), inputs);
+  Matrix fast(rows.size(), m * (1 + fit.model.order()));
+  fast << inputs, states_of(fit.model.A, inputs);
+  const Matrix errors = errors_of(fit, record, rows);
+  const Matrix mixed_errors = errors * uncorrelated_mixtures(errors).transpose();
+  const double count = double(rows.size());
+  double ratio = 0;
+  for (Index q = 0; q < p; ++q) {
+    const Vector past = long_past(mixed_errors.col(q), segments);
+    const Matrix basis = orthonormal_basis(white(fast, past, segments));
+    const auto remaining = [&basis](const Matrix& values) {
+      return Matrix(values - basis * (basis.transpose() * values));
+    };
+    const Matrix left = remaining(white(mixed_errors.col(q), past, segments));
+    const Matrix beside = orthonormal_basis(remaining(white(slow, past, segments)));
+    const double squares = left.squaredNorm();
+    const double floor = least_deviation * least_deviation * count;
+    ratio += count * std::log((squares + floor) /
+                              (squares - (beside.transpose() * left).squaredNorm() + floor));
+  }
+  return !(ratio <= chi_squared_quantile(0.99, double(m * p)));
 }
 
 bool errs_more(const std::vector<HeldOutError>& simple, const std::vector<HeldOutError>& rich,

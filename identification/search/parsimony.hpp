@@ -20,7 +20,9 @@ Index parameters_of(Index n, Index m, Index p, bool direct, Index segments);
 class RicherFit {
  public:
   /// Takes a fit of least squares to `rows` of the record, with or without D.
-  RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows);
+  /// No mode of a fit becomes slower than the least rate, |ln| [1/row] of an eigenvalue.
+  RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows,
+            double least_rate = 0);
 
   /// Whether the likelihood ratio refutes, at 99.99 %, that a simpler fit of least squares has all
   /// that is in the outputs. `extra` are the parameters, at least 1, that the richer one has more.
@@ -36,7 +38,7 @@ class RicherFit {
  private:
   /// With the errors of the fit.
   RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows,
-            const Matrix& errors);
+            double least_rate, const Matrix& errors);
 
   /// Fits again and returns the sums (p) of the squared errors, made white.
   Vector whitened_squares(const Response& fit, bool direct) const;
@@ -44,10 +46,17 @@ class RicherFit {
   Matrix mixtures_;  // p x p, orthogonal
   Record mixed_;     // its outputs are the mixtures
   RowRange rows_;
+  double least_rate_;
   std::vector<ErrorColour> colours_;
   Vector squares_;  // of its own
   double correlated_rows_;
 };
+
+/// Whether the inputs, added up in sums that decay by `rate` [1/row], explain more of a fit's
+/// errors than chance does in 99 of 100 cases: then the outputs have a slow mode that the inputs
+/// drive, and do not only drift. The errors are made white by their autoregression. What the modes
+/// of the fit could explain is taken out first. True where the rows are too few to ask.
+bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows, double rate);
 
 /// Whether the rows held out speak against the simpler of two models, by their errors on each fold:
 /// the median of its errors over the other's is above what chance gives `extra` parameters that

@@ -23,9 +23,10 @@ StateSpaceModel respond(PreparedRows& rows, const Recipe& recipe, const Projecti
     return RowRange{std::max<Index>(0, fitted - count), fitted};
   };
   if (recipe.refinement_steps > 0) {
-    StateSpaceModel refined = refine_response(A, C, recipe.direct, rows.normalised(),
-                                              last(recipe.refined_rows), recipe.refinement_steps)
-                                  .model;
+    StateSpaceModel refined =
+        refine_response(A, C, recipe.direct, rows.normalised(), last(recipe.refined_rows),
+                        recipe.refinement_steps, recipe.least_rate)
+            .model;
     A = std::move(refined.A);
     C = std::move(refined.C);
   }
@@ -48,15 +49,14 @@ std::optional<Identified> realise(PreparedRows& rows, const Recipe& recipe,
   const Projection projection(hankel);
   auto [gamma, singular_values] = projection.observability(recipe.weighting);
   const Index fitted = rows.fitted().size();
-  Dynamics dynamics = shift_invariant(gamma, hankel.outputs, recipe.order, recipe.stability);
-  const auto stable = stable_over(dynamics.A, fitted);
-  if (!stable) return std::nullopt;
-  dynamics.A = *stable;
+  const auto dynamics = shift_invariant_within({fitted, recipe.least_rate}, gamma, hankel.outputs,
+                                               recipe.order, recipe.stability);
+  if (!dynamics) return std::nullopt;
   if (recipe.refinement_steps == 0 &&
-      slowest_time_constant_s(dynamics.A, rows.record().period_s) > longest_time_constant_s)
+      slowest_time_constant_s(dynamics->A, rows.record().period_s) > longest_time_constant_s)
     return std::nullopt;
   const Index m = rows.record().u.cols();
-  StateSpaceModel model = respond(rows, recipe, projection, dynamics);
+  StateSpaceModel model = respond(rows, recipe, projection, *dynamics);
   Identified result;
   if (recipe.stability == Stability::enforced)
     result.warnings.push_back(

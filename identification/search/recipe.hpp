@@ -28,6 +28,9 @@ struct Recipe {
   /// Whether D is free.
   bool direct = true;
   OperatingPoint operating_point = OperatingPoint::whole;
+  /// |ln| [1/row] of an eigenvalue, at least: slower modes are left out (METHOD.md, section 7,
+  /// "Drift").
+  double least_rate = 0;
   /// At most so many Levenberg-Marquardt steps on A and C, from no more than so many rows, those
   /// nearest to the end.
   int refinement_steps = 0;

@@ -11,6 +11,8 @@ namespace reident::identification {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// |ln| of an eigenvalue times the rows: less than a period of an oscillation looks like a drift.
+constexpr double slow_phase = 6.283;
 
 /// The only recipe there is, where the options leave no choice or the rows do not allow one.
 std::optional<Recipe> given_recipe(const HankelSupply& supply, Index fitted_rows,
@@ -102,7 +104,10 @@ SearchSpace search_space(const PreparedRows& rows, const HankelSupply& supply) {
   if (options.weighting) space.weightings = {*options.weighting};
   if (options.direct_feedthrough) space.direct = {*options.direct_feedthrough};
   if (options.response_fit) space.fits = {*options.response_fit};
-  if (rows.inputs() == 0) space.direct = {false};
+  if (rows.inputs() == 0)
+    space.direct = {false};
+  else if (!options.order)
+    space.least_rate = slow_phase / double(rows.fitted().size());
   return space;
 }
 

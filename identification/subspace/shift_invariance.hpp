@@ -26,9 +26,23 @@ enum class Stability {
 Dynamics shift_invariant(const Matrix& gamma, Index outputs, Index order,
                          Stability stability = Stability::as_found);
 
-/// Returns A (n x n) with a spectral radius below 1 where it grows by less than e over so many
-/// rows: they cannot tell it from equipment that integrates. Absent where it grows by more.
-std::optional<Matrix> stable_over(const Matrix& A, Index rows);
+/// Modes that a model may have.
+struct ModeLimits {
+  /// A mode that grows by less than e over so many rows is taken for one that integrates; A then
+  /// has a spectral radius below 1.
+  Index rows = 0;
+  /// |ln| [1/row] of an eigenvalue, at least.
+  double least_rate = 0;
+};
+
+/// Returns the dynamics on the invariant subspace of the modes that have the rate.
+Dynamics without_slow_modes(const Dynamics& dynamics, double least_rate);
+
+/// Returns the dynamics of `order` modes within the limits: those of the fewest columns of `gamma`
+/// that have so many modes of the least rate, without the slower ones. Absent where no columns have
+/// them, or a mode grows by more. Requires order <= gamma.rows() - outputs.
+std::optional<Dynamics> shift_invariant_within(const ModeLimits& limits, const Matrix& gamma,
+                                               Index outputs, Index order, Stability stability);
 
 /// Returns Γ of `rows` >= 1 block rows (p rows x n).
 Matrix extended_observability(const Matrix& A, const Matrix& C, Index rows);

@@ -192,5 +192,53 @@ TEST(Parsimony, FitsThatKnowHowErrorsLastAreNearerToTheTruth) {
   EXPECT_GT(std::exp(gained / records), 1.3);
 }
 
+/// A record of one state, whose outputs drift by random walks of their own. With `slow_rate` above
+/// 0 the input drives another state of that rate [1/row].
+Record drifting(test::Noise& noise, Index rows, double slow_rate) {
+  Matrix u = noise.normal(rows, 1), y(rows, 2);
+  Eigen::RowVector2d walk = Eigen::RowVector2d::Zero();
+  double fast = 0, slow = 0;
+  for (Index t = 0; t < rows; ++t) {
+    walk += 0.03 * noise.normal(1, 2);
+    y.row(t) = walk + 0.1 * noise.normal(1, 2);
+    y(t, 0) += fast + (slow_rate > 0 ? slow : 0);
+    y(t, 1) -= fast;
+    fast = 0.6 * fast + u(t, 0);
+    slow = std::exp(-slow_rate) * slow + 0.1 * u(t, 0);
+  }
+  return contiguous_record(1, std::move(u), std::move(y));
+}
+
+TEST(Parsimony, ADriftIsTakenForASlowModeAsOftenAsChanceSays) {
+  constexpr int records = 100;
+  constexpr Index rows = 500;
+  int drifts = 0, modes = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    const auto shows = [&](double slow_rate) {
+      test::Noise noise(seed);
+      const Record record = drifting(noise, rows, slow_rate);
+      const Response fit = fit_response(Matrix::Constant(1, 1, 0.6), Matrix{{1}, {-1}}, true,
+                                        record, record.all(), Accuracy::fast);
+      return drives_slow_modes(fit, record, record.all(), 3.0 / rows);
+    };
+    drifts += shows(0);
+    modes += shows(2.0 / rows);
+  }
+  EXPECT_LE(drifts, 5);
+  EXPECT_GE(modes, 99);
+}
+
+TEST(Parsimony, ADriftGetsNoStatesAndASlowModeKeepsItsOwn) {
+  constexpr int records = 4;
+  int right = 0, kept = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    right += !(identified(drifting(noise, 500, 0)).spectral_radius > std::exp(-6.2 / 500));
+    kept += identified(drifting(noise, 500, 2.0 / 500)).spectral_radius > 0.98;
+  }
+  EXPECT_GE(right, records - 1);
+  EXPECT_EQ(kept, records);
+}
+
 }  // namespace
 }  // namespace reident::identification::parsimony_test
