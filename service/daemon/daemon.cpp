@@ -247,13 +247,10 @@ AttemptContext Daemon::attempt_context(const storage::Registry& registry) {
 
 /// Says once of each equipment which ticks suit its telemetry.
 void Daemon::advise(const WindowFeed::Job& job, const storage::Archive& archive) {
-  bool& is_advised = kept_[job.window.equipment].is_advised;
-  if (is_advised) return;
-  const auto advice =
-      advised_phase(archive, *job.spacecraft, *job.equipment, job.window.window.end);
-  if (!advice) return;
-  is_advised = true;
-  log::warning("identify", *advice, {{"equipment", *job.spacecraft + "/" + job.equipment->name}});
+  if (std::exchange(kept_[job.window.equipment].is_advised, true)) return;
+  if (const auto advice =
+          advised_phase(archive, *job.spacecraft, *job.equipment, job.window.window.end))
+    log::warning("identify", *advice, {{"equipment", *job.spacecraft + "/" + job.equipment->name}});
 }
 
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,

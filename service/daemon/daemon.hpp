@@ -69,8 +69,9 @@ class Daemon {
   void identify_windows();
   /// For the thread whose database `registry` reads.
   AttemptContext attempt_context(const storage::Registry& registry);
-  /// False when the service stops before the window is decided.
+  /// Says once which ticks suit an equipment's telemetry.
   void advise(const WindowFeed::Job& job, const storage::Archive& archive);
+  /// False when the service stops before the window is decided.
   bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
                 const storage::Registry& registry);
   /// What follows from an attempt that was committed.
@@ -108,7 +109,7 @@ class Daemon {
   struct Kept {
     WindowCache windows;
     RepeatedError failure{};
-    bool is_advised = false;  // whether the log says which ticks suit its telemetry
+    bool is_advised = false;  // whether its ticks were looked at
   };
   /// By equipment, which has one job at a time: the job's thread owns its entry.
   std::vector<Kept> kept_;

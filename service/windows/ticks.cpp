@@ -8,6 +8,7 @@
 #include "service/support/floor_divide.hpp"
 #include "service/support/time_text.hpp"
 #include "service/windows/window_data.hpp"
+#include "storage/types/error.hpp"
 
 namespace reident {
 namespace {
@@ -100,12 +101,15 @@ std::optional<std::string> advised_phase(const storage::SampleReader& telemetry,
   constexpr std::int64_t ticks = 2000;
   if (equipment.phase != 0) return std::nullopt;
   std::vector<std::vector<std::int64_t>> channels;
-  for (const std::string& name : parameters_of(equipment))
-    if (const auto parameter = telemetry.parameter(spacecraft, name))
-      channels.push_back(telemetry
-                             .read(spacecraft, storage::Origin::real, parameter->id,
-                                   {end - ticks * equipment.sample_period, end})
-                             .time);
+  for (const std::string& name : parameters_of(equipment)) try {
+      if (const auto parameter = telemetry.parameter(spacecraft, name))
+        channels.push_back(telemetry
+                               .read(spacecraft, storage::Origin::real, parameter->id,
+                                     {end - ticks * equipment.sample_period, end})
+                               .time);
+    } catch (const storage::Error& error) {
+      if (error.kind() != storage::Error::Kind::corrupt) throw;  // a window says what is damaged
+    }
   const Duration phase = suitable_phase(channels, equipment.sample_period);
   if (phase == 0) return std::nullopt;
   return fmt::format(

@@ -24,7 +24,8 @@ std::int64_t suitable_phase(const std::vector<std::vector<std::int64_t>>& channe
                             std::int64_t period_ns);
 
 /// Where the configuration leaves an equipment's ticks on the multiples of its period, and its
-/// newest telemetry before `end` suits others: one sentence with the key that mends it.
+/// newest telemetry before `end` suits others: one sentence with the key that mends it. Damaged
+/// samples count as none. Throws storage::Error where the file cannot be read.
 std::optional<std::string> advised_phase(const storage::SampleReader& telemetry,
                                          const std::string& spacecraft,
                                          const EquipmentConfig& equipment, storage::Time end);
