@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "identification/subspace/hankel.hpp"
+#include "tests/support/systems.hpp"
 
 namespace reident::test {
 

@@ -131,19 +131,19 @@ TEST_F(Verify, DecodesAgainWhatChangedAlone) {
   const VerifyReport first = knowing({});
   EXPECT_EQ(first.known, 0U);
   EXPECT_EQ(first.sound.size(), first.chunks);
-  const VerifyReport second = knowing(first.sound);
-  EXPECT_THAT(texts(second), IsEmpty());
-  EXPECT_EQ(second.sound, first.sound);
+  const VerifyReport again = knowing(first.sound);
+  EXPECT_THAT(texts(again), IsEmpty());
+  EXPECT_EQ(again.sound, first.sound);
   // All but those that late samples lie in, which are counted by their times.
-  EXPECT_GE(second.known, first.chunks - 3U * 3);
-  EXPECT_LT(second.known, first.chunks);
+  EXPECT_GE(again.known, first.chunks - 3U * 3);
+  EXPECT_LT(again.known, first.chunks);
   {
     Database database(path, Mode::read_write);
     Archive archive(database, small_chunks);
     archive.append(frames(860, 1000));
     archive.compact();
   }
-  const VerifyReport later = knowing(second.sound);
+  const VerifyReport later = knowing(again.sound);
   EXPECT_THAT(texts(later), IsEmpty());
   EXPECT_GT(later.known, 0U);
   EXPECT_EQ(later.sound.size(), later.chunks);
