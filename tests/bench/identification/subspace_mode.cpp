@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include <Eigen/QR>
 #include <nlohmann/json.hpp>
 
 #include "identification/subspace/hankel.hpp"
