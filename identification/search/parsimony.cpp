@@ -56,40 +56,11 @@ Matrix states_of(const Matrix& A, const Matrix& inputs) {
   return states;
 }
 
-/// The autoregression of a series by Burg's method, which does not shorten a drift as products of
-/// lags do. It has the largest order that the rows carry: one of the least BIC misses what drifts
-/// below other noise.
-Vector long_past(const Vector& values, const std::vector<Segment>& segments) {
-  const Index most = std::min<Index>(20, values.size() / 20);
-  Vector forwards = values.array() - values.mean(), backwards = forwards, past(0);
-  for (Index n = 1; n <= most; ++n) {
-    double products = 0, squares = 0;
-    for (const Segment& segment : segments)
-      for (Index t = segment.begin + n; t < segment.end; ++t) {
-        products += forwards(t) * backwards(t - 1);
-        squares += forwards(t) * forwards(t) + backwards(t - 1) * backwards(t - 1);
-      }
-    if (!(squares > 0)) break;
-    const double k = 2 * products / squares;
-    for (const Segment& segment : segments)
-      for (Index t = segment.end - 1; t >= segment.begin + n; --t) {
-        const double forward = forwards(t);
-        forwards(t) -= k * backwards(t - 1);
-        backwards(t) = backwards(t - 1) - k * forward;
-      }
-    Vector next(n);
-    for (Index i = 0; i < n - 1; ++i) next(i) = past(i) - k * past(n - 2 - i);
-    next(n - 1) = k;
-    past = std::move(next);
-  }
-  return past;
-}
-
 /// What the past (of an autoregression) leaves of the columns, less its mean in each segment; zero
 /// where the past is not whole.
-Matrix white(const Matrix& values, const Vector& past, const std::vector<Segment>& segments) {
+Matrix white(const Matrix& values, const Vector& past, const std::vector<RowRange>& segments) {
   Matrix result = Matrix::Zero(values.rows(), values.cols());
-  for (const Segment& segment : segments) {
+  for (const RowRange& segment : segments) {
     const Index first = segment.begin + past.size(), count = segment.end - first;
     if (count < 1) continue;
     auto rows = result.middleRows(first, count);
@@ -192,7 +163,7 @@ bool RicherFit::refutes(const Response& simple, bool direct, Index extra) const 
 bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows, double rate) {
   const Index m = record.u.cols(), p = record.y.cols();
   if (rows.size() < 4 * m * (2 + fit.model.order())) return true;
-  const std::vector<Segment> segments = segments_from(record, rows);
+  const std::vector<RowRange> segments = ranges_of(segments_from(record, rows));
   const Matrix inputs = record.u.middleRows(rows.begin, rows.size());
   const Matrix slow = states_of(Matrix::Constant(1, 1, std::exp(-rate)), inputs);
   Matrix fast(rows.size(), m * (1 + fit.model.order()));
@@ -202,7 +173,7 @@ bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows,
   const double count = double(rows.size());
   double ratio = 0;
   for (Index q = 0; q < p; ++q) {
-    const Vector past = long_past(mixed_errors.col(q), segments);
+    const Vector past = burg_coefficients(mixed_errors.col(q), segments);
     const Matrix basis = orthonormal_basis(white(fast, past, segments));
     const auto remaining = [&basis](const Matrix& values) {
       return Matrix(values - basis * (basis.transpose() * values));

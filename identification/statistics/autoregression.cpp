@@ -35,4 +35,30 @@ Autoregression autoregression(Series& series) {
   return found;
 }
 
+Vector burg_coefficients(const Vector& values, const std::vector<RowRange>& segments) {
+  const Index most = std::min<Index>(20, values.size() / 20);
+  Vector forwards = values.array() - values.mean(), backwards = forwards, past(0);
+  for (Index n = 1; n <= most; ++n) {
+    double products = 0, squares = 0;
+    for (const RowRange& segment : segments)
+      for (Index t = segment.begin + n; t < segment.end; ++t) {
+        products += forwards(t) * backwards(t - 1);
+        squares += forwards(t) * forwards(t) + backwards(t - 1) * backwards(t - 1);
+      }
+    if (!(squares > 0)) break;
+    const double k = 2 * products / squares;
+    for (const RowRange& segment : segments)
+      for (Index t = segment.end - 1; t >= segment.begin + n; --t) {
+        const double forward = forwards(t);
+        forwards(t) -= k * backwards(t - 1);
+        backwards(t) = backwards(t - 1) - k * forward;
+      }
+    Vector next(n);
+    for (Index i = 0; i < n - 1; ++i) next(i) = past(i) - k * past(n - 2 - i);
+    next(n - 1) = k;
+    past = std::move(next);
+  }
+  return past;
+}
+
 }  // namespace reident::identification

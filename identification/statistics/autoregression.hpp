@@ -26,4 +26,9 @@ struct ErrorColour {
 /// a twentieth of the rows, and fewer than the longest segment.
 Autoregression autoregression(Series& series);
 
+/// Returns the coefficients by Burg's method, which does not shorten a drift as products of lags
+/// do: as many as the rows carry, at most 20 and a twentieth of them, that of the latest value
+/// first. One of the least BIC misses what drifts below other noise.
+Vector burg_coefficients(const Vector& values, const std::vector<RowRange>& segments);
+
 }  // namespace reident::identification

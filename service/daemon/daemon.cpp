@@ -245,7 +245,6 @@ AttemptContext Daemon::attempt_context(const storage::Registry& registry) {
           &leagues_};
 }
 
-/// Says once of each equipment which ticks suit its telemetry.
 void Daemon::advise(const WindowFeed::Job& job, const storage::Archive& archive) {
   if (std::exchange(kept_[job.window.equipment].is_advised, true)) return;
   if (const auto advice =

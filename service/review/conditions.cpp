@@ -12,23 +12,25 @@ namespace {
 
 using Code = ReasonCode;
 
-/// Place of the condition that an obstacle belongs to; that of none behind all.
-std::size_t place_of(std::string_view obstacle) {
-  constexpr std::array places = {std::pair{Code::not_finite, 0},
-                                 std::pair{Code::error_above_limit, 0},
-                                 std::pair{Code::not_better_than_mean, 0},
-                                 std::pair{Code::not_better, 1},
-                                 std::pair{Code::within_margin, 2},
-                                 std::pair{Code::not_covered, 3},
-                                 std::pair{Code::worse_in_regime, 4},
-                                 std::pair{Code::bias_unverified, 5},
-                                 std::pair{Code::too_soon, 6},
-                                 std::pair{Code::held, 6},
-                                 std::pair{Code::waits_for_operator, 6}};
+/// The conditions in the order in which they are asked; `none` is behind all.
+enum Place : std::size_t { at_window, evidence, margin, coverage, regimes, bias, policy, none };
+
+Place place_of(std::string_view obstacle) {
+  constexpr std::array places = {std::pair{Code::not_finite, at_window},
+                                 std::pair{Code::error_above_limit, at_window},
+                                 std::pair{Code::not_better_than_mean, at_window},
+                                 std::pair{Code::not_better, evidence},
+                                 std::pair{Code::within_margin, margin},
+                                 std::pair{Code::not_covered, coverage},
+                                 std::pair{Code::worse_in_regime, regimes},
+                                 std::pair{Code::bias_unverified, bias},
+                                 std::pair{Code::too_soon, policy},
+                                 std::pair{Code::held, policy},
+                                 std::pair{Code::waits_for_operator, policy}};
   const auto* found = std::find_if(places.begin(), places.end(), [obstacle](const auto& place) {
     return name(place.first) == obstacle;
   });
-  return found == places.end() ? places.size() : static_cast<std::size_t>(found->second);
+  return found == places.end() ? none : found->second;
 }
 
 }  // namespace
@@ -63,18 +65,17 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
                                           : fmt::format("{:.2f}", finding.wealth_without_offset),
        {}},
       {"R5", "policy: interval, hold, approval", "", {}}};
-  const std::size_t place = place_of(obstacle);
+  const Place place = place_of(obstacle);
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     if (i <= place) conditions[i].holds = i < place;
     if (i > place) conditions[i].found.clear();
   }
-  if (place == 6)
-    if (const auto* entry = explanation_of(obstacle)) conditions[6].found = entry->words;
-  // Asked, it holds with more than the threshold alone (Judge).
-  Condition& bias = conditions[5];
-  if (bias.holds == true && limits.bias == BiasPolicy::wait &&
+  if (place == policy)
+    if (const auto* entry = explanation_of(obstacle)) conditions[policy].found = entry->words;
+  // Where it was asked and holds, the wealth without an offset is above the threshold (Judge).
+  if (place > bias && limits.bias == BiasPolicy::wait &&
       finding.wealth_without_offset <= finding.log_threshold)
-    bias.found = "not asked: relations bind the sensors";
+    conditions[bias].found = "not asked: relations bind the sensors";
   return conditions;
 }
 

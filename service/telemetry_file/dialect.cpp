@@ -168,7 +168,7 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
 std::string describe(const Dialect& dialect) {
   static const std::map<char, std::string> words = {
       {',', "commas"}, {';', "semicolons"}, {'\t', "tabs"},
-      {'|', "bars"},   {' ', "blanks"},     {wide_blanks, "two blanks or more"}};
+      {'|', "bars"},   {' ', "blanks"},     {two_blanks, "two blanks or more"}};
   const auto word = words.find(dialect.layout.separator);
   std::string text = word == words.end()
                          ? "separated by '" + std::string(1, dialect.layout.separator) + "'"

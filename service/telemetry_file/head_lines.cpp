@@ -154,12 +154,12 @@ char find_separator(HeadLines& lines, const std::string& comment) {
   bool may_be_blanks = std::none_of(lines.begin(), lines.end(), [](const HeadLine& line) {
     return line.text.find('\t') != std::string_view::npos;
   });
-  for (const char separator : {',', ';', '\t', '|', ' ', wide_blanks}) {
+  for (const char separator : {',', ';', '\t', '|', ' ', two_blanks}) {
     if (is_of_blanks(separator) && !may_be_blanks) continue;
     split(lines, separator);
     if (separator != '\t' && !is_of_blanks(separator) && are_alike(lines, comment))
       may_be_blanks = false;
-    if (separator == wide_blanks && !has_names(lines, comment)) continue;
+    if (separator == two_blanks && !has_names(lines, comment)) continue;
     const double quality = quality_of(lines, separator, comment);
     if (quality > most + 1e-9) {
       most = quality;
@@ -292,6 +292,13 @@ bool is_unit_word(std::string_view word) {
       "Amps amps Ampere Celsius seconds Seconds J l/min lux Gs G mT raw n/a none unix time "
       "date datetime second volt ampere ";
   return words.find(" " + std::string(word) + " ") != std::string_view::npos;
+}
+
+Error whole_file(const std::string& name, std::string_view what) {
+  return {name + ": " + std::string(what)};
+}
+Error at_line(const std::string& name, std::uint64_t line, std::string_view what) {
+  return {name + ":" + std::to_string(line) + ": " + std::string(what)};
 }
 
 }  // namespace reident::telemetry_file

@@ -45,4 +45,8 @@ bool looks_like_value(std::string_view cell);
 /// Whether a word is that of a unit, bare or in brackets: "mV", "[A]".
 bool is_unit_word(std::string_view word);
 
+/// What is wrong with a file as a whole, or in a line of it.
+Error whole_file(const std::string& name, std::string_view what);
+Error at_line(const std::string& name, std::uint64_t line, std::string_view what);
+
 }  // namespace reident::telemetry_file

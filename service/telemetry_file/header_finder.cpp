@@ -273,13 +273,6 @@ bool is_title(const HeadLine& line) {
 
 }  // namespace
 
-Error whole_file(const std::string& name, std::string_view what) {
-  return {name + ": " + std::string(what)};
-}
-Error at_line(const std::string& name, std::uint64_t line, std::string_view what) {
-  return {name + ":" + std::to_string(line) + ": " + std::string(what)};
-}
-
 std::variant<HeaderPlace, Error> find_header(HeadLines& lines, const Layout& layout,
                                              const DialectOptions& options,
                                              const std::string& name) {

@@ -24,8 +24,4 @@ std::variant<HeaderPlace, Error> find_header(HeadLines& lines, const Layout& lay
                                              const DialectOptions& options,
                                              const std::string& name);
 
-/// What is wrong with a file as a whole, or in a line of it.
-Error whole_file(const std::string& name, std::string_view what);
-Error at_line(const std::string& name, std::uint64_t line, std::string_view what);
-
 }  // namespace reident::telemetry_file

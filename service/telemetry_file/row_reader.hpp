@@ -24,14 +24,14 @@ struct Place {
 };
 
 /// The separator of columns whose cells and names have single blanks in them: two blanks or more.
-inline constexpr char wide_blanks = '\f';
+inline constexpr char two_blanks = '\f';
 constexpr bool is_of_blanks(char separator) {
-  return separator == ' ' || separator == wide_blanks;
+  return separator == ' ' || separator == two_blanks;
 }
 
 /// How a text is cut into rows and cells.
 struct Layout {
-  char separator = ',';     // a blank: any number of blanks and tabs; wide_blanks
+  char separator = ',';     // a blank: any number of blanks and tabs; two_blanks
   char line_end = '\n';     // '\n' also ends lines with a CR before it; '\r' alone
   std::string comment;      // what lines begin with that are no rows; empty: none do
   std::string header;       // a line of this text is no row; empty: there is none
@@ -105,9 +105,8 @@ class RowReader {
   const TextSource& source() const { return source_; }
   std::uint64_t repeated_headers() const { return repeated_headers_; }
   std::uint64_t first_repeated_header() const { return first_repeated_header_; }  // its line
-  std::uint64_t cut_line() const {
-    return cut_line_;
-  }  // the last line, which is cut or no row; 0: none is
+  /// The last line, where it is cut or no row; 0: it is one.
+  std::uint64_t cut_line() const { return cut_line_; }
 
  private:
   Step fail(std::uint64_t at_line, std::string_view what, Damage damage);

@@ -6,7 +6,6 @@
 
 #include "service/web/questions.hpp"
 #include "service/web/views.hpp"
-#include "storage/registry/kept_commands.hpp"
 
 namespace reident::web {
 namespace {
@@ -72,7 +71,7 @@ Json commands_view(const Stored& stored, const HttpRequest& request) {
   const auto rows = static_cast<std::size_t>(number_of(request, "rows", 1, most_rows, usual_rows));
   const auto range = range_of(request, {INT64_MIN / 2, INT64_MAX / 2});
   Json list = Json::array();
-  auto kept = storage::kept_commands(stored.database, range, rows + 1);
+  auto kept = stored.registry.commands(range, rows + 1);
   const bool is_cut = kept.size() > rows;
   if (is_cut) kept.pop_back();
   for (const auto& [command, time, outcome] : kept)

@@ -114,8 +114,7 @@ std::optional<std::string> advised_phase(const storage::SampleReader& telemetry,
   if (phase == 0) return std::nullopt;
   return fmt::format(
       "{}/{}: not all parameters have come at the multiples of {}; phase = \"{}\" for the "
-      "equipment "
-      "puts its ticks where they have, as reident identify does",
+      "equipment puts its ticks where they have, as reident identify does",
       spacecraft, equipment.name, duration_text(equipment.sample_period), duration_text(phase));
 }
 

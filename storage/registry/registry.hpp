@@ -67,6 +67,8 @@ class Registry {
   /// is not ok, and nothing is kept. What `effect` throws is thrown; then nothing is kept either.
   CommandOutcome execute(const Command& command, Time time,
                          const std::function<CommandOutcome()>& effect);
+  /// The newest so many commands of the times in `range`, the newest first.
+  std::vector<KeptCommand> commands(TimeRange range, std::size_t count) const;
 
   /// Adds a block, where one is given, and scores of versions on it or on earlier blocks, in one
   /// transaction. Throws Error (failed) where the block or a score is there already.

@@ -15,27 +15,30 @@ void add_hold(sqlite::Connection& connection, const std::string& spacecraft,
       .run(spacecraft, equipment, kind, hold.actor, hold.reason, hold.since);
 }
 
-// The table keeps a request's number with the same bits as a signed one.
-struct StoredCommand {
-  Command command;
-  CommandOutcome outcome;
-};
+constexpr std::string_view command_rows =
+    "SELECT requester, request, action, spacecraft, equipment, version, actor, reason, time, ok, "
+    "reply FROM command ";
 
-std::optional<StoredCommand> kept_command(sqlite::Connection& connection, const Command& asked) {
-  sqlite::Query row = connection.query(
-      "SELECT action, spacecraft, equipment, version, actor, reason, ok, reply FROM command "
-      "WHERE requester = ? AND request = ?",
-      asked.requester, asked.request);
+// The table keeps a request's number with the same bits as a signed one.
+KeptCommand command_in(const sqlite::Query& row) {
+  return {{.requester = row.text(0),
+           .request = row.integer<std::uint64_t>(1),
+           .action = row.text(2),
+           .spacecraft = row.text(3),
+           .equipment = row.text(4),
+           .version = row.integer(5),
+           .actor = row.text(6),
+           .reason = row.text(7)},
+          row.integer(8),
+          {.ok = row.integer(9) != 0, .reply = row.text(10)}};
+}
+
+std::optional<KeptCommand> kept_command(sqlite::Connection& connection, const Command& asked) {
+  sqlite::Query row =
+      connection.query(std::string(command_rows) + "WHERE requester = ? AND request = ?",
+                       asked.requester, asked.request);
   if (!row.step()) return std::nullopt;
-  return StoredCommand{{.requester = asked.requester,
-                        .request = asked.request,
-                        .action = row.text(0),
-                        .spacecraft = row.text(1),
-                        .equipment = row.text(2),
-                        .version = row.integer(3),
-                        .actor = row.text(4),
-                        .reason = row.text(5)},
-                       {.ok = row.integer(6) != 0, .reply = row.text(7)}};
+  return command_in(row);
 }
 
 void keep_command(sqlite::Connection& connection, const Command& command,
@@ -92,6 +95,15 @@ CommandOutcome Registry::execute(const Command& command, Time time,
   keep_command(db, command, outcome, time);
   transaction.commit();
   return outcome;
+}
+
+std::vector<KeptCommand> Registry::commands(TimeRange range, std::size_t count) const {
+  std::vector<KeptCommand> found;
+  sqlite::Query row = connection(database_).query(
+      std::string(command_rows) + "WHERE time >= ? AND time < ? ORDER BY id DESC LIMIT ?",
+      range.begin, range.end, static_cast<std::int64_t>(count));
+  while (row.step()) found.push_back(command_in(row));
+  return found;
 }
 
 }  // namespace reident::storage

@@ -200,6 +200,13 @@ struct CommandOutcome {
   std::string reply;
 };
 
+/// A command that was carried out or refused.
+struct KeptCommand {
+  Command command;
+  Time time = 0;
+  CommandOutcome outcome;
+};
+
 /// The name of an equipment, which is unique within its spacecraft alone.
 struct EquipmentName {
   std::string spacecraft;

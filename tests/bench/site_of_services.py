@@ -53,7 +53,7 @@ def wait_until(condition, what, deadline_s=DEADLINE_S):
         time.sleep(0.05)  # poll
 
 
-def before(seconds):
+def before_due(seconds):
     return DUE - datetime.timedelta(seconds=seconds)
 
 
@@ -161,7 +161,7 @@ class Site:
         """The archives lack so many seconds of the windows that end at DUE."""
         services = self.start_services()
         used, begin, now = sum(map(cpu_s, services)), time.monotonic(), time.time()
-        sources = [self.start_source(name, "--start", time_text(before(until_due_s)),
+        sources = [self.start_source(name, "--start", time_text(before_due(until_due_s)),
                                      "--duration", f"{2 * until_due_s}s", "--json")
                    for name in self.names]
         most, waiting, looked = 0, set(self.names), 0
@@ -233,7 +233,7 @@ def reference_site(build, folder, count, until_due_s):
     site = Site(build, folder, count, text[text.index("[[spacecraft.equipment]]"):])
     csv = folder / "rows.csv"
     subprocess.run([site.service / "satcs/satcs-reference", "--csv", csv, "--start",
-                    time_text(before(WINDOW_S)), "--duration", f"{WINDOW_S - until_due_s}s"], check=True,
+                    time_text(before_due(WINDOW_S)), "--duration", f"{WINDOW_S - until_due_s}s"], check=True,
                    stdout=subprocess.DEVNULL)
     for name in site.names:
         site.reident("import", csv, "--db", site.database(name), "--spacecraft", name)

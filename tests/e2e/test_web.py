@@ -180,7 +180,7 @@ class Web(WebCase):
                          [str(one) for one, in
                           self.query("SELECT id FROM decision ORDER BY id DESC LIMIT 100")])
 
-    def test_extremes_are_those_of_the_samples_to_the_bit_and_gaps_and_lies_are_named(self):
+    def test_extremes_are_those_of_the_samples_to_the_bit_and_gaps_and_what_is_excluded_are_named(self):
         self.configure([plant.equipment()], relations=[
             {"name": "pair", "expression": "out - load", "tolerance": 0.1}])
         self.start_daemon()
@@ -216,11 +216,11 @@ class Web(WebCase):
                                                       ("SAT", 101, ["drive", "load", "out"], 3)])
         self.assertEqual(found["left_out"], 0)
         self.assertEqual(self.api("gaps", begin=begin, end=begin + 10)["gaps"], [])
-        lies = self.api("excluded", begin=begin, end=end)["excluded"]
+        excluded = self.api("excluded", begin=begin, end=end)["excluded"]
         self.assertEqual({(one["check"], one["relation"], *one["parameters"], *one["equipment"])
-                          for one in lies}, {("relation", "pair", "out", "load", "PLANT"),
+                          for one in excluded}, {("relation", "pair", "out", "load", "PLANT"),
                                              ("spike", "", "out", "PLANT")})
-        self.assertEqual([one["lasts"] for one in lies][0], True)
+        self.assertEqual([one["lasts"] for one in excluded][0], True)
         self.assertEqual(self.api("excluded", begin=end + 10**6, end=end + 10**6 + 1)["excluded"], [])
 
     def test_what_is_decided_comes_as_an_event_and_a_viewer_who_was_away_gets_the_newest(self):

@@ -150,7 +150,7 @@ if (account) {
   report.reply = await page.locator("form.decide [role=status]").textContent();
   check(keys <= 25, `${keys} keys`);
   await page.waitForFunction(() => document.querySelector(".status")?.textContent === "champion");
-  // The same words again are another order, once the first was answered.
+  // Ordering with these words again is another order, once the first was answered.
   await page.goto(`${url}${addresses.equipment}`);
   await page.waitForSelector("form.decide");
   await page.getByLabel("Reason").fill("training");

@@ -258,6 +258,21 @@ TEST_F(OperatorDecisions, ARefusedCommandIsKeptToo) {
   EXPECT_THAT(rows(path, "SELECT ok, reply FROM command"), ElementsAre("0|not waiting"));
 }
 
+TEST_F(OperatorDecisions, CommandsAreReadAsTheyWereGivenTheNewestFirst) {
+  const Command first = approval_of(1), last = approval_of(0xffffffffffffffff);
+  registry.execute(first, 20, [] { return CommandOutcome{true, "approved"}; });
+  registry.execute(last, 30, [] { return CommandOutcome{false, "not waiting"}; });
+  const auto both = registry.commands({20, 31}, 10);
+  ASSERT_THAT(both, SizeIs(2));
+  EXPECT_EQ(both[0].command, last);
+  EXPECT_EQ(both[0].time, 30);
+  EXPECT_FALSE(both[0].outcome.ok);
+  EXPECT_EQ(both[1].command, first);
+  EXPECT_EQ(both[1].outcome.reply, "approved");
+  EXPECT_THAT(registry.commands({20, 31}, 1), SizeIs(1));
+  EXPECT_THAT(registry.commands({21, 30}, 10), SizeIs(0));
+}
+
 TEST_F(OperatorDecisions, ACommandAndItsEffectAreKeptBothOrNeither) {
   version(10, wait);
   const Command command = approval_of(1);
