@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "identification/screening/order_statistics.hpp"
 
@@ -12,33 +13,51 @@ constexpr double jump_steps = 20;
 constexpr double jump_range_share = 0.05;
 constexpr double tails = 0.01;  // of the samples at either end: a few faults do not widen the range
 
-std::vector<Plateau> plateaus_of(const Vector& values, const std::vector<Segment>& segments) {
-  std::vector<Plateau> plateaus;
-  plateaus.reserve(static_cast<std::size_t>(values.size()));
-  for (std::size_t s = 0; s < segments.size(); ++s)
-    for (Index row = segments[s].begin; row < segments[s].end; ++row) {
-      if (row == segments[s].begin || values(row) != plateaus.back().value)
-        plateaus.push_back({row, row, values(row), s});
-      plateaus.back().end = row + 1;
+/// What `channel` steps by from row to row, in an analog channel's usual terms.
+void describe_steps(Channel& channel) {
+  const auto steps =
+      std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(channel.values.size()));
+  std::size_t count = 0;
+  double greatest = 0;
+  Index longest = 0;
+  const double* values = channel.values.data();
+  for (const Segment& segment : *channel.segments) {
+    Index repeated = 1;
+    for (Index row = segment.begin + 1; row < segment.end; ++row) {
+      const double step = std::abs(values[row] - values[row - 1]);
+      steps[count] = step;
+      greatest = std::max(greatest, step);
+      longest = std::max(longest, repeated);
+      const Index repeats = values[row] == values[row - 1] ? 1 : 0;
+      count += static_cast<std::size_t>(1 - repeats);
+      repeated = repeats * repeated + 1;
     }
-  return plateaus;
-}
-
-double least_jump_of(const Channel& channel) {
-  const std::vector<Plateau>& plateaus = channel.plateaus;
-  std::vector<double> steps;
-  steps.reserve(plateaus.size());
-  for (std::size_t i = 1; i < plateaus.size(); ++i)
-    if (plateaus[i].segment == plateaus[i - 1].segment)
-      steps.push_back(std::abs(plateaus[i].value - plateaus[i - 1].value));
-  const double usual = steps.empty() ? 0 : quantile(steps, 0.5);
-  const std::span<const double> values(channel.values.data(),
-                                       static_cast<std::size_t>(channel.values.size()));
-  const double range = quantile(values, 1 - tails) - quantile(values, tails);
-  return std::max(jump_steps * usual, jump_range_share * range);
+    longest = std::max(longest, repeated);
+  }
+  channel.steps = static_cast<Index>(count);
+  channel.greatest_step = greatest;
+  channel.longest_repeat = longest;
+  const double usual = count == 0 ? 0 : quantile({steps.get(), count}, 0.5);
+  const std::span<const double> all = span_of(channel.values);
+  const double range = quantile(all, 1 - tails) - quantile(all, tails);
+  channel.least_jump = std::max(jump_steps * usual, jump_range_share * range);
 }
 
 }  // namespace
+
+std::vector<Plateau> Channel::plateaus() const {
+  std::vector<Plateau> found;
+  found.reserve(static_cast<std::size_t>(steps) + segments->size());
+  for (std::size_t s = 0; s < segments->size(); ++s) {
+    const Segment& segment = (*segments)[s];
+    for (Index row = segment.begin; row < segment.end; ++row) {
+      if (row == segment.begin || values(row) != found.back().value)
+        found.push_back({row, row, values(row), s});
+      found.back().end = row + 1;
+    }
+  }
+  return found;
+}
 
 std::vector<Channel> channels_of(const Record& record, const std::vector<bool>& analog) {
   const Index inputs = record.u.cols(), outputs = record.y.cols();
@@ -49,10 +68,8 @@ std::vector<Channel> channels_of(const Record& record, const std::vector<bool>& 
     channel.is_analog = analog[static_cast<std::size_t>(c)];
     channel.low = channel.values.minCoeff();
     channel.high = channel.values.maxCoeff();
-    if (channel.is_analog) {
-      channel.plateaus = plateaus_of(channel.values, record.segments);
-      channel.least_jump = least_jump_of(channel);
-    }
+    channel.segments = &record.segments;
+    if (channel.is_analog) describe_steps(channel);
     channels.push_back(std::move(channel));
   }
   return channels;

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+
+#include "identification/screening/order_statistics.hpp"
 
 namespace reident::identification {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 // Times the greatest magnitude of the others: where they have another sign, and for any value. An
 // equipment that switches on may well draw a hundred times the noise of its current before.
 constexpr double far = 10, absurd = 1e4;
 constexpr Index least_fills = 2;
 // A value of any kind that is scattered over the rows, such as 0: its plateaus, their share of all,
 // and the share of them at which another channel may jump by chance.
-constexpr std::size_t least_scattered = 3;
+constexpr Index least_scattered = 3;
 constexpr double most_scattered = 0.25, jumps_together = 0.5;
 
 bool is_of_nines(double magnitude) {
@@ -57,48 +59,24 @@ bool another_jumps(const std::vector<Channel>& channels, std::size_t self,
   return false;
 }
 
-/// The lowest of some values, how many they are, and the lowest of the others.
-struct Lowest {
-  double value = std::numeric_limits<double>::infinity(), next = value;
-  Index count = 0;
-
-  void add(double other) {
-    if (other < value) {
-      next = value;
-      value = other;
-      count = 1;
-    } else if (other == value) {
-      ++count;
-    } else {
-      next = std::min(next, other);
-    }
-  }
-};
-
 }  // namespace
 
 std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self) {
   const Channel& channel = channels[self];
-  std::size_t at_low = 0, at_high = 0;  // a look that costs little: as a rule neither is repeated
-  for (const Plateau& plateau : channel.plateaus) {
-    at_low += plateau.value == channel.low ? 1U : 0U;
-    at_high += plateau.value == channel.high ? 1U : 0U;
-  }
-  for (const auto& [value, count] : {std::pair(channel.low, at_low), {channel.high, at_high}}) {
-    const double share = double(count) / double(channel.plateaus.size());
-    if (count < least_scattered || share > most_scattered) continue;
-    double low = channel.high, high = channel.low;
-    for (const Plateau& plateau : channel.plateaus) {
-      if (plateau.value == value) continue;
-      low = std::min(low, plateau.value);
-      high = std::max(high, plateau.value);
-    }
+  const Ends ends = ends_of(span_of(channel.values), -infinity, infinity);
+  for (const bool is_low : {true, false}) {
+    if ((is_low ? ends.at_low : ends.at_high) < least_scattered) continue;
+    const double value = is_low ? ends.low : ends.high;
+    const double low = is_low ? ends.next_to_low : ends.low;
+    const double high = is_low ? ends.high : ends.next_to_high;
     const double gap = std::max(low - value, value - high);
     if (!(high > low) || gap <= high - low) continue;
     std::vector<Plateau> fills, others;
-    for (const Plateau& plateau : channel.plateaus)
+    for (const Plateau& plateau : channel.plateaus())
       (plateau.value == value ? fills : others).push_back(plateau);
-    if (median_size(fills) > 2 * median_size(others) || another_jumps(channels, self, fills))
+    const double share = double(fills.size()) / double(fills.size() + others.size());
+    if (std::ssize(fills) < least_scattered || share > most_scattered ||
+        median_size(fills) > 2 * median_size(others) || another_jumps(channels, self, fills))
       continue;
     return fills;
   }
@@ -106,23 +84,18 @@ std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::
 }
 
 std::vector<double> fill_values(const Vector& values) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<double> found;
   double above = -infinity, below = infinity;  // the values that are left lie between
   while (true) {
-    Lowest low, high;  // the highest is the lowest of the other sign
-    for (const double value : values) {
-      if (!(value > above && value < below)) continue;
-      low.add(value);
-      high.add(-value);
-    }
-    if (!(low.value < -high.value)) return found;
-    if (low.count >= least_fills && stands_for_none(low.value, low.next, -high.value)) {
-      found.push_back(low.value);
-      above = low.value;
-    } else if (high.count >= least_fills && stands_for_none(-high.value, low.value, -high.next)) {
-      found.push_back(-high.value);
-      below = -high.value;
+    const Ends ends = ends_of(span_of(values), above, below);
+    if (!(ends.low < ends.high)) return found;
+    if (ends.at_low >= least_fills && stands_for_none(ends.low, ends.next_to_low, ends.high)) {
+      found.push_back(ends.low);
+      above = ends.low;
+    } else if (ends.at_high >= least_fills &&
+               stands_for_none(ends.high, ends.low, ends.next_to_high)) {
+      found.push_back(ends.high);
+      below = ends.high;
     } else {
       return found;
     }

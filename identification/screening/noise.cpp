@@ -32,23 +32,28 @@ std::vector<Block> blocks_of(const Record& record) {
   return blocks;
 }
 
-double roughness(const Eigen::Ref<const Vector>& values, Index begin) {
-  std::array<double, noise_block - 2> bends;
+double roughness(const Vector& values, Index begin) {
+  constexpr Index count = noise_block - 2;
+  Eigen::Array<double, count, 1> bends;
+  const auto rows = values.array();
+  bends = (rows.segment<count>(begin + 1) -
+           (rows.segment<count>(begin) + rows.segment<count>(begin + 2)) / 2)
+              .abs();
   std::array<double, trimmed_rows> largest{};  // ascending
-  for (std::size_t k = 0; k < bends.size(); ++k) {
-    const Index row = begin + static_cast<Index>(k);
-    bends[k] = std::abs(values(row + 1) - (values(row) + values(row + 2)) / 2);
-    if (bends[k] <= largest.front()) continue;
+  for (const double bend : bends) {
+    if (bend <= largest.front()) continue;
     std::size_t place = 0;
-    for (; place + 1 < largest.size() && largest[place + 1] < bends[k]; ++place)
+    for (; place + 1 < largest.size() && largest[place + 1] < bend; ++place)
       largest[place] = largest[place + 1];
-    largest[place] = bends[k];
+    largest[place] = bend;
   }
   double sum = 0;
-  std::size_t kept = 0;
-  for (const double bend : bends)
-    if (bend < largest.front()) sum += bend, ++kept;
-  constexpr std::size_t most_kept = bends.size() - largest.size();
+  Index kept = 0;
+  for (const double bend : bends) {
+    sum += bend < largest.front() ? bend : 0;
+    kept += bend < largest.front() ? 1 : 0;
+  }
+  constexpr Index most_kept = count - Index(trimmed_rows);
   return (sum + largest.front() * double(most_kept - kept)) / double(most_kept);
 }
 

@@ -6,9 +6,12 @@
 #include <limits>
 #include <memory>
 
+#include "identification/numerics/cpu_clones.hpp"
+
 namespace reident::identification {
 namespace {
 
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr std::size_t sampled = 512;
 constexpr double deviations = 3.5;  // of a rank in the sample
 
@@ -25,9 +28,45 @@ Bracket bracket_of(std::span<const double> values, std::size_t rank) {
   const auto place = static_cast<std::size_t>(share * sampled);
   const auto margin =
       static_cast<std::size_t>(2 + deviations * std::sqrt(share * (1 - share) * sampled));
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  return {place < margin ? -infinity : sample[place - margin],
-          place + margin >= sampled ? infinity : sample[place + margin]};
+  return {place < margin ? -unlimited : sample[place - margin],
+          place + margin >= sampled ? unlimited : sample[place + margin]};
+}
+
+/// Four at a time: the least and the greatest value that is more than `above` and less than
+/// `below`.
+REIDENT_CLONES void limits(const double* values, std::size_t count, double above, double below,
+                           double& low, double& high) {
+  const Four none = unlimited - Four{};
+  Four lows = none, highs = -none;
+  const std::size_t fours = count / 4 * 4;
+  for (std::size_t i = 0; i < fours; i += 4) {
+    const Four value = load(values + i);
+    const auto is_between = (value > above) & (value < below);
+    const Four up = is_between ? value : none, down = is_between ? value : -none;
+    lows = up < lows ? up : lows;
+    highs = down > highs ? down : highs;
+  }
+  low = unlimited, high = -unlimited;
+  for (int lane = 0; lane < 4; ++lane) {
+    low = std::min(low, lows[lane]);
+    high = std::max(high, highs[lane]);
+  }
+  for (std::size_t i = fours; i < count; ++i)
+    if (values[i] > above && values[i] < below) {
+      low = std::min(low, values[i]);
+      high = std::max(high, values[i]);
+    }
+}
+
+/// How many values are `value`.
+REIDENT_CLONES double count_of(const double* values, std::size_t count, double value) {
+  const Four one = Four{} + 1.0;
+  Four counts{};
+  const std::size_t fours = count / 4 * 4;
+  for (std::size_t i = 0; i < fours; i += 4) counts += load(values + i) == value ? one : Four{};
+  double sum = counts[0] + counts[1] + counts[2] + counts[3];
+  for (std::size_t i = fours; i < count; ++i) sum += values[i] == value ? 1 : 0;
+  return sum;
 }
 
 }  // namespace
@@ -54,6 +93,19 @@ double nth_smallest(std::span<const double> values, std::size_t rank) {
 
 double quantile(std::span<const double> values, double share) {
   return nth_smallest(values, static_cast<std::size_t>(share * double(values.size() - 1)));
+}
+
+Ends ends_of(std::span<const double> values, double above, double below) {
+  const double* data = values.data();
+  const std::size_t size = values.size();
+  Ends ends{unlimited, unlimited, -unlimited, -unlimited, 0, 0};
+  limits(data, size, above, below, ends.low, ends.high);
+  ends.at_low = static_cast<std::ptrdiff_t>(count_of(data, size, ends.low));
+  ends.at_high = static_cast<std::ptrdiff_t>(count_of(data, size, ends.high));
+  double other;
+  if (ends.at_low > 1) limits(data, size, ends.low, below, ends.next_to_low, other);
+  if (ends.at_high > 1) limits(data, size, above, ends.high, other, ends.next_to_high);
+  return ends;
 }
 
 }  // namespace reident::identification

@@ -23,32 +23,35 @@ double median(const std::vector<double>& values) {
 
 /// The rows of whose surrounding range of `length` rows more than half are more than `limit` away
 /// from `centre`: on one side of it, or on both together. At either end the range is the first
-/// or the last.
+/// or the last. Requires so many rows.
 std::vector<RowRange> ranges_beyond(const Vector& r, double centre, double limit, Index length,
                                     bool on_one_side) {
   const Index rows = r.size();
-  if (2 * ((r.array() - centre).abs() > limit).count() <= length) return {};
-  Index above = 0, below = 0;
-  const auto count = [&](Index row, Index one) {
+  Eigen::Matrix<Index, Eigen::Dynamic, 1> above(rows + 1), below(rows + 1);  // before each row
+  above[0] = below[0] = 0;
+  for (Index row = 0; row < rows; ++row) {
     const double away = r(row) - centre;
-    if (away > limit) above += one;
-    if (away < -limit) below += one;
-  };
-  for (Index row = 0; row < length; ++row) count(row, 1);
-  std::vector<RowRange> found;
-  for (Index begin = 0;; ++begin) {
-    if (2 * (on_one_side ? std::max(above, below) : above + below) > length) {
-      const RowRange here{begin == 0 ? 0 : begin + length / 2,
-                          begin + length == rows ? rows : begin + length / 2 + 1};
-      if (!found.empty() && found.back().end >= here.begin)
-        found.back().end = here.end;
-      else
-        found.push_back(here);
-    }
-    if (begin + length == rows) return found;
-    count(begin, -1);
-    count(begin + length, 1);
+    above[row + 1] = above[row] + (away > limit ? 1 : 0);
+    below[row + 1] = below[row] + (away < -limit ? 1 : 0);
   }
+  std::vector<RowRange> found;
+  for (Index begin = 0; begin + length <= rows;) {
+    const Index over = above[begin + length] - above[begin];
+    const Index under = below[begin + length] - below[begin];
+    const Index beyond = on_one_side ? std::max(over, under) : over + under;
+    if (2 * beyond <= length) {
+      begin += length / 2 + 1 - beyond;  // each row changes it by one at most
+      continue;
+    }
+    const RowRange here{begin == 0 ? 0 : begin + length / 2,
+                        begin + length == rows ? rows : begin + length / 2 + 1};
+    if (!found.empty() && found.back().end >= here.begin)
+      found.back().end = here.end;
+    else
+      found.push_back(here);
+    ++begin;
+  }
+  return found;
 }
 
 double residual_of(const Vector& r, RowRange rows, bool is_shift) {
@@ -57,6 +60,13 @@ double residual_of(const Vector& r, RowRange rows, bool is_shift) {
   if (is_shift) return middle;
   for (double& value : values) value = std::abs(value);
   return std::copysign(median(values), middle);
+}
+
+/// Whether rows may be beyond the limit of the median. With most rows within half the limit the
+/// median is too.
+bool may_shift(const Vector& r, double limit) {
+  const bool is_median_small = 2 * (r.array().abs() <= limit / 2).count() > r.size();
+  return !is_median_small || !ranges_beyond(r, 0, limit / 2, shift_rows, true).empty();
 }
 
 std::int64_t tick_of(const Record& record, Index row) {
@@ -72,7 +82,6 @@ std::vector<Inconsistency> inconsistencies(const Record& residual, double tolera
   const Vector r = residual.y.col(0);
   std::vector<Inconsistency> found;
   const auto take = [&](double centre, double limit, Index length, bool is_shift) {
-    if (r.size() < length) return;
     for (const RowRange& rows : ranges_beyond(r, centre, limit, length, is_shift)) {
       const RowRange wide{std::max<Index>(0, rows.begin - margin_rows),
                           std::min(r.size(), rows.end + margin_rows)};
@@ -81,16 +90,13 @@ std::vector<Inconsistency> inconsistencies(const Record& residual, double tolera
                        is_shift});
     }
   };
-  take(0, tolerance, level_rows, false);
-  const double limit = shift_share * tolerance;
-  // With most rows within half the limit their median is too, and nothing else is beyond the limit
-  // of it.
-  if (2 * (r.array().abs() > limit / 2).count() > shift_rows) {
+  if (r.size() >= level_rows) take(0, tolerance, level_rows, false);
+  if (r.size() >= shift_rows && may_shift(r, shift_share * tolerance)) {
     std::vector<double> tolerable;
     std::copy_if(r.begin(), r.end(), std::back_inserter(tolerable),
                  [tolerance](double value) { return std::abs(value) <= tolerance; });
     if (static_cast<Index>(tolerable.size()) >= shift_rows)
-      take(median(tolerable), limit, shift_rows, true);
+      take(median(tolerable), shift_share * tolerance, shift_rows, true);
   }
   std::stable_sort(found.begin(), found.end(), [](const Inconsistency& a, const Inconsistency& b) {
     return a.ticks.begin < b.ticks.begin;

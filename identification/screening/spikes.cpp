@@ -23,21 +23,25 @@ struct Spike {
 
 /// Plateaus that stand out from both neighbours.
 std::vector<Spike> outstanding(const Channel& channel) {
-  const std::vector<Plateau>& plateaus = channel.plateaus;
-  if (plateaus.size() < 3) return {};
+  if (!(channel.greatest_step > channel.least_jump)) return {};
   std::vector<Spike> spikes;
-  for (std::size_t i = 1; i + 1 < plateaus.size(); ++i) {
-    const Plateau &before = plateaus[i - 1], &plateau = plateaus[i], &after = plateaus[i + 1];
-    if (before.segment != plateau.segment || after.segment != plateau.segment) continue;
-    const double up = plateau.value - before.value, down = plateau.value - after.value;
-    const double height = std::min(std::abs(up), std::abs(down));
-    if (height > channel.least_jump && up * down > 0 &&
-        std::abs(after.value - before.value) < neighbours_agree * height)
-      spikes.push_back({plateau, up > 0 ? height : -height});
+  const Vector& values = channel.values;
+  for (std::size_t s = 0; s < channel.segments->size(); ++s) {
+    const Segment& segment = (*channel.segments)[s];
+    for (Index row = segment.begin + 1; row < segment.end; ++row) {
+      const double before = values(row - 1), value = values(row);
+      if (!(std::abs(value - before) > channel.least_jump)) continue;
+      Index end = row + 1;
+      while (end < segment.end && values(end) == value) ++end;
+      if (end == segment.end) break;
+      const double up = value - before, down = value - values(end);
+      const double height = std::min(std::abs(up), std::abs(down));
+      if (height > channel.least_jump && up * down > 0 &&
+          std::abs(values(end) - before) < neighbours_agree * height)
+        spikes.push_back({{row, end, value, s}, up > 0 ? height : -height});
+      row = end - 1;
+    }
   }
-  if (spikes.empty()) return {};
-  const double longest = 2 * median_size(plateaus);
-  std::erase_if(spikes, [&](const Spike& one) { return double(one.plateau.size()) > longest; });
   return spikes;
 }
 
@@ -144,7 +148,11 @@ std::vector<Plateau> spikes_of(const std::vector<Channel>& channels, std::size_t
   const Channel& channel = channels[self];
   std::vector<Spike> spikes = outstanding(channel);
   if (spikes.empty()) return {};
-  if (double(spikes.size()) > most_spikes * double(channel.plateaus.size()) &&
+  const std::vector<Plateau> plateaus = channel.plateaus();
+  const double longest = 2 * median_size(plateaus);
+  std::erase_if(spikes, [&](const Spike& one) { return double(one.plateau.size()) > longest; });
+  if (spikes.empty()) return {};
+  if (double(spikes.size()) > most_spikes * double(plateaus.size()) &&
       !are_one_absurd_value(channel, spikes))
     return {};
   std::vector<Spike> alone, beside;  // where no other channel jumps, and where one jumps otherwise

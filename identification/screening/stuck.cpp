@@ -51,12 +51,13 @@ bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& 
 }
 
 /// Whether the channel rests at an end of its range, and does not vary there at other times.
-bool rests_at_end_of_range(const Channel& channel, const Plateau& plateau) {
+bool rests_at_end_of_range(const Channel& channel, const std::vector<Plateau>& plateaus,
+                           const Plateau& plateau) {
   const double near = end_share * channel.range();
   const bool is_low = plateau.value <= channel.low + near;
   if (!is_low && plateau.value < channel.high - near) return false;
   Index rows = 0, longest = 0;
-  for (const Plateau& other : channel.plateaus) {
+  for (const Plateau& other : plateaus) {
     const bool is_near =
         is_low ? other.value <= channel.low + near : other.value >= channel.high - near;
     if (!is_near || (other.begin == plateau.begin && other.segment == plateau.segment)) continue;
@@ -68,12 +69,12 @@ bool rests_at_end_of_range(const Channel& channel, const Plateau& plateau) {
 
 /// The longest plateaus, as many as chance does not explain: each sample of the rest of the channel
 /// repeats the one before with some probability, and none of the rest is nearly as long.
-std::vector<Plateau> unusually_long(const Channel& channel) {
-  const std::size_t all = channel.plateaus.size();
+std::vector<Plateau> unusually_long(const Channel& channel, const std::vector<Plateau>& of_all) {
+  const std::size_t all = of_all.size();
   std::vector<Plateau> plateaus(std::min(all, most_stuck + 1));  // the longest, and one more
   if (plateaus.size() < 4) return {};  // hardly any samples to compare with
-  std::partial_sort_copy(channel.plateaus.begin(), channel.plateaus.end(), plateaus.begin(),
-                         plateaus.end(), [](const Plateau& a, const Plateau& b) {
+  std::partial_sort_copy(of_all.begin(), of_all.end(), plateaus.begin(), plateaus.end(),
+                         [](const Plateau& a, const Plateau& b) {
                            return a.size() != b.size() ? a.size() > b.size() : a.begin < b.begin;
                          });
   std::size_t count = plateaus.size() - 1;
@@ -97,10 +98,12 @@ std::vector<Plateau> unusually_long(const Channel& channel) {
 
 std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::size_t self) {
   const Channel& channel = channels[self];
+  if (channel.longest_repeat < least_stuck_rows) return {};
+  const std::vector<Plateau> plateaus = channel.plateaus();
   std::vector<Plateau> stuck;
-  for (const Plateau& plateau : unusually_long(channel))
-    if (!rests_at_end_of_range(channel, plateau) &&
-        !is_repeated_elsewhere(channel.plateaus, plateau) && another_moves(channels, self, plateau))
+  for (const Plateau& plateau : unusually_long(channel, plateaus))
+    if (!rests_at_end_of_range(channel, plateaus, plateau) &&
+        !is_repeated_elsewhere(plateaus, plateau) && another_moves(channels, self, plateau))
       stuck.push_back(plateau);
   std::sort(stuck.begin(), stuck.end(),
             [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });
