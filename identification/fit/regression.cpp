@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "identification/fit/dual_filters.hpp"
 #include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/kernels.hpp"
 
@@ -11,32 +12,9 @@ namespace reident::identification {
 namespace {
 
 constexpr Index tile_rows = 64;
-constexpr double died_out = 1e-150;
 /// Rows that are folded into a triangular factor at once: fewer cost more for the factor that comes
 /// with them, more leave the cache.
 constexpr Index rows_at_once = 8 * tile_rows;
-
-/// The dual system of one output: since C A^j B is linear in B, the regressors of a column of B are
-/// the states of x[k+1] = A' x[k] + c' v[k] driven by that column's input. All inputs v at once.
-class DualFilters {
- public:
-  DualFilters(const Matrix& A, const Vector& c, Matrix states)
-      : At_(A.transpose()), c_(c), states_(std::move(states)) {}
-
-  /// Writes the states of `count` steps to `out`, a column of `stride` each.
-  void run(const double* v, Index count, double* out, Index stride) {
-    run_dual_filters(At_.data(), c_.data(), At_.rows(), states_.cols(), v, count, states_.data(),
-                     out, stride);
-    // A state that has died out would go on in subnormal numbers, which take a hundred times as
-    // long. No sum has digits for it.
-    states_ = (states_.array().abs() < died_out).select(0, states_);
-  }
-
- private:
-  Matrix At_;
-  Vector c_;
-  Matrix states_;
-};
 
 /// The state of the model along a tile, and C x.
 struct Trajectory {

@@ -12,6 +12,20 @@
 namespace reident::identification {
 
 Matrix triangular_factor(const Matrix& A) {
+  // More rows at once leave the cache.
+  const Index at_once = std::max<Index>(512, 4 * A.cols());
+  if (A.rows() > 2 * at_once) {
+    Matrix rows(at_once + A.cols(), A.cols());
+    Index factored = 0;  // rows of the factor of those before
+    for (Index begin = 0; begin < A.rows(); begin += at_once) {
+      const Index count = std::min(at_once, A.rows() - begin);
+      rows.middleRows(factored, count) = A.middleRows(begin, count);
+      const Matrix factor = triangular_factor(rows.topRows(factored + count));
+      factored = factor.rows();
+      rows.topRows(factored) = factor;
+    }
+    return rows.topRows(factored);
+  }
   const Eigen::HouseholderQR<Matrix> qr(A);
   return qr.matrixQR().topRows(std::min(A.rows(), A.cols())).triangularView<Eigen::Upper>();
 }

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "identification/fit/dual_filters.hpp"
 #include "identification/numerics/decompositions.hpp"
+#include "identification/numerics/kernels.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "identification/statistics/correlation.hpp"
 #include "identification/statistics/quantiles.hpp"
@@ -43,33 +45,51 @@ Matrix uncorrelated_mixtures(const Matrix& errors) {
   return found.converged ? Matrix(found.vectors.transpose()) : Matrix::Identity(p, p);
 }
 
-/// The states of x[t+1] = A x[t] + 1 u[t] for each of the inputs: they span what a system with
-/// this A makes of the inputs.
-Matrix states_of(const Matrix& A, const Matrix& inputs) {
-  const Index n = A.rows(), m = inputs.cols();
-  Matrix states(inputs.rows(), n * m);
-  Matrix x = Matrix::Zero(n, m);
-  for (Index t = 0; t < inputs.rows(); ++t) {
-    states.row(t) = x.reshaped().transpose();
-    x = A * x + Vector::Ones(n) * inputs.row(t);
-  }
-  return states;
-}
-
-/// What the past (of an autoregression) leaves of the columns, less its mean in each segment; zero
-/// where the past is not whole.
+/// What the past (of an autoregression) leaves of the columns, transposed; zero where the past is
+/// not whole.
 Matrix white(const Matrix& values, const Vector& past, const std::vector<RowRange>& segments) {
-  Matrix result = Matrix::Zero(values.rows(), values.cols());
+  Matrix result = Matrix::Zero(values.cols(), values.rows());
   for (const RowRange& segment : segments) {
     const Index first = segment.begin + past.size(), count = segment.end - first;
     if (count < 1) continue;
-    auto rows = result.middleRows(first, count);
-    rows = values.middleRows(first, count);
+    auto columns = result.middleCols(first, count);
+    columns = values.middleRows(first, count).transpose();
     for (Index i = 0; i < past.size(); ++i)
-      rows -= past(i) * values.middleRows(first - 1 - i, count);
-    rows.rowwise() -= Eigen::RowVectorXd(rows.colwise().mean());
+      columns -= past(i) * values.middleRows(first - 1 - i, count).transpose();
   }
   return result;
+}
+
+/// Sums of squares and products (lower triangle) of the inputs u, the states of x[t+1] = F x[t] + 1
+/// u for each of them, with F = A and F = slow, and the errors: all made white, less their means in
+/// each segment. The states span what a system with these modes makes of the inputs.
+Matrix white_products(const Matrix& A, double slow, const Matrix& inputs, const Vector& errors,
+                      const Vector& past, const std::vector<RowRange>& segments) {
+  constexpr Index tile_rows = 64;
+  const Index n = A.rows(), m = inputs.cols(), width = m + n * m + m + 2;
+  const Matrix u = white(inputs, past, segments), e = white(errors, past, segments);
+  DualFilters fast(A.transpose(), Vector::Ones(n), Matrix::Zero(n, m));
+  DualFilters sums(Matrix::Constant(1, 1, slow), Vector::Ones(1), Matrix::Zero(1, m));
+  Matrix products = Matrix::Zero(width - 1, width - 1), tile(width, tile_rows);
+  for (const RowRange& segment : segments) {
+    Matrix own = Matrix::Zero(width, width);
+    for (Index begin = segment.begin; begin < segment.end; begin += tile_rows) {
+      const Index count = std::min(tile_rows, segment.end - begin);
+      tile.topLeftCorner(m, count) = u.middleCols(begin, count);
+      fast.run(u.col(begin).data(), count, tile.row(m).data(), width);
+      sums.run(u.col(begin).data(), count, tile.row(m + n * m).data(), width);
+      tile.row(width - 2).head(count) = e.middleCols(begin, count);
+      tile.row(width - 1).setOnes();
+      const Index skipped = std::clamp<Index>(segment.begin + past.size() - begin, 0, count);
+      const VectorSequence rows{tile.data() + skipped * width, width, width};
+      add_outer_products(rows, rows, count - skipped, Triangle::lower, own.data());
+    }
+    const Vector totals = own.row(width - 1).head(width - 1);
+    products += own.topLeftCorner(width - 1, width - 1);
+    if (segment.size() > past.size())
+      products -= totals / own(width - 1, width - 1) * totals.transpose();
+  }
+  return products;
 }
 
 std::vector<RowRange> ranges_of(const std::vector<Segment>& segments) {
@@ -161,29 +181,30 @@ bool RicherFit::refutes(const Response& simple, bool direct, Index extra) const 
 }
 
 bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows, double rate) {
+  constexpr double least_share =
+      1e-10;  // of a column's square: below it the columns before have it
   const Index m = record.u.cols(), p = record.y.cols();
   if (rows.size() < 4 * m * (2 + fit.model.order())) return true;
   const std::vector<RowRange> segments = ranges_of(segments_from(record, rows));
   const Matrix inputs = record.u.middleRows(rows.begin, rows.size());
-  const Matrix slow = states_of(Matrix::Constant(1, 1, std::exp(-rate)), inputs);
-  Matrix fast(rows.size(), m * (1 + fit.model.order()));
-  fast << inputs, states_of(fit.model.A, inputs);
   const Matrix errors = errors_of(fit, record, rows);
   const Matrix mixed_errors = errors * uncorrelated_mixtures(errors).transpose();
   const double count = double(rows.size());
+  const double floor = least_deviation * least_deviation * count;
   double ratio = 0;
   for (Index q = 0; q < p; ++q) {
     const Vector past = burg_coefficients(mixed_errors.col(q), segments);
-    const Matrix basis = orthonormal_basis(white(fast, past, segments));
-    const auto remaining = [&basis](const Matrix& values) {
-      return Matrix(values - basis * (basis.transpose() * values));
-    };
-    const Matrix left = remaining(white(mixed_errors.col(q), past, segments));
-    const Matrix beside = orthonormal_basis(remaining(white(slow, past, segments)));
-    const double squares = left.squaredNorm();
-    const double floor = least_deviation * least_deviation * count;
-    ratio += count * std::log((squares + floor) /
-                              (squares - (beside.transpose() * left).squaredNorm() + floor));
+    Matrix L =
+        white_products(fit.model.A, std::exp(-rate), inputs, mixed_errors.col(q), past, segments);
+    const Index last = L.rows() - 1;
+    L(last, last) += floor;
+    const Vector scale = L.diagonal().unaryExpr(
+        [](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
+    L = (scale.asDiagonal() * L * scale.asDiagonal()).eval();
+    L.diagonal().setConstant(1 + least_share);
+    if (!cholesky(L.data(), L.rows())) return true;
+    const double driven = L.row(last).segment(last - m, m).squaredNorm();
+    ratio += count * std::log1p(driven / (L(last, last) * L(last, last)));
   }
   return !(ratio <= chi_squared_quantile(0.99, double(m * p)));
 }

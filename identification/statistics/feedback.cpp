@@ -38,31 +38,38 @@ std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index pas
   Index count = 0;
   for (const Segment& segment : segments) count += std::max<Index>(0, segment.size() - past);
   if (m == 0 || count < 3 * (m + p + 1) * past) return {};
-  Matrix alone(record.rows(), m + p);
-  alone << record.u, of_inputs;
-  Matrix now(count, m);
+  Matrix own(record.rows(), m + p);
+  own << record.u, of_inputs;
+  const Index known = 1 + (m + p) * past, told = p * past;
+  Matrix columns(count, known + told + m);
+  columns.leftCols(known) = past_of(own, segments, past, count);
+  for (Index q = 0; q < p; ++q)
+    columns.middleCols(known + q * past, past) =
+        past_of(record.y.col(q), segments, past, count).rightCols(past);
   Index at = 0;
   for (const Segment& segment : segments)
-    for (Index t = segment.begin + past; t < segment.end; ++t) now.row(at++) = record.u.row(t);
-  const Matrix basis = orthonormal_basis(past_of(alone, segments, past, count));
-  const Matrix left = now - basis * (basis.transpose() * now);
+    for (Index t = segment.begin + past; t < segment.end; ++t)
+      columns.row(at++).tail(m) = record.u.row(t);
+  const Matrix triangle = triangular_factor(columns);
+  const Matrix left = triangle.bottomRightCorner(told + m, told + m);
   // For the latest rows of an output and for all, by Bartlett's factor, with which the logarithm of
   // few rows is distributed as chi-squared, too.
   const auto is_explained = [&](double share, Index rows_of_past) {
     const double degrees = double(rows_of_past);
-    const double factor = double(count - basis.cols() - 1) - degrees / 2;
+    const double factor = double(count - known - 1) - degrees / 2;
     return -factor * std::log1p(-std::min(share, 1 - nothing_left)) >
            chi_squared_quantile(1 - false_alarms / double(2 * m * p), degrees);
   };
 
   std::vector<Feedback> found;
   for (Index q = 0; q < p; ++q) {
-    const Matrix outputs = past_of(record.y.col(q), segments, past, count).rightCols(past);
-    const Matrix beside = orthonormal_basis(outputs - basis * (basis.transpose() * outputs));
+    Matrix beside(told + m, past + m);
+    beside << left.middleCols(q * past, past), left.rightCols(m);
+    const Matrix inputs = triangular_factor(beside).rightCols(m);
     for (Index i = 0; i < m; ++i) {
-      const double all = left.col(i).squaredNorm();
-      if (!(all > nothing_left * now.col(i).squaredNorm())) continue;
-      const Vector explained = beside.transpose() * left.col(i);
+      const double all = left.rightCols(m).col(i).squaredNorm();
+      if (!(all > nothing_left * triangle.rightCols(m).col(i).squaredNorm())) continue;
+      const Vector explained = inputs.col(i).head(past);
       const Index few = std::min(latest, past);
       const double share = explained.squaredNorm() / all;
       if (share >= least_share &&
