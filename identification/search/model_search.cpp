@@ -27,6 +27,9 @@ constexpr Index least_scored = 1000,
 constexpr Index least_fitted = 2000;
 constexpr double intended_recipes = 8;  // of the second stage, where rows are many
 
+const HeldOutErrors no_model{{std::numeric_limits<double>::infinity(), {}},
+                             {std::numeric_limits<double>::infinity(), {}}};
+
 /// Multiply-adds of a run of one row.
 double work_of_run(Index n, Index m, Index p) {
   return double((n + p) * (n + m));
@@ -101,7 +104,7 @@ class Search {
   std::vector<Candidate> compressed_stage();
   /// Whether the inputs drive slower modes than the candidates of the first stage have.
   bool shows_slow_modes(const std::vector<Candidate>& compressed) const;
-  void score_compressed(std::size_t fold, std::size_t horizon, std::vector<HeldOutErrors>& errors);
+  void score_compressed(std::size_t fold, std::size_t horizon);
   /// Order, horizon and weighting of a place in the table of the first stage.
   Recipe recipe_at(std::size_t place) const;
   Index rows_scored_quickly() const;
@@ -139,7 +142,14 @@ class Search {
   SearchEffort& effort_;
   double least_rate_;  // 0 once slow modes have shown
   Index m_, p_;
-  std::vector<std::vector<StateSpaceModel>> models_;  // of the first stage, by fold and place
+  // Of the first stage. A second look, with slow modes, takes what the first one has found.
+  struct Compressed {
+    Projection projection;
+    std::vector<Matrix> gammas;  // of each weighting
+  };
+  std::vector<std::optional<Compressed>> compressed_;  // by horizon and fold
+  std::vector<std::vector<StateSpaceModel>> models_;   // by fold and place, as the errors
+  std::vector<std::vector<HeldOutErrors>> errors_;
 };
 
 Recipe Search::recipe_at(std::size_t place) const {
@@ -161,47 +171,55 @@ Index Search::rows_scored_quickly() const {
   return std::clamp(static_cast<Index>(effort_.budget / 3 / one_row), least_scored, most_scored);
 }
 
-void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index,
-                              std::vector<HeldOutErrors>& errors) {
+void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index) {
   const Record& record = data_.normalised;
   const Fold fold = data_.folds[fold_index].with_tune_of(rows_scored_quickly());
   const RangeSums& sums = data_.sums[fold_index];
-  const Projection projection(compress(sums, data_.normalisation, record,
-                                       segments_within(record, fold.fit),
-                                       space_.horizons[horizon_index]));
+  std::optional<Compressed>& compressed = compressed_[horizon_index * folds() + fold_index];
+  if (!compressed) {
+    compressed.emplace(
+        Projection(compress(sums, data_.normalisation, record, segments_within(record, fold.fit),
+                            space_.horizons[horizon_index])));
+    for (const Weighting weighting : space_.weightings)
+      compressed->gammas.push_back(compressed->projection.observability(weighting).gamma);
+  }
   const Vector mean = sums.mean();
   for (std::size_t w = 0; w < space_.weightings.size(); ++w) {
-    const Matrix gamma = projection.observability(space_.weightings[w]).gamma;
+    const Matrix& gamma = compressed->gammas[w];
     for (std::size_t i = 0; i < orders(); ++i) {
       const std::size_t place = horizon_index * places_of_horizon() + w * orders() + i;
       const Recipe recipe = recipe_at(place);
       if (recipe.order > gamma.cols() - p_) break;
       const auto found = shift_invariant_within({fold.fit.size(), recipe.least_rate}, gamma, p_,
                                                 recipe.order, recipe.stability);
-      if (!found) continue;
       StateSpaceModel& model = models_[fold_index][place];
-      model = with_response(projection, found->A, found->C, recipe.direct, record.period_s);
+      HeldOutErrors& errors = errors_[fold_index][place];
+      if (!found) {
+        model = {};
+        errors = no_model;
+        continue;
+      }
+      if (model.order() == found->A.rows() && model.A == found->A && model.C == found->C) continue;
+      model =
+          with_response(compressed->projection, found->A, found->C, recipe.direct, record.period_s);
       set_operating_point(model, data_.normalisation, mean);
-      errors[place] = quick_held_out_errors(model, record, fold);
+      errors = quick_held_out_errors(model, record, fold);
     }
   }
 }
 
 std::vector<Candidate> Search::compressed_stage() {
   if (orders() == 0) return {};
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::size_t places = space_.horizons.size() * places_of_horizon();
-  std::vector<std::vector<HeldOutErrors>> errors(
-      folds(), std::vector<HeldOutErrors>(places, {{infinity, {}}, {infinity, {}}}));
-  models_.assign(folds(), std::vector<StateSpaceModel>(places));
-  for_each_(folds() * space_.horizons.size(), [&](std::size_t task) {
-    const std::size_t fold = task % folds();
-    score_compressed(fold, task / folds(), errors[fold]);
-  });
+  compressed_.resize(space_.horizons.size() * folds());
+  models_.resize(folds(), std::vector<StateSpaceModel>(places));
+  errors_.resize(folds(), std::vector<HeldOutErrors>(places, no_model));
+  for_each_(compressed_.size(),
+            [this](std::size_t task) { score_compressed(task % folds(), task / folds()); });
   std::vector<Candidate> found;
   for (std::size_t place = 0; place < places; ++place) {
     std::vector<HeldOutErrors> own;
-    for (const std::vector<HeldOutErrors>& of_fold : errors) own.push_back(of_fold[place]);
+    for (const std::vector<HeldOutErrors>& of_fold : errors_) own.push_back(of_fold[place]);
     Candidate candidate{place, recipe_at(place), 0};
     if (!take_errors(candidate, own)) continue;
     for (const Fold& fold : data_.folds)
