@@ -32,6 +32,33 @@ Bracket bracket_of(std::span<const double> values, std::size_t rank) {
           place + margin >= sampled ? unlimited : sample[place + margin]};
 }
 
+/// Copies the values from `low` to `high` to `to`, which has room for all. Returns how many there
+/// are; `below` becomes how many lie before.
+REIDENT_CLONES std::size_t gather(const double* values, std::size_t count, double low, double high,
+                                  double* to, std::size_t& below) {
+  const Four one = Four{} + 1.0;
+  Four befores{};
+  std::size_t gathered = 0;
+  const auto take = [&](double value) __attribute__((always_inline)) {
+    to[gathered] = value;
+    gathered += value >= low && value <= high ? 1U : 0U;
+  };
+  const std::size_t eights = count / 8 * 8;
+  for (std::size_t i = 0; i < eights; i += 8) {
+    const Four a = load(values + i), b = load(values + i + 4);
+    befores += (a < low ? one : Four{}) + (b < low ? one : Four{});
+    const auto any = ((a >= low) & (a <= high)) | ((b >= low) & (b <= high));
+    if ((any[0] | any[1] | any[2] | any[3]) == 0) continue;
+    for (std::size_t k = i; k < i + 8; ++k) take(values[k]);
+  }
+  below = static_cast<std::size_t>(befores[0] + befores[1] + befores[2] + befores[3]);
+  for (std::size_t i = eights; i < count; ++i) {
+    below += values[i] < low ? 1U : 0U;
+    take(values[i]);
+  }
+  return gathered;
+}
+
 /// Four at a time: the least and the greatest value that is more than `above` and less than
 /// `below`.
 REIDENT_CLONES void limits(const double* values, std::size_t count, double above, double below,
@@ -79,12 +106,9 @@ double nth_smallest(std::span<const double> values, std::size_t rank) {
   };
   if (values.size() > 2 * sampled) {
     const Bracket bracket = bracket_of(values, rank);
-    std::size_t below = 0, count = 0;
-    for (const double value : values) {
-      within[count] = value;
-      below += value < bracket.low ? 1U : 0U;
-      count += value >= bracket.low && value <= bracket.high ? 1U : 0U;
-    }
+    std::size_t below = 0;
+    const std::size_t count =
+        gather(values.data(), values.size(), bracket.low, bracket.high, within.get(), below);
     if (below <= rank && rank < below + count) return select(count, rank - below);
   }
   std::copy(values.begin(), values.end(), within.get());

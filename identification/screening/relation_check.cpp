@@ -27,6 +27,7 @@ double median(const std::vector<double>& values) {
 std::vector<RowRange> ranges_beyond(const Vector& r, double centre, double limit, Index length,
                                     bool on_one_side) {
   const Index rows = r.size();
+  if (2 * ((r.array() - centre).abs() > limit).count() <= length) return {};
   Eigen::Matrix<Index, Eigen::Dynamic, 1> above(rows + 1), below(rows + 1);  // before each row
   above[0] = below[0] = 0;
   for (Index row = 0; row < rows; ++row) {
