@@ -12,8 +12,6 @@ namespace {
 constexpr std::array bets = {1.0, 0.5, 0.25, 0.125, 0.0625};
 /// Means of so many scores show nothing where there are fewer of them.
 constexpr Index least_means = 6;
-/// Dependence is taken for what is assumed at first, and as measured behind so many cycles.
-constexpr Index cycles_to_measure = 8;
 /// Scores that differ by less, over their bound, are equal but for rounding.
 constexpr double rounding = 1e-9;
 

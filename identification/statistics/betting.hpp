@@ -8,13 +8,16 @@
 
 namespace reident::identification {
 
+/// Cycles of a series that show how it varies.
+inline constexpr Index cycles_to_measure = 8;
+
 /// Scores in the order of time, each within [-bound, bound], and what was found of them.
 struct ScoreSeries {
   Vector scores;
   double bound = 1;
   /// Those of a whole cycle.
   Index cycle = 1;
-  /// Least dependence until it is measured, at least 1; 0: the cycle's scores count as one at
+  /// Least dependence until cycles_to_measure are there, at least 1; 0: the cycle's scores count as one at
   /// first.
   double assumed = 0;
 };

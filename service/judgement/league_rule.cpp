@@ -137,7 +137,6 @@ std::optional<Reason> unproved_somewhere(Standard& standard, const Member& membe
 /// half of what the member errs less, either.
 std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
                                   const Comparison& compared, Finding& finding) {
-  constexpr double most_explained = 0.5;
   const League& league = standard.league;
   if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty()) return std::nullopt;
   bool may_be = false;
@@ -151,7 +150,7 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
     const double wealth = log_wealth(scores, dependence(scores), 0);
     const double mean = scores.scores.mean();
     may_be = may_be || !(wealth > finding.log_threshold && mean > margin_of(standard.limits)) ||
-             (effect > 0 && without.explained > most_explained);
+             (effect > 0 && without.explained > most);
     if (effect > 0 && wealth >= finding.wealth_without_offset) continue;
     finding.mean_without_offset = mean;
     finding.wealth_without_offset = wealth;

@@ -16,7 +16,7 @@ std::size_t phase_of(const Block& block) {
 }
 
 bool counts(const Block& block) {
-  return block.rows > 0 && block.believed >= least_believed;
+  return block.rows > 0 && block.believed >= most;
 }
 
 const BlockScore* find(const Member& member, storage::Time begin) {

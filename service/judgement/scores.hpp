@@ -4,6 +4,7 @@
 #include <deque>
 #include <vector>
 
+#include "identification/statistics/betting.hpp"
 #include "service/windows/block_reader.hpp"
 #include "storage/types/registry_rows.hpp"
 
@@ -18,13 +19,14 @@ struct Member {
 
 /// Bound of a block's score.
 inline constexpr double largest_score = 1;
-/// A block of which less is believed says nothing.
-inline constexpr double least_believed = 0.5;
+/// What is true of most is true: of a block's ticks that are believed, and of a gain that an offset
+/// explains.
+inline constexpr double most = 0.5;
 /// Least square of an error where the sensor's noise is not known.
 inline constexpr double least_square = 1e-300;
 
-/// Blocks of a record that later ones are measured against: eight cycles.
-inline constexpr std::size_t reference_blocks = 8 * blocks_of_cycle;
+/// Blocks of a record that later ones are measured against.
+inline constexpr std::size_t reference_blocks = identification::cycles_to_measure * blocks_of_cycle;
 
 /// Place of the block in its cycle, from 0.
 std::size_t phase_of(const storage::Block& block);
