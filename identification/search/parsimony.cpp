@@ -45,49 +45,39 @@ Matrix uncorrelated_mixtures(const Matrix& errors) {
   return found.converged ? Matrix(found.vectors.transpose()) : Matrix::Identity(p, p);
 }
 
-/// What the past (of an autoregression) leaves of the columns, transposed; zero where the past is
-/// not whole.
-Matrix white(const Matrix& values, const Vector& past, const std::vector<RowRange>& segments) {
-  Matrix result = Matrix::Zero(values.cols(), values.rows());
-  for (const RowRange& segment : segments) {
-    const Index first = segment.begin + past.size(), count = segment.end - first;
-    if (count < 1) continue;
-    auto columns = result.middleCols(first, count);
-    columns = values.middleRows(first, count).transpose();
-    for (Index i = 0; i < past.size(); ++i)
-      columns -= past(i) * values.middleRows(first - 1 - i, count).transpose();
-  }
-  return result;
-}
-
-/// Sums of squares and products (lower triangle) of the inputs u, the states of x[t+1] = F x[t] + 1
-/// u for each of them, with F = A and F = slow, and the errors: all made white, less their means in
-/// each segment. The states span what a system with these modes makes of the inputs.
-Matrix white_products(const Matrix& A, double slow, const Matrix& inputs, const Vector& errors,
+/// Sums of squares and products (lower triangle) of the inputs u (m x N), the states of
+/// x[t+1] = F x[t] + 1 u[t] for each of them, with F = A and F = slow, and the errors. All are less
+/// what their past (of an autoregression) foretells, and less their means in each segment. The
+/// states span what a system with these modes makes of the inputs.
+Matrix white_products(const Matrix& A, double slow, const Matrix& u, const Vector& errors,
                       const Vector& past, const std::vector<RowRange>& segments) {
   constexpr Index tile_rows = 64;
-  const Index n = A.rows(), m = inputs.cols(), width = m + n * m + m + 2;
-  const Matrix u = white(inputs, past, segments), e = white(errors, past, segments);
+  const Index n = A.rows(), m = u.rows(), before = past.size(), width = m + n * m + m + 1;
   DualFilters fast(A.transpose(), Vector::Ones(n), Matrix::Zero(n, m));
   DualFilters sums(Matrix::Constant(1, 1, slow), Vector::Ones(1), Matrix::Zero(1, m));
-  Matrix products = Matrix::Zero(width - 1, width - 1), tile(width, tile_rows);
+  Matrix values = Matrix::Zero(width, before + tile_rows);  // behind those before
+  Matrix white = Matrix::Ones(width + 1, tile_rows);        // the last row for the means
+  Matrix products = Matrix::Zero(width, width);
   for (const RowRange& segment : segments) {
-    Matrix own = Matrix::Zero(width, width);
+    Matrix own = Matrix::Zero(width + 1, width + 1);
     for (Index begin = segment.begin; begin < segment.end; begin += tile_rows) {
       const Index count = std::min(tile_rows, segment.end - begin);
-      tile.topLeftCorner(m, count) = u.middleCols(begin, count);
-      fast.run(u.col(begin).data(), count, tile.row(m).data(), width);
-      sums.run(u.col(begin).data(), count, tile.row(m + n * m).data(), width);
-      tile.row(width - 2).head(count) = e.middleCols(begin, count);
-      tile.row(width - 1).setOnes();
-      const Index skipped = std::clamp<Index>(segment.begin + past.size() - begin, 0, count);
-      const VectorSequence rows{tile.data() + skipped * width, width, width};
-      add_outer_products(rows, rows, count - skipped, Triangle::lower, own.data());
+      auto now = values.middleCols(before, count);
+      now.topRows(m) = u.middleCols(begin, count);
+      fast.run(u.col(begin).data(), count, &now(m, 0), width);
+      sums.run(u.col(begin).data(), count, &now(m + n * m, 0), width);
+      now.bottomRows(1) = errors.segment(begin, count).transpose();
+      auto left = white.topLeftCorner(width, count);
+      left = now;
+      for (Index i = 0; i < before; ++i) left -= past(i) * values.middleCols(before - 1 - i, count);
+      values.leftCols(before) = values.middleCols(count, before).eval();
+      const Index unknown = std::clamp<Index>(segment.begin + before - begin, 0, count);
+      const VectorSequence rows{white.col(0).data() + unknown * (width + 1), width + 1, width + 1};
+      add_outer_products(rows, rows, count - unknown, Triangle::lower, own.data());
     }
-    const Vector totals = own.row(width - 1).head(width - 1);
-    products += own.topLeftCorner(width - 1, width - 1);
-    if (segment.size() > past.size())
-      products -= totals / own(width - 1, width - 1) * totals.transpose();
+    if (segment.size() <= before) continue;
+    const Vector totals = own.row(width).head(width);
+    products += own.topLeftCorner(width, width) - totals / own(width, width) * totals.transpose();
   }
   return products;
 }
@@ -186,7 +176,7 @@ bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows,
   const Index m = record.u.cols(), p = record.y.cols();
   if (rows.size() < 4 * m * (2 + fit.model.order())) return true;
   const std::vector<RowRange> segments = ranges_of(segments_from(record, rows));
-  const Matrix inputs = record.u.middleRows(rows.begin, rows.size());
+  const Matrix u = record.u.middleRows(rows.begin, rows.size()).transpose();
   const Matrix errors = errors_of(fit, record, rows);
   const Matrix mixed_errors = errors * uncorrelated_mixtures(errors).transpose();
   const double count = double(rows.size());
@@ -194,8 +184,7 @@ bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows,
   double ratio = 0;
   for (Index q = 0; q < p; ++q) {
     const Vector past = burg_coefficients(mixed_errors.col(q), segments);
-    Matrix L =
-        white_products(fit.model.A, std::exp(-rate), inputs, mixed_errors.col(q), past, segments);
+    Matrix L = white_products(fit.model.A, std::exp(-rate), u, mixed_errors.col(q), past, segments);
     const Index last = L.rows() - 1;
     L(last, last) += floor;
     const Vector scale = L.diagonal().unaryExpr(
