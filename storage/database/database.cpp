@@ -117,9 +117,8 @@ Connection open_writer(const fs::path& path, Durability durability) {
                 "database " + path.string() + " cannot be written: check its permissions");
   if (!is_empty(connection)) refuse_what_is_not_ours(connection, path);
   if (pragma(connection, "user_version") != schema::version) bring_up_to_date(connection);
-  connection.execute(
-      "PRAGMA journal_mode = WAL;"
-      "PRAGMA wal_autocheckpoint = 4096; PRAGMA journal_size_limit = 67108864");
+  connection.execute("PRAGMA journal_mode = WAL; PRAGMA journal_size_limit = 67108864");
+  connection.fold_log();
   // FULL flushes the log before a commit returns, NORMAL before it is folded into the file.
   connection.execute(durability == Durability::power_cut ? "PRAGMA synchronous = FULL"
                                                          : "PRAGMA synchronous = NORMAL");

@@ -8,9 +8,6 @@
 namespace reident::storage::sqlite {
 namespace {
 
-// Readers never wait in WAL mode but for moments such as a recovery after a crash.
-constexpr int busy_timeout_ms = 5000;
-
 struct Diagnosis {
   Error::Kind kind;
   const char* what_and_remedy;

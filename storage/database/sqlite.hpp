@@ -20,6 +20,7 @@
 
 #include "storage/database/database.hpp"
 #include "storage/database/file_guard.hpp"
+#include "storage/database/log_folding.hpp"
 
 namespace reident::storage::sqlite {
 
@@ -135,6 +136,8 @@ class Connection {
   void check_files() {
     if (guard_) guard_->check(*this);
   }
+  /// From now on each commit that finds the log long folds it into the file.
+  void fold_log() { folding_ = std::make_unique<LogFolding>(handle_.get()); }
   /// The log is left next to the file when the connection closes.
   void keep_log();
 
@@ -150,6 +153,7 @@ class Connection {
   sqlite3_file* file() const;
 
   std::unique_ptr<std::uint64_t> rollbacks_ = std::make_unique<std::uint64_t>(0);
+  std::unique_ptr<LogFolding> folding_;
   std::unique_ptr<sqlite3, Close> handle_;
   std::optional<FileGuard> guard_;
   std::unordered_map<std::string, Statement> statements_;

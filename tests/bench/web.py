@@ -8,12 +8,14 @@ last line, one JSON object of the figures.
 """
 
 import argparse
+import contextlib
 import gzip
 import http.client
 import json
 import os
 import selectors
 import socket
+import sqlite3
 import statistics
 import subprocess
 import sys
@@ -267,10 +269,11 @@ def live(build, folder, repetitions):
 
 def ingest(build, folder, config, endpoint, page):
     """The rate of ingest with 100 viewers and 4 endless questions, over that without; the log."""
-    flight = [build / "service/satcs/satcs-reference", "--spacecraft", "SAT", "--duration", "20h",
+    flight = [build / "service/satcs/satcs-reference", "--spacecraft", "SAT", "--duration", "5d",
               "--speed", "max", "--wait-readers", "1", *endpoint]
     rates, asked = {True: [], False: []}, []
-    log_bytes, stop = [], threading.Event()
+    log_bytes, stop = [0], threading.Event()
+    wal = folder / "live.db-wal"
 
     def ask():
         """By bare bytes: viewers are elsewhere, and their own work shall not count."""
@@ -287,29 +290,38 @@ def ingest(build, folder, config, endpoint, page):
                     left -= len(connection.recv(1 << 16))
                 asked.append(head.split()[1])
 
-    start = 0
-    for is_viewed in (False, True, True, False, False, True):
-        stop.clear()
-        viewers = Viewers(page.port, 100) if is_viewed else None
-        threads = [threading.Thread(target=ask) for _ in range(4 if is_viewed else 0)]
-        for thread in threads:
-            thread.start()
+    def fly(start):
+        """Seconds until all of a flight is archived: a heartbeat would round them."""
         begun = time.monotonic()
         running = subprocess.Popen([*flight, "--start", f"{2020 + start}-01-01"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         while running.poll() is None:
-            wal = folder / "live.db-wal"
-            log_bytes.append(wal.stat().st_size if wal.exists() else 0)
-            time.sleep(0.1)  # poll
+            log_bytes.append(wal.stat().st_size)
+            time.sleep(0.05)  # poll
+        wait_until(lambda: stored() - before >= samples * (start + 1), "all of the flight is stored")
+        return time.monotonic() - begun
+
+    with contextlib.closing(sqlite3.connect(f"file:{folder}/live.db?mode=ro", uri=True)) as archive:
+        def stored():
+            return archive.execute("SELECT sum(samples) FROM series").fetchone()[0]
+
+        samples, before = 0, stored()
+        fly(0)
         subprocess.run([build / "service/cli/reident", "status", "--wait", "idle", "--timeout", "120",
                         *endpoint], check=True, stdout=subprocess.DEVNULL)
-        rates[is_viewed].append(1 / (time.monotonic() - begun))
-        stop.set()
-        for thread in threads:
-            thread.join()
-        if viewers:
-            viewers.stop()
-        start += 1
+        samples = stored() - before
+        for start, is_viewed in enumerate((False, True, True, False, False, True), 1):
+            stop.clear()
+            viewers = Viewers(page.port, 100) if is_viewed else None
+            threads = [threading.Thread(target=ask) for _ in range(4 if is_viewed else 0)]
+            for thread in threads:
+                thread.start()
+            rates[is_viewed].append(1 / fly(start))
+            stop.set()
+            for thread in threads:
+                thread.join()
+            if viewers:
+                viewers.stop()
     assert asked and set(asked) <= {b"200", b"503"}, set(asked)
     return {"ingest_ratio": median(rates[True]) / median(rates[False]), "ingest_asked": len(asked),
             "log_mib": max(log_bytes) / 2**20}

@@ -158,6 +158,21 @@ if (account) {
     await page.getByRole("button", { name: label }).click();
     await page.waitForFunction((old) => [...document.querySelectorAll("form.decide button")].every((button) => button.textContent !== old), label);
   }
+  // A key moves what is drawn within the frame. Dense lines have the width of a pixel next to marks of
+  // decisions too: others take ten times as long.
+  await page.waitForSelector(".u-wrap canvas");
+  const widths = await page.evaluate(async () => {
+    const found = [], { stroke } = CanvasRenderingContext2D.prototype;
+    const measured = getComputedStyle(document.documentElement).getPropertyValue("--measured").trim();
+    CanvasRenderingContext2D.prototype.stroke = function (...path) {
+      if (path.length > 0 && this.strokeStyle === measured) found.push(this.lineWidth);
+      return stroke.apply(this, path);
+    };
+    dispatchEvent(new KeyboardEvent("keydown", { key: "+" }));
+    await new Promise(requestAnimationFrame);
+    return found;
+  });
+  check(widths.length > 0 && widths.every((width) => width === 1), `lines that a key moved have widths ${widths}`);
   await page.context().close();
 }
 

@@ -6,25 +6,41 @@ export function colourOf(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim() || "gray";
 }
 
-export function hatch(plot: uPlot, begin: number, end: number, colour: string): void {
-  const { ctx, bbox } = plot;
-  const left = Math.max(bbox.left, plot.valToPos(begin, "x", true));
-  const right = Math.min(bbox.left + bbox.width, plot.valToPos(end, "x", true));
-  if (right <= left) return;
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(left, bbox.top, Math.max(right - left, 1), bbox.height);
-  ctx.clip();
+/** A tile of slanted lines. */
+function slanted(plot: uPlot, colour: string): CanvasPattern {
+  const tile = document.createElement("canvas");
+  const size = tile.width = tile.height = Math.round(7 * devicePixelRatio);
+  const ctx = tile.getContext("2d")!;
   ctx.strokeStyle = colour;
   ctx.lineWidth = devicePixelRatio;
-  const step = 7 * devicePixelRatio;
-  ctx.beginPath();
-  for (let x = left - bbox.height; x < right; x += step) {
-    ctx.moveTo(x, bbox.top + bbox.height);
-    ctx.lineTo(x + bbox.height, bbox.top);
+  for (const shift of [-size, 0, size]) {
+    ctx.moveTo(shift, size);
+    ctx.lineTo(shift + size, 0);
   }
   ctx.stroke();
-  ctx.restore();
+  return plot.ctx.createPattern(tile, "repeat")!;
+}
+
+const narrowest = 4;  // that shows lines
+
+/** Fills ranges with slanted lines; narrow ones are filled as a whole. */
+export function hatch(plot: uPlot, ranges: [number, number][], colour: string): void {
+  const { ctx, bbox } = plot;
+  const narrow = new Path2D(), wide = new Path2D();
+  let isAnyWide = false;
+  for (const [begin, end] of ranges) {
+    const left = Math.max(bbox.left, plot.valToPos(begin, "x", true));
+    const width = Math.min(bbox.left + bbox.width, plot.valToPos(end, "x", true)) - left;
+    if (width <= 0) continue;
+    const isWide = width > narrowest * devicePixelRatio;
+    isAnyWide ||= isWide;
+    (isWide ? wide : narrow).rect(left, bbox.top, Math.max(width, 1), bbox.height);
+  }
+  ctx.fillStyle = colour;
+  ctx.fill(narrow);
+  if (!isAnyWide) return;
+  ctx.fillStyle = slanted(plot, colour);
+  ctx.fill(wide);
 }
 
 /** Text on a ground of the panel's colour, so that lines behind it do not cross it. */

@@ -31,12 +31,8 @@ export function link(view: string, parameters: Record<string, string | undefined
 export function go(view: string, parameters: Record<string, string | undefined> = {}, replace = false): void {
   const address = link(view, parameters);
   if (address === location.hash) return;
-  if (replace) {
-    history.replaceState(null, "", address);
-    window.dispatchEvent(new HashChangeEvent("hashchange"));
-  } else {
-    location.hash = address;
-  }
+  history[replace ? "replaceState" : "pushState"](null, "", address);
+  window.dispatchEvent(new HashChangeEvent("hashchange"));  // at once; that of `location.hash = ...` waits for the browser
 }
 
 /** Changes some parameters of the place where the page is. */

@@ -11,6 +11,7 @@ import { Table } from "../table";
 import { change, link, rangeIn } from "../url";
 
 const runSpan = 3 * 86400;  // free runs of longer ranges are of blocks alone
+const restMs = 80;  // a key that is held moves what is drawn; the server is asked when it rests
 
 interface Drawn {
   timeline: Timeline | null;
@@ -24,26 +25,34 @@ interface Drawn {
 function useDrawn(equipment: Equipment, begin: number, end: number, bins: string, version: string | null, turn: number): Drawn {
   const [drawn, set] = useState<Drawn>({ timeline: null, run: null, runError: "", failure: "", telemetry: {} });
   const { spacecraft, equipment: name } = equipment;
+  const isFirst = useRef(true);
   useEffect(() => {
     const abort = new AbortController();
-    const range = { begin: isoOf(begin), end: isoOf(end), bins };
     const put = (part: (before: Drawn) => Partial<Drawn>) => {
       if (!abort.signal.aborted) set((before) => ({ ...before, ...part(before) }));
     };
     const failed = (error: Error) => put(() => ({ failure: String(error.message ?? error) }));
-    put(() => ({ failure: "" }));
-    ask<Timeline>("timeline", { spacecraft, equipment: name, ...range }, abort.signal)
-      .then((timeline) => put(() => ({ timeline })), failed);
-    for (const parameter of [...equipment.outputs.map((one) => one.name), ...equipment.parameters])
-      ask<Telemetry>("telemetry", { spacecraft, parameter, ...range }, abort.signal)
-        .then((answer) => put(({ telemetry }) => ({ telemetry: { ...telemetry, [parameter]: answer } })),
-              failed);
-    if (!version || end - begin > runSpan) put(() => ({ run: null, runError: version ? "a free run is drawn over at most three days; the record below is of all of the range" : "" }));
-    else
-      ask<Run>("run", { spacecraft, equipment: name, version, ...range }, abort.signal)
-        .then((run) => put(() => ({ run, runError: "" })),
-              (error) => put(() => ({ run: null, runError: String(error.message ?? error) })));
-    return () => abort.abort();
+    const askAll = () => {
+      const range = { begin: isoOf(begin), end: isoOf(end), bins };
+      put(() => ({ failure: "" }));
+      ask<Timeline>("timeline", { spacecraft, equipment: name, ...range }, abort.signal)
+        .then((timeline) => put(() => ({ timeline })), failed);
+      for (const parameter of [...equipment.outputs.map((one) => one.name), ...equipment.parameters])
+        ask<Telemetry>("telemetry", { spacecraft, parameter, ...range }, abort.signal)
+          .then((answer) => put(({ telemetry }) => ({ telemetry: { ...telemetry, [parameter]: answer } })),
+                failed);
+      if (!version || end - begin > runSpan) put(() => ({ run: null, runError: version ? "a free run is drawn over at most three days; the record below is of all of the range" : "" }));
+      else
+        ask<Run>("run", { spacecraft, equipment: name, version, ...range }, abort.signal)
+          .then((run) => put(() => ({ run, runError: "" })),
+                (error) => put(() => ({ run: null, runError: String(error.message ?? error) })));
+    };
+    const timer = setTimeout(askAll, isFirst.current ? 0 : restMs);
+    isFirst.current = false;
+    return () => {
+      clearTimeout(timer);
+      abort.abort();
+    };
   }, [spacecraft, name, begin, end, bins, version, turn]);
   return drawn;
 }
@@ -153,11 +162,11 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
   const excluded = useMemo(() => united((timeline?.excluded ?? []).map((one) => [origin + one.begin_s, origin + one.end_s])), [timeline]);
   const asTable = parameters.show === "table";
 
-  const move = useCallback((from: number, to: number) => {
+  const move = useCallback((from: number, to: number, isOneStep = false) => {
     const [least, most] = [secondsOf(extent.begin), last];
     const width = Math.min(Math.max(to - from, 2), most - least);
     const start = Math.min(Math.max(from, least), most - width);
-    change({ begin: isoOf(start), end: isoOf(start + width) });
+    change({ begin: isoOf(start), end: isoOf(start + width) }, isOneStep);
   }, [extent.begin, last]);
 
   useEffect(() => {
@@ -168,8 +177,8 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
       const beside = (at: number | undefined) => at !== undefined && move(at - width / 2, at + width / 2);
       if (event.key === "+" || event.key === "=") move(middle - width / 4, middle + width / 4);
       else if (event.key === "-") move(middle - width, middle + width);
-      else if (event.key === "ArrowLeft" && !event.shiftKey) move(begin - width / 4, end - width / 4);
-      else if (event.key === "ArrowRight" && !event.shiftKey) move(begin + width / 4, end + width / 4);
+      else if (event.key === "ArrowLeft" && !event.shiftKey) move(begin - width / 4, end - width / 4, event.repeat);
+      else if (event.key === "ArrowRight" && !event.shiftKey) move(begin + width / 4, end + width / 4, event.repeat);
       else if (event.key === "0") change({ begin: undefined, end: undefined });
       else if (event.key === "[") beside(places.filter((at) => at < middle - 1).pop());
       else if (event.key === "]") beside(places.find((at) => at > middle + 1));
