@@ -286,11 +286,10 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
   const Placed placed = place_rows(table, period_ns, request.phase_ns);
   made.phase_ns = placed.phase_ns;
   if (placed.phase_ns != 0 && !request.phase_ns)
-    made.warnings.push_back(
-        fmt::format("ticks stand {0} behind the multiples of {1}, where all columns have come; a "
-                    "service does the same with phase = \"{0}\" for the equipment (--phase 0s puts "
-                    "ticks on the multiples)",
-                    duration_text(placed.phase_ns), duration_text(period_ns)));
+    made.warnings.push_back(fmt::format(
+        "ticks stand {0} behind the multiples of {1}, where all columns have come, as "
+        "in a service (--phase 0s, or phase = \"0s\" there, puts them on the multiples)",
+        duration_text(placed.phase_ns), duration_text(period_ns)));
   const auto samples = samples_of(table, placed.time_ns);
   const std::vector<std::uint8_t> usable(table.rows, 1);
   std::vector<identification::ChannelSamples> channels;

@@ -34,27 +34,6 @@ bool is_for_programs(const std::vector<std::string>& words) {
   });
 }
 
-/// Joins the lines that a sentence was broken into, so that the terminal's width breaks it alone.
-/// Lines that are indented, or end a sentence, keep their end.
-std::string unbroken(const std::string& text) {
-  std::string result = text;
-  std::size_t begin = 0;
-  for (std::size_t end = result.find('\n'); end != std::string::npos;
-       begin = end + 1, end = result.find('\n', end + 1)) {
-    const bool is_prose = end > begin && result[begin] != ' ' &&
-                          std::string_view(".:").find(result[end - 1]) == std::string_view::npos;
-    const bool goes_on = end + 1 < result.size() && result[end + 1] != ' ' &&
-                         result[end + 1] != '\n' && result.compare(end + 1, 4, "Exit") != 0;
-    if (is_prose && goes_on) result[end] = ' ';
-  }
-  return result;
-}
-
-void unbreak_footers(CLI::App& command) {
-  command.footer(unbroken(command.get_footer()));
-  for (CLI::App* part : command.get_subcommands({})) unbreak_footers(*part);
-}
-
 /// What is printed may be longer than a screen.
 bool is_long(const std::vector<std::string>& words) {
   constexpr std::array verbs_with_much = {"history", "show", "why", "compare", "completeness"};
@@ -127,7 +106,6 @@ int run(int argc, char** argv) {
     CLI::App* command = app.add_subcommand(std::string(verb.name), std::string(verb.purpose));
     command->group(std::string(group_title(verb.works_on)));
     command->callback([work = verb.declare(*command), &exit_code] { exit_code = work(); });
-    if (terminal_width() > 0) unbreak_footers(*command);
   }
   if (const auto refusal = unknown_verb(words)) return refuse(*refusal);
   try {

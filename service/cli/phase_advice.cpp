@@ -9,6 +9,7 @@ std::vector<std::string> advised_phases(storage::Database& database, const Confi
                                         const std::string& spacecraft,
                                         const std::string& equipment) {
   const storage::Archive archive(database);
+  const storage::Registry registry(database);
   std::vector<std::string> sentences;
   for (const SpacecraftConfig& craft : config.spacecraft) {
     if (!spacecraft.empty() && spacecraft != craft.name) continue;
@@ -16,7 +17,7 @@ std::vector<std::string> advised_phases(storage::Database& database, const Confi
     if (!extent) continue;
     for (const EquipmentConfig& one : craft.equipment) {
       if (!equipment.empty() && equipment != one.name) continue;
-      if (auto sentence = advised_phase(archive, craft.name, one, extent->end))
+      if (auto sentence = advised_phase(archive, registry, craft.name, one, extent->end))
         sentences.push_back(*std::move(sentence));
     }
   }

@@ -1,4 +1,4 @@
-// What commands say of equipment whose telemetry comes behind its ticks.
+// What commands say of equipment whose telemetry has left its ticks.
 #pragma once
 
 #include <string>

@@ -47,7 +47,9 @@ struct EquipmentConfig {
   std::vector<std::string> outputs;
   Duration sample_period = 0;
   Duration sample_hold = 0;  // default: three sample periods
-  Duration phase = 0;        // a tick takes samples of up to so long after it; below sample_period
+  /// A tick takes samples of up to so long after it; below sample_period. Absent: as with_phase()
+  /// (service/windows/ticks.hpp) finds it.
+  std::optional<Duration> phase{};
   Duration window = 0;
   Duration slide = 0;
   double validation_share = 0.3;  // last part of the window, for scores alone

@@ -163,8 +163,8 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
     reader.mistake("hold", fmt::format("hold {} is shorter than sample_period {}: there would be "
                                        "holes between samples",
                                        duration_text(*hold), duration_text(*period)));
-  equipment.phase = phase.value_or(0);
-  if (equipment.phase >= *period)
+  equipment.phase = phase;
+  if (phase && *phase >= *period)
     reader.mistake("phase", fmt::format("phase {} must be below sample_period {}: what comes later "
                                         "belongs to the next tick",
                                         duration_text(*phase), duration_text(*period)));

@@ -245,17 +245,18 @@ AttemptContext Daemon::attempt_context(const storage::Registry& registry) {
           &leagues_};
 }
 
-void Daemon::advise(const WindowFeed::Job& job, const storage::Archive& archive) {
+void Daemon::advise(const WindowFeed::Job& job, const storage::Archive& archive,
+                    const storage::Registry& registry) {
   if (std::exchange(kept_[job.window.equipment].is_advised, true)) return;
   if (const auto advice =
-          advised_phase(archive, *job.spacecraft, *job.equipment, job.window.window.end))
+          advised_phase(archive, registry, *job.spacecraft, *job.equipment, job.window.window.end))
     log::warning("identify", *advice, {{"equipment", *job.spacecraft + "/" + job.equipment->name}});
 }
 
 bool Daemon::identify(const WindowFeed::Job& job, const storage::Archive& archive,
                       const storage::Registry& registry) {
   const AttemptContext context = attempt_context(registry);
-  advise(job, archive);
+  advise(job, archive, registry);
   try {
     const auto attempt =
         attempt_window(job, archive, registry, kept_[job.window.equipment].windows, context);

@@ -70,7 +70,8 @@ class Daemon {
   /// For the thread whose database `registry` reads.
   AttemptContext attempt_context(const storage::Registry& registry);
   /// Says once which ticks suit an equipment's telemetry.
-  void advise(const WindowFeed::Job& job, const storage::Archive& archive);
+  void advise(const WindowFeed::Job& job, const storage::Archive& archive,
+              const storage::Registry& registry);
   /// False when the service stops before the window is decided.
   bool identify(const WindowFeed::Job& job, const storage::Archive& archive,
                 const storage::Registry& registry);

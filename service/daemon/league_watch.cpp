@@ -5,6 +5,7 @@
 
 #include "service/support/log.hpp"
 #include "service/support/time_text.hpp"
+#include "service/windows/ticks.hpp"
 
 namespace reident {
 
@@ -12,8 +13,8 @@ LeagueWatch::LeagueWatch(const Config& config, WindowFeed& feed)
     : settle_(config.settle), feed_(feed) {
   for (const SpacecraftConfig& spacecraft : config.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment)
-      watched_.push_back(std::unique_ptr<Watched>(
-          new Watched{&spacecraft.name, &equipment, {}, LeagueKeeper(spacecraft.name, equipment)}));
+      watched_.push_back(
+          std::unique_ptr<Watched>(new Watched{&spacecraft.name, &equipment, {}, {}, {}}));
 }
 
 bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive,
@@ -21,12 +22,16 @@ bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive
                           const LeagueContext& context) {
   Watched& watched = *watched_[equipment];
   const std::lock_guard lock(watched.mutex);
-  if (watched.is_outdated.exchange(false)) {
-    watched.keeper.emplace(*watched.spacecraft, *watched.equipment);
-    watched.is_failing = false;
-  }
   const std::string& spacecraft = *watched.spacecraft;
   const std::string& name = watched.equipment->name;
+  if (watched.is_outdated.exchange(false)) watched.keeper.reset();
+  if (!watched.keeper) {
+    watched.is_failing = false;
+    // The first version decides where ticks stand.
+    if (registry.decision_state(spacecraft, name).last_decision == 0) return true;
+    watched.on_its_ticks = with_phase(*watched.equipment, spacecraft, archive, registry);
+    watched.keeper.emplace(spacecraft, watched.on_its_ticks);
+  }
   LeagueWriter writer;
   writer.scores = [&](const auto& block, const auto& scores) {
     context.write([&](storage::Registry& stored, auto&) {
@@ -85,7 +90,7 @@ void LeagueWatch::read_again() {
 
 void LeagueWatch::forget(std::size_t equipment, storage::TimeRange range) {
   const std::lock_guard lock(watched_[equipment]->mutex);
-  watched_[equipment]->keeper->forget(range);
+  if (auto& keeper = watched_[equipment]->keeper) keeper->forget(range);
 }
 
 void LeagueWatch::look(const storage::Archive& archive, const storage::Registry& registry,

@@ -58,7 +58,8 @@ class LeagueWatch {
     const std::string* spacecraft;
     const EquipmentConfig* equipment;
     std::mutex mutex;
-    std::optional<LeagueKeeper> keeper;
+    EquipmentConfig on_its_ticks;           // what the keeper goes by
+    std::optional<LeagueKeeper> keeper;     // from the first version on
     std::atomic<bool> is_outdated = false;  // the keeper
     std::atomic<bool> is_failing = false;
     RepeatedError failure{};  // of look()

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "service/windows/ticks.hpp"
+
 namespace reident {
 namespace {
 
@@ -43,9 +45,11 @@ std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
   const storage::DecisionState state =
       registry.decision_state(*job.spacecraft, job.equipment->name);
   const RefreshRequest request{
-      *job.spacecraft, *job.equipment,
+      *job.spacecraft, with_phase(*job.equipment, *job.spacecraft, archive, registry),
       behind_champion(registry, *job.spacecraft, job.equipment->name, job.window.window),
       job.window.cause, context.configuration_digest};
+  if (kept.request() != request_of(request.spacecraft, request.equipment))
+    kept = window_cache_of(request.spacecraft, request.equipment);
   RecordedAttempt attempt{
       refresh(archive, registry, request, kept, context.for_each, context.stop)};
   const auto number = record(state, attempt.result, context);

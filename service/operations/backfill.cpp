@@ -11,6 +11,7 @@
 #include "service/operations/league_keeper.hpp"
 #include "service/operations/refresh.hpp"
 #include "service/support/floor_divide.hpp"
+#include "service/windows/ticks.hpp"
 #include "storage/archive/archive.hpp"
 #include "storage/registry/registry.hpp"
 
@@ -22,7 +23,7 @@ constexpr std::size_t windows_per_task = 4;
 
 struct Plan {
   const std::string* spacecraft;
-  const EquipmentConfig* equipment;
+  EquipmentConfig equipment;        // with the phase of its ticks
   std::vector<storage::Time> ends;  // ascending
 };
 
@@ -59,7 +60,8 @@ class Backfill {
         clock_(clock),
         report_(report),
         other_(other_than(database, config.database)),
-        archive_(other_ ? *other_ : database),
+        archive_database_(other_ ? *other_ : database),
+        archive_(archive_database_),
         registry_(database) {}
 
   BackfillProgress run(const BackfillRequest& request);
@@ -88,6 +90,7 @@ class Backfill {
   const std::function<bool(const BackfillProgress&)>& report_;
   std::function<std::optional<FoundWindow>(const RefreshRequest&)> found_;
   std::optional<storage::Database> other_;  // that telemetry is in
+  storage::Database& archive_database_;
   storage::Archive archive_;
   storage::Registry registry_;
   /// Windows behind changes, by their ends, with their begins.
@@ -97,12 +100,14 @@ class Backfill {
 
 BackfillProgress Backfill::run(const BackfillRequest& request) {
   found_ = request.found;
+  const storage::Registry beside_archive(archive_database_);
   std::vector<Plan> plans;
   for (const SpacecraftConfig& spacecraft : config_.spacecraft)
     for (const EquipmentConfig& equipment : spacecraft.equipment) {
       if (!request.spacecraft.empty() && spacecraft.name != request.spacecraft) continue;
       if (!request.equipment.empty() && equipment.name != request.equipment) continue;
-      plans.push_back({&spacecraft.name, &equipment,
+      plans.push_back({&spacecraft.name,
+                       with_phase(equipment, spacecraft.name, archive_, beside_archive),
                        untried(archive_, registry_, spacecraft.name, equipment, request.range)});
       progress_.windows += plans.back().ends.size();
     }
@@ -112,8 +117,8 @@ BackfillProgress Backfill::run(const BackfillRequest& request) {
 }
 
 bool Backfill::run(const Plan& plan) {
-  progress_.equipment = *plan.spacecraft + "/" + plan.equipment->name;
-  LeagueKeeper league(*plan.spacecraft, *plan.equipment);
+  progress_.equipment = *plan.spacecraft + "/" + plan.equipment.name;
+  LeagueKeeper league(*plan.spacecraft, plan.equipment);
   behind_changes_.clear();
   const std::size_t batch = windows_per_task * usable_cores();
   for (std::size_t begin = 0; begin < plan.ends.size(); begin += batch) {
@@ -132,8 +137,8 @@ bool Backfill::run(const Plan& plan) {
 
 RefreshRequest Backfill::request_of_window(const Plan& plan, storage::Time end) const {
   return {*plan.spacecraft,
-          *plan.equipment,
-          {end - plan.equipment->window, end},
+          plan.equipment,
+          {end - plan.equipment.window, end},
           "backfill",
           config_.digest};
 }
@@ -148,7 +153,7 @@ void Backfill::prepare(const Plan& plan, std::size_t begin, std::size_t first,
                        std::vector<std::optional<PreparedWindow>>& prepared) {
   storage::Database database(config_.database, storage::Database::Mode::read_only);
   const storage::Archive archive(database);
-  WindowCache kept = window_cache_of(*plan.spacecraft, *plan.equipment);
+  WindowCache kept = window_cache_of(*plan.spacecraft, plan.equipment);
   for (std::size_t i = first; i < std::min(first + windows_per_task, prepared.size()); ++i)
     prepared[i] = prepare(archive, request_of_window(plan, plan.ends[begin + i]), kept);
 }

@@ -15,6 +15,7 @@
 #include "service/support/sha256.hpp"
 #include "service/windows/member_run.hpp"
 #include "service/windows/provenance.hpp"
+#include "service/windows/ticks.hpp"
 #include "storage/archive/archive.hpp"
 
 namespace reident::sweep {
@@ -147,7 +148,8 @@ ordered_json compare_equipment(storage::Database& sweep, storage::Database& actu
                                const EquipmentConfig& equipment, const EquipmentName& name,
                                TimeRange range) {
   const storage::Archive archive(actual);
-  BlockReader reader(name.spacecraft, equipment);
+  BlockReader reader(name.spacecraft,
+                     with_phase(equipment, name.spacecraft, archive, storage::Registry(actual)));
   ServedVersions would(sweep, name), was(actual, name);
   Sums would_common, was_common;
   std::size_t common = 0;

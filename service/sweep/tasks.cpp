@@ -13,6 +13,7 @@
 #include "service/support/version.hpp"
 #include "service/sweep/comparison.hpp"
 #include "service/sweep/task_file.hpp"
+#include "service/windows/ticks.hpp"
 #include "storage/archive/archive.hpp"
 
 namespace reident::sweep {
@@ -54,10 +55,11 @@ std::optional<ordered_json> find_candidates(const Plan& plan, std::size_t number
                                             const std::function<bool()>& stop) {
   const CandidateTask& task = plan.candidates[number];
   const PlannedSpacecraft& spacecraft = plan.spacecraft[task.spacecraft];
-  const EquipmentConfig& equipment = equipment_of(plan, task);
   const Config& config = plan.configurations[spacecraft.configuration];
   Database database(config.database, Database::Mode::read_only);
   const storage::Archive archive(database);
+  const EquipmentConfig equipment =
+      with_phase(equipment_of(plan, task), spacecraft.name, archive, storage::Registry(database));
   WindowCache kept = window_cache_of(spacecraft.name, equipment);
   ordered_json windows = ordered_json::array();
   for (const Time end : window_ends(archive, spacecraft.name, equipment, task.range)) {

@@ -160,7 +160,7 @@ Candidate candidate_of(const RefreshRequest& request, const WindowData& data,
   model.outputs = with_ranges(data.outputs, fitted(data.record.y));
   model.dynamics = dynamics;
   model.sample_hold_ns = request.equipment.sample_hold;
-  if (request.equipment.phase > 0) model.phase_ns = request.equipment.phase;
+  if (request.equipment.phase.value_or(0) > 0) model.phase_ns = request.equipment.phase;
   model.identified_from = time_range(data.record, parts.identify, period);
   model.validated_on = time_range(data.record, parts.validate, period);
   model.method = method;

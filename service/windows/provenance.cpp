@@ -40,7 +40,7 @@ ordered_json to_json(const EquipmentConfig& equipment) {
                        {"min_coverage", equipment.min_coverage},
                        {"min_order", equipment.min_order},
                        {"max_order", equipment.max_order}};
-  if (equipment.phase > 0) json["phase_ns"] = equipment.phase;
+  if (equipment.phase.value_or(0) > 0) json["phase_ns"] = *equipment.phase;
   if (equipment.regime_inputs > 0) json["regime_inputs"] = equipment.regime_inputs;
   if (equipment.screening) json["screening"] = true;
   for (const Relation& relation : equipment.relations)
@@ -131,7 +131,7 @@ std::vector<std::int64_t> revisions_of(const storage::Archive& archive,
                                        const RefreshRequest& request) {
   std::vector<std::int64_t> batches;
   const storage::TimeRange range{request.window.begin - request.equipment.sample_hold,
-                                 request.window.end + request.equipment.phase};
+                                 request.window.end + request.equipment.phase.value_or(0)};
   for (const std::string& name : parameters_of(request.equipment))
     if (const auto parameter = archive.parameter(request.spacecraft, name)) {
       const auto of_one =

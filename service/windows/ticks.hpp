@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "service/config/config.hpp"
-#include "storage/types/sample_reader.hpp"
+#include "storage/archive/archive.hpp"
+#include "storage/registry/registry.hpp"
 
 namespace reident {
 
@@ -19,14 +20,21 @@ std::int64_t usual_step(std::span<const std::int64_t> steps_ns);
 
 /// Returns how far behind the multiples of the period ticks have to stand so that the values at a
 /// tick belong together: in the widest stretch of a period in which no channel speaks. 0 where the
-/// multiples do, or no place is better.
+/// multiples do, or no place is better. The first 1000 periods in which all channels speak decide.
 std::int64_t suitable_phase(const std::vector<std::vector<std::int64_t>>& channels_ns,
                             std::int64_t period_ns);
 
-/// Where the configuration leaves an equipment's ticks on the multiples of its period, and its
-/// newest telemetry before `end` suits others: one sentence with the key that mends it. Damaged
-/// samples count as none. Throws storage::Error where the file cannot be read.
-std::optional<std::string> advised_phase(const storage::SampleReader& telemetry,
+/// Returns the equipment with the phase of its ticks: the configured one; else that of its newest
+/// version, where this was made of the same telemetry; else what suits its first telemetry. So the
+/// phase stays as it is from the first version on. Damaged samples count as none. Throws
+/// storage::Error where the file cannot be read.
+EquipmentConfig with_phase(EquipmentConfig equipment, const std::string& spacecraft,
+                           const storage::Archive& archive, const storage::Registry& registry);
+
+/// Where the configuration says no phase, and the newest telemetry before `end` suits another than
+/// with_phase() gives: one sentence with the key that mends it. Throws as that does.
+std::optional<std::string> advised_phase(const storage::Archive& archive,
+                                         const storage::Registry& registry,
                                          const std::string& spacecraft,
                                          const EquipmentConfig& equipment, storage::Time end);
 

@@ -39,9 +39,13 @@ WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& e
   for (const std::string& input : equipment.inputs)
     for (const DerivedInput& one : equipment.derived)
       if (one.name == input) derived.push_back(one);
-  return {spacecraft,        equipment.inputs,        std::move(derived),
-          equipment.outputs, equipment.sample_period, equipment.sample_hold,
-          equipment.phase};
+  return {spacecraft,
+          equipment.inputs,
+          std::move(derived),
+          equipment.outputs,
+          equipment.sample_period,
+          equipment.sample_hold,
+          equipment.phase.value_or(0)};
 }
 
 WindowRequest request_of(const EquipmentModel& model) {

@@ -108,8 +108,9 @@ std::function<int()> declare(CLI::App& command) {
   parts->group("Commands");
   command.footer(
       "The files are in FILE.shards and never change. The archive is read as one with them: move "
-      "and\ncopy both together, or use 'reident backup'.\n"
-      "Example:\n  reident archive split reident.db --before 2026");
+      "and copy both together, or use 'reident backup'.\n"
+      "Example:\n"
+      "  reident archive split reident.db --before 2026");
   return [arguments] { return run(*arguments); };
 }
 

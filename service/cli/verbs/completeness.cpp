@@ -354,8 +354,8 @@ std::function<int()> declare(CLI::App& command) {
   command.footer(
       "Missing are the samples that would stand in the gaps of each parameter, by its own step.\n"
       "A gap counts on the day on which it begins, once where it is in many parameters; what is "
-      "missing on the days where it would\n"
-      "stand; frames are missing by their sequence numbers. Works while reidentd writes.\n"
+      "missing on the days where it would stand; frames are missing by their sequence numbers. "
+      "Works while reidentd writes.\n"
       "Example:\n"
       "  reident completeness reident.db --spacecraft SAT-1 --from 2026-03-01 --by hour");
   return [arguments] { return run(*arguments); };

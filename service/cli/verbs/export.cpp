@@ -95,7 +95,7 @@ std::function<int()> declare(CLI::App& command) {
       ->capture_default_str();
   add_replace_option(command, arguments->replace);
   command.footer(
-      "One sample a row: spacecraft,parameter,origin,source,time,value,quality,unit, each series\n"
+      "One sample a row: spacecraft,parameter,origin,source,time,value,quality,unit, each series "
       "in order of time. Values have all their digits: reident import brings the same samples "
       "back.\n"
       "A file gets its name when it is complete. Works while reidentd writes.\n"

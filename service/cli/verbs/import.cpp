@@ -190,10 +190,10 @@ std::function<int()> declare(CLI::App& command) {
   add_reading_options(command, arguments->reading);
   command.add_flag("--json", arguments->json, "one JSON object with the counts");
   command.footer(
-      "A file has a column with the time and one for each parameter, or one sample a row in the\n"
-      "columns parameter, time and value, and spacecraft, origin, source, quality and unit where\n"
+      "A file has a column with the time and one for each parameter, or one sample a row in the "
+      "columns parameter, time and value, and spacecraft, origin, source, quality and unit where "
       "there are any. An empty cell is no sample.\n"
-      "Stopped or killed, the same command goes on where it ended. A second import stores nothing\n"
+      "Stopped or killed, the same command goes on where it ended. A second import stores nothing "
       "twice. Works on the file, so reidentd must not run.\n"
       "Example:\n"
       "  reident import telemetry.csv --db reident.db --spacecraft SAT-1\n"

@@ -314,12 +314,13 @@ std::function<int()> declare(CLI::App& command) {
       ->capture_default_str();
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
-      "A line for each equipment, the worst first: its champion; the champion's error over the\n"
-      "last two cycles, and then, when it was approved; the simulator's own model's; the age of\n"
+      "A line for each equipment, the worst first: its champion; the champion's error over the "
+      "last two cycles, and then, when it was approved; the simulator's own model's; the age of "
       "its telemetry; simulators that run the champion, of all. Below are the alarms.\n"
-      "Example:\n  reident overview --config reident.toml --watch\n"
-      "Exit status: 0 when all is well; 1 when somebody has to act: an alarm that nobody has\n"
-      "seen, or a version that waits.");
+      "Example:\n"
+      "  reident overview --config reident.toml --watch\n"
+      "Exit status: 0 when all is well; 1 when somebody has to act: an alarm that nobody has seen, "
+      "or a version that waits.");
   return [arguments] { return run(*arguments); };
 }
 

@@ -143,10 +143,11 @@ std::function<int()> declare(CLI::App& command) {
   add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
-      "Errors are of free runs on the telemetry from a version's approval until the next one,\n"
-      "nothing excluded: of the version, of the one that it replaced, of the outputs' means over\n"
+      "Errors are of free runs on the telemetry from a version's approval until the next one, "
+      "nothing excluded: of the version, of the one that it replaced, of the outputs' means over "
       "its window, and of a static regression of its window.\n"
-      "Example:\n  reident score CBERS-4/BDR --config reident.toml");
+      "Example:\n"
+      "  reident score CBERS-4/BDR --config reident.toml");
   return [arguments] { return run(*arguments); };
 }
 

@@ -208,8 +208,9 @@ std::function<int()> declare(CLI::App& command) {
       ->capture_default_str();
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
-      "Example:\n  reident simulators CBERS-4/BDR --old\n"
-      "Exit status: 0 when the list was printed, also an empty one; with --old 1 when somebody is\n"
+      "Example:\n"
+      "  reident simulators CBERS-4/BDR --old\n"
+      "Exit status: 0 when the list was printed, also an empty one; with --old 1 when somebody is "
       "on it, and 4 when there are simulators and no service says which version is champion.");
   return [arguments] { return run(*arguments); };
 }

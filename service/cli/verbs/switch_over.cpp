@@ -24,10 +24,10 @@ std::function<int()> declare(CLI::App& command) {
       ->capture_default_str();
   command.add_flag("--json", options->json, "one JSON object with the reply");
   command.footer(
-      "The service of the pair that leads gives leadership to the other one, which has all that "
-      "it\n"
+      "The service of the pair that leads gives leadership to the other one, which has all that it "
       "has by then. 'reident status' shows both.\n"
-      "Example:\n  reident switch-over --reason \"new disk\" --config reident.toml\n"
+      "Example:\n"
+      "  reident switch-over --reason \"new disk\" --config reident.toml\n"
       "Exit status: 2 when it was refused, with the reason; 4 when no service answered in time.");
   return [options] { return operate(*options, {"switch_over", "", "", 0}); };
 }

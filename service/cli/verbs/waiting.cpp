@@ -93,9 +93,10 @@ std::function<int()> declare(CLI::App& command) {
   add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
-      "Versions that wait for telemetry are not listed: 'reident history' has them. To approve a\n"
+      "Versions that wait for telemetry are not listed: 'reident history' has them. To approve a "
       "version rejects those that it supersedes: earlier ones of its equipment that wait too.\n"
-      "Example:\n  reident waiting --config reident.toml\n"
+      "Example:\n"
+      "  reident waiting --config reident.toml\n"
       "Exit status: 0 when none waits, 1 when one does.");
   return [arguments] { return run(*arguments); };
 }

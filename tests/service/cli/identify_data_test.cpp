@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "service/windows/ticks.hpp"
 #include "service/windows/window_data.hpp"
 #include "storage/archive/archive.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
@@ -42,14 +43,15 @@ std::vector<Row> telemetry() {
   return made;
 }
 
+/// Seconds since 1970, so many ms behind the row.
+std::string later(const Row& row, std::int64_t ms) {
+  return fmt::format("{:.3f}", double(row.ms + ms) / 1000);
+}
+
 std::string with_commas(std::string text) {
   std::replace(text.begin(), text.end(), '.', ',');
   return text;
 }
-
-constexpr const char* equipment =
-    "[[spacecraft]]\nname = \"SAT-1\"\n[[spacecraft.equipment]]\nname = \"X\"\ninputs = [\"u\"]\n"
-    "outputs = [\"y\"]\nsample_period = \"10s\"\nhold = \"40s\"\nwindow = \"1h\"\norder = 1\n";
 
 struct Dress {
   const char* name;
@@ -75,20 +77,23 @@ class IdentifyRows : public test::CliTest {
       throw std::runtime_error(refusal->message);
     return std::get<IdentifyData>(std::move(read));
   }
-  identification::Record of_archive(const Dress& dress, const std::string& file,
-                                    std::int64_t phase_ns) const {
-    storage::Database database(folder() / file, storage::Database::Mode::read_write);
-    const WindowRequest request{.spacecraft = "SAT-1",
-                                .inputs = {"u"},
-                                .derived = {},
-                                .outputs = {"y"},
-                                .period = 10 * second,
-                                .sample_hold = dress.hold_s * second,
-                                .phase = phase_ns};
+  /// Of a window that begins and ends with the file; its ticks are where a service has them.
+  static WindowData of_archive(const Dress& dress, const std::filesystem::path& file,
+                               const identification::Record& here) {
+    storage::Database database(file, storage::Database::Mode::read_write);
     const storage::Archive archive(database);
-    auto loaded =
-        load_window(archive, request, {begin_s * second, (begin_s + 10 * rows - 5) * second});
-    return std::get<WindowData>(std::move(loaded)).record;
+    EquipmentConfig equipment;
+    equipment.inputs = {"u"};
+    equipment.outputs = {"y"};
+    equipment.sample_period = 10 * second;
+    equipment.sample_hold = dress.hold_s * second;
+    equipment.window = 3600 * second;
+    equipment = with_phase(equipment, "SAT-1", archive, storage::Registry(database));
+    const auto& last = here.segments.back();
+    auto loaded = load_window(archive, request_of("SAT-1", equipment),
+                              {here.segments.front().first_tick * 10 * second,
+                               (last.first_tick + last.size()) * 10 * second});
+    return std::get<WindowData>(std::move(loaded));
   }
 };
 
@@ -107,6 +112,17 @@ TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
       {"packets", "time,u,y\n",
        [](const Row& r) {
          return r.date + ".000Z," + r.u + ",\n" + r.date + ".180Z,," + r.y + "\n";
+       },
+       30, true},
+      {"late_sensor", "time,u,y\n",
+       [](const Row& r) {
+         return r.date + "Z," + r.u + ",\n" + later(r, 2500) + ",," + r.y + "\n";
+       },
+       30, true},
+      {"packets_that_jitter", "time,u,y\n",
+       [](const Row& r) {
+         const std::int64_t jitter = r.ms / 10'000 % 5 * 40 - 80;
+         return later(r, jitter) + "," + r.u + ",\n" + later(r, 400 + jitter) + ",," + r.y + "\n";
        },
        30, true},
       {"on_change", "time,u,y\n",
@@ -132,16 +148,11 @@ TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
     const auto data = of_file(dress, file, header.find("time_ms") == 0 ? "time_ms" : "time");
     EXPECT_EQ(data.phase_ns != 0, dress.has_phase) << dress.name;
     const auto& here = data.record;
-    const auto there = of_archive(dress, archive, data.phase_ns);
+    const auto there = of_archive(dress, folder() / archive, here).record;
     EXPECT_GE(here.rows(), rows - 2) << dress.name;
     EXPECT_EQ(here.segments, there.segments) << dress.name;
     EXPECT_EQ(here.u, there.u) << dress.name;
     EXPECT_EQ(here.y, there.y) << dress.name;
-    write("reident.toml", "[archive]\ndatabase = \"" + archive + "\"\n" + equipment);
-    EXPECT_EQ(
-        reident({"backfill", "--config", "reident.toml"}).err.find("phase = ") != std::string::npos,
-        dress.has_phase)
-        << dress.name;
   }
 }
 

@@ -51,11 +51,12 @@ TEST(Config, AMinimalFileHasGoodDefaults) {
   EXPECT_EQ(bdr.approval, ApprovalPolicy::automatic);
 }
 
-TEST(Config, PhaseIsZeroWhereNoneIsGiven) {
+TEST(Config, LeavesThePhaseToTelemetryWhereNoneIsGiven) {
   const auto phase = [](const std::string& text) {
     return config_of(text).spacecraft[0].equipment[0].phase;
   };
-  EXPECT_EQ(phase(minimal), 0);
+  EXPECT_EQ(phase(minimal), std::nullopt);
+  EXPECT_EQ(phase(minimal + "phase = \"0s\""), 0);
   EXPECT_EQ(phase(minimal + "phase = \"180ms\""), 180 * ms);
 }
 

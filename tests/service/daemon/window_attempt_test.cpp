@@ -1,9 +1,11 @@
 #include "service/daemon/window_attempt.hpp"
 
+#include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
 
+#include "service/operations/backfill.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
 namespace reident::test::window_attempt_test {
@@ -11,9 +13,12 @@ namespace {
 
 class WindowAttempt : public DaemonTest {
  protected:
-  WindowAttempt() {
+  explicit WindowAttempt(Duration jitter = 0) {
+    auto frames = telemetry(day, 1801);
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      frames[i].generation_time += (static_cast<Duration>(i % 7) - 3) * jitter / 3;
     archive.describe(descriptors());
-    archive.append(telemetry(day, 1801));
+    archive.append(frames);
   }
   RecordedAttempt attempt(storage::TimeRange window) { return *try_window(window); }
   /// `before` runs before anything is written.
@@ -65,6 +70,34 @@ TEST_F(WindowAttempt, IsNotRecordedWithoutAModelEitherOnceTheDecisionStateIsAnot
   EXPECT_EQ(writes, 2) << "the seal and the record";
   EXPECT_TRUE(registry.attempts({}).empty());
   EXPECT_EQ(attempt(empty).result.attempt.outcome, "low_coverage");
+}
+
+class WindowAttemptOnTimesThatJitter : public WindowAttempt {
+ protected:
+  WindowAttemptOnTimesThatJitter() : WindowAttempt(45 * second / 1000) {}
+};
+
+TEST_F(WindowAttemptOnTimesThatJitter, PutsItsTicksWhereBackfillDoes) {
+  const auto first = attempt({day, day + 10 * minute});
+  ASSERT_TRUE(registry.champion("SAT", "PLANT"));
+  EXPECT_EQ(first.result.candidate->phase_ns, 100 * second / 1000);
+  const auto next = attempt({day + 5 * minute, day + 15 * minute});
+  EXPECT_TRUE(std::isfinite(next.result.champion_mrse_percent)) << "it asks for the same telemetry";
+
+  Config later = all;
+  later.database = path();
+  storage::Database other(path().parent_path() / "other.db", storage::Database::Mode::read_write);
+  WorkerPool workers(1);
+  const BackfillProgress progress = backfill(
+      other, later, {{}, {}, {day + 10 * minute, day + 16 * minute}}, workers,
+      [](storage::Time) { return day; }, [](const BackfillProgress&) { return true; });
+  EXPECT_EQ(progress.done, 2U);
+  for (const std::int64_t number : {1, 2}) {
+    const auto here = registry.version("SAT", "PLANT", number);
+    const auto there = storage::Registry(other).version("SAT", "PLANT", number);
+    ASSERT_TRUE(there) << number;
+    EXPECT_EQ(there->digest, here->digest) << number;
+  }
 }
 
 }  // namespace
