@@ -15,7 +15,7 @@ for option in "$@"; do
   case $option in
     --with-tests)
       packages+=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev systemd
-                 clang clang-format clang-tidy python3 sqlite3 git octave valgrind
+                 clang clang-format clang-tidy python3 python3-yaml sqlite3 git octave valgrind
                  chromium slurm-wlm munge)
       # Node from elsewhere brings npm along, and does not go together with Debian's.
       command -v npm >/dev/null || packages+=(nodejs npm)

@@ -1,9 +1,7 @@
 #include "service/config/config.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include <fmt/format.h>
@@ -17,7 +15,6 @@
 namespace reident {
 namespace {
 
-constexpr std::size_t max_file_bytes = 4u << 20;
 constexpr std::uint64_t least_max_size = 1'000'000;
 constexpr double least_tolerance = 1e-12;
 constexpr double max_rate = 10'000;  // frames a second
@@ -200,27 +197,6 @@ void read_all(ConfigDocument& document, Config& config) {
     document.mistakes.push_back(
         {0, "there is no spacecraft; add [[spacecraft]] with a name and equipment"});
   reader.refuse_unknown_keys();
-}
-
-std::variant<std::string, ConfigMistake> read_file(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error))
-    return ConfigMistake{0, "this is a folder; name the configuration file in it"};
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    return ConfigMistake{0,
-                         fmt::format("cannot be read: {}", std::generic_category().message(errno))};
-  std::string text;
-  std::array<char, 16384> piece;
-  do {
-    file.read(piece.data(), piece.size());
-    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
-  } while (file && text.size() <= max_file_bytes);
-  if (file.bad()) return ConfigMistake{0, "cannot be read to its end"};
-  if (text.size() > max_file_bytes)
-    return ConfigMistake{
-        0, fmt::format("is larger than {} MiB; this is no configuration", max_file_bytes >> 20)};
-  return text;
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "service/config/config_document.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <fstream>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -19,6 +21,7 @@ constexpr std::size_t max_syntax_mistakes = 20;
 constexpr std::size_t max_value_lines = 50;
 // The text is parsed again after each mistake: of a longer one only the first is reported.
 constexpr std::size_t max_recovered_bytes = std::size_t{128} << 10;
+constexpr std::size_t max_file_bytes = 4u << 20;
 
 /// The lines of a text that is parsed again and again with less and less in it.
 class Lines {
@@ -123,6 +126,27 @@ std::string described(const toml::node& node) {
 }
 
 }  // namespace
+
+std::variant<std::string, ConfigMistake> read_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    return ConfigMistake{0, "this is a folder; name the configuration file in it"};
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    return ConfigMistake{0,
+                         fmt::format("cannot be read: {}", std::generic_category().message(errno))};
+  std::string text;
+  std::array<char, 16384> piece;
+  do {
+    file.read(piece.data(), piece.size());
+    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+  } while (file && text.size() <= max_file_bytes);
+  if (file.bad()) return ConfigMistake{0, "cannot be read to its end"};
+  if (text.size() > max_file_bytes)
+    return ConfigMistake{
+        0, fmt::format("is larger than {} MiB; this is no configuration", max_file_bytes >> 20)};
+  return text;
+}
 
 ConfigDocument parse_document(std::string_view text) {
   ConfigDocument document;

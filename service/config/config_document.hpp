@@ -6,11 +6,13 @@
 // toml++ 3.3 asserts that a table's name begins with a letter that it may, and then refuses it.
 #define TOML_ASSERT(expression) static_assert(true)
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <toml++/toml.h>
@@ -18,6 +20,9 @@
 #include "service/config/config.hpp"
 
 namespace reident {
+
+/// Returns the text of a file, or why it is none of a configuration.
+std::variant<std::string, ConfigMistake> read_file(const std::filesystem::path& path);
 
 /// What could be read of a text. Where `complete` is false, lines with syntax mistakes were left
 /// out of the table, so that an absent key is no mistake of its own.

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
+#include <initializer_list>
 #include <set>
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 
 #include "service/config/config_document.hpp"
@@ -36,13 +36,52 @@ bool is_unit_name(const std::string& name) {
   return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), allowed);
 }
 
+/// Reads a number with one of these units. What systemd does not take it ignores, with a warning
+/// that nobody sees: no limit would hold.
+std::optional<std::string> read_limit(TableReader& reader, std::string_view key,
+                                      std::initializer_list<std::string_view> units,
+                                      std::string_view example) {
+  auto text = reader.text(key);
+  if (!text) return text;
+  const std::size_t digits = std::min(text->find_first_not_of("0123456789."), text->size());
+  const auto unit = std::string_view(*text).substr(digits);
+  if (digits == 0 || std::find(units.begin(), units.end(), unit) == units.end())
+    reader.mistake(key, fmt::format("{} \"{}\" is no limit of systemd; use one such as \"{}\"", key,
+                                    *text, example));
+  return text;
+}
+
+std::optional<std::string> read_memory_max(TableReader& reader) {
+  return read_limit(reader, "memory_max", {"", "B", "K", "M", "G", "T", "%"}, "1G");
+}
+
+std::optional<std::string> read_cpu_quota(TableReader& reader) {
+  return read_limit(reader, "cpu_quota", {"%"}, "50%");
+}
+
+/// The middleware takes an interface by its address, not by a name.
+std::optional<std::string> read_host(TableReader& reader) {
+  auto host = reader.text("host");
+  in_addr address{};
+  if (host && inet_pton(AF_INET, host->c_str(), &address) != 1)
+    reader.mistake("host", fmt::format("host \"{}\" is no address of a machine; use one such as "
+                                       "\"10.0.0.1\"",
+                                       *host));
+  return host;
+}
+
+/// systemd would take the rest of the path for another one, or replace what it holds.
+bool is_plain_path(const std::string& path) {
+  return path.find_first_of(" \t\n\r\"'\\%") == std::string::npos;
+}
+
 std::optional<FleetNetwork> read_network(TableReader& fleet, ConfigDocument& document) {
   const toml::table* table = fleet.section("network");
   if (table == nullptr) return std::nullopt;
   TableReader reader(*table, "[fleet.network]", document);
   FleetNetwork network;
   reader.require("host", "\"10.0.0.1\"");
-  network.host = reader.text("host").value_or("");
+  network.host = read_host(reader).value_or("");
   network.gateways =
       static_cast<int>(reader.integer("gateways", 0, most_gateways).value_or(network.gateways));
   reader.refuse_unknown_keys();
@@ -57,24 +96,42 @@ void read_defaults(const toml::table& table, ConfigDocument& document, Fleet& fl
     fleet.domain = static_cast<std::uint32_t>(*domain);
   defaults.partition = reader.text("partition").value_or(defaults.partition);
   defaults.data = reader.text("data").value_or(defaults.data);
-  defaults.memory_max = reader.text("memory_max");
-  defaults.cpu_quota = reader.text("cpu_quota");
+  defaults.memory_max = read_memory_max(reader);
+  defaults.cpu_quota = read_cpu_quota(reader);
   fleet.network = read_network(reader, document);
   reader.refuse_unknown_keys();
 }
 
+/// What two spacecraft may not share, of those that were read.
+struct Taken {
+  std::set<std::string> names, partitions, folders, pages;
+};
+
+void refuse_shared(const FleetInstance& one, TableReader& reader, Taken& taken) {
+  const auto refuse = [&](std::string_view key, const std::string& what) {
+    reader.mistake(key, fmt::format("spacecraft {} has {} of another one", one.name, what));
+  };
+  // The others follow from the name.
+  if (!taken.names.insert(one.name).second) return refuse("name", "the name");
+  if (!taken.partitions.insert(one.partition).second)
+    refuse("partition", "partition " + one.partition);
+  if (!taken.folders.insert(one.data.lexically_normal().string()).second)
+    refuse("data", "folder " + one.data.string());
+  if (one.page && !taken.pages.insert(*one.page).second) refuse("page", "page " + *one.page);
+}
+
 std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocument& document,
                                            const Fleet& fleet, const FleetDefaults& defaults,
-                                           const std::filesystem::path& folder) {
+                                           const std::filesystem::path& folder, Taken& taken) {
   TableReader reader(table, "[[spacecraft]]", document);
   reader.require("name", "\"SAT-1\"");
   const auto name = reader.text("name");
   const auto configuration = reader.text("configuration");
   const auto partition = reader.text("partition"), data = reader.text("data");
-  const auto memory_max = reader.text("memory_max"), cpu_quota = reader.text("cpu_quota");
+  const auto memory_max = read_memory_max(reader), cpu_quota = read_cpu_quota(reader);
   FleetInstance instance;
   instance.page = reader.text("page");
-  const auto host = reader.text("host");
+  const auto host = read_host(reader);
   if (host && !fleet.network)
     reader.mistake("host", "host needs a [fleet.network], which says that there is one");
   if (fleet.network) instance.host = host.value_or(fleet.network->host);
@@ -96,45 +153,34 @@ std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocum
   if (!instance.data.is_absolute())
     reader.mistake("data",
                    fmt::format("data {} has to be an absolute path", instance.data.string()));
+  if (is_unit_name(*name) && !is_plain_path(instance.data.string()))
+    reader.mistake("data", fmt::format("data {} has to be a path without blanks, quotes, \\ and %: "
+                                       "units hold it",
+                                       instance.data.string()));
   instance.memory_max = memory_max ? memory_max : defaults.memory_max;
   instance.cpu_quota = cpu_quota ? cpu_quota : defaults.cpu_quota;
+  refuse_shared(instance, reader, taken);
   return instance;
-}
-
-/// What two spacecraft may not share.
-void refuse_shared(const Fleet& fleet, ConfigDocument& document) {
-  std::set<std::string> names, partitions, folders;
-  const auto refuse = [&](const FleetInstance& one, const std::string& what) {
-    document.mistakes.push_back(
-        {0, fmt::format("spacecraft {} has {} of another one", one.name, what)});
-  };
-  for (const FleetInstance& one : fleet.instances) {
-    if (!names.insert(one.name).second) refuse(one, "the name");
-    if (!partitions.insert(one.partition).second) refuse(one, "partition " + one.partition);
-    if (!folders.insert(one.data.lexically_normal().string()).second)
-      refuse(one, "folder " + one.data.string());
-  }
 }
 
 }  // namespace
 
 std::variant<Fleet, std::vector<ConfigMistake>> load_fleet(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
-    return std::vector{ConfigMistake{0, "cannot be read; check the path and its permissions"}};
-  ConfigDocument document = parse_document(std::string(std::istreambuf_iterator<char>(stream), {}));
+  const auto read = read_file(file);
+  if (const auto* unreadable = std::get_if<ConfigMistake>(&read)) return std::vector{*unreadable};
+  ConfigDocument document = parse_document(std::get<std::string>(read));
   Fleet fleet;
   FleetDefaults defaults;
+  Taken taken;
   TableReader reader(document.table, "the file:", document);
   if (const toml::table* table = reader.section("fleet"))
     read_defaults(*table, document, fleet, defaults);
   for (const toml::table* table : reader.sections("spacecraft"))
-    if (auto one = read_instance(*table, document, fleet, defaults, file.parent_path()))
+    if (auto one = read_instance(*table, document, fleet, defaults, file.parent_path(), taken))
       fleet.instances.push_back(*std::move(one));
   reader.refuse_unknown_keys();
   if (fleet.instances.empty() && document.mistakes.empty())
     document.mistakes.push_back({0, "has no [[spacecraft]] with a name"});
-  refuse_shared(fleet, document);
   if (document.mistakes.empty()) return fleet;
   std::ranges::stable_sort(document.mistakes, {}, &ConfigMistake::line);
   return std::move(document.mistakes);

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <tuple>
 
+#include <fmt/format.h>
+
 #include "service/config/config.hpp"
+#include "service/config/fleet_table.hpp"
+#include "service/fleet/site_files.hpp"
 #include "service/history/stored_readers.hpp"
 
 namespace reident::fleet {
@@ -14,15 +19,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Instance read_instance(const fs::path& file) {
+/// Absent for the table of a site.
+std::optional<Instance> read_instance(const fs::path& file) {
   Instance instance;
   instance.name = file.stem().string();
+  instance.is_of_site = is_of_table(file);
   const auto loaded = load_config(file);
   if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&loaded)) {
+    if (std::holds_alternative<Fleet>(load_fleet(file))) return std::nullopt;
     instance.problem = file.string() + ": " + mistakes->front().message;
+    instance.is_of_site = true;
     return instance;
   }
   const Config& config = std::get<Config>(loaded);
+  std::error_code unknown;
+  if (!fs::exists(config.database, unknown) && !unknown) {
+    instance.problem = fmt::format(
+        "database {} is not there: start the service, which makes it, or check the path",
+        config.database.string());
+    return instance;
+  }
+  instance.is_of_site = true;
   instance.has_service = storage::Database::has_writer(config.database);
   try {
     storage::Database database(config.database, storage::Database::Mode::read_only);
@@ -54,7 +71,7 @@ std::size_t Instance::waiting() const {
 }
 
 bool Instance::needs_action() const {
-  return !problem.empty() || !has_service || unseen_alarms() > 0 || waiting() > 0;
+  return is_of_site && (!problem.empty() || !has_service || unseen_alarms() > 0 || waiting() > 0);
 }
 
 std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers) {
@@ -67,10 +84,18 @@ std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers
                                 " holds no configuration (*.toml): name the folder of the "
                                 "instances, such as /etc/reident");
   std::ranges::sort(files);
-  std::vector<Instance> instances(files.size());
-  workers.for_each(files.size(), [&](std::size_t i) { instances[i] = read_instance(files[i]); });
+  std::vector<std::optional<Instance>> read(files.size());
+  workers.for_each(files.size(), [&](std::size_t i) { read[i] = read_instance(files[i]); });
+  const bool is_of_tables = std::ranges::any_of(files, is_of_table);
+  std::vector<Instance> instances;
+  for (std::optional<Instance>& one : read) {
+    if (!one) continue;
+    if (!is_of_tables) one->is_of_site = true;
+    instances.push_back(*std::move(one));
+  }
   const auto badness = [](const Instance& one) {
-    return std::tuple(!one.problem.empty(), !one.has_service, one.unseen_alarms(), one.waiting());
+    return std::tuple(one.is_of_site, !one.problem.empty(), !one.has_service, one.unseen_alarms(),
+                      one.waiting());
   };
   std::ranges::stable_sort(instances, std::ranges::greater(), badness);
   return instances;

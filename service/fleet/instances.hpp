@@ -14,18 +14,22 @@ namespace reident::fleet {
 struct Instance {
   std::string name;                        // of the file
   std::string problem;                     // why nothing is known; empty else
+  bool is_of_site = true;                  // or never started, and in no table of the site
   bool has_service = false;                // a process has the database open for writing
   std::vector<history::OverviewRow> rows;  // also of equipment that no window was tried of
   std::vector<storage::Alarm> alarms;
 
   std::size_t unseen_alarms() const;
   std::size_t waiting() const;  // versions that wait for an operator
-  /// Whether somebody has to act: any of the above, or no service.
+  /// Whether somebody has to act: any of the above, or no service. Never where it is not of the
+  /// site.
   bool needs_action() const;
 };
 
-/// The instances whose configurations are `folder`/*.toml, the worst first. Throws
-/// std::invalid_argument where there is none.
+/// The instances whose configurations are `folder`/*.toml, the worst first. Tables of a site are
+/// passed over. Where `reident fleet init` has made some of the configurations, another one without
+/// a database, such as what they were made of, is not of the site. Throws std::invalid_argument
+/// where there is none.
 std::vector<Instance> read_instances(const std::filesystem::path& folder, WorkerPool& workers);
 
 }  // namespace reident::fleet

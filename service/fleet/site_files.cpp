@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const fs::path configurations = "etc/reident", units = "etc/systemd/system";
+
 constexpr std::string_view mark = "made by reident fleet init: change the table, and make it again";
 
 std::string configuration_of(const FleetInstance& instance, std::uint32_t domain) {
@@ -136,31 +138,81 @@ std::string targets_of(const Fleet& fleet) {
   return targets.dump(1) + "\n";
 }
 
-bool is_ours(const fs::path& file) {
+fs::path configuration_path(const std::string& name) {
+  return configurations / (name + ".toml");
+}
+fs::path drop_in_path(const std::string& name) {
+  return units / fmt::format("reidentd@{}.service.d", name) / "fleet.conf";
+}
+fs::path middleware_path(const std::string& name) {
+  return configurations / "cyclonedds" / (name + ".xml");
+}
+
+/// Empty where there is none.
+std::string text_of(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return {};
   std::ifstream stream(file, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
-  return text.find(mark) != std::string::npos || text == "[]\n";
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace
 
-std::map<fs::path, std::string> site_files(const Fleet& fleet) {
-  const fs::path configurations = "etc/reident", units = "etc/systemd/system";
+std::map<fs::path, std::string> site_files(const Fleet& fleet, const std::string& host) {
   std::map<fs::path, std::string> files;
-  for (const FleetInstance& one : fleet.instances) {
-    files[configurations / (one.name + ".toml")] = configuration_of(one, fleet.domain);
-    files[units / fmt::format("reidentd@{}.service.d", one.name) / "fleet.conf"] = drop_in_of(one);
-  }
   if (fleet.network)
     for (auto& [name, text] : Network(fleet).files())
       files[configurations / "cyclonedds" / name] = text;
+  bool has_service = false;
+  for (const FleetInstance& one : fleet.instances) {
+    if (!host.empty() && one.host != host) {
+      files.erase(middleware_path(one.name));
+      continue;
+    }
+    has_service = true;
+    files[configuration_path(one.name)] = configuration_of(one, fleet.domain);
+    files[drop_in_path(one.name)] = drop_in_of(one);
+  }
+  if (!has_service)
+    throw std::invalid_argument(
+        fmt::format("no spacecraft of the table has the host {}: use one that [fleet.network] or a "
+                    "[[spacecraft]] names",
+                    host));
   files[configurations / "targets.json"] = targets_of(fleet);
   return files;
 }
 
+SiteChange change_of(const std::map<fs::path, std::string>& files, const fs::path& root) {
+  SiteChange change;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(root / configurations, none)) {
+    const std::string name = entry.path().stem().string();
+    if (entry.path().extension() != ".toml" || !is_of_table(entry.path())) continue;
+    if (!files.contains(configuration_path(name))) {
+      change.gone.push_back(name);
+      continue;
+    }
+    for (const fs::path& path :
+         {configuration_path(name), drop_in_path(name), middleware_path(name)}) {
+      const auto now = files.find(path);
+      if ((now == files.end() ? std::string() : now->second) == text_of(root / path)) continue;
+      change.changed.push_back(name);
+      break;
+    }
+  }
+  std::ranges::sort(change.changed);
+  std::ranges::sort(change.gone);
+  return change;
+}
+
+bool is_of_table(const fs::path& file) {
+  const std::string text = text_of(file);
+  return text.find(mark) != std::string::npos || text == "[]\n";
+}
+
 void write_site_files(const std::map<fs::path, std::string>& files, const fs::path& root) {
   for (const auto& [path, text] : files)
-    if (fs::exists(root / path) && !is_ours(root / path))
+    if (fs::exists(root / path) && !is_of_table(root / path))
       throw std::invalid_argument(fmt::format(
           "{} is there and was not made by reident fleet init: nothing was written; move it away",
           (root / path).string()));

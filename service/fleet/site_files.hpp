@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "service/config/fleet_table.hpp"
 
@@ -22,12 +23,25 @@ namespace reident::fleet {
 ///   etc/reident/cyclonedds/clients.xml       those of several spacecraft
 ///   etc/reident/cyclonedds/gateway-N.xml     who sends telemetry; N from 1
 ///
-/// Throws std::invalid_argument with every mistake of a configuration that they are made of, and
-/// where the ports of the network do not suffice.
-std::map<std::filesystem::path, std::string> site_files(const Fleet& fleet);
+/// Services are those of the machine `host`, of all machines by default. Throws
+/// std::invalid_argument with every mistake of a configuration that they are made of, where the
+/// ports of the network do not suffice, and where no service is of the machine.
+std::map<std::filesystem::path, std::string> site_files(const Fleet& fleet,
+                                                        const std::string& host = {});
+
+/// What differs between the files and those below `root`, by the names of the instances.
+struct SiteChange {
+  std::vector<std::string> changed;  // their services have to be restarted where they run
+  std::vector<std::string> gone;     // made by an earlier table: what is below root stays there
+};
+SiteChange change_of(const std::map<std::filesystem::path, std::string>& files,
+                     const std::filesystem::path& root);
+
+/// Whether site_files() gave the text of this file.
+bool is_of_table(const std::filesystem::path& file);
 
 /// Writes the files below `root`. Throws std::invalid_argument, and writes nothing, where a file is
-/// there that write_site_files() has not made; std::runtime_error where one cannot be written.
+/// there that is not of a table; std::runtime_error where one cannot be written.
 void write_site_files(const std::map<std::filesystem::path, std::string>& files,
                       const std::filesystem::path& root);
 

@@ -145,7 +145,10 @@ const BlockSamples& LeagueKeeper::samples_of(const storage::Archive& archive, Ti
   const auto found = samples_.find(begin);
   if (found != samples_.end()) return found->second;
   BlockSamples samples = reader_.read(archive, begin);
-  const auto kept = static_cast<std::size_t>(equipment_.window / reader_.length()) + 2;
+  // The record of a window's version begins with its validation part, and its run a block earlier.
+  const auto validation = static_cast<double>(equipment_.window) * equipment_.validation_share;
+  const auto kept =
+      static_cast<std::size_t>(validation / static_cast<double>(reader_.length())) + 3;
   while (samples_.size() >= kept && samples_.begin()->first < begin)
     samples_.erase(samples_.begin());
   return samples_.emplace(begin, std::move(samples)).first->second;

@@ -1,7 +1,6 @@
 #include "service/windows/chunk_cache.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,14 +8,54 @@
 
 namespace reident {
 
+using identification::Index;
+using identification::Matrix;
 using identification::Record;
+using identification::Segment;
 using identification::TickRange;
+
+namespace {
+
+/// Rows that were read now, or those of a chunk from a tick on.
+struct Part {
+  const Record* fresh;
+  const PackedRows* kept;
+  std::int64_t from_tick;
+
+  Index rows() const { return fresh ? fresh->rows() : kept->rows_from(from_tick); }
+};
+
+Record joined(const std::vector<Part>& parts) {
+  Index rows = 0;
+  for (const Part& part : parts) rows += part.rows();
+  const auto& [fresh, kept, from_tick] = parts.front();
+  Record result =
+      kept ? kept->blank(rows)
+           : Record{
+                 fresh->period_s, Matrix(rows, fresh->u.cols()), Matrix(rows, fresh->y.cols()), {}};
+  Index at = 0;
+  for (const Part& part : parts) {
+    if (part.kept) {
+      part.kept->unpack(part.from_tick, result, at);
+    } else {
+      result.u.middleRows(at, part.rows()) = part.fresh->u;
+      result.y.middleRows(at, part.rows()) = part.fresh->y;
+      for (const Segment& one : part.fresh->segments)
+        add_segment(result.segments, {at + one.begin, at + one.end, one.first_tick});
+    }
+    at += part.rows();
+  }
+  return result;
+}
+
+}  // namespace
 
 Record ChunkCache::read_and_keep(TickRange ticks, const Read& read) {
   Record record = read(ticks);
   for (std::int64_t chunk = -floor_divide(-ticks.begin, chunk_ticks);
        (chunk + 1) * chunk_ticks <= ticks.end; ++chunk)
-    chunks_[chunk] = rows_at(record, {chunk * chunk_ticks, (chunk + 1) * chunk_ticks});
+    chunks_.insert_or_assign(chunk,
+                             PackedRows(record, {chunk * chunk_ticks, (chunk + 1) * chunk_ticks}));
   return record;
 }
 
@@ -43,22 +82,16 @@ Record ChunkCache::over(TickRange ticks, const Read& read) {
   std::map<std::int64_t, Record> fresh;  // by first tick: what was read now
   for (const TickRange& range : missing) fresh[range.begin] = read_and_keep(range, read);
 
-  std::optional<Record> first;  // of a chunk that begins before
-  std::vector<const Record*> parts;
+  std::vector<Part> parts;
   auto range = missing.begin();
   for (std::int64_t tick = ticks.begin; tick < ticks.end;) {
     if (range != missing.end() && range->begin == tick) {
-      parts.push_back(&fresh.at(tick));
+      parts.push_back({&fresh.at(tick), nullptr, tick});
       tick = range++->end;
-      continue;
+    } else {
+      parts.push_back({nullptr, &chunks_.at(floor_divide(tick, chunk_ticks)), tick});
+      tick = end_of_chunk_at(tick);
     }
-    const Record& chunk = chunks_.at(floor_divide(tick, chunk_ticks));
-    const std::int64_t end = end_of_chunk_at(tick);
-    if (end - tick < chunk_ticks)
-      parts.push_back(&first.emplace(rows_at(chunk, {tick, end})));
-    else
-      parts.push_back(&chunk);
-    tick = end;
   }
   return parts.empty() ? read({ticks.begin, ticks.begin}) : joined(parts);
 }

@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 
-#include "identification/samples/record.hpp"
+#include "service/windows/packed_rows.hpp"
 
 namespace reident {
 
@@ -31,7 +31,7 @@ class ChunkCache {
   /// Reads `ticks` and keeps the whole chunks of them.
   identification::Record read_and_keep(identification::TickRange ticks, const Read& read);
 
-  std::map<std::int64_t, identification::Record> chunks_;  // whole ones, by number
+  std::map<std::int64_t, PackedRows> chunks_;  // whole ones, by number
 };
 
 }  // namespace reident

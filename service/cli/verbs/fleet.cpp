@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <functional>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,8 +13,10 @@
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/config/fleet_table.hpp"
+#include "service/fleet/helm_values.hpp"
 #include "service/fleet/instances.hpp"
 #include "service/fleet/site_files.hpp"
+#include "service/support/output_file.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
 
@@ -24,12 +27,20 @@ using fleet::Instance;
 using nlohmann::ordered_json;
 
 constexpr std::size_t rows_of_screen = 20;
+constexpr std::size_t most_without_network = 14;  // a source and a console have to join too
 
 struct Arguments {
-  std::string table, root = "/";
+  std::string table, host, helm, root = "/";
   std::string folder = "/etc/reident";
   bool dry_run = false, all = false, json = false;
 };
+
+void print_command(const char* command, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  fmt::print("{}", command);
+  for (const std::string& name : names) fmt::print(" reidentd@{}", name);
+  fmt::print("\n");
+}
 
 int init(const Arguments& arguments) {
   const auto loaded = load_fleet(arguments.table);
@@ -39,18 +50,50 @@ int init(const Arguments& arguments) {
     return exit_impossible;
   }
   const auto& table = std::get<Fleet>(loaded);
-  const auto files = fleet::site_files(table);
-  if (!arguments.dry_run) fleet::write_site_files(files, arguments.root);
-  if (arguments.dry_run)
+  if (!arguments.helm.empty()) {
+    OutputFile output(arguments.helm);
+    output.write(fleet::helm_values(table));
+    output.finish();
+    fmt::print("{} instances\nnext: helm install reident deploy/container/chart -f {}\n",
+               table.instances.size(), arguments.helm);
+    return exit_done;
+  }
+  const auto files = fleet::site_files(table, arguments.host);
+  if (arguments.dry_run) {
     for (const auto& [path, text] : files)
       fmt::print("==> {}\n{}\n", (arguments.root / path).string(), text);
-  fmt::print("{} instances, {} files{}\n", table.instances.size(), files.size(),
-             arguments.dry_run ? ", none written" : "");
-  if (!arguments.dry_run) {
-    fmt::print("next: systemctl daemon-reload && systemctl enable --now");
-    for (const FleetInstance& one : table.instances) fmt::print(" reidentd@{}", one.name);
-    fmt::print("\n");
+    fmt::print("{} instances, {} files, none written\n", table.instances.size(), files.size());
+    return exit_done;
   }
+  const fleet::SiteChange change = fleet::change_of(files, arguments.root);
+  fleet::write_site_files(files, arguments.root);
+  std::vector<std::string> names;
+  std::set<std::string> hosts;
+  for (const FleetInstance& one : table.instances) {
+    hosts.insert(one.host);
+    if (arguments.host.empty() || one.host == arguments.host) names.push_back(one.name);
+  }
+  fmt::print("{} instances, {} files\n", names.size(), files.size());
+  print_command("next: systemctl daemon-reload && systemctl enable --now", names);
+  print_command("changed, where they run: systemctl restart", change.changed);
+  print_command("no longer in the table, and left as they are: systemctl disable --now",
+                change.gone);
+  for (const std::string& name : change.gone)
+    fmt::print(
+        "  then remove {0}/etc/reident/{1}.toml and {0}/etc/systemd/system/"
+        "reidentd@{1}.service.d; telemetry and models stay in the database\n",
+        arguments.root == "/" ? "" : arguments.root, name);
+  if (arguments.host.empty() && hosts.size() > 1)
+    fmt::print(
+        "the table has services of {} machines: on each, --host ADDRESS makes its own "
+        "alone\n",
+        hosts.size());
+  if (!table.network && names.size() > most_without_network)
+    print_error(
+        "reident: without [fleet.network] a domain has room for 16 services, sources and "
+        "consoles on a machine, and {} services are too many: add [fleet.network] with "
+        "host = \"127.0.0.1\", and run this again",
+        names.size());
   return exit_done;
 }
 
@@ -68,6 +111,7 @@ std::optional<storage::Time> oldest_telemetry(const Instance& instance) {
 }
 
 std::string note_of(const Instance& instance) {
+  if (!instance.is_of_site) return "never started, and in no table of the site";
   if (!instance.problem.empty()) return instance.problem;
   for (const storage::Alarm& alarm : instance.alarms)
     if (alarm.acknowledged_by.empty()) return alarm.code + ": " + alarm.text;
@@ -111,6 +155,7 @@ void print_json(const std::vector<Instance>& instances) {
     for (const storage::Alarm& alarm : one.alarms) alarms.push_back(alarm_json(alarm));
     list.push_back({{"instance", one.name},
                     {"act", one.needs_action()},
+                    {"of_site", one.is_of_site},
                     {"problem", text_json(one.problem)},
                     {"service", one.has_service},
                     {"equipment", one.rows.size()},
@@ -147,9 +192,17 @@ std::function<int()> declare(CLI::App& command) {
   CLI::App* make = command.add_subcommand(
       "init", "Write the configurations, the units' drop-ins and the targets of a table");
   make->add_option("table", arguments->table, "spacecraft, as in deploy/fleet.toml")->required();
+  make->add_option("--host", arguments->host,
+                   "only the services of this machine, as the table has its address");
   make->add_option("--root", arguments->root, "folder that the files are written below")
       ->capture_default_str();
   make->add_flag("--dry-run", arguments->dry_run, "print the files, and write nothing");
+  make->add_option("--helm", arguments->helm,
+                   "write the values of the Helm chart deploy/container/chart, and nothing else")
+      ->type_name("FILE")
+      ->excludes("--root")
+      ->excludes("--host")
+      ->excludes("--dry-run");
   CLI::App* show =
       command.add_subcommand("status", "Show how the instances of this machine are, worst first");
   show->add_option("folder", arguments->folder, "where the configurations are, one an instance")

@@ -65,6 +65,7 @@ Overview read_fleet(const std::string& folder) {
   WorkerPool workers(usable_cores());
   Overview overview{{}, {}, utc_now(), rows_of_screen, {}, {}};
   for (fleet::Instance& one : fleet::read_instances(folder, workers)) {
+    if (!one.is_of_site) continue;
     std::ranges::move(one.rows, std::back_inserter(overview.rows));
     std::ranges::move(one.alarms, std::back_inserter(overview.alarms));
     if (!one.problem.empty())

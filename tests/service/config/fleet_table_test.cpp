@@ -78,19 +78,37 @@ TEST_F(FleetTable, NamesEachMistakeWithItsLine) {
       {"[fleet]\nconfiguraton = \"x\"\n[[spacecraft]]\nname = \"A\"\n", 2, "configuraton"},
       {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\n[[spacecraft]]\nname = "
        "\"A\"\n",
-       0, "the name"},
+       6, "the name"},
       {"[fleet]\nconfiguration = \"x\"\npartition = \"all\"\n[[spacecraft]]\nname = \"A\"\n"
        "[[spacecraft]]\nname = \"B\"\n",
-       0, "partition all"},
+       6, "partition all"},
       {"[fleet]\nconfiguration = \"x\"\n[fleet.network]\ngateways = 2\n[[spacecraft]]\nname = "
        "\"A\"\n",
        3, "host"},
+      {"[fleet]\nconfiguration = \"x\"\n[fleet.network]\nhost = \"station\"\n[[spacecraft]]\nname "
+       "= "
+       "\"A\"\n",
+       4, "station"},
+      {"[fleet]\nconfiguration = \"x\"\nmemory_max = \"1 GB\"\n[[spacecraft]]\nname = \"A\"\n", 3,
+       "1 GB"},
+      {"[fleet]\nconfiguration = \"x\"\ncpu_quota = \"half\"\n[[spacecraft]]\nname = \"A\"\n", 3,
+       "half"},
+      {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\ndata = \"/my data\"\n", 5,
+       "blanks"},
+      {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\npage = \"h:1\"\n"
+       "[[spacecraft]]\nname = \"B\"\npage = \"h:1\"\n",
+       8, "page h:1"},
   };
   for (const auto& [text, line, words] : cases) {
     const ConfigMistake found = mistake(text);
     EXPECT_EQ(found.line, line) << text;
     EXPECT_THAT(found.message, HasSubstr(words)) << text;
   }
+}
+
+TEST_F(FleetTable, SaysThatAFolderIsNone) {
+  const auto loaded = load_fleet(folder_.path());
+  EXPECT_THAT(std::get<std::vector<ConfigMistake>>(loaded)[0].message, HasSubstr("folder"));
 }
 
 TEST(FleetExample, IsRead) {

@@ -15,7 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 
 class FleetTest : public testing::Test {
@@ -90,6 +92,41 @@ TEST_F(FleetTest, ReplacesItsOwnFilesAlone) {
                std::invalid_argument);
   EXPECT_EQ(text_of("etc/reident/SAT-1.toml"), "# by hand\n");
   EXPECT_FALSE(fs::exists(folder_ / "etc/reident/SAT-0.toml")) << "nothing was written";
+}
+
+TEST_F(FleetTest, SaysWhatChangesAndWhatTheTableHasLost) {
+  const auto change = [&](const Fleet& fleet) {
+    return fleet::change_of(fleet::site_files(fleet), folder_.path());
+  };
+  Fleet fleet = site({"SAT-1", "SAT-2", "SAT-3"});
+  EXPECT_THAT(change(fleet).changed, IsEmpty()) << "none runs yet";
+  fleet::write_site_files(fleet::site_files(fleet), folder_.path());
+  std::ofstream(folder_ / "etc/reident/by-hand.toml") << "# by hand\n";
+  EXPECT_THAT(change(fleet).changed, IsEmpty());
+  EXPECT_THAT(change(fleet).gone, IsEmpty());
+  fleet.instances.erase(fleet.instances.begin());
+  fleet.instances[1].memory_max = "2G";
+  EXPECT_THAT(change(fleet).changed, ElementsAre("SAT-3"));
+  EXPECT_THAT(change(fleet).gone, ElementsAre("SAT-1"));
+  fleet.network = FleetNetwork{"127.0.0.1", 1};
+  for (FleetInstance& one : fleet.instances) one.host = "127.0.0.1";
+  EXPECT_THAT(change(fleet).changed, ElementsAre("SAT-2", "SAT-3"));
+}
+
+TEST_F(FleetTest, WritesTheServicesOfOneMachine) {
+  Fleet fleet = site({"SAT-1", "SAT-2"});
+  fleet.network = FleetNetwork{"10.0.0.1", 1};
+  fleet.instances[0].host = "10.0.0.1";
+  fleet.instances[1].host = "10.0.0.2";
+  const auto all = fleet::site_files(fleet), second = fleet::site_files(fleet, "10.0.0.2");
+  for (const char* file : {"SAT-1.toml", "cyclonedds/SAT-1.xml"}) {
+    EXPECT_TRUE(all.contains(fs::path("etc/reident") / file));
+    EXPECT_FALSE(second.contains(fs::path("etc/reident") / file));
+  }
+  for (const char* file : {"SAT-2.toml", "cyclonedds/SAT-2.xml", "cyclonedds/SAT-1-clients.xml",
+                           "cyclonedds/gateway-1.xml"})
+    EXPECT_EQ(second.at(fs::path("etc/reident") / file), all.at(fs::path("etc/reident") / file));
+  EXPECT_THROW(fleet::site_files(fleet, "10.0.0.3"), std::invalid_argument);
 }
 
 TEST_F(FleetTest, RefusesAConfigurationOfTwoSpacecraft) {
@@ -167,6 +204,31 @@ TEST_F(FleetTest, ShowsTheWorstFirst) {
   EXPECT_FALSE(instances[2].needs_action());
   EXPECT_EQ(instances[2].rows.size(), 1U) << "equipment that nothing was tried of";
   EXPECT_THROW(fleet::read_instances(folder_ / "A", workers), std::invalid_argument);
+}
+
+TEST_F(FleetTest, TellsASitesInstancesFromWhatTheyWereMadeOf) {
+  fleet::write_site_files(fleet::site_files(site({"A"})), folder_.path());
+  const fs::path folder = folder_ / "etc/reident";
+  std::ofstream(folder / "fleet.toml") << "[fleet]\nconfiguration = \"reident.toml\"\n"
+                                          "[[spacecraft]]\nname = \"A\"\n";
+  for (const char* name : {"reident.toml", "hand.toml"})
+    std::ofstream(folder / name) << "[archive]\ndatabase = \"" << fs::path(name).stem().string()
+                                 << ".db\"\n"
+                                 << text_of("satellite.toml").substr(sizeof "[archive]");
+  fs::create_directory(folder / "folder.toml");
+  { const storage::Database hand(folder / "hand.db", storage::Database::Mode::read_write); }
+  WorkerPool workers(1);
+  auto instances = fleet::read_instances(folder, workers);
+  ASSERT_EQ(instances.size(), 4U) << "the table is none";
+  EXPECT_EQ(instances[0].name, "A");
+  instances.erase(instances.begin() + 1);  // the folder, a mistake
+  EXPECT_EQ(instances[1].name, "hand") << "written by hand, and was started";
+  EXPECT_TRUE(instances[1].needs_action());
+  EXPECT_EQ(instances[2].name, "reident");
+  EXPECT_FALSE(instances[2].is_of_site);
+  EXPECT_FALSE(instances[2].needs_action());
+  fs::remove(folder / "A.toml");
+  EXPECT_TRUE(fleet::read_instances(folder, workers)[0].needs_action()) << "no table made any";
 }
 
 }  // namespace
