@@ -17,13 +17,17 @@ constexpr int busy_timeout_ms = 5000;
 /// little.
 class LogFolding {
  public:
-  explicit LogFolding(sqlite3* connection);
+  /// `wait`: for readers, at most [ms]. Those of the page end within a second (service/web).
+  explicit LogFolding(sqlite3* connection, int wait = 1000);
   LogFolding(const LogFolding&) = delete;
   LogFolding& operator=(const LogFolding&) = delete;
 
  private:
   static int committed(void* self, sqlite3* connection, const char* schema, int pages);
 
+  int wait_for_readers(sqlite3* connection, const char* schema) const;
+
+  int wait_;
   int waits_at_;  // pages of the log
 };
 
