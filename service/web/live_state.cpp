@@ -4,6 +4,7 @@
 
 #include "service/model/status_json.hpp"
 #include "service/support/utc_clock.hpp"
+#include "storage/database/snapshot.hpp"
 #include "storage/registry/registry.hpp"
 
 namespace reident::web {
@@ -95,6 +96,7 @@ bool LiveState::look_into_registry() {
   DecisionCounts made;
   try {
     storage::Database database(database_, storage::Database::Mode::read_only);
+    const storage::Snapshot snapshot(database);
     const storage::Registry registry(database);
     for (const storage::EquipmentName& name : registry.equipment())
       found.emplace_back("registry/" + name.spacecraft + "/" + name.equipment,
