@@ -79,6 +79,11 @@ bool LiveState::put(const std::string& key, const std::string& event, const Json
   return true;
 }
 
+Json LiveState::value_now(const Entry& entry) const {
+  if (entry.event != "service") return entry.value;
+  return status_value(services_.at(entry.value["service"].get<std::string>()));
+}
+
 bool LiveState::take_statuses() {
   bool is_new = false;
   statuses_.take(take_at_most, [&](ServiceStatus&& status) {
@@ -147,8 +152,8 @@ EventSource::Events LiveState::since(std::uint64_t revision) {
   for (const auto& [key, entry] : entries_) {
     if (entry.revision <= revision) continue;
     ++sent;
-    events.text += "event: " + entry.event +
-                   "\ndata: " + entry.value.dump(-1, ' ', false, Json::error_handler_t::replace) +
+    events.text += "event: " + entry.event + "\ndata: " +
+                   value_now(entry).dump(-1, ' ', false, Json::error_handler_t::replace) +
                    "\nid: " + id + "\n\n";
   }
   events.coalesced = std::min(revision_ - revision, changes_) - sent;
@@ -160,7 +165,7 @@ Json LiveState::changes_since(std::uint64_t revision) const {
   Json list = Json::array();
   for (const auto& [key, entry] : entries_)
     if (entry.revision > revision || revision > revision_)
-      list.push_back({{"event", entry.event}, {"data", entry.value}});
+      list.push_back({{"event", entry.event}, {"data", value_now(entry)}});
   return {{"revision", std::to_string(revision_)}, {"changes", std::move(list)}};
 }
 

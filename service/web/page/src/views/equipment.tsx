@@ -162,11 +162,11 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
   const excluded = useMemo(() => united((timeline?.excluded ?? []).map((one) => [origin + one.begin_s, origin + one.end_s])), [timeline]);
   const asTable = parameters.show === "table";
 
-  const move = useCallback((from: number, to: number, isOneStep = false) => {
+  const move = useCallback((from: number, to: number, isRepeated = false) => {
     const [least, most] = [secondsOf(extent.begin), last];
     const width = Math.min(Math.max(to - from, 2), most - least);
     const start = Math.min(Math.max(from, least), most - width);
-    change({ begin: isoOf(start), end: isoOf(start + width) }, isOneStep);
+    change({ begin: isoOf(start), end: isoOf(start + width) }, isRepeated);
   }, [extent.begin, last]);
 
   useEffect(() => {
@@ -242,7 +242,7 @@ function VersionErrors({ versions, asks }: { versions: VersionLine[]; asks: (row
         <text class="scale" x="0" y="10">{figure(greatest)} %</text>
       </svg>
       </div>
-      <p class="legend">{[["approved", "champion"], ["superseded", "was champion"], ["waiting", "waits for an operator"], ["other", "never ran"]].map(([kind, text]) => kinds.has(kind!) && <><span class={`swatch dot ${kind}`} /> {text}</>)}</p>
+      <p class="legend">{[["approved", "champion"], ["superseded", "was champion"], ["waiting", "waits for an operator"], ["other", "others"]].map(([kind, text]) => kinds.has(kind!) && <><span class={`swatch dot ${kind}`} /> {text}</>)}</p>
     </section>
   );
 }
