@@ -6,11 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "service/history/model_parameters.hpp"
 #include "service/judgement/scores.hpp"
-#include "service/model/derived_inputs.hpp"
-#include "service/model/model_version.hpp"
 #include "service/operations/commands.hpp"
 #include "storage/archive/holdings.hpp"
+#include "storage/database/snapshot.hpp"
 
 namespace reident::history {
 namespace {
@@ -62,30 +62,6 @@ void read_errors(const Registry& registry, OverviewRow& row) {
   if (simulator.rows > 0) row.simulator_percent = simulator.mrse_percent();
 }
 
-/// The parameters that a model has telemetry of. The rest of its JSON, which is most, is passed
-/// over.
-std::vector<std::string> parameters_of(const std::string& model_json) {
-  using nlohmann::json;
-  const json model = json::parse(model_json, [](int depth, json::parse_event_t event, json& key) {
-    if (depth != 1 || event != json::parse_event_t::key) return true;
-    const auto& name = key.get_ref<const std::string&>();
-    return name == "inputs" || name == "outputs";
-  });
-  const auto signals = [&model](const char* kind) {
-    std::vector<Signal> read;
-    for (const json& one : model.at(kind)) {
-      Signal& signal = read.emplace_back();
-      signal.name = one.at("name").get<std::string>();
-      signal.expression = one.value("expression", "");
-    }
-    return read;
-  };
-  const std::vector<Signal> inputs = signals("inputs");
-  auto names = InputExpressions(signal_names(inputs), derived_inputs(inputs)).parameters();
-  for (const Signal& output : signals("outputs")) names.push_back(output.name);
-  return names;
-}
-
 /// The time until which every parameter has samples; absent where one has none.
 std::optional<storage::Time> complete_until(const std::string& spacecraft,
                                             const std::vector<std::string>& parameters,
@@ -135,6 +111,7 @@ OverviewRow row_of_equipment(const Registry& registry, const EquipmentName& name
 }  // namespace
 
 std::vector<OverviewRow> overview(storage::Database& database) {
+  const storage::Snapshot snapshot(database);
   const Registry registry(database);
   const Newest newest = newest_samples(database);
   std::map<EquipmentName, OverviewRow> rows;

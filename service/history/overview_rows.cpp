@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "service/history/row_values.hpp"
 #include "service/support/text.hpp"
@@ -184,9 +185,12 @@ void add_alarms_of(const std::vector<ServiceStatus>& services, std::vector<Alarm
 }
 
 void put_worst_first(std::vector<OverviewRow>& rows, const std::vector<Alarm>& alarms) {
-  std::sort(rows.begin(), rows.end(), [&](const OverviewRow& a, const OverviewRow& b) {
-    return rank(a, alarms) < rank(b, alarms);
-  });
+  using Rank = decltype(rank(rows.front(), alarms));
+  std::vector<std::pair<Rank, OverviewRow>> ranked;
+  ranked.reserve(rows.size());
+  for (OverviewRow& row : rows) ranked.emplace_back(rank(row, alarms), std::move(row));
+  std::ranges::sort(ranked, {}, &std::pair<Rank, OverviewRow>::first);
+  std::ranges::transform(ranked, rows.begin(), [](auto& one) { return std::move(one.second); });
 }
 
 }  // namespace reident::history

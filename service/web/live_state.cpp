@@ -4,6 +4,7 @@
 
 #include "service/model/status_json.hpp"
 #include "service/support/utc_clock.hpp"
+#include "storage/database/snapshot.hpp"
 #include "storage/registry/registry.hpp"
 
 namespace reident::web {
@@ -78,6 +79,11 @@ bool LiveState::put(const std::string& key, const std::string& event, const Json
   return true;
 }
 
+Json LiveState::value_now(const Entry& entry) const {
+  if (entry.event != "service") return entry.value;
+  return status_value(services_.at(entry.value["service"].get<std::string>()));
+}
+
 bool LiveState::take_statuses() {
   bool is_new = false;
   statuses_.take(take_at_most, [&](ServiceStatus&& status) {
@@ -95,6 +101,7 @@ bool LiveState::look_into_registry() {
   DecisionCounts made;
   try {
     storage::Database database(database_, storage::Database::Mode::read_only);
+    const storage::Snapshot snapshot(database);
     const storage::Registry registry(database);
     for (const storage::EquipmentName& name : registry.equipment())
       found.emplace_back("registry/" + name.spacecraft + "/" + name.equipment,
@@ -145,8 +152,8 @@ EventSource::Events LiveState::since(std::uint64_t revision) {
   for (const auto& [key, entry] : entries_) {
     if (entry.revision <= revision) continue;
     ++sent;
-    events.text += "event: " + entry.event +
-                   "\ndata: " + entry.value.dump(-1, ' ', false, Json::error_handler_t::replace) +
+    events.text += "event: " + entry.event + "\ndata: " +
+                   value_now(entry).dump(-1, ' ', false, Json::error_handler_t::replace) +
                    "\nid: " + id + "\n\n";
   }
   events.coalesced = std::min(revision_ - revision, changes_) - sent;
@@ -158,7 +165,7 @@ Json LiveState::changes_since(std::uint64_t revision) const {
   Json list = Json::array();
   for (const auto& [key, entry] : entries_)
     if (entry.revision > revision || revision > revision_)
-      list.push_back({{"event", entry.event}, {"data", entry.value}});
+      list.push_back({{"event", entry.event}, {"data", value_now(entry)}});
   return {{"revision", std::to_string(revision_)}, {"changes", std::move(list)}};
 }
 

@@ -65,6 +65,8 @@ class LiveState final : public EventSource {
 
   bool put(const std::string& key, const std::string& event, const Json& value)
       REIDENT_REQUIRES(mutex_);
+  /// Who hears of a heartbeat late hears how old it is by then.
+  Json value_now(const Entry& entry) const REIDENT_REQUIRES(mutex_);
   bool take_statuses();
   bool look_into_registry();
 

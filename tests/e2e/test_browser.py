@@ -61,7 +61,9 @@ class Browser(test_web.WebCase):
         target = self.folder / "dist"
         subprocess.run(["node", "bundle.mjs", str(target)], cwd=PAGE, check=True,
                        timeout=2 * DEADLINE_S)
-        self.assertEqual({file.name: file.read_bytes() for file in target.iterdir()}, before)
+        made = {file.name: file.read_bytes() for file in target.iterdir()}
+        # Names alone: a difference of the bytes themselves takes minutes to print.
+        self.assertEqual([name for name in made | before if made.get(name) != before.get(name)], [])
 
 
 if __name__ == "__main__":

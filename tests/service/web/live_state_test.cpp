@@ -74,6 +74,19 @@ TEST_F(LiveStateTest, GivesWhoDidNotReadTheNewestStateAndNoBacklog) {
   EXPECT_NE(events.text.find("id: " + std::to_string(events.revision)), std::string::npos);
 }
 
+TEST_F(LiveStateTest, SaysOfAHeartbeatHowOldItIsNow) {
+  ASSERT_TRUE(comes([this] { return statuses.matched_readers() > 0; }));
+  beat(1);
+  ASSERT_TRUE(comes([this] { return live.services().contains("reident"); }));
+  const auto age = [](const std::string& text) {
+    constexpr std::string_view key = "\"age_s\":";
+    const std::size_t place = text.find(key);
+    return place == std::string::npos ? -1 : std::stod(text.substr(place + key.size()));
+  };
+  EXPECT_TRUE(comes([&] { return age(live.since(0).text) >= 0.2; }));
+  EXPECT_TRUE(comes([&] { return age(live.changes_since(0).dump()) >= 0.3; }));
+}
+
 TEST_F(LiveStateTest, ShowsADecisionAndWhatIsWrongWithTheDatabase) {
   ASSERT_TRUE(comes([this] { return !live.database_error().empty(); }));
   {

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 
 #include "storage/database/schema.hpp"
+#include "storage/database/snapshot.hpp"
 #include "tests/storage/fixture.hpp"
 
 namespace reident::storage::test::database_test {
@@ -50,6 +51,19 @@ TEST(Database, MakesAFileThatIsMarkedAsOurs) {
                    "PRAGMA application_id; PRAGMA user_version;"
                    "PRAGMA journal_mode; PRAGMA integrity_check"),
               ElementsAre("1919248740", std::to_string(schema::version), "wal", "ok"));
+}
+
+TEST(Database, IsOneStateForAllThatASnapshotReads) {
+  const TemporaryFolder folder;
+  make_archive(folder / "a.db");
+  Database writer(folder / "a.db", Mode::update), reader(folder / "a.db", Mode::read_only);
+  {
+    const Snapshot snapshot(reader);
+    EXPECT_EQ(Archive(reader).sample_count(), 1U);
+    Archive(writer).append(std::vector{frame(2, 20, {{1, Quality::good, 2}})});
+    EXPECT_EQ(Archive(reader).sample_count(), 1U);
+  }
+  EXPECT_EQ(Archive(reader).sample_count(), 2U);
 }
 
 TEST(Database, FindsItsContentsAgain) {

@@ -31,12 +31,19 @@ function keyOf({ event, data }: Change): string {
   return [event, data.service, data.spacecraft, data.equipment].join("/");
 }
 
-function announce(change: Change): void {
+/** When a heartbeat was heard [s], by this computer's clock: a tab that opens later, or a view, is told of it late. */
+function withTimeHeard(change: Change): Change {
+  const { age_s: age, heard } = change.data;
+  return change.event === "service" && heard === undefined ? { event: "service", data: { ...change.data, heard: Date.now() / 1000 - (age as number) } } : change;
+}
+
+function announce(news: Change): void {
+  const change = withTimeHeard(news);
   const key = keyOf(change);
   if (JSON.stringify(latest.get(key)) === JSON.stringify(change)) return;  // said again on a new connection
   latest.set(key, change);
   if (change.event === "service" && (change.data.age_s as number) < 5)
-    ahead = secondsOf(change.data.time as string) + (change.data.age_s as number) - Date.now() / 1000;
+    ahead = secondsOf(change.data.time as string) - (change.data.heard as number);
   listeners.forEach((listener) => listener(change));
 }
 

@@ -88,7 +88,7 @@ function useLife(): Life {
   const [, tick] = useState(0);
   useChanges(({ event, data }) => {
     if (event === "connection") setOpen(data.open as boolean);
-    if (event === "service") set((before) => ({ ...before, [data.service as string]: { status: data as unknown as Service, heard: Date.now() / 1000 - (data.age_s as number) } }));
+    if (event === "service") set((before) => ({ ...before, [data.service as string]: { status: data as unknown as Service, heard: data.heard as number } }));
   });
   useEffect(() => {
     const timer = setInterval(() => tick((n) => n + 1), 1000);

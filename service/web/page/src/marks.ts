@@ -71,7 +71,7 @@ export function drawLevels(plot: uPlot, panel: Panel): void {
     ctx.stroke();
     ctx.setLineDash([]);
     ctx.textAlign = "right";
-    if (level.label) write(ctx, level.label, bbox.left + bbox.width - 4 * devicePixelRatio, y - 3 * devicePixelRatio);
+    if (level.label) write(ctx, level.label, bbox.left + bbox.width - 4 * devicePixelRatio, y - 6 * devicePixelRatio);
   }
 }
 

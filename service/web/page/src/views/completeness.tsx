@@ -34,15 +34,18 @@ function level(came: number, missing: number): string {
   return share >= 0.999 ? "full" : share >= 0.95 ? "most" : share >= 0.5 ? "half" : "little";
 }
 
-/** Columns are weeks, rows days of the week, Monday first, in UTC. */
+/** Columns are weeks, rows days of the week, Monday first, in UTC. Days outside of its telemetry fill the weeks. */
 function Calendar({ name, days }: { name: string; days: Days }) {
   const numbers = days.begin.map((iso) => Math.floor(secondsOf(iso) / 86400));
   const monday = numbers[0]! - ((numbers[0]! + 3) % 7);
   const weeks = Math.floor((numbers[numbers.length - 1]! - monday) / 7) + 1;
+  const outside = Array.from({ length: 7 * weeks }, (_, index) => monday + index).filter((day) => day < numbers[0]! || day > numbers[numbers.length - 1]!);
+  const place = (day: number) => ({ x: Math.floor((day - monday) / 7) * cell, y: ((day - monday) % 7) * cell, width: cell - 2, height: cell - 2 });
   return (
     <svg class="calendar" width={weeks * cell} height={7 * cell} role="img" aria-label={`${name}: completeness day by day; the table has the figures`}>
+      {outside.map((day) => <rect class="none" {...place(day)} />)}
       {numbers.map((day, index) => (
-        <rect class={level(days.came[index]!, days.missing[index]!)} x={Math.floor((day - monday) / 7) * cell} y={((day - monday) % 7) * cell} width={cell - 2} height={cell - 2}>
+        <rect class={level(days.came[index]!, days.missing[index]!)} {...place(day)}>
           <title>{days.begin[index]!.slice(0, 10)}: {count(days.came[index])} came, {count(days.missing[index])} missing</title>
         </rect>
       ))}
@@ -130,7 +133,7 @@ export function CompletenessView({ parameters }: { parameters: Record<string, st
           <form class="toolbar" onSubmit={(event) => event.preventDefault()}>
             <label>parameter <input type="search" value={find} onInput={(event) => change({ find: (event.target as HTMLInputElement).value }, true)} /></label>
           </form>
-          <p class="legend">days: <span class="swatch full" /> complete <span class="swatch most" /> 95 % <span class="swatch half" /> half <span class="swatch little" /> less</p>
+          <p class="legend">Columns are weeks from Monday; of a day came <span class="swatch full" /> all <span class="swatch most" /> 95 % or more <span class="swatch half" /> half or more <span class="swatch little" /> less <span class="swatch none" /> nothing was expected</p>
           <All series={part} />
           {part.length < shown.length && <p>{part.length} of {shown.length} parameters. <button type="button" onClick={() => change({ rows: "all" }, true)}>show all</button></p>}
         </>

@@ -162,11 +162,11 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
   const excluded = useMemo(() => united((timeline?.excluded ?? []).map((one) => [origin + one.begin_s, origin + one.end_s])), [timeline]);
   const asTable = parameters.show === "table";
 
-  const move = useCallback((from: number, to: number, isOneStep = false) => {
+  const move = useCallback((from: number, to: number, isRepeated = false) => {
     const [least, most] = [secondsOf(extent.begin), last];
     const width = Math.min(Math.max(to - from, 2), most - least);
     const start = Math.min(Math.max(from, least), most - width);
-    change({ begin: isoOf(start), end: isoOf(start + width) }, isOneStep);
+    change({ begin: isoOf(start), end: isoOf(start + width) }, isRepeated);
   }, [extent.begin, last]);
 
   useEffect(() => {
@@ -216,11 +216,13 @@ function TimeAxis({ equipment, parameters, turn }: { equipment: Equipment; param
 }
 
 /** Error of each version with its 95 % interval. */
-function VersionErrors({ versions }: { versions: VersionLine[] }) {
+function VersionErrors({ versions, asks }: { versions: VersionLine[]; asks: (row: VersionLine) => boolean }) {
   const shown = versions.filter((one) => one.error_percent !== null).slice(-60);
   if (shown.length < 2) return null;
   const greatest = Math.max(...shown.map((one) => Math.min(one.interval_percent?.[1] ?? one.error_percent!, 3 * one.error_percent!)));
   const width = 900, height = 110, step = width / shown.length;
+  const kindOf = (row: VersionLine) => (row.status === "approved" || row.status === "superseded" ? row.status : asks(row) ? "waiting" : "other");
+  const kinds = new Set<string>(shown.map(kindOf));
   const y = (value: number) => height - 14 - (Math.min(value, greatest) / greatest) * (height - 24);
   return (
     <section>
@@ -230,7 +232,7 @@ function VersionErrors({ versions }: { versions: VersionLine[] }) {
         {shown.map((one, index) => {
           const x = (index + 0.5) * step;
           return (
-            <g class={`point ${one.status}`}>
+            <g class={kindOf(one)}>
               {one.interval_percent && <line x1={x} x2={x} y1={y(one.interval_percent[0])} y2={y(one.interval_percent[1])} />}
               <circle cx={x} cy={y(one.error_percent!)} r={one.status === "approved" ? 5 : 3.2} />
               {(shown.length <= 30 || one.status === "approved") && <text x={x} y={height - 2}>{one.version}</text>}
@@ -240,6 +242,7 @@ function VersionErrors({ versions }: { versions: VersionLine[] }) {
         <text class="scale" x="0" y="10">{figure(greatest)} %</text>
       </svg>
       </div>
+      <p class="legend">{[["approved", "champion"], ["superseded", "was champion"], ["waiting", "waits for an operator"], ["other", "others"]].map(([kind, text]) => kinds.has(kind!) && <><span class={`swatch dot ${kind}`} /> {text}</>)}</p>
     </section>
   );
 }
@@ -270,7 +273,7 @@ export function EquipmentView({ parameters }: { parameters: Record<string, strin
               line.hold ? { action: "release", label: "Release", role: "operator", needsReason: false } : { action: "hold", label: "Hold the champion", role: "operator", needsReason: true },
               { action: "identify_now", label: "Identify now", role: "operator", needsReason: false },
             ]} />
-            <VersionErrors versions={equipment.versions} />
+            <VersionErrors versions={equipment.versions} asks={asks} />
             <Table name={`versions-${name}`} caption={`Versions, the newest first${versions.length < line.versions ? `: ${versions.length} of ${line.versions}` : ""}`} rows={versions}
               href={(row) => link("version", { spacecraft, equipment: name, version: row.version })}
               columns={[
