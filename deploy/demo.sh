@@ -76,7 +76,7 @@ page=$(cat "$folder/page.url")
 
 # Prints what the sed script makes of a log, line by line, until the process ends that writes it.
 follow() {
-  tail -n +1 -F --pid "$1" "$2" 2>/dev/null | sed -un "$3" | sed -u 's/^\(.\{79\}\).*/\1/' &
+  tail -n +1 -F --pid "$1" "$2" 2>/dev/null | sed -un "$3" | sed -u 's/^\(.\{78\}\)..\{1,\}/\1…/' &
 }
 echo "A CBERS-4-class power subsystem flies 24 orbits at 1500 times real time."
 echo "The operators' page, while it flies: $page"

@@ -243,7 +243,8 @@ std::optional<Problem> ClockFinder::choose_columns() {
   // Below the first name stands the unit of a time.
   if (!head_.names.empty() && hint_of({}, unit(0)).unit_ns && holds_time(0)) return choose({0});
   return Problem{head_.lines.empty() ? 0 : head_.lines.front(),
-                 "no column looks like a time; name it with --time (the columns are: " +
+                 "no column looks like a time; name it with --time, or the line of the header "
+                 "with --header (the columns are: " +
                      joined(head_.names) + ")"};
 }
 

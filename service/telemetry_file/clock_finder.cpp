@@ -132,9 +132,30 @@ std::optional<Problem> ClockFinder::decide_parts() {
   return std::nullopt;
 }
 
+/// Whether dates such as 24-02-28 are of today with the year first alone.
+bool ClockFinder::have_year_first(std::size_t c) const {
+  bool is_needed = false;
+  for (const std::string_view cell : head_.columns[c]) {
+    const auto seconds = [cell](DateOrder order) {
+      const auto read = read_date_text(cell, order);
+      return read && read->has_date ? static_cast<double>(read->clock_ns) * 1e-9 : -1;
+    };
+    if (trimmed(cell).empty()) continue;
+    if (const double at = seconds(DateOrder::year_first); at < earliest_s || at > latest_s_)
+      return false;
+    const double other = seconds(DateOrder::day_first);
+    is_needed = is_needed || other < 0 || other > latest_s_;
+  }
+  return is_needed;
+}
+
 /// Whether 03/04/2024 is in April or in March.
 std::optional<Problem> ClockFinder::decide_order(std::size_t c) {
   if (options_.order) return std::nullopt;
+  if (have_year_first(c)) {
+    clock_.order_ = DateOrder::year_first;
+    return std::nullopt;
+  }
   bool day_first = false, month_first = false;
   std::string_view ambiguous;
   std::uint64_t line = 0;

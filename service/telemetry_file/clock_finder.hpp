@@ -45,6 +45,7 @@ class ClockFinder {
   void take_zone_of_names();
   bool find_zone_column();
   void find_fraction_column();
+  bool have_year_first(std::size_t c) const;
   std::optional<Clock::Problem> decide_order(std::size_t c);
   std::optional<Clock::Problem> decide_one(std::size_t c);
   bool in_window(const std::vector<double>& values, TimeFormat format, std::int64_t unit_ns) const;

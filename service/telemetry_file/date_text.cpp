@@ -4,9 +4,9 @@
 #include <array>
 #include <chrono>
 #include <string>
-#include <utility>
 
 #include "service/support/text.hpp"
+#include "service/telemetry_file/date_spelling.hpp"
 #include "service/telemetry_file/time_units.hpp"
 
 namespace reident::telemetry_file {
@@ -28,8 +28,6 @@ constexpr std::array<NamedOffset, 22> named_offsets = {
      {"cet", 60},   {"met", 60},   {"mez", 60},   {"cest", 120}, {"mest", 120}, {"mesz", 120},
      {"eet", 120},  {"eest", 180}, {"est", -300}, {"edt", -240}, {"cst", -360}, {"cdt", -300},
      {"mst", -420}, {"mdt", -360}, {"pst", -480}, {"pdt", -420}}};
-constexpr std::array<std::string_view, 7> weekdays = {"mon", "tue", "wed", "thu",
-                                                      "fri", "sat", "sun"};
 
 bool digit(char c) {
   return c >= '0' && c <= '9';
@@ -202,18 +200,20 @@ std::optional<std::int64_t> take_year_last(Parts& text, DateOrder order, char& s
       const auto days = days_of_ordinal(2000 + *first, text.number(3));  // 24-059T22:00
       return text.empty() ? std::nullopt : days;
     }
-    text.take_blanks();  // 28. Februar
+    text.take_blanks();  // 28. Februar, 28FEB2024
     if (letter(text.front()))
       month = month_of(text.word());
     else
       second = text.whole(1, 2);
   }
-  if (!first || separator == '\0' || (!month && !second)) return std::nullopt;
+  if (!first || (!month && (!second || separator == '\0'))) return std::nullopt;
   text.take(',');
-  if (!text.take_any("-/. ")) return std::nullopt;
+  if (!text.take_any("-/. ") && separator != '\0') return std::nullopt;
   text.take_blanks();
   const std::size_t digits = text.digits();
-  if (digits != 4 && digits != 2) return std::nullopt;
+  if (digits != 4 && (digits != 2 || separator == '\0')) return std::nullopt;
+  if (order == DateOrder::year_first && digits == 2 && second)
+    return days_of(2000 + *first, *second, text.number(2));
   const int year = digits == 4 ? text.number(4) : 2000 + text.number(2);
   if (month) return days_of(year, *month, *first);
   is_ordered = separator != '.' && *first <= 12 && *second <= 12 && *first != *second;
@@ -314,17 +314,6 @@ std::optional<DateText> with_day(DateText read, std::int64_t days, std::int64_t 
   return read;
 }
 
-void take_weekday(Parts& text) {
-  Parts ahead = text.saved();
-  const std::string word = ahead.word();
-  if (word.size() < 3 ||
-      std::find(weekdays.begin(), weekdays.end(), word.substr(0, 3)) == weekdays.end())
-    return;
-  ahead.take(',');
-  ahead.take_blanks();
-  text = ahead;
-}
-
 /// 22:00:30, or the time that has passed: 26:03:10, 012/22:00:30, 12:22:00:30, 2 22:00:30.
 std::optional<DateText> read_clock(Parts text) {
   DateText read{.clock_ns = 0, .offset_ns = {}, .has_date = false, .is_ordered = false};
@@ -370,41 +359,11 @@ std::string_view without_brackets(std::string_view cell) {
   return has_brackets ? trimmed(cell.substr(1, cell.size() - 2)) : cell;
 }
 
-/// 2024\u5E7402\u670828\u65E5 22\u664200\u520600\u79D2 as 2024-02-28 22:00:00.
-std::string without_ideographs(std::string_view cell) {
-  constexpr std::array<std::pair<std::string_view, char>, 7> meanings = {{{"\xE5\xB9\xB4", '-'},
-                                                                          {"\xE6\x9C\x88", '-'},
-                                                                          {"\xE6\x97\xA5", ' '},
-                                                                          {"\xE6\x99\x82", ':'},
-                                                                          {"\xE6\x97\xB6", ':'},
-                                                                          {"\xE5\x88\x86", ':'},
-                                                                          {"\xE7\xA7\x92", ' '}}};
-  std::string text;
-  while (!cell.empty()) {
-    const auto* found = std::find_if(meanings.begin(), meanings.end(),
-                                     [&](const auto& one) { return cell.starts_with(one.first); });
-    text += found == meanings.end() ? cell.front() : found->second;
-    cell.remove_prefix(found == meanings.end() ? 1 : found->first.size());
-  }
-  return std::string(trimmed(text));
-}
-
-}  // namespace
-
-std::optional<std::int64_t> read_offset(std::string_view text) {
-  Parts parts(trimmed(text));
-  std::optional<std::int64_t> offset;
-  return take_offset(parts, offset) ? offset : std::nullopt;
-}
-
-std::optional<DateText> read_date_text(std::string_view cell, DateOrder order) {
-  if (cell.size() > 6 && cell.substr(4).starts_with("\xE5\xB9\xB4"))  // the year's ideograph
-    return read_date_text(without_ideographs(cell), order);
+std::optional<DateText> read_plain(std::string_view cell, DateOrder order) {
   Parts text(without_brackets(cell));
   DateText read;
   if (text.digits() <= 5 && cell.find(':') != std::string_view::npos)
     if (auto clock = read_clock(text.saved())) return clock;
-  take_weekday(text);
   if (letter(text.front()))
     if (auto found = read_year_at_end(text.saved())) return found;
   char separator = '\0';
@@ -425,6 +384,22 @@ std::optional<DateText> read_date_text(std::string_view cell, DateOrder order) {
   const auto clock = take_clock(text);
   if (!clock || !take_offset(text, read.offset_ns)) return std::nullopt;
   return with_day(read, *days, *clock);
+}
+
+}  // namespace
+
+std::optional<std::int64_t> read_offset(std::string_view text) {
+  Parts parts(trimmed(text));
+  std::optional<std::int64_t> offset;
+  return take_offset(parts, offset) ? offset : std::nullopt;
+}
+
+std::optional<DateText> read_date_text(std::string_view cell, DateOrder order) {
+  constexpr std::size_t longest = 100;  // of any spelling, in bytes
+  if (auto read = read_plain(cell, order)) return read;
+  if (cell.size() > longest) return std::nullopt;
+  const std::string plain = plain_spelling(cell);
+  return plain == cell ? std::nullopt : read_plain(plain, order);
 }
 
 }  // namespace reident::telemetry_file

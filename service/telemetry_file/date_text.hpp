@@ -7,8 +7,8 @@
 
 namespace reident::telemetry_file {
 
-/// What 03/04/2024 is: 3 April or March 4.
-enum class DateOrder { day_first, month_first };
+/// What 03/04/2024 is: 3 April or March 4; and whether 03/04/24 is 24 April 2003.
+enum class DateOrder { day_first, month_first, year_first };
 
 /// A time as a text says it.
 struct DateText {
@@ -26,7 +26,8 @@ struct DateText {
 ///   22:00, 22:00:30, 22:00:30.5, 22:00:30,5, 22.00.30.500, 220030, 10:00:30 PM
 /// or Feb 28 22:00:30 UTC 2024, or a time of day alone, or a time that has passed: 26:03:10,
 /// 012/22:00:30, 12:22:00:30. A zone may be named as in CET. Months may be in six languages. The
-/// second 60 is the next minute's 0. Empty where the text is none.
+/// second 60 is the next minute's 0. Other spellings are those of date_spelling.hpp. Empty where
+/// the text is none.
 std::optional<DateText> read_date_text(std::string_view text, DateOrder order);
 
 /// Returns how far east of UTC a clock is that CET, UTC, GMT+1 or +02:00 names; empty for others.

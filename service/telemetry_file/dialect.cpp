@@ -82,6 +82,11 @@ std::optional<Error> refuse_one_cell(const HeadLines& lines, const Layout& layou
     return at_line(name, first->number,
                    "the text is HTML, XML or JSON and no table of cells; write it as CSV first, as "
                    "jq -r '[.time, .value] | @csv' does of JSON with these members");
+  for (const std::string_view word : {"INSERT INTO ", "CREATE TABLE ", "insert into "})
+    if (text.starts_with(word))
+      return at_line(name, first->number,
+                     "the text is SQL and no table of cells; run it in a database, and have that "
+                     "write CSV: sqlite3 -csv -header FILE 'SELECT ...'");
   if (layout.cells == 0 && options.names.empty())
     return at_line(name, first->number,
                    "no line can be cut into cells, since their quotes are not paired ('" +
@@ -174,7 +179,9 @@ std::string describe(const Dialect& dialect) {
                          ? "separated by '" + std::string(1, dialect.layout.separator) + "'"
                          : word->second;
   if (!dialect.layout.places.empty()) text += " between columns of fixed width";
-  text += dialect.header_line == 0 ? ", no header"
+  const std::string rows_from =
+      dialect.first_line > 1 ? ", rows from line " + std::to_string(dialect.first_line) : "";
+  text += dialect.header_line == 0 ? ", no header" + rows_from
                                    : ", header in line " + std::to_string(dialect.header_line);
   if (dialect.units_line != 0) text += ", units in line " + std::to_string(dialect.units_line);
   if (!dialect.without_cells.empty()) text += ", no cells of " + joined(dialect.without_cells);

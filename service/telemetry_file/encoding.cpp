@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <iconv.h>
+#include <set>
 
 namespace reident::telemetry_file {
 namespace {
@@ -59,6 +60,24 @@ bool is_shift_jis(std::string_view text) {
   return wide > others;
 }
 
+/// Signs that stand within no word of Western Europe, and are letters elsewhere.
+constexpr std::string_view western_signs = "\xA3\xA5\xAA\xAF\xB3\xB9\xBA\xBC\xBE\xBF";
+/// One in so many bytes beyond ASCII shows by its place what all are.
+constexpr std::size_t least_share = 3;
+
+bool is_letter(unsigned byte) {
+  return (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z');
+}
+
+/// Letters and bytes beyond ASCII, from the first of them on.
+std::string_view word_around(std::string_view text, std::size_t place) {
+  const auto belongs = [&](std::size_t i) { return at(text, i) >= 0x80 || is_letter(at(text, i)); };
+  std::size_t begin = place, end = place;
+  while (begin > 0 && belongs(begin - 1)) --begin;
+  while (end < text.size() && belongs(end)) ++end;
+  return text.substr(begin, end - begin);
+}
+
 /// The shares of zeros at even and odd places.
 std::array<double, 2> zeros(std::string_view head) {
   std::array<double, 2> counts = {0, 0};
@@ -70,6 +89,9 @@ std::array<double, 2> zeros(std::string_view head) {
 }  // namespace
 
 std::string find_encoding(std::string_view head) {
+  using namespace std::string_view_literals;
+  if (head.starts_with("\xFF\xFE\0\0"sv)) return "UTF-32LE";
+  if (head.starts_with("\0\0\xFE\xFF"sv)) return "UTF-32BE";
   if (head.starts_with("\xFF\xFE")) return "UTF-16LE";
   if (head.starts_with("\xFE\xFF")) return "UTF-16BE";
   const auto [even, odd] = zeros(head);
@@ -83,9 +105,33 @@ std::string find_encoding(std::string_view head) {
   return has_c1 ? "WINDOWS-1252" : "ISO-8859-1";
 }
 
+std::string foreign_word(std::string_view head) {
+  std::size_t all = 0, in_words = 0;
+  std::string_view first;
+  std::set<std::string_view> seen;
+  for (std::size_t begin = 0; begin < head.size();) {
+    std::size_t end = begin;
+    while (end < head.size() && at(head, end) >= 0x80) ++end;
+    const std::string_view bytes = head.substr(begin, end - begin);
+    const bool is_sign = bytes.size() == 1 && begin > 0 && is_letter(at(head, begin - 1)) &&
+                         end < head.size() && is_letter(at(head, end)) &&
+                         western_signs.find(bytes.front()) != std::string_view::npos;
+    begin = std::max(end, begin + 1);
+    if (bytes.empty()) continue;
+    if (!seen.insert(is_sign ? western_signs : bytes).second) continue;
+    all += bytes.size();
+    if (bytes.size() >= 3 || is_sign) {
+      in_words += is_sign ? least_share : bytes.size();
+      if (first.empty()) first = word_around(head, end - bytes.size());
+    }
+  }
+  return least_share * in_words >= all ? std::string(first) : "";
+}
+
 bool is_binary(std::string_view head) {
   if (head.starts_with("\x1F\x8B") || head.starts_with("PK\x03\x04")) return true;
-  if (find_encoding(head).starts_with("UTF-16")) return false;
+  const std::string encoding = find_encoding(head);
+  if (encoding.starts_with("UTF-16") || encoding.starts_with("UTF-32")) return false;
   const auto nuls = std::count(head.begin(), head.end(), '\0');
   const auto controls = std::count_if(head.begin(), head.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\0' && c != '\n' && c != '\r' && c != '\t';

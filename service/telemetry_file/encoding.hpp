@@ -12,6 +12,11 @@ namespace reident::telemetry_file {
 /// ISO-8859-1); else UTF-8. A character that is cut off at the end of `head` is no evidence.
 std::string find_encoding(std::string_view head);
 
+/// Returns the first word of a text in ISO-8859-1 or WINDOWS-1252 by find_encoding() that is none
+/// of Western Europe: three bytes beyond ASCII side by side, or a sign within it. Empty where few
+/// of such bytes stand so.
+std::string foreign_word(std::string_view head);
+
 /// Whether bytes are those of a packed or binary file: no text in any encoding.
 bool is_binary(std::string_view head);
 

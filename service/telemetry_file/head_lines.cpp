@@ -5,6 +5,7 @@
 #include <set>
 
 #include "service/support/text.hpp"
+#include "service/telemetry_file/date_text.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -35,7 +36,8 @@ char find_line_end(std::string_view text) {
 
 HeadLines lines_of(const RowReader::Head& head, char line_end) {
   HeadLines lines;
-  std::size_t at = head.text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+  std::size_t at = 0;
+  while (head.text.substr(at).starts_with(byte_order_mark)) at += byte_order_mark.size();
   std::uint64_t number = 1;
   while (at < head.text.size() && lines.size() < lines_looked_at) {
     const std::size_t end = row_end(head.text, at, line_end);
@@ -239,14 +241,15 @@ bool looks_like_value(std::string_view cell) {
   cell = trimmed(cell);
   constexpr std::string_view minus = "\xE2\x88\x92";
   if (cell.starts_with(minus)) cell.remove_prefix(minus.size());
+  if (cell.starts_with('+') || cell.starts_with('-')) cell = trimmed(cell.substr(1));
   if (cell.starts_with('"')) cell.remove_prefix(1);
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   if (cell.empty() || (!is_digit(cell.front()) &&
-                       std::string_view("+-.(,").find(cell.front()) == std::string_view::npos))
+                       std::string_view(".(,").find(cell.front()) == std::string_view::npos))
     return false;
   std::size_t digits = 0;
   for (const char c : cell) {
-    if (c == ';' || c == '|' || c == '\t' || c == '"') return false;
+    if (std::string_view(";|\t\"<>").find(c) != std::string_view::npos) return false;
     digits += is_digit(c) ? 1U : 0U;
   }
   if (digits == 0) return false;
@@ -258,7 +261,7 @@ bool looks_like_value(std::string_view cell) {
         rest.size() >= 3 && rest.find_first_not_of("0123456789") >= 3 &&
         (rest.size() == 3 || std::string_view(" .,").find(rest[3]) != std::string_view::npos);
     return is_group || rest.find_first_of("0123456789") == std::string_view::npos ||
-           cell.find_first_of("-/.") == 4;
+           read_date_text(cell, DateOrder::day_first);
   }
   if (has_clock) {
     // A comma is the mark of a part of a second.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "service/support/text.hpp"
 #include "service/telemetry_file/clock_names.hpp"
@@ -89,6 +90,17 @@ class Head {
         return i;
     return lines_.size();
   }
+  /// The first line with a value where all rows have one: the first row where names are given.
+  std::size_t first_of_values() const {
+    const auto first = std::find(values_.begin(), values_.end(), true);
+    const auto column = static_cast<std::size_t>(first - values_.begin());
+    for (std::size_t i = 0; i < lines_.size() && first != values_.end(); ++i) {
+      const HeadLine& line = lines_[i];
+      if (is_blank(line) || is_comment(line, comment_) || line.cells.size() <= column) continue;
+      if (looks_like_value(line.cells[column])) return i;
+    }
+    return first_row();
+  }
   /// The lines of text right above the rows, the upper one first.
   std::vector<std::size_t> block_above(std::size_t first_row) const {
     std::vector<std::size_t> block;
@@ -140,12 +152,14 @@ bool are_identifiers(const HeadLine& line) {
 
 bool are_names(const HeadLine& line) {
   std::set<std::string_view> seen;
-  std::size_t empty = 0;
+  std::size_t empty = 0, empty_at_end = 0;
   for (const std::string& cell : line.cells) {
-    if (trimmed(cell).empty())
-      ++empty;
-    else if (!seen.insert(trimmed(cell)).second)
-      return false;
+    if (trimmed(cell).empty()) {
+      ++empty_at_end;
+      continue;
+    }
+    empty += std::exchange(empty_at_end, 0);
+    if (!seen.insert(trimmed(cell)).second) return false;
   }
   return empty <= 1;
 }
@@ -292,7 +306,7 @@ std::variant<HeaderPlace, Error> find_header(HeadLines& lines, const Layout& lay
     }
     return found;
   }
-  found.first_row = head.first_row();
+  found.first_row = options.names.empty() ? head.first_row() : head.first_of_values();
   const auto block = head.block_above(found.first_row);
   if (block.empty()) {
     found =

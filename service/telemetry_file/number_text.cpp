@@ -36,6 +36,7 @@ int take_sign(std::string_view& text, unsigned& spelling) {
   if (text.starts_with('-') || text.starts_with('+')) {
     const int sign = text.front() == '-' ? -1 : 1;
     text.remove_prefix(1);
+    while (text.starts_with(' ')) text.remove_prefix(1);  // as loggers align numbers
     return sign;
   }
   if (text.empty() || is_ascii(text.front())) return 0;
@@ -136,7 +137,11 @@ bool is_more_than_a_suffix(std::string_view text) {
 
 std::optional<double> plain_number(std::string_view cell) {
   cell = trimmed(cell);
-  if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') cell.remove_prefix(1);
+  if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') cell = trimmed(cell.substr(1));
+  if (cell.size() > 1 && cell[0] == '-' && cell[1] == ' ') {
+    const auto value = converted(trimmed(cell.substr(1)));
+    return value && *value >= 0 ? std::optional(-*value) : std::nullopt;
+  }
   return converted(cell);
 }
 

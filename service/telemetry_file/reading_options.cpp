@@ -114,12 +114,14 @@ std::optional<Error> take_time(const ReadingArguments& arguments, ReadingOptions
   time.zone = arguments.time_zone;
   if (arguments.time_format) {
     const std::string& text = *arguments.time_format;
-    time.format = text == "iso" || text == "dmy" || text == "mdy" ? TimeFormat::text
-                                                                  : parse_time_format(text);
+    time.format = text == "iso" || text == "dmy" || text == "mdy" || text == "ymd"
+                      ? TimeFormat::text
+                      : parse_time_format(text);
     if (!time.format)
-      return wrong("--time-format", text, "one of iso, dmy, mdy, " + time_format_names());
+      return wrong("--time-format", text, "one of iso, dmy, mdy, ymd, " + time_format_names());
     if (text == "dmy") time.order = DateOrder::day_first;
     if (text == "mdy") time.order = DateOrder::month_first;
+    if (text == "ymd") time.order = DateOrder::year_first;
   }
   if (arguments.time_unit) {
     time.unit_ns = parse_time_unit(*arguments.time_unit);
@@ -180,7 +182,7 @@ void add_reading_options(CLI::App& app, ReadingArguments& arguments) {
       "like a time)",
       "COLUMN");
   text("--time-format", arguments.time_format,
-       "iso, dmy, mdy, unix, elapsed, excel, mjd, jd, matlab, filetime, gps", "NAME");
+       "iso, dmy, mdy, ymd, unix, elapsed, excel, mjd, jd, matlab, filetime, gps", "NAME");
   text("--time-unit", arguments.time_unit,
        "what numbers of the time count: ns, us, ms, s, min, h, d", "UNIT");
   text("--time-zone", arguments.time_zone, "of times without an offset, as Europe/Berlin (UTC)",

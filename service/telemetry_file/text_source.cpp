@@ -8,6 +8,7 @@ namespace reident::telemetry_file {
 namespace {
 
 constexpr std::size_t block_bytes = std::size_t{256} << 10;
+constexpr std::string_view replacement_character = "\xEF\xBF\xBD";
 constexpr std::size_t evidence_bytes = std::size_t{1} << 20;
 
 std::string message_of(int code) {
@@ -18,6 +19,21 @@ std::string cannot_open(int code) {
   if (code == ENOENT) return "there is no such file; check the path";
   if (code == EACCES) return "no permission to read it (chmod +r mends it)";
   return "cannot be opened: " + message_of(code);
+}
+
+/// What a word is in each of the encodings in which it may be one.
+std::string readings_of(const std::string& word) {
+  constexpr std::size_t most_bytes = 24;
+  std::string readings;
+  for (const char* encoding : {"GB18030", "BIG5", "EUC-KR", "EUC-JP", "WINDOWS-1251", "KOI8-R",
+                               "WINDOWS-1253", "WINDOWS-1250", "WINDOWS-1252"}) {
+    const auto decoder = Decoder::of(encoding);
+    std::string text;
+    if (decoder) decoder->decode(word.substr(0, most_bytes), true, text);
+    if (text.empty() || text.find(replacement_character) != std::string::npos) continue;
+    readings += (readings.empty() ? "" : ", ") + std::string(encoding) + " (" + text + ")";
+  }
+  return readings;
 }
 
 }  // namespace
@@ -45,6 +61,10 @@ std::variant<TextSource, Error> TextSource::open(const std::filesystem::path& pa
   if (!encoding && is_binary(head))
     return *source.failed("the file is packed or no text; unpack it, or convert it to text, first");
   source.encoding_ = encoding ? *encoding : find_encoding(head);
+  if (!encoding && source.encoding_ != "SHIFT_JIS" && !source.encoding_.starts_with("UTF-"))
+    if (const std::string word = foreign_word(head); !word.empty())
+      return *source.failed("its encoding is not known by its bytes; say it with --encoding: " +
+                            readings_of(word));
   if (source.encoding_ == "UTF-8" || source.encoding_ == "utf-8") {
     source.text_ = std::move(head);
     return source;

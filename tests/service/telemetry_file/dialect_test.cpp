@@ -95,6 +95,10 @@ TEST(TelemetryDialect, IsFoundFromTheFirstRows) {
            Found{"TOA5,KRN\ntime,u,v\nTS,A,V\n,Avg,Avg\n", ",", false, 2, 0, 5},
            Found{"\"#\",\"u, A\",\"v, V\"\n", ",", false, 1, 0, 2},
            Found{"Time,Load current,Bus\ns,A,V\nComments,,filtered\n", ",", false, 1, 2, 4},
+           Found{"Name:,eps,\nStart:,2/28/2024,\nScan,101 <I> (ADC),102 <V> (VDC)\n", ",", false, 3,
+                 0, 4},
+           Found{"\"(PDH-CSV 4.0) (GMT)(0)\",u,v\n", ",", false, 1, 0, 2},
+           Found{"Number,CH1,CH2\nNO.,V,V\n", ",", false, 1, 0, 3},
            Found{"***End_of_Header***\t\t\nX_Value\tu\tv\tComment\n", "\t", false, 2, 0, 3},
        }) {
     RowReader rows(TextSource::of_text(file_of(c.above, c.separator, c.decimal_commas), "t.csv"));
@@ -150,6 +154,12 @@ TEST(TelemetryDialect, IsTakenAsGiven) {
   options.dialect.names = {"time", "u"};
   opened = TelemetryFile::of_text("2024-02-28,1\n2024-02-29,2\n", "t.csv", options);
   EXPECT_THAT(std::get<TelemetryFile>(opened).columns(), ElementsAre("time", "u"));
+  opened = TelemetryFile::of_text(
+      "VERS = 2.0\nSYSTEM = UTC\nSTOP\n\n2024-02-27 1.4\n2024-02-28 1.5\n2024-02-29 1.6\n", "t",
+      options);
+  auto& file = std::get<TelemetryFile>(opened);
+  EXPECT_THAT(file.columns(), ElementsAre("time", "u"));
+  ASSERT_EQ(file.next(), TelemetryFile::Step::row) << file.error().message;
 }
 
 TEST(TelemetryDialect, OfLinesThatAreNoCellsIsRefusedWithTheRemedy) {
@@ -159,6 +169,8 @@ TEST(TelemetryDialect, OfLinesThatAreNoCellsIsRefusedWithTheRemedy) {
         {"\"time,u\"\n\"2024-02-28,1.5\"\n\"2024-02-29,1.6\"\n",
          "t.csv:1: the line is one quoted cell"},
         {"{\"time\":1,\"u\":2}\n{\"time\":2,\"u\":3}\n", "t.csv:1: the text is HTML"},
+        {"INSERT INTO tm VALUES (1,2);\nINSERT INTO tm VALUES (3,4);\n",
+         "t.csv:1: the text is SQL"},
         {"2024-02-28 u=1 v=2\n2024-02-29 u=3 v=4\n2024-03-01 u=5 v=6\n",
          "t.csv:1: the line holds pairs"},
         {"eps,sat=1 u=1,v=2 17\neps,sat=1 u=3,v=4 18\neps,sat=1 u=5,v=6 19\n",
@@ -344,6 +356,16 @@ TEST(TelemetryCells, AreReadWhereAColumnAgrees) {
     EXPECT_EQ(cell.kind, Cell::Kind::number) << c.cells[0];
     EXPECT_EQ(cell.value, c.first) << c.cells[0];
     EXPECT_EQ(format.unit, c.unit) << c.cells[0];
+  }
+}
+
+TEST(TelemetryCells, MayHaveBlanksBehindTheSign) {
+  auto opened = TelemetryFile::of_text("time,u\n2024-02-28,+  1.5\n2024-02-29,-  0.5\n", "t", {});
+  auto& file = std::get<TelemetryFile>(opened);
+  ASSERT_FALSE(file.find_time());
+  for (const double value : {1.5, -0.5}) {
+    ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+    EXPECT_EQ(file.cell(1).value, value);
   }
 }
 

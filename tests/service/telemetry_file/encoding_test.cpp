@@ -25,6 +25,33 @@ TEST(TelemetryEncoding, IsWhatTheBytesShow) {
   EXPECT_EQ(find_encoding("\0t\0i\0m\0e"s), "UTF-16BE");
 }
 
+TEST(TelemetryEncoding, OfWordsThatWesternEuropeHasNotIsAskedFor) {
+  EXPECT_EQ(find_encoding("\xFF\xFE\0\0t\0\0\0"s), "UTF-32LE");
+  for (const char* text : {
+           "\xCA\xB1\xBC\xE4,u\n",                 // Chinese, GB18030
+           "\xBD\xC3\xB0\xA3,\xC0\xFC\xB7\xF9\n",  // Korean, EUC-KR
+           "\xAE\xC9\xB6\xA1,\xB9q\xACy,\xB9q\xC0\xA3\n\xA4U\xA4\xC8 1,\xA4U\xA4\xC8 2",  // Big5
+           "\xC2\xF0\xE5\xEC\xFF;\xD2\xEE\xEA\n",  // Russian, Windows-1251
+           "Czas;Pr\xB9"
+           "d;Napi\xEA"
+           "cie\n",  // Polish, Windows-1250
+       })
+    EXPECT_NE(foreign_word(text), "") << text;
+  for (const char* text : {
+           "Zeit;Gr\xF6\xDF"
+           "e;Stra\xDF"
+           "e;\xB5"
+           "A;\xB0"
+           "C;m\xB2",
+           "Vibra\xE7\xE3o;Posi\xE7\xF5"
+           "es",
+           "M\xE4\xE4r\xE4;T\xE9l\xE9metrie cr\xE9\xE9"
+           "e",
+           "\x93Strom\x94 \x85 \x96 I",
+       })
+    EXPECT_EQ(foreign_word(text), "") << text;
+}
+
 TEST(TelemetryEncoding, OfAStreamIsConvertedWhereverItIsCut) {
   const std::string bytes =
       "I\xB7sa (\xB5"

@@ -295,6 +295,8 @@ TEST_F(TelemetryRowFile, ThatCannotBeReadIsAClearError) {
   EXPECT_EQ(message(folder_ / "none.csv"),
             (folder_ / "none.csv").string() + ": there is no such file; check the path");
   EXPECT_EQ(message(folder_), folder_.string() + ": is a directory; name a CSV file in it");
+  EXPECT_THAT(message(write("\xCA\xB1\xBC\xE4,u\n1,2\n")),
+              HasSubstr("--encoding: GB18030 (\u65F6\u95F4)"));
   const auto path = write("a\n1\n");
   std::filesystem::permissions(path, std::filesystem::perms::none);
   if (geteuid() != 0) {  // root may read everything
