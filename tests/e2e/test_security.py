@@ -125,6 +125,13 @@ class SecuredLoop(Secured):
         self.assertEqual(status, 2, text)
         self.assertIn(str(member / "permissions.p7s"), text)
 
+    def test_of_a_pair_one_whose_certificate_has_ended_neither_leads_nor_dies(self):
+        path = self.configure_secured(self.site.grant("service", "reident-1", "--valid", "5s"))
+        path.write_text(path.read_text().replace("[service]", "[service]\nstandby = true\nstrength = 2"))
+        daemon = self.start_daemon()
+        wait_until(lambda: "pair: leads no more" in daemon.text(), "it steps down")
+        self.assertTrue(daemon.running())
+
     def test_an_ended_certificate_is_an_alarm_and_a_new_one_is_taken_up(self):
         self.configure_secured(self.site.grant("service", "reident-1", "--valid", "20s"))
         ana = self.site.grant("operator", "ana")
