@@ -1,10 +1,13 @@
 #include "service/cli/config_options.hpp"
 
+#include <cerrno>
 #include <filesystem>
+#include <unistd.h>
 
 #include <fmt/format.h>
 
 #include "service/security/material.hpp"
+#include "service/support/utc_clock.hpp"
 
 namespace reident::cli {
 
@@ -44,6 +47,25 @@ Refusal missing_security(const dds::Endpoint& endpoint) {
       "domain {} is secured, and this command has no certificate: nothing can be heard; name its "
       "folder with --security FOLDER or REIDENT_SECURITY ('reident security grant' makes one)",
       endpoint.domain)};
+}
+
+std::string mistake_of_security(const Config& config) {
+  if (config.security.empty()) return {};
+  const std::filesystem::path key = config.security / security::file::key;
+  if (::access(key.c_str(), R_OK) != 0 && errno == EACCES) return {};
+  const auto read = security::read_material(config.security, utc_now());
+  const auto* mistakes = std::get_if<std::vector<std::string>>(&read);
+  return mistakes ? mistakes->front() : std::string();
+}
+
+std::string why_unheard(const dds::Endpoint& endpoint, const std::optional<std::string>& file) {
+  if (endpoint.security.empty()) return {};
+  const auto chosen = chosen_config(file);
+  const auto* config = std::get_if<std::optional<Config>>(&chosen);
+  const std::string mistake = config && *config ? mistake_of_security(**config) : std::string();
+  if (!mistake.empty()) return "; the service's own files are wrong: " + mistake;
+  return "; one whose certificate has ended or was revoked is not heard either: 'reident security "
+         "check' of the service's folder says so";
 }
 
 std::string mistake_text(const std::string& file, const ConfigMistake& mistake) {

@@ -31,6 +31,14 @@ dds::Endpoint endpoint_of(const Config& config);
 /// What to do where Participant::misses_security().
 Refusal missing_security(const dds::Endpoint& endpoint);
 
+/// What is wrong with the files of the service's security, such as a certificate that has ended.
+/// Empty where nothing is, and where they are another user's alone.
+std::string mistake_of_security(const Config& config);
+
+/// The end of an error where no service was heard on a secured domain: mistake_of_security() of the
+/// configuration in `file`, or else where to look. Empty on a plain domain.
+std::string why_unheard(const dds::Endpoint& endpoint, const std::optional<std::string>& file);
+
 /// "FILE:LINE: what", or "FILE: what" of the file as a whole.
 std::string mistake_text(const std::string& file, const ConfigMistake& mistake);
 

@@ -15,6 +15,7 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/verb.hpp"
+#include "service/dds/middleware_log.hpp"
 #include "service/support/terminal.hpp"
 #include "service/support/text.hpp"
 #include "service/support/version.hpp"
@@ -67,6 +68,7 @@ std::vector<std::string> words_of(int argc, char** argv) {
 }
 
 int run(int argc, char** argv) {
+  dds::log_what_the_middleware_says();
   std::vector<std::string> words = words_of(argc, argv);
   std::optional<FoldedOutput> folded;
   if (!is_for_programs(words)) folded.emplace(is_long(words));

@@ -158,8 +158,9 @@ int report_timeout(const Target& target, const OperatorOptions& options, const s
   print_error(
       "reident: no service answered on domain {}, partition {} within {:g} s, and {}; check "
       "that the domain and the partition are the service's, and with 'reident history' that "
-      "nothing was done",
-      target.endpoint.domain, target.endpoint.partition, options.timeout_s, why);
+      "nothing was done{}",
+      target.endpoint.domain, target.endpoint.partition, options.timeout_s, why,
+      why_unheard(target.endpoint, options.database.config));
   return exit_timed_out;
 }
 

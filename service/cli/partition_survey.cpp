@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "service/cli/service_choice.hpp"
+
 namespace reident::cli {
 namespace {
 
@@ -64,6 +66,14 @@ class Listener {
   std::size_t services_ = 0;
 };
 
+/// Services that publish nothing while the other one of their pair leads.
+std::size_t followers(const dds::Endpoint& endpoint) {
+  const auto heard = heard_services(endpoint, heartbeat_wait);
+  const auto* services = std::get_if<std::vector<ServiceStatus>>(&heard);
+  if (services == nullptr) return 0;
+  return static_cast<std::size_t>(std::ranges::count(*services, "follows", &ServiceStatus::role));
+}
+
 }  // namespace
 
 PartitionSurvey look_into(const dds::Endpoint& endpoint, std::chrono::nanoseconds limit) {
@@ -80,7 +90,9 @@ PartitionSurvey look_into(const dds::Endpoint& endpoint, std::chrono::nanosecond
     if (known_now != known) changed = Clock::now();
     known = known_now;
   }
-  return listener.sight();
+  PartitionSurvey sight = listener.sight();
+  if (sight.services > 1) sight.services -= std::min(followers(endpoint), sight.services - 1);
+  return sight;
 }
 
 }  // namespace reident::cli

@@ -67,6 +67,14 @@ LeadershipRule::Step LeadershipRule::look(const Standing& ours, Instant now) {
   return now < until_ ? Step::none : Step::take_over;
 }
 
+LeadershipRule::Step LeadershipRule::look_while_unheard(Instant now) {
+  last_look_ = now;
+  heard_leader_.reset();
+  const bool led = role_ == Role::leads;
+  listen(now + patience);
+  return led ? Step::step_down : Step::none;
+}
+
 void LeadershipRule::took_over(std::int64_t term) {
   role_ = Role::leads;
   is_starting_ = is_named_ = false;

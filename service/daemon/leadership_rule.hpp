@@ -39,6 +39,9 @@ class LeadershipRule {
   /// What is to be done now. Call it several times within a lease: who was away for longer than
   /// that, stopped or without a processor, no longer leads and believes no silence that it met.
   Step look(const Standing& ours, Instant now);
+  /// In the place of look() while nobody can hear this service, nor it the partner: it leads no
+  /// more, and believes no silence until `patience` has passed behind that.
+  Step look_while_unheard(Instant now);
   /// The step was taken: this service leads in this term.
   void took_over(std::int64_t term);
   /// This service gives leadership away: it leads again only if nobody takes it.

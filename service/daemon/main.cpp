@@ -16,6 +16,7 @@
 #include "service/config/config.hpp"
 #include "service/daemon/daemon.hpp"
 #include "service/daemon/service_manager.hpp"
+#include "service/dds/middleware_log.hpp"
 #include "service/support/allocator.hpp"
 #include "service/support/command_line.hpp"
 #include "service/support/log.hpp"
@@ -108,6 +109,7 @@ int main(int argc, char** argv) {
       "Identifies the equipment models of a satellite simulator again and again from telemetry,\n"
       "and publishes those that pass the gate.\n\n"
       "Example:\n  reidentd --config reident.toml\n");
+  reident::dds::log_what_the_middleware_says();
   app.name("reidentd");
   std::string path;
   app.add_option("-c,--config", path, "Configuration file (see `reident check-config`)")

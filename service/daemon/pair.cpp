@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "service/security/material.hpp"
 #include "service/support/log.hpp"
 #include "service/support/utc_clock.hpp"
 
@@ -95,7 +96,7 @@ void Pair::turn() {
   if (const auto partner = replication_.partner(now))
     rule_.hear_partner(partner->standing, partner->heard);
   const Standing ours = replication_.standing();
-  take(rule_.look(ours, now), ours);
+  take(is_unheard() ? rule_.look_while_unheard(now) : rule_.look(ours, now), ours);
   if (const std::string failure = taking_over_.finish();
       !failure.empty() && take_over_failure_.is_news(failure))
     log::error("pair", "a term cannot be recorded; it is tried again", {{"error", failure}});
@@ -115,6 +116,11 @@ void Pair::turn() {
     say_that_it_leads(ours, now);
   }
   note(ours, now);
+}
+
+bool Pair::is_unheard() const {
+  const auto material = participant_.material();
+  return material && material->end <= clock_();
 }
 
 void Pair::hear_leaders(Instant now) {

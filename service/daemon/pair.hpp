@@ -61,6 +61,8 @@ class Pair {
  private:
   bool is_leading() const { return leadership_.has_value(); }
   void turn();
+  /// The certificate has ended: the middleware goes on, and nobody hears it.
+  bool is_unheard() const;
   void hear_leaders(Instant now);
   void take(LeadershipRule::Step step, const Standing& ours);
   void take_over(const Standing& ours);

@@ -1,6 +1,7 @@
 #include "service/daemon/publisher.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "service/model/model_json.hpp"
 #include "service/support/log.hpp"
@@ -11,7 +12,7 @@ namespace reident {
 Publisher::Publisher(dds::Participant& participant, MayPublish may_publish)
     : participant_(participant),
       may_publish_(std::move(may_publish)),
-      versions_(participant),
+      versions_(std::in_place, participant),
       reports_(participant),
       status_(participant) {}
 
@@ -40,7 +41,7 @@ bool Publisher::write(const storage::Version& version, const storage::Decision& 
   // Said also of a version that was approved after a rollback: a simulator may have missed that.
   message.rollback = decision.kind == storage::DecisionKind::roll_back || follows_a_newer_one;
   message.program_version = program_version();
-  versions_.write(message);
+  versions().write(message);
   return true;
 }
 
@@ -61,7 +62,7 @@ bool Publisher::publish(const storage::Registry& registry, const storage::Equipm
     ModelVersion none;
     none.model.spacecraft = spacecraft;
     none.model.equipment = name;
-    versions_.dispose(none);
+    versions().dispose(none);
     published_.erase(published);
     return true;
   }
@@ -99,8 +100,18 @@ std::size_t Publisher::publish_champions(const storage::Registry& registry,
 
 void Publisher::retire() {
   const MutexLock lock(versions_mutex_);
-  versions_ = dds::Writer<ModelVersion>(participant_);
+  versions_.reset();
   published_.clear();
+  try {
+    versions();  // so that simulators know it before it publishes again
+  } catch (const dds::Error&) {
+    // The certificate has ended. It is made with a new one.
+  }
+}
+
+dds::Writer<ModelVersion>& Publisher::versions() {
+  if (!versions_) versions_.emplace(participant_);
+  return *versions_;
 }
 
 }  // namespace reident

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "service/dds/dds.hpp"
 #include "service/support/mutex.hpp"
@@ -49,6 +50,8 @@ class Publisher {
   bool publish(const storage::Registry& registry, const storage::EquipmentName& equipment,
                bool may_replace_newer) REIDENT_REQUIRES(versions_mutex_);
 
+  dds::Writer<ModelVersion>& versions() REIDENT_REQUIRES(versions_mutex_);
+
   struct Published {
     std::int64_t decision = 0;  // id of the one that made it champion
     std::int64_t version = 0;
@@ -56,7 +59,7 @@ class Publisher {
   dds::Participant& participant_;
   const MayPublish may_publish_;
   mutable Mutex versions_mutex_;
-  dds::Writer<ModelVersion> versions_ REIDENT_GUARDED_BY(versions_mutex_);
+  std::optional<dds::Writer<ModelVersion>> versions_ REIDENT_GUARDED_BY(versions_mutex_);
   std::map<storage::EquipmentName, Published> published_ REIDENT_GUARDED_BY(versions_mutex_);
   Mutex reports_mutex_;
   dds::Writer<IdentificationReport> reports_ REIDENT_GUARDED_BY(reports_mutex_);

@@ -36,6 +36,13 @@ bool has(const std::vector<Alarm>& alarms, const Alarm& one) {
                      [&](const Alarm& other) { return contents(other) == contents(one); });
 }
 
+/// Whatever its text is now.
+bool is_raised(const std::vector<Alarm>& alarms, const Alarm& one) {
+  return std::any_of(alarms.begin(), alarms.end(), [&](const Alarm& other) {
+    return other.code == one.code && other.about == one.about;
+  });
+}
+
 bool same(const std::vector<Alarm>& a, const std::vector<Alarm>& b) {
   return a.size() == b.size() &&
          std::all_of(a.begin(), a.end(), [&](const Alarm& one) { return has(b, one); });
@@ -48,10 +55,8 @@ std::string name_of(const storage::EquipmentName& about) {
 /// Makes the registry's alarms, but those of the league, these.
 void write(storage::Registry& registry, const std::vector<Alarm>& alarms, storage::Time now) {
   for (const Alarm& before : registry.alarms()) {
-    const bool holds = std::any_of(alarms.begin(), alarms.end(), [&](const Alarm& one) {
-      return one.code == before.code && one.about == before.about;
-    });
-    if (!holds && before.code != of_the_league) registry.clear(before.code, before.about, now);
+    if (!is_raised(alarms, before) && before.code != of_the_league)
+      registry.clear(before.code, before.about, now);
   }
   for (const Alarm& alarm : alarms) registry.raise(alarm);
 }
@@ -178,7 +183,7 @@ void ServiceWatch::look() {
       log::warning("alarm", "raised",
                    {{"code", alarm.code}, {"about", name_of(alarm.about)}, {"text", alarm.text}});
   for (const Alarm& alarm : alarms_)
-    if (!has(now, alarm))
+    if (!is_raised(now, alarm))
       log::info("alarm", "cleared", {{"code", alarm.code}, {"about", name_of(alarm.about)}});
   alarms_ = std::move(now);
   if (!parts_.pair || parts_.pair->leads())

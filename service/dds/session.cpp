@@ -127,6 +127,11 @@ Entity Session::made(dds_entity_t result, const char* call, const char* topic,
   return {result, call, topic};
 }
 
+void Session::require_valid(const char* topic) const {
+  if (material && material->end <= utc_now())
+    throw Error(fmt::format("{}: {}", topic, security::end_warning(*material, utc_now())));
+}
+
 SessionKeeper::SessionKeeper(const Endpoint& endpoint)
     : endpoint_(endpoint), session_(std::make_shared<Session>(endpoint, material_of(endpoint))) {
   newest_ = session_.get();

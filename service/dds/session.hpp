@@ -31,6 +31,10 @@ struct Session {
   Entity made(dds_entity_t result, const char* call, const char* topic,
               security::Direction direction) const;
 
+  /// Throws Error where the certificate has ended: the middleware dies where it is asked for a
+  /// reader or a writer then.
+  void require_valid(const char* topic) const;
+
   std::string partition;
   std::shared_ptr<const security::Material> material;
   Entity participant;

@@ -45,6 +45,7 @@ SessionReader::SessionReader(Participant& participant, SharedSession session,
       first_(make_endpoint(!is_volatile())) {}
 
 SessionReader::Endpoint SessionReader::make_endpoint(bool transient_local) const {
+  session_->require_valid(profile_.topic);
   const Qos qos = reader_qos(profile_, options_, transient_local);
   Endpoint endpoint;
   endpoint.reader = session_->made(

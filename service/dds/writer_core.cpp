@@ -54,6 +54,7 @@ WriterCore::~WriterCore() {
 }
 
 WriterCore::SessionWriter WriterCore::make_writer(const SharedSession& session) const {
+  session->require_valid(profile_.topic);
   SessionWriter made;
   made.session = session;
   made.topic = session->made(

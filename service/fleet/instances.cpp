@@ -79,10 +79,6 @@ std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  if (files.empty())
-    throw std::invalid_argument(folder.string() +
-                                " holds no configuration (*.toml): name the folder of the "
-                                "instances, such as /etc/reident");
   std::ranges::sort(files);
   std::vector<std::optional<Instance>> read(files.size());
   workers.for_each(files.size(), [&](std::size_t i) { read[i] = read_instance(files[i]); });
@@ -93,6 +89,10 @@ std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers
     if (!is_of_tables) one->is_of_site = true;
     instances.push_back(*std::move(one));
   }
+  if (instances.empty())
+    throw std::invalid_argument(folder.string() +
+                                " holds no configuration (*.toml): name the folder of the "
+                                "instances, such as /etc/reident");
   const auto badness = [](const Instance& one) {
     return std::tuple(one.is_of_site, !one.problem.empty(), !one.has_service, one.unseen_alarms(),
                       one.waiting());

@@ -182,6 +182,13 @@ std::variant<Material, std::vector<std::string>> MaterialReader::operator()() {
                     material_.folder.string()));
     return mistakes_;
   }
+  if (std::filesystem::is_directory(material_.folder / "members", failed)) {
+    mistakes_.push_back(
+        fmt::format("{0}: is the folder of a site's authorities; name a member's, "
+                    "such as {0}/members/NAME",
+                    material_.folder.string()));
+    return mistakes_;
+  }
   read_all();
   if (!mistakes_.empty()) return mistakes_;
   check_authorities();

@@ -160,6 +160,11 @@ Site Site::init(const fs::path& folder, const std::string& organisation, std::in
 }
 
 Site::Site(fs::path folder) : folder_(std::move(folder)) {
+  std::error_code none;
+  if (fs::exists(folder_ / file::certificate, none) && !fs::exists(folder_ / issued_folder, none))
+    throw Error(fmt::format(
+        "{} is the folder of a member; name the site's, which 'reident security init' made",
+        folder_.string()));
   for (const char* name : {file::identity_authority, file::permissions_authority})
     static_cast<void>(parsed(folder_ / name, read_certificate));
 }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "service/config/config.hpp"
+#include "service/dds/middleware_log.hpp"
 #include "service/support/command_line.hpp"
 #include "service/support/log.hpp"
 #include "service/support/stop_signal.hpp"
@@ -163,6 +164,7 @@ int run(const Arguments& arguments, const StopSignal& signal) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
+  dds::log_what_the_middleware_says();
   const StopSignal signal;
   CLI::App app(
       "Serves the operators' page: how all models are, on what evidence, and what waits.\n"

@@ -93,6 +93,7 @@ Record ChunkCache::over(TickRange ticks, const Read& read) {
       tick = end_of_chunk_at(tick);
     }
   }
+  if (parts.size() == 1 && parts.front().fresh) return std::move(fresh.begin()->second);
   return parts.empty() ? read({ticks.begin, ticks.begin}) : joined(parts);
 }
 

@@ -115,6 +115,8 @@ class Pair(PairOfServices, test_web.WebCase):
         self.assert_same_rows()
         self.assertEqual(self.ask(1, "SELECT action, actor, ok FROM command"),
                          [("switch_over", "Ana", 1)])
+        status, text = self.reident("simulators", "--json", *self.endpoint())
+        self.assertEqual(json.loads(text)["services"], 1, "one of a pair publishes")
         # One that stands by says who leads.
         status, text = self.reident("hold", "PLANT", "--actor", "Bo", "--service", "reident-1",
                                     *self.endpoint())

@@ -125,6 +125,16 @@ class SecuredLoop(Secured):
         self.assertEqual(status, 2, text)
         self.assertIn(str(member / "permissions.p7s"), text)
 
+    def test_of_a_pair_one_whose_certificate_has_ended_neither_leads_nor_dies(self):
+        path = self.configure_secured(self.site.grant("service", "reident-1", "--valid", "5s"))
+        path.write_text(path.read_text().replace("[service]", "[service]\nstandby = true\nstrength = 2"))
+        daemon = self.start_daemon()
+        wait_until(lambda: "pair: leads no more" in daemon.text(), "it steps down")
+        status, text = self.configured("overview", "--json", "--security",
+                                       self.site.grant("operator", "ana"))
+        self.assertIn("certificate", [one["code"] for one in json.loads(text)["alarms"]])
+        self.assertTrue(daemon.running())
+
     def test_an_ended_certificate_is_an_alarm_and_a_new_one_is_taken_up(self):
         self.configure_secured(self.site.grant("service", "reident-1", "--valid", "20s"))
         ana = self.site.grant("operator", "ana")
@@ -132,6 +142,10 @@ class SecuredLoop(Secured):
         wait_until(lambda: "certificate" in self.alarms(), "an alarm before the end")
         before = self.alarms()["certificate"]
         wait_until(lambda: self.alarms()["certificate"] != before, "an alarm at the end")
+        self.assertNotIn("alarm: cleared", daemon.text())
+        status, text = self.configured("status", "--security", ana, "--timeout", 0.2)
+        self.assertEqual(status, 4, text)
+        self.assertIn("reident-1/certificate.pem: ended", text)
         self.site.renew("reident-1")
         wait_until(lambda: "certificate" not in self.alarms(), "the alarm is cleared")
         status, text = self.configured("status", "--security", ana, "--timeout", DEADLINE_S)
@@ -158,12 +172,13 @@ class SecuredLoop(Secured):
     def test_who_is_revoked_is_not_heard_any_more(self):
         self.configure_secured(self.site.grant("service", "reident-1"))
         ana = self.site.grant("operator", "ana")
-        self.start_daemon()
+        daemon = self.start_daemon()
         shutil.copytree(ana, self.folder / "stolen")
         ask = ["status", "--security", self.folder / "stolen"]
         self.assertEqual(self.configured(*ask, "--timeout", DEADLINE_S)[0], 0)
         self.site.call("revoke", self.site.folder, "ana")
         wait_until(lambda: self.configured(*ask, "--timeout", 3)[0] == 4, "nothing is heard")
+        self.assertEqual(daemon.text().count("certificate revoked"), 1, daemon.text())
         status, text = self.configured("status", "--security", ana)
         self.assertEqual(status, 1, text)
         self.assertIn(str(ana / "certificate.pem"), text)

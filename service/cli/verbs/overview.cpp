@@ -97,6 +97,14 @@ void hear_pair(const Config& config, Overview& overview) {
   history::add_alarms_of(overview.pair, overview.alarms);
 }
 
+/// Of a pair the leader records alarms, and a service whose certificate has ended does not lead.
+void add_security_alarm(const Config& config, Overview& overview) {
+  const std::string mistake = mistake_of_security(config);
+  const bool is_recorded = std::ranges::count(overview.alarms, "certificate", &Alarm::code) > 0;
+  if (!mistake.empty() && !is_recorded)
+    overview.alarms.push_back({"certificate", {}, mistake, overview.now});
+}
+
 Overview read(const Readers& readers, const std::optional<Config>& config) {
   Overview overview{
       readers.history.overview(), readers.history.alarms(), utc_now(), SIZE_MAX, {}, {}};
@@ -107,6 +115,7 @@ Overview read(const Readers& readers, const std::optional<Config>& config) {
       overview.alarms.insert(overview.alarms.begin(),
                              history::no_service_alarm(config->database, overview.now));
   }
+  if (config) add_security_alarm(*config, overview);
   if (config && !config->pair.empty()) hear_pair(*config, overview);
   history::put_worst_first(overview.rows, overview.alarms);
   return overview;

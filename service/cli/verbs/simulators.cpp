@@ -108,8 +108,8 @@ void print_text(const Arguments& arguments, const dds::Endpoint& endpoint,
     fmt::print("{}", text);
   }
   if (!has_service)
-    fmt::print("no service publishes versions on {}: which version is champion is not known\n",
-               place);
+    fmt::print("no service publishes versions on {}: which version is champion is not known{}\n",
+               place, why_unheard(endpoint, arguments.config));
   if (sight.services > 1) fmt::print("{} services publish versions on {}\n", sight.services, place);
 }
 

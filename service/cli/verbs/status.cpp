@@ -112,9 +112,9 @@ int report_timeout(const dds::Endpoint& endpoint, const Arguments& arguments,
   else
     print_error(
         "reident: no {} was heard on domain {}, partition {} within {:g} s; check that "
-        "reidentd runs and the domain and partition are its own",
+        "reidentd runs and the domain and partition are its own{}",
         arguments.service.empty() ? "service" : "service " + arguments.service, endpoint.domain,
-        endpoint.partition, arguments.timeout_s);
+        endpoint.partition, arguments.timeout_s, why_unheard(endpoint, arguments.config));
   return exit_timed_out;
 }
 

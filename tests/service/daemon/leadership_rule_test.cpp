@@ -46,6 +46,20 @@ TEST_F(LeadershipRuleTest, OneThatHearsNobodyLeadsAfterAWhile) {
   EXPECT_EQ(look_for(1min), Step::none);
 }
 
+TEST_F(LeadershipRuleTest, OneThatNobodyHearsNeitherLeadsNorTakesOver) {
+  follow();
+  for (const Instant until = now_ + 1min; now_ < until; now_ += 50ms)
+    EXPECT_EQ(rule_.look_while_unheard(now_), Step::none);
+  EXPECT_EQ(rule_.leader(), "");
+  EXPECT_EQ(look_for(5s), Step::none) << "it joins again, and finds the leader";
+  follow();
+  EXPECT_EQ(look_for(LeadershipRule::lease / 2), Step::none);
+  lead();
+  EXPECT_EQ(rule_.look_while_unheard(now_), Step::step_down);
+  EXPECT_EQ(rule_.role(), Role::listens);
+  EXPECT_EQ(rule_.look_while_unheard(now_), Step::none);
+}
+
 TEST_F(LeadershipRuleTest, OfTwoThatStartTheOneThatGoesFurtherLeads) {
   const auto first_step = [&](const Standing& partner) {
     LeadershipRule rule(1, now_);

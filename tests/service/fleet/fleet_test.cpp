@@ -229,6 +229,9 @@ TEST_F(FleetTest, TellsASitesInstancesFromWhatTheyWereMadeOf) {
   EXPECT_FALSE(instances[2].needs_action());
   fs::remove(folder / "A.toml");
   EXPECT_TRUE(fleet::read_instances(folder, workers)[0].needs_action()) << "no table made any";
+  fs::create_directory(folder_ / "tables");
+  fs::copy(folder / "fleet.toml", folder_ / "tables");
+  EXPECT_THROW(fleet::read_instances(folder_ / "tables", workers), std::invalid_argument);
 }
 
 }  // namespace

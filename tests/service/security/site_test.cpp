@@ -37,6 +37,11 @@ TEST_F(SiteOfMembers, KeepsKeysToItsOwner) {
 TEST_F(SiteOfMembers, IsMadeOnceInAnEmptyFolder) {
   EXPECT_THROW(Site::init(folder_ / "site", "Ground", utc_now()), Error);
   EXPECT_THROW(Site(folder_ / "none"), Error);
+  const fs::path member = grant("operator", "ana");
+  EXPECT_THROW(Site{member}, Error);
+  const auto read = security::read_material(folder_ / "site", utc_now());
+  EXPECT_THAT(std::get<std::vector<std::string>>(read),
+              testing::ElementsAre(testing::HasSubstr("members/")));
   EXPECT_THROW(Site::init(folder_ / "other", "a/b", utc_now()), Error);
 }
 
