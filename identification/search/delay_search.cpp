@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+#include <vector>
 
 #include "identification/fit/output_error_fit.hpp"
 #include "identification/numerics/decompositions.hpp"
@@ -161,16 +161,13 @@ DelayedFit fitted_again(const Identified& without, const Rows& rows) {
   const StateSpaceModel& model = without.model;
   const Delays none(static_cast<std::size_t>(model.inputs()), 0);
   const Record plain = delayed(rows.record, rows.range, none, rows.most);
-  const Vector deviations =
-      (plain.y.rowwise() - plain.y.colwise().mean()).colwise().norm().cwiseMax(1e-300);
+  Vector deviations = (plain.y.rowwise() - plain.y.colwise().mean()).colwise().norm();
+  deviations = (deviations.array() > 0).select(deviations, 1);
   const Matrix C = deviations.cwiseInverse().asDiagonal() * model.C;
   const Record record = standardised(plain);
   const bool direct = without.recipe.direct;
-  return {none,
-          model.order() == 0
-              ? fit_response(model.A, C, direct, record, record.all(), Accuracy::fast)
-              : fit_response(model.A, C, direct, record, record.all(), Accuracy::fast),
-          direct, double(parameters_of(model.order(), model.inputs(), model.outputs(), direct, 1))};
+  return {none, fit_response(model.A, C, direct, record, record.all(), Accuracy::fast), direct,
+          double(parameters_of(model.order(), model.inputs(), model.outputs(), direct, 1))};
 }
 
 /// What the fits leave of the outputs: N p log S, S the sum of squares over N rows and p outputs of
