@@ -97,6 +97,22 @@ TEST(Delays, EachInputHasItsOwn) {
   EXPECT_GE(right, 3);
 }
 
+TEST(Delays, OneStepInFortyRowsShowsItsDelay) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    test::Noise noise(seed);
+    Matrix u(40, 1), y(40, 1);
+    double x = 0;
+    for (Index t = 0; t < 40; ++t) {
+      u(t) = t >= 10;
+      y(t) = 5 + 2 * x + 0.02 * noise.normal();
+      x += ((t >= 13) - x) / 6;
+    }
+    const Identified found = identified(contiguous_record(1, u, y));
+    EXPECT_THAT(found.input_delays, ElementsAre(3)) << seed;
+    EXPECT_NEAR((*static_gain(found.model))(0, 0), 2, 0.1) << seed;
+  }
+}
+
 TEST(Delays, PolesAreNotTakenForADelay) {
   const char* asked = std::getenv("REIDENT_RECORDS");
   const std::uint64_t records = asked ? std::strtoull(asked, nullptr, 10) : 6;
