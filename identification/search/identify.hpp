@@ -40,8 +40,9 @@ struct IdentifyOptions {
   bool may_enforce_stability = true;
   /// Samples, one for each input; empty: none.
   std::vector<int> input_delays;
-  /// Above 0: the delays are estimated, each at most so many samples.
-  int max_input_delay = 0;
+  /// Delays are looked for, each at most so many samples; 0: they are not. Absent: at most 60, or
+  /// an eighth of the rows.
+  std::optional<int> max_input_delay = 0;
   /// The last so many inputs are those of operating regimes: they have an effect only where the
   /// model with them errs at least 5 % less on held-out rows. Fewer than the inputs.
   int regime_inputs = 0;

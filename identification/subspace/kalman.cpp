@@ -10,6 +10,7 @@ namespace {
 
 constexpr int doublings = 60;
 constexpr double accepted_residual = 1e-8;
+constexpr double least_rcond = 1e-14;  // of R
 
 struct Noise {
   Matrix Q, S, R;
@@ -33,6 +34,21 @@ double relative_residual(const Matrix& A, const Matrix& C, const Noise& noise, c
   return residual.norm() / (P.norm() + noise.Q.norm());
 }
 
+/// Fewer mixtures of the outputs (rows, orthonormal) with all that these hold, where the rest is
+/// zero: in the noise and in the states. Absent where there is no such rest.
+std::optional<Matrix> independent_mixtures(const Matrix& C, const Matrix& R) {
+  constexpr double rounding = 1e-6;  // of C, where the noise has its square root
+  const SymmetricEigen found = symmetric_eigen(R);
+  if (!found.converged) return std::nullopt;
+  const Index p = R.rows();
+  const double greatest = found.values(p - 1);
+  Index zeros = 0;
+  while (zeros < p && !(found.values(zeros) > 10 * least_rcond * greatest)) ++zeros;
+  const Matrix rest = found.vectors.leftCols(zeros).transpose() * C;
+  if (zeros == 0 || zeros == p || !(rest.norm() <= rounding * C.norm())) return std::nullopt;
+  return found.vectors.rightCols(p - zeros).transpose();
+}
+
 }  // namespace
 
 std::optional<Matrix> riccati_solution(const Matrix& A, const Matrix& C, const Matrix& noise) {
@@ -40,7 +56,7 @@ std::optional<Matrix> riccati_solution(const Matrix& A, const Matrix& C, const M
   assert(noise.rows() == n + C.rows() && noise.cols() == noise.rows());
   const Noise parted = parts(noise, n);
   if (!noise.allFinite()) return std::nullopt;
-  const auto R = Cholesky::of(parted.R, 0, 1e-14);
+  const auto R = Cholesky::of(parted.R, 0, least_rcond);
   if (!R) return std::nullopt;
 
   // With the cross covariance removed: P = F P F' - F P C' (C P C' + R)^-1 C P F' + Q_s.
@@ -63,6 +79,15 @@ std::optional<Matrix> riccati_solution(const Matrix& A, const Matrix& C, const M
 }
 
 std::optional<Matrix> kalman_gain(const Matrix& A, const Matrix& C, const Matrix& noise) {
+  if (const auto T = independent_mixtures(C, parts(noise, A.rows()).R)) {
+    const Index n = A.rows(), k = T->rows();
+    Matrix mixed = Matrix::Zero(n + k, n + C.rows());
+    mixed.topLeftCorner(n, n).setIdentity();
+    mixed.bottomRightCorner(k, C.rows()) = *T;
+    const auto K = kalman_gain(A, *T * C, mixed * noise * mixed.transpose());
+    if (!K) return std::nullopt;
+    return *K * *T;
+  }
   const std::optional<Matrix> P = riccati_solution(A, C, noise);
   if (!P) return std::nullopt;
   const Matrix K = gain_of(A, C, parts(noise, A.rows()), *P);

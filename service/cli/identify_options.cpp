@@ -69,7 +69,8 @@ void add_model_options(CLI::App& command, ModelRequest& request) {
       "--delay", request.delays, "INPUT=SAMPLES...: rows after which an input begins to act");
   command
       .add_option("--max-delay", request.max_delay,
-                  "estimate the delays of all inputs, each at most so many rows")
+                  "look for delays of the inputs of at most so many rows; 0: for none (60, or an "
+                  "eighth of the rows; none with --order or --delay)")
       ->excludes(delays);
 }
 
@@ -87,6 +88,7 @@ std::optional<Refusal> parse_model_request(const ModelRequest& request,
                                *options.horizon, *options.order, (*options.order + p - 1) / p + 1)};
   if (request.direct || request.no_direct) options.direct_feedthrough = request.direct;
   options.may_enforce_stability = !request.as_found;
+  if (!options.order && request.delays.empty()) options.max_input_delay = std::nullopt;
   if (request.max_delay) {
     const std::optional<std::int64_t> value = whole_number(*request.max_delay);
     if (!value || *value > max_delay)

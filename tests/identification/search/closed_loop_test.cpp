@@ -73,6 +73,38 @@ TEST(ClosedLoop, ARegulatorThatOnlyFightsDisturbancesGivesNoModelOfItsOwnGain) {
   EXPECT_EQ(of_the_controller, 0);
 }
 
+/// A heater that is on where the temperature fell below 19 until it has risen above 21, with an
+/// environment that changes slowly. At rest the heater adds 20.
+Record thermostat(test::Noise& noise, Index rows) {
+  Matrix u(rows, 1), y(rows, 1);
+  double temperature = 20, environment = 0;
+  bool is_on = false;
+  for (Index t = 0; t < rows; ++t) {
+    y(t) = temperature + 0.02 * noise.normal();
+    is_on = y(t) < 19 || (is_on && y(t) < 21);
+    u(t) = is_on;
+    environment = 0.995 * environment + 0.1 * noise.normal();
+    temperature += (10 + environment + 20 * is_on - temperature) / 150 + 0.01 * noise.normal();
+  }
+  return contiguous_record(1, u, y);
+}
+
+TEST(ClosedLoop, AThermostatGivesNoGainThatMisleads) {
+  int misled = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    test::Noise noise(seed);
+    const Record record = thermostat(noise, 1500);
+    const IdentifyResult result = identify(record, record.all(), {});
+    if (const auto* found = std::get_if<Identified>(&result)) {
+      const auto gain = static_gain(found->model);
+      misled += !gain || !((*gain)(0, 0) > 10 && (*gain)(0, 0) < 40);
+    } else {
+      EXPECT_EQ(std::get<Verdict>(result).code, VerdictCode::closed_loop);
+    }
+  }
+  EXPECT_LE(misled, 3);
+}
+
 TEST(ClosedLoop, PolesOfThePlantAreFoundWhereItIsUnstable) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     test::Noise noise(seed);

@@ -57,5 +57,19 @@ TEST(Kalman, NoMeasurementNoiseGivesNoGain) {
   EXPECT_FALSE(kalman_gain(A, C, W));
 }
 
+TEST(Kalman, ACopyOfAnOutputAddsNothing) {
+  test::Noise noise(8);
+  const StateSpaceModel model = test::random_system(noise, 3, 1, 2);
+  const Matrix W = covariance(noise, 5);
+  Matrix copied = Matrix::Identity(6, 5);
+  copied.row(5) = 2.5 * copied.row(3);
+  const Matrix C = copied.bottomRightCorner(3, 2) * model.C;
+  const auto K = kalman_gain(model.A, model.C, W);
+  const auto of_three = kalman_gain(model.A, C, copied * W * copied.transpose());
+  ASSERT_TRUE(K && of_three);
+  // The same correction of the state for the same errors of the outputs.
+  EXPECT_LT((*of_three * copied.bottomRightCorner(3, 2) - *K).norm(), 1e-6 * K->norm());
+}
+
 }  // namespace
 }  // namespace reident::identification::kalman_test

@@ -1,0 +1,274 @@
+#include "identification/search/delay_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "identification/fit/output_error_fit.hpp"
+#include "identification/numerics/decompositions.hpp"
+#include "identification/search/delays.hpp"
+#include "identification/search/model_search.hpp"
+#include "identification/search/parsimony.hpp"
+#include "identification/statistics/quantiles.hpp"
+
+namespace reident::identification {
+namespace {
+
+using Delays = std::vector<int>;
+
+constexpr Index most_scanned = 1500, most_fitted = 4096, least_rows = 300;  // looked at
+constexpr int steps = 10, last_steps = 5;                                   // of a refinement
+constexpr double share_of_budget = 1.0 / 6;
+/// Twice the logarithm of the odds against a delay before the rows have been looked at.
+constexpr double odds_against = 6;
+
+/// The channels, each less its mean and over its deviation.
+Record standardised(Record record) {
+  for (Matrix* channels : {&record.u, &record.y}) {
+    channels->rowwise() -= Eigen::RowVectorXd(channels->colwise().mean());
+    for (Index c = 0; c < channels->cols(); ++c)
+      if (const double norm = channels->col(c).norm(); norm > 0)
+        channels->col(c) *= std::sqrt(double(record.rows())) / norm;
+  }
+  return record;
+}
+
+/// What one state makes of an input that was at rest before.
+Vector one_state_response(const Vector& u, double pole) {
+  Vector x(u.size());
+  x(0) = u(0);
+  for (Index t = 1; t < u.size(); ++t) x(t) = pole * x(t - 1) + (1 - pole) * u(t - 1);
+  return x;
+}
+
+/// 1, pole, pole^2, ...: what an initial state leaves.
+Vector decay(Index rows, double pole) {
+  Vector x(rows);
+  x(0) = 1;
+  for (Index t = 1; t < rows; ++t) x(t) = pole * x(t - 1);
+  return x;
+}
+
+/// The delays with which one state for each input explains most of the outputs of a segment, each
+/// input in turn beside the others. They are too long where the equipment has more states.
+Delays delays_of_one_state(const Record& record, const Segment& segment, int most) {
+  const Matrix u = record.u.middleRows(segment.begin, segment.size());
+  const Index m = u.cols(), rows = segment.size() - most;
+  const Matrix y = record.y.middleRows(segment.end - rows, rows);
+  Matrix responses = Matrix::Zero(rows, m);
+  Delays delays(static_cast<std::size_t>(m), 0);
+  const auto take_best = [&](Index input) {
+    double most_explained = 0;
+    for (double time_constant = 1; 2 * time_constant < double(rows); time_constant *= 2) {
+      const double pole = 1 - 1 / time_constant;
+      Matrix beside(rows, 1 + m);
+      beside << Vector::Ones(rows), responses;
+      beside.col(1 + input) = decay(rows, pole);
+      const Matrix basis = orthonormal_basis(beside);
+      const Matrix left = y - basis * (basis.transpose() * y);
+      const Vector response = one_state_response(u.col(input), pole);
+      for (int delay = 0; delay <= most; ++delay) {
+        const auto delayed_response = response.segment(most - delay, rows);
+        const double square = delayed_response.squaredNorm();
+        const double own = square - (basis.transpose() * delayed_response).squaredNorm();
+        if (!(own > 1e-6 * square)) continue;
+        const double explained = (left.transpose() * delayed_response).squaredNorm() / own;
+        if (!(explained > most_explained)) continue;
+        most_explained = explained;
+        responses.col(input) = delayed_response;
+        delays[static_cast<std::size_t>(input)] = delay;
+      }
+    }
+  };
+  for (int pass = 0; pass < (m > 1 ? 2 : 1); ++pass)
+    for (Index input = 0; input < m; ++input) take_best(input);
+  return delays;
+}
+
+/// The rows, standardised, with whatever delays of at most `most`: of each segment without so many.
+struct Rows {
+  const Record& record;
+  RowRange range;
+  int most;
+
+  Record with(const Delays& delays) const {
+    return standardised(delayed(record, range, delays, most));
+  }
+};
+
+/// A fit to the rows with these delays; D is zero but in a static gain.
+struct DelayedFit {
+  Delays delays;
+  Response fit;
+  bool direct = false;
+  double parameters = 0;
+};
+
+/// Looks for the delays with which models of one order err least on the rows they are fitted to.
+class Descent {
+ public:
+  Descent(const Rows& rows, int order, const Delays& start) : rows_(rows), order_(order) {
+    improves(start);
+    // Where an input has a rhythm, a shift by half of it looks like a delay, too.
+    for (std::size_t i = 0; i < start.size(); ++i) improves(with(i, 0));
+    for (int step = std::max(1, rows.most / 8); step >= 1; step /= 2)
+      for (std::size_t i = 0; i < start.size(); ++i)
+        for (const int move : {-step, step})
+          while (improves(with(i, best_.delays[i] + move))) {
+          }
+  }
+
+  const DelayedFit& best() const { return best_; }
+
+ private:
+  Delays with(std::size_t input, int delay) const {
+    Delays delays = best_.delays;
+    delays[input] = delay;
+    return delays;
+  }
+
+  /// Fits from two starts, of which one is the best fit so far. Takes a fit that is better.
+  bool improves(const Delays& delays) {
+    const bool is_first = best_.delays.empty();
+    const auto [least, longest] = std::minmax_element(delays.begin(), delays.end());
+    if (*least < 0 || *longest > rows_.most || delays == best_.delays) return false;
+    const Record record = rows_.with(delays);
+    const Index p = record.y.cols();
+    const auto fit = [&](const Matrix& A, const Matrix& C) {
+      return order_ == 0 ? fit_response(A, C, true, record, record.all(), Accuracy::fast)
+                         : refine_response(A, C, false, record, record.all(), steps);
+    };
+    const Matrix start = Vector::LinSpaced(order_, 0.95, order_ == 1 ? 0.95 : 0.3).asDiagonal();
+    Response found = fit(start, Matrix::Ones(p, order_));
+    if (!is_first && order_ > 0)
+      if (Response other = fit(best_.fit.model.A, best_.fit.model.C); other.error < found.error)
+        found = std::move(other);
+    if (!is_first && !(found.error < best_.fit.error)) return false;
+    const auto used = std::count_if(delays.begin(), delays.end(), [](int d) { return d > 0; });
+    best_ = {delays, std::move(found), order_ == 0,
+             double(parameters_of(order_, record.u.cols(), p, order_ == 0, 1) + used)};
+    return true;
+  }
+
+  const Rows& rows_;
+  int order_;
+  DelayedFit best_;
+};
+
+/// The model without delays, fitted again.
+DelayedFit fitted_again(const Identified& without, const Rows& rows) {
+  const StateSpaceModel& model = without.model;
+  const Delays none(static_cast<std::size_t>(model.inputs()), 0);
+  const Record plain = delayed(rows.record, rows.range, none, rows.most);
+  Vector deviations = (plain.y.rowwise() - plain.y.colwise().mean()).colwise().norm();
+  deviations = (deviations.array() > 0).select(deviations, 1);
+  const Matrix C = deviations.cwiseInverse().asDiagonal() * model.C;
+  const Record record = standardised(plain);
+  const bool direct = without.recipe.direct;
+  return {none, fit_response(model.A, C, direct, record, record.all(), Accuracy::fast), direct,
+          double(parameters_of(model.order(), model.inputs(), model.outputs(), direct, 1))};
+}
+
+/// What the fits leave of the outputs: N p log S, S the sum of squares over N rows and p outputs of
+/// the errors, which are made white as those of the closest fit are.
+std::vector<double> log_squares(const std::vector<DelayedFit>& fits, const Rows& rows) {
+  constexpr double rounding = 1e-6;
+  const DelayedFit& closest = *std::min_element(
+      fits.begin(), fits.end(),
+      [](const DelayedFit& a, const DelayedFit& b) { return a.fit.error < b.fit.error; });
+  const Record of_closest = rows.with(closest.delays);
+  const auto colours = colours_of(closest.fit, of_closest, of_closest.all());
+  std::vector<double> result;
+  for (const DelayedFit& one : fits) {
+    const Record record = rows.with(one.delays);
+    const int most = one.fit.model.order() == 0 ? 0 : last_steps;
+    const double error =
+        refine_whitened(one.fit, one.direct, record, record.all(), most, colours).error;
+    result.push_back(2 * double(record.y.size()) * std::log(error + rounding));
+  }
+  return result;
+}
+
+/// Rows of the first look that the budget, in multiply-adds, lasts for.
+Index affordable_scan(int most, Index m, Index p, double budget) {
+  constexpr double passes = 2, time_constants = 11;
+  const double of_row = passes * time_constants * double(m * (most + 1) * (m + p + 2));
+  return std::min(most_scanned, static_cast<Index>(budget / of_row));
+}
+
+/// Rows that the budget lasts for with descents of these orders.
+Index rows_for(const std::vector<int>& orders, Index m, Index p, double budget) {
+  const double usual_fits = double(2 + 9 * m);
+  double of_row = 0;
+  for (const int order : orders) {
+    Recipe recipe;
+    recipe.order = order;
+    recipe.refinement_steps = order == 0 ? 0 : 4;  // usual ones
+    of_row += usual_fits * work_of_regression(recipe, m, p);
+  }
+  return static_cast<Index>(budget / of_row);
+}
+
+/// Orders of descents, ascending: those that the budget lasts for.
+std::vector<int> affordable_orders(const Identified* without, Index m, Index p,
+                                   const IdentifyOptions& options, double budget) {
+  if (options.order) return {*options.order};
+  std::vector<int> orders;
+  for (const int order : {0, 1, 2, 4}) {
+    if (order == 0 && !options.direct_feedthrough.value_or(true)) continue;
+    if (order > options.max_order) break;
+    if (without && order > std::max(1, without->recipe.order - 1)) break;
+    orders.push_back(order);
+    if (rows_for(orders, m, p, budget) >= least_rows) continue;
+    orders.pop_back();
+    break;
+  }
+  return orders;
+}
+
+}  // namespace
+
+std::vector<int> delays_shown(const Record& record, RowRange rows, int most,
+                              const Identified* without, const IdentifyOptions& options) {
+  const Index m = record.u.cols(), p = record.y.cols();
+  const Delays none(static_cast<std::size_t>(m), 0);
+  const double budget = share_of_budget * options.search_budget;
+  const Index end = rows.end - options.tune_rows;
+  const std::vector<Segment> segments =
+      segments_within(record, {std::max(rows.begin, end - most_fitted), end});
+  if (segments.empty()) return none;
+  Segment longest =
+      *std::max_element(segments.begin(), segments.end(),
+                        [](const Segment& a, const Segment& b) { return a.size() < b.size(); });
+  most = std::min(most, static_cast<int>(longest.size() / 3));
+  longest.begin = std::max(longest.begin, longest.end - affordable_scan(most, m, p, budget) - most);
+  const Delays start = delays_of_one_state(record, longest, most);
+  if (start == none) return none;
+
+  const std::vector<int> orders = affordable_orders(without, m, p, options, budget);
+  if (orders.empty()) return none;
+  const Index count = std::clamp(rows_for(orders, m, p, budget), least_rows, most_fitted);
+  const RowRange around{std::max(rows.begin, longest.end - count - most), longest.end};
+  const Rows fitted{record, around, most};
+  std::vector<DelayedFit> fits;
+  for (const int order : orders) fits.push_back(Descent(fitted, order, start).best());
+  if (without) fits.push_back(fitted_again(*without, fitted));
+  const std::vector<double> left = log_squares(fits, fitted);
+  const std::size_t with_delays = fits.size() - (without ? 1 : 0);
+  for (std::size_t i = 0; i < with_delays; ++i) {
+    // Akaike's criterion against the model without delays; the test of parsimony against more
+    // states with delays.
+    bool is_taken = !without || left[i] + 2 * fits[i].parameters + odds_against <
+                                    left.back() + 2 * fits.back().parameters;
+    for (std::size_t k = i + 1; k < with_delays; ++k)
+      is_taken =
+          is_taken &&
+          left[i] - left[k] <
+              chi_squared_quantile(0.9999, std::max(1.0, fits[k].parameters - fits[i].parameters));
+    if (is_taken) return fits[i].delays;
+  }
+  return none;
+}
+
+}  // namespace reident::identification
