@@ -68,7 +68,7 @@ void widen(Identified& identified, const Places& places, const Record& record, R
   model.B = widened(model.B);
   model.D = widened(model.D);
   Vector u0 = u.colwise().mean();
-  u0(places) = model.u0;
+  for (std::size_t i = 0; i < places.size(); ++i) u0(places[i]) = model.u0(Index(i));
   model.u0 = u0;
   identified.input_min = u.colwise().minCoeff();
   identified.input_max = u.colwise().maxCoeff();
