@@ -17,8 +17,8 @@ struct ScoreSeries {
   double bound = 1;
   /// Those of a whole cycle.
   Index cycle = 1;
-  /// Least dependence until cycles_to_measure are there, at least 1; 0: the cycle's scores count as one at
-  /// first.
+  /// Least dependence until cycles_to_measure are there, at least 1; 0: the cycle's scores count as
+  /// one at first.
   double assumed = 0;
 };
 

@@ -68,7 +68,7 @@ TEST(Trust, AQuietSpacecraftGetsAModelAndTheSameOneEachTime) {
   const auto outcomes = run(group);
   const auto& one = outcomes[0].equipment[0];
   const auto& two = outcomes[1].equipment[0];
-  EXPECT_GE(one.publications.size(), 1U);
+  EXPECT_GE(one.publications.size(), 1U) << story(outcomes[0]);
   ASSERT_EQ(one.publications.size(), two.publications.size());
   for (std::size_t i = 0; i < one.publications.size(); ++i) {
     EXPECT_EQ(one.publications[i].time, two.publications[i].time);

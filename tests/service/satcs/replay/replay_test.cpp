@@ -166,7 +166,7 @@ TEST_F(Replay, RefusesWhatCannotBeReplayed) {
                 "replay"},
            Case{"u1,y1\n1,2\n", nothing,
                 "t.csv:2: no column looks like a time; name it with "
-                "--time (the columns are: u1, y1)"},
+                "--time, or the line of the header with --header (the columns are: u1, y1)"},
            Case{"t,mode\n1,idle\n", nothing,
                 "t.csv: no column holds numbers besides the time 't'; "
                 "there is nothing to send or to import; column 'mode' is left out"},
