@@ -547,9 +547,9 @@ def soak(figures):
 
 
 @section("scale", "A constellation, and a billion samples",
-         "What an archive costs is the processor time of an append, a window or a month's question, "
-         "over that in an archive of a million samples (a month's: of a month). Split and verify are "
-         "elapsed time. A shard has the telemetry of a closed year.")
+         "What an archive costs is processor time. That of an append and of a window is over the same "
+         "in an archive of a million samples, that of a month's question over one of a month. Split "
+         "and verify are elapsed time. A shard has the telemetry of a closed year.")
 def scale(figures):
     names = {"discovery_s": "services and simulators until all have found each other, s",
              "idle_core": "idle: share of a core",
