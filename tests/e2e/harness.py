@@ -82,7 +82,7 @@ class Process:
 class EndToEnd(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="reident-e2e-"))
-        self.domain = 11 + os.getpid() % 190  # those before: test_many_simulators.py
+        self.domain = 31 + os.getpid() % 170  # those before: test_many_simulators.py, test_fleet.py
         self.partition = f"test-{os.getpid()}-{self._testMethodName}"[:60]
         self.processes = []
         self.addCleanup(self._end)

@@ -231,7 +231,7 @@ TEST_F(CheckConfig, RefusesAFileThatIsNotThere) {
 /// A service that only beats.
 class Status : public test::CliTest {
  protected:
-  const std::uint32_t domain = 11 + static_cast<std::uint32_t>(getpid()) % 190;
+  const std::uint32_t domain = 31 + static_cast<std::uint32_t>(getpid()) % 170;
   const std::string partition = "cli-" + std::to_string(getpid());
   dds::Participant participant{{domain, partition}};
   dds::Writer<ServiceStatus> writer{participant};

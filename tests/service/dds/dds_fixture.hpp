@@ -16,7 +16,7 @@ namespace reident::test {
 using namespace std::chrono_literals;
 
 inline dds::Endpoint own_endpoint() {
-  return {11 + static_cast<std::uint32_t>(getpid()) % 190, "test-" + std::to_string(getpid())};
+  return {31 + static_cast<std::uint32_t>(getpid()) % 170, "test-" + std::to_string(getpid())};
 }
 
 /// Asks until the condition holds or ten seconds have passed.

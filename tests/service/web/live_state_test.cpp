@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 dds::Endpoint endpoint() {
-  return {static_cast<std::uint32_t>(11 + ::getpid() % 190),
+  return {static_cast<std::uint32_t>(31 + ::getpid() % 170),
           "live-" + std::to_string(::getpid()) +
               testing::UnitTest::GetInstance()->current_test_info()->name()};
 }
