@@ -44,28 +44,6 @@ Record rows_at(const Record& record, TickRange ticks) {
           record.y.middleRows(rows.begin, rows.size()), segments_from(record, rows)};
 }
 
-Record joined(const std::vector<const Record*>& parts) {
-  assert(!parts.empty());
-  Index rows = 0;
-  for (const Record* part : parts) rows += part->rows();
-  const Record& first = *parts.front();
-  Record result{first.period_s, Matrix(rows, first.u.cols()), Matrix(rows, first.y.cols()), {}};
-  Index at = 0;
-  for (const Record* part : parts) {
-    result.u.middleRows(at, part->rows()) = part->u;
-    result.y.middleRows(at, part->rows()) = part->y;
-    for (const Segment& segment : part->segments) {
-      if (!result.segments.empty() &&
-          result.segments.back().first_tick + result.segments.back().size() == segment.first_tick)
-        result.segments.back().end += segment.size();
-      else
-        result.segments.push_back({at + segment.begin, at + segment.end, segment.first_tick});
-    }
-    at += part->rows();
-  }
-  return result;
-}
-
 Index first_row_at(const Record& record, std::int64_t tick) {
   const auto segment =
       std::partition_point(record.segments.begin(), record.segments.end(),

@@ -64,10 +64,6 @@ std::vector<Segment> segments_from(const Record& record, RowRange rows);
 /// none.
 Record rows_at(const Record& record, TickRange ticks);
 
-/// Returns one record of the rows of all; segments that follow each other without a hole become
-/// one segment. Requires at least one part, ascending in time and of the same channels.
-Record joined(const std::vector<const Record*>& parts);
-
 /// Returns the first row at or behind the tick; rows() where there is none. The cost is logarithmic
 /// in the segments.
 Index first_row_at(const Record& record, std::int64_t tick);

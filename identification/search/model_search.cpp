@@ -142,7 +142,7 @@ class Search {
   SearchEffort& effort_;
   double least_rate_;  // 0 once slow modes have shown
   Index m_, p_;
-  // Of the first stage. A second look, with slow modes, takes what the first one has found.
+  // What the first stage has found. A second look, with slow modes, goes on from it.
   struct Compressed {
     Projection projection;
     std::vector<Matrix> gammas;  // of each weighting

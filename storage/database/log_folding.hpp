@@ -5,7 +5,7 @@
 
 namespace reident::storage::sqlite {
 
-/// Of every connection. Readers never wait but for moments such as a recovery after a crash.
+/// Readers never wait but for moments such as a recovery after a crash.
 constexpr int busy_timeout_ms = 5000;
 
 /// Folds the log of a connection after each commit that finds it long, for as long as it exists.

@@ -97,7 +97,8 @@ void hear_pair(const Config& config, Overview& overview) {
   history::add_alarms_of(overview.pair, overview.alarms);
 }
 
-/// Of a pair the leader records alarms, and a service whose certificate has ended does not lead.
+/// Alarms of a pair are recorded by its leader, and a service whose certificate has ended leads
+/// none.
 void add_security_alarm(const Config& config, Overview& overview) {
   const std::string mistake = mistake_of_security(config);
   const bool is_recorded = std::ranges::count(overview.alarms, "certificate", &Alarm::code) > 0;

@@ -67,7 +67,7 @@ TEST(Kalman, ACopyOfAnOutputAddsNothing) {
   const auto K = kalman_gain(model.A, model.C, W);
   const auto of_three = kalman_gain(model.A, C, copied * W * copied.transpose());
   ASSERT_TRUE(K && of_three);
-  // The same correction of the state for the same errors of the outputs.
+  // Errors of the outputs that are the same correct the state alike.
   EXPECT_LT((*of_three * copied.bottomRightCorner(3, 2) - *K).norm(), 1e-6 * K->norm());
 }
 

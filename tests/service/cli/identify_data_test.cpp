@@ -77,7 +77,7 @@ class IdentifyRows : public test::CliTest {
       throw std::runtime_error(refusal->message);
     return std::get<IdentifyData>(std::move(read));
   }
-  /// Of a window that begins and ends with the file; its ticks are where a service has them.
+  /// A window that begins and ends with the file, on the ticks that a service has.
   static WindowData of_archive(const Dress& dress, const std::filesystem::path& file,
                                const identification::Record& here) {
     storage::Database database(file, storage::Database::Mode::read_write);
