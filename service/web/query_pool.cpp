@@ -4,6 +4,7 @@
 #include <ctime>
 #include <utility>
 
+#include <sched.h>
 #include <sys/resource.h>
 
 #include "service/support/log.hpp"
@@ -15,7 +16,7 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds longest_answer{10};
 // The service's threads come first.
-constexpr int usual_niceness = 5, last_niceness = 19;
+constexpr int usual_niceness = 5;
 
 /// Processor time of this thread [s].
 double processor_time() {
@@ -47,8 +48,8 @@ void Allowance::take(double seconds) {
 QueryPool::QueryPool(std::filesystem::path database, unsigned threads, std::size_t queue)
     : database_(std::move(database)), allowance_(SteadyClock::now()), usual_(queue), last_(queue) {
   for (unsigned i = 0; i < threads; ++i) {
-    usual_.threads.emplace_back([this] { run(usual_, usual_niceness); });
-    last_.threads.emplace_back([this] { run(last_, last_niceness); });
+    usual_.threads.emplace_back([this] { run(usual_); });
+    last_.threads.emplace_back([this] { run(last_); });
   }
 }
 
@@ -68,8 +69,15 @@ void QueryPool::ask(Question question, bool compressed, Respond respond) {
   waiting.respond(std::move(busy));
 }
 
-void QueryPool::run(Lane& lane, int niceness) {
-  ::setpriority(PRIO_PROCESS, 0, niceness);  // of this thread
+void QueryPool::run(Lane& lane) {
+  // Of this thread. A nice one would keep a thread that wakes up waiting for a slice of time; an
+  // idle one gives way at once.
+  if (&lane == &usual_) {
+    ::setpriority(PRIO_PROCESS, 0, usual_niceness);
+  } else {
+    const sched_param none{};
+    ::sched_setscheduler(0, SCHED_IDLE, &none);
+  }
   while (const auto next = lane.waiting.next()) {
     const double before = processor_time();
     HttpResponse response = answer(next->question);

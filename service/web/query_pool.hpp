@@ -115,7 +115,7 @@ class QueryPool {
     std::vector<std::thread> threads;
   };
 
-  void run(Lane& lane, int niceness);
+  void run(Lane& lane);
   HttpResponse answer(const Question& question);
 
   const std::filesystem::path database_;
