@@ -19,17 +19,22 @@ constexpr double least_deviation = 1e-3;
 
 }  // namespace
 
-ChangeDetector::ChangeDetector(const Vector& reference) : mean_(reference.mean()) {
-  assert(reference.size() >= least_blocks);
-  const auto n = double(reference.size());
-  const double squares = (reference.array() - mean_).square().sum();
-  deviation_ = std::max(least_deviation, std::sqrt(squares / chi_squared_quantile(0.1, n - 1)));
+ChangeDetector::ChangeDetector(const Vector& reference)
+    : ChangeDetector(reference, Vector::Ones(reference.size()), 1) {}
+
+ChangeDetector::ChangeDetector(const Vector& reference, const Vector& weights, Index unknowns) {
+  const double n = weights.sum();
+  const double freedom = n - double(unknowns);
+  assert(n >= least_blocks && freedom > 0);
+  mean_ = weights.dot(reference) / n;
+  const double squares = weights.dot((reference.array() - mean_).square().matrix());
+  deviation_ = std::max(least_deviation, std::sqrt(squares / chi_squared_quantile(0.1, freedom)));
   allowance_ = 0.5 + 1 / std::sqrt(n);
 }
 
-bool ChangeDetector::add(double log_error) {
+bool ChangeDetector::add(double log_error, double weight) {
   const double z = (log_error - mean_) / deviation_;
-  sum_ = std::max(0.0, sum_ + std::min(z, most_of_a_block) - allowance_);
+  sum_ = std::max(0.0, sum_ + weight * (std::min(z, most_of_a_block) - weight * allowance_));
   if (!(sum_ > limit)) return false;
   sum_ = 0;
   return true;

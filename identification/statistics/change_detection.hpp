@@ -16,10 +16,14 @@ class ChangeDetector {
   /// Takes the logarithms of the errors of the reference blocks, in which nothing had changed.
   /// Requires at least `least_blocks` finite ones.
   explicit ChangeDetector(const Vector& reference);
+  /// The same of blocks of which only a part, its weight in [0, 1], says something, and of what is
+  /// left of the logarithms behind a regression with so many unknowns. The weights' sum is at least
+  /// `least_blocks`, and above the unknowns.
+  ChangeDetector(const Vector& reference, const Vector& weights, Index unknowns);
 
-  /// Takes the logarithm of the next block's error in. Returns whether a change is found; the sum
-  /// then begins again at 0.
-  bool add(double log_error);
+  /// Takes the logarithm of the next block's error in, and its weight. Returns whether a change is
+  /// found; the sum then begins again at 0.
+  bool add(double log_error, double weight = 1);
 
   /// Return the sum, a change above 8, and the mean of the reference.
   double statistic() const { return sum_; }
