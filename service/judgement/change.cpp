@@ -14,9 +14,6 @@ using identification::Index;
 using identification::Matrix;
 using identification::Vector;
 
-/// Outputs within so many deviations of their sensor's noise show nothing else.
-constexpr double deviations_of_noise = 2;
-
 /// Mean logarithm of the roots of `squares`, none below the noise.
 double mean_log_root(const std::vector<double>& squares, const std::vector<double>& noise) {
   double sum = 0;
@@ -25,11 +22,11 @@ double mean_log_root(const std::vector<double>& squares, const std::vector<doubl
   return sum / static_cast<double>(squares.size());
 }
 
-/// Share of the outputs that is not noise.
+/// Share of the outputs' mean squares beyond what noise makes.
 double share_above(const std::vector<double>& noise, const std::vector<double>& output_square) {
   double sum = 0;
   for (std::size_t q = 0; q < noise.size(); ++q)
-    if (const double silent = deviations_of_noise * deviations_of_noise * noise[q];
+    if (const double silent = deviations_of_sensor * deviations_of_sensor * noise[q];
         output_square[q] > silent)
       sum += 1 - silent / output_square[q];
   return sum / static_cast<double>(noise.size());

@@ -9,8 +9,6 @@ using storage::BlockScore;
 
 namespace {
 
-constexpr double spreads = 3;
-
 /// Numbers of BlockScore::bias_effects for each sensor.
 std::size_t stride(const BlockScore& score) {
   return 1 + 2 * score.square.size();
@@ -78,7 +76,7 @@ std::vector<double> OffsetFit::rest(const BlockScore& score) const {
       const double offset = sums_[q].error / rows_;
       squares[q] += offset * (offset - 2 * score.mean[q]);
     } else if (effect && sums_[q].effect_square > 0) {
-      const double reach = spreads * past_->spread(), moved = departure_ / rows_;
+      const double reach = deviations_of_sensor * past_->spread(), moved = departure_ / rows_;
       const double offset =
           std::clamp(-sums_[q].product / sums_[q].effect_square, moved - reach, moved + reach);
       squares[q] += offset * (offset * effect[1 + 2 * q] + 2 * effect[2 + 2 * q]);

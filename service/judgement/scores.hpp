@@ -22,6 +22,8 @@ inline constexpr double largest_score = 1;
 /// What is true of most is true: of a block's ticks that are believed, and of a gain that an offset
 /// explains.
 inline constexpr double most = 0.5;
+/// What a sensor does by itself lies within so many deviations: its noise, and where its cycles go.
+inline constexpr double deviations_of_sensor = 3;
 /// Least square of an error where the sensor's noise is not known.
 inline constexpr double least_square = 1e-300;
 
