@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <ctime>
+#include <sched.h>
 #include <utility>
 
-#include <sched.h>
 #include <sys/resource.h>
 
 #include "service/support/log.hpp"

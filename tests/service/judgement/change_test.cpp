@@ -25,8 +25,8 @@ class Equipment {
     const double output = at_work ? std::exp(1.5 + noise_.normal()) : 0;
     const double error = output * share * std::exp(0.3 * noise_.normal());
     const double square = 1.3 * sigma * sigma;  // of the noise, with its rounding
-    const storage::Block block{{at_, at_ + length}, 375, 1, {output}, {output * output + square},
-                               {}, {}, {}};
+    const storage::Block block{{at_, at_ + length},        375, 1,  {output},
+                               {output * output + square}, {},  {}, {}};
     storage::BlockScore score;
     score.square = {error * error + square};
     score.noise = {sigma * sigma};
