@@ -546,6 +546,13 @@ def soak(figures):
     return [table(["what", "figure"], rows)]
 
 
+CURVES = {"over_samples": ["samples", "bytes", "append a million, processor s",
+                           "window of 15,000 rows, processor ms", "`reident backup`, s",
+                           "`reident verify`, s"],
+          "over_equipment": ["equipment", "`reident overview`, processor s",
+                             "`reident history`, processor s", "`reident waiting`, processor s"]}
+
+
 @section("scale", "A constellation, and a billion samples",
          "What an archive costs is processor time. That of an append and of a window is over the same "
          "in an archive of a million samples, that of a month's question over one of a month. Split "
@@ -575,8 +582,12 @@ def scale(figures):
              "verify_day_s": "`reident verify --known` after a day more, s"}
     cell = lambda value: {True: "yes", False: "no"}[value] if isinstance(value, bool) else (
         f"{value:,}" if isinstance(value, int) else figure(value))
-    return [table(["what", "figure"], [[label, cell(figures[key])]
-                                       for key, label in names.items() if key in figures])]
+    tables = [table(["what", "figure"], [[label, cell(figures[key])]
+                                         for key, label in names.items() if key in figures])]
+    for key, header in CURVES.items():
+        if key in figures:
+            tables.append(table(header, [map(cell, row.values()) for row in figures[key]]))
+    return tables
 
 
 @section("web", "The operators' page",

@@ -70,7 +70,8 @@
 #                                         and as a Slurm array on two emulated nodes, which needs
 #                                         root: whether the bits are equal, and the speed-up; an
 #                                         archive of a billion samples, or N, compared with a million,
-#                                         also with a year in a shard.
+#                                         also with a year in a shard, and what grows with
+#                                         samples and with equipment.
 #                                         The last line is one JSON object
 #   tests/bench/run.sh build [--suite]    processor and wall time of a build from nothing, without
 #                                         and with the tests; with --suite also of the tests.
@@ -152,7 +153,7 @@ case $what in
   scale)
     arguments=(build/release deploy "$@")
     targets=(reident reidentd reident-simulator satcs-reference reident_archive_bench
-             reident_telemetry)
+             reident_telemetry reident_web_archive)
     ;;
   web)
     arguments=(build/release "$@")

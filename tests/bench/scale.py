@@ -18,6 +18,7 @@ measured and, as the last line, one JSON object of the figures:
                   small one; _of_shards: with a year in a shard
   verify_day_s    `reident verify --known` of that archive after a day of telemetry more
   split_s         elapsed time of `reident archive split` of that archive
+  over_samples, over_equipment  what grows with either: see archive/curves.py
 """
 
 import argparse
@@ -34,6 +35,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "e2e"))
 sys.path.insert(0, str(HERE / "archive"))
 
+import curves  # noqa: E402: found in the folder archive
 import growth  # noqa: E402: found in the folder archive
 import programs  # noqa: E402: found in the folder archive
 import site_of_services  # noqa: E402: found in this folder
@@ -150,8 +152,11 @@ def main():
         if arguments.samples:
             (archives := Path(folder) / "archives").mkdir()
             build = Path(arguments.build).resolve()
-            figures |= growth.measure(programs.Programs(build), build / "service/cli/reident",
-                                      archives, arguments.samples)
+            tools = programs.Programs(build), build / "service/cli/reident", archives
+            figures |= growth.measure(*tools, arguments.samples)
+            figures["over_samples"] = curves.over_samples(growth.Growth(*tools), arguments.samples)
+            figures["over_equipment"] = curves.over_equipment(
+                build / "tests/bench/web/reident_web_archive", *tools[1:])
         print(json.dumps(figures))
 
 
