@@ -16,9 +16,9 @@ class ChangeDetector {
   /// Takes the logarithms of the errors of the reference blocks, in which nothing had changed.
   /// Requires at least `least_blocks` finite ones.
   explicit ChangeDetector(const Vector& reference);
-  /// The same of blocks of which only a part, its weight in [0, 1], says something, and of what is
-  /// left of the logarithms behind a regression with so many unknowns. The weights' sum is at least
-  /// `least_blocks`, and above the unknowns.
+  /// Takes what a regression with so many unknowns leaves of these logarithms. A part of each
+  /// block, its weight in [0, 1], says something. Requires weights whose sum is at least
+  /// `least_blocks` and above the unknowns.
   ChangeDetector(const Vector& reference, const Vector& weights, Index unknowns);
 
   /// Takes the logarithm of the next block's error in, and its weight. Returns whether a change is

@@ -53,7 +53,7 @@ void ChangeFinder::add(const storage::Block& block, const storage::BlockScore& s
   if (!detector_ || detector_->statistic() == 0) calm_until_ = block.range.end;
 }
 
-/// Of the phases of the cycle, and of the size.
+/// One for each phase of the cycle, and the size.
 ChangeFinder::Terms ChangeFinder::terms_of(const Entry& entry) const {
   Terms terms = Terms::Zero();
   terms(static_cast<Index>(entry.phase)) = 1;

@@ -70,8 +70,8 @@ void QueryPool::ask(Question question, bool compressed, Respond respond) {
 }
 
 void QueryPool::run(Lane& lane) {
-  // Of this thread. A nice one would keep a thread that wakes up waiting for a slice of time; an
-  // idle one gives way at once.
+  // A nice thread would keep one that wakes up waiting for a slice of time; an idle one gives way
+  // at once.
   if (&lane == &usual_) {
     ::setpriority(PRIO_PROCESS, 0, usual_niceness);
   } else {

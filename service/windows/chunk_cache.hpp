@@ -11,8 +11,7 @@
 namespace reident {
 
 /// Chunk k has the ticks [k chunk_ticks, (k + 1) chunk_ticks). Chunks that a range cuts at its ends
-/// are read and not kept. One thread at a time; memory is that of the last range,
-/// packed.
+/// are read and not kept. One thread at a time; memory is that of the last range, packed.
 class ChunkCache {
  public:
   static constexpr std::int64_t chunk_ticks = 512;

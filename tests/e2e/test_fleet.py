@@ -13,7 +13,7 @@ SERVICES = 18
 class Fleet(EndToEnd):
     def setUp(self):
         super().setUp()
-        # Of no other test, since the ports of these services are given.
+        # No other test has this one, since the ports of these services are given.
         self.domain = 11 + os.getpid() % 20
         self.names = [f"SAT-{number}" for number in range(1, SERVICES + 1)]
         self.configure([plant.equipment(bias="approve", baseline_mrse=50.0)])

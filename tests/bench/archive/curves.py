@@ -3,23 +3,17 @@ size. Seconds of processor time, the least of several runs, but for verify and b
 elapsed.
 """
 
-import resource
 import subprocess
 import time
 
-from growth import PARAMETERS, RUNS, STEP_FRAMES
+from growth import PARAMETERS, STEP_FRAMES, least_processor_s
 
 EQUIPMENT = (1, 10, 100)
 
 
 def processor_s(command):
-    least = float("inf")
-    for _ in range(RUNS):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run(command, check=False, capture_output=True)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        least = min(least, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    return round(least, 4)
+    return round(least_processor_s(lambda: subprocess.run(command, check=False,
+                                                          capture_output=True)), 4)
 
 
 def elapsed_s(command):

@@ -22,6 +22,17 @@ WINDOW = ("--rows", 15_000, "--series", 5, "--parameters", PARAMETERS)
 WINDOWS, RUNS = 200, 3
 
 
+def least_processor_s(run):
+    """Processor seconds of the processes that `run` starts, the least of several runs."""
+    least = float("inf")
+    for _ in range(RUNS):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        run()
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        least = min(least, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return least
+
+
 class Growth:
     def __init__(self, programs, reident, folder):
         self.programs, self.reident, self.folder = programs, reident, folder
@@ -33,14 +44,7 @@ class Growth:
         return file
 
     def cpu_s(self, *words):
-        """Processor seconds of the least of several runs."""
-        least = float("inf")
-        for _ in range(RUNS):
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            self.programs.measure(*words)
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-            least = min(least, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-        return least
+        return least_processor_s(lambda: self.programs.measure(*words))
 
     def window_s(self, file):
         one, many = (self.cpu_s("read", "archive", file, "--windows", count, *WINDOW)
