@@ -91,7 +91,8 @@ class EndToEnd(unittest.TestCase):
         for process in self.processes:
             if process.running():
                 process.kill()
-        if self._outcome.success:
+        result = self._outcome.result  # the outcome itself is that of this clean-up
+        if all(test is not self for test, _ in result.failures + result.errors):
             shutil.rmtree(self.folder)
         else:
             for process in self.processes:
