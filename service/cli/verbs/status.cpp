@@ -52,12 +52,14 @@ std::optional<ServiceStatus> listen(dds::Participant& participant, const Argumen
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(arguments.timeout_s));
   std::optional<ServiceStatus> met;
+  std::optional<ServiceStatus> before;  // sent since: the first that comes is from before
   const auto look = [&](ServiceStatus&& status) {
     if (!arguments.service.empty() && status.service != arguments.service) return;
     all[{status.service, status.started}] = status;
     // The first of several services is followed.
     if (heard && heard->service != status.service) return;
-    if (!met && (arguments.wait.empty() || (heard && stayed_idle(*heard, status)))) met = status;
+    if (!met && (arguments.wait.empty() || (before && stayed_idle(*before, status)))) met = status;
+    if (heard) before = status;
     heard = std::move(status);
   };
   while (!met) {

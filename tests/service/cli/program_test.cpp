@@ -291,6 +291,27 @@ TEST_F(Status, WaitsUntilTwoBeatsAreIdleAndAlike) {
   EXPECT_EQ(json::parse(ran.out)["attempts"], 8);
 }
 
+// A source may have ended, and the program begun, since the beat that a new reader gets first; what
+// the source sent last may not be taken up yet at the next one.
+TEST_F(Status, WaitsForTwoBeatsThatWereSentSinceItAsked) {
+  const auto without_frames = [this](int number) {
+    ServiceStatus status = beat(number);
+    status.frames_received = 0;
+    return status;
+  };
+  writer.write(without_frames(0));
+  int since = 0;
+  const test::Ran ran = run_beside(
+      [&](int number) {
+        while (since == 0 && writer.matched_readers() == 0)
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));  // poll
+        return since++ == 0 ? without_frames(number + 1) : beat(number + 1);
+      },
+      command({"--wait", "idle", "--timeout", "60", "--json"}));
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(json::parse(ran.out)["frames_received"], 4321);
+}
+
 TEST_F(Status, ExitsFourWhenTheServiceStaysBusy) {
   const test::Ran ran = run_beside(
       [this](int number) {
