@@ -206,14 +206,11 @@ std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> 
     of_day_ns = *rounded(fraction, quantum_ns_);
     second = second.substr(0, point);
   }
-  const std::string date =
-      std::string(trimmed(cells[columns_[0]])) + "/" + std::string(second) +
-      (is_ordinal ? std::string() : "/" + std::string(trimmed(cells[columns_[2]])));
-  std::string ordinal = date;
-  // 9 is the day 009 of the year.
-  if (is_ordinal)
-    while (ordinal.size() < 8) ordinal.insert(5, "0");
-  const auto day = read_date_text(ordinal, order_);
+  std::string date = std::string(trimmed(cells[columns_[0]])) + "/";
+  if (is_ordinal) date.append(3 - std::min<std::size_t>(second.size(), 3), '0');  // 9 is 009
+  date += second;
+  if (!is_ordinal) date += "/" + std::string(trimmed(cells[columns_[2]]));
+  const auto day = read_date_text(date, order_);
   if (!day) return std::nullopt;
   DateText time = *day;
   time.clock_ns += of_day_ns;

@@ -94,7 +94,7 @@ std::optional<Error> TextSource::read(std::string& buffer) {
     text_.clear();
     return std::nullopt;
   }
-  if (!file_) return std::nullopt;
+  if (!file_ || std::feof(file_.get()) != 0) return std::nullopt;
   const std::size_t before = buffer.size();
   while (buffer.size() == before) {
     const std::size_t at = decoder_ ? 0 : before;
@@ -105,8 +105,9 @@ std::optional<Error> TextSource::read(std::string& buffer) {
     into.resize(at + count);
     if (count == 0 && std::ferror(file_.get()) != 0)
       return failed("cannot be read: " + message_of(errno));
-    if (decoder_) decoder_->decode(bytes, count == 0, buffer);
-    if (count == 0) break;
+    const bool has_ended = std::feof(file_.get()) != 0;
+    if (decoder_) decoder_->decode(bytes, has_ended, buffer);
+    if (has_ended) break;
   }
   return std::nullopt;
 }

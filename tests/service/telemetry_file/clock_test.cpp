@@ -27,6 +27,11 @@ std::string first_time(const std::string& names, const std::vector<std::string>&
   return file.next() == TelemetryFile::Step::row ? time_text(file.time_ns()) : file.error().message;
 }
 
+TEST(TelemetryClock, ARowWithoutAYearHasNoTime) {
+  for (const std::string rest : {",1", ",9", ",059"})
+    EXPECT_THAT(first_time("year,doy", {rest, "2024,60", "2024,61"}), HasSubstr("t.csv"));
+}
+
 TEST(TelemetryClock, ReadsEveryForm) {
   struct Case {
     const char* names;
@@ -74,6 +79,7 @@ TEST(TelemetryClock, ReadsEveryForm) {
            Case{"date,time", {"20240229,93000", "20240229,103000"}, "2024-02-29T09:30:00Z"},
            Case{"YYYY,MM,DD,HH,MI,SS", {"2024,02,28,22,00,10"}, "2024-02-28T22:00:10Z"},
            Case{"year,doy", {"2024,59.91666667"}, "2024-02-28T22:00:00Z"},
+           Case{"year,doy", {"2024,9.5"}, "2024-01-09T12:00:00Z"},
            Case{"GPSWeek,GPSSec", {"2303,338418.000"}, "2024-02-28T22:00:00Z"},
            Case{"time", {"\"1,709,157,600\"", "\"1,709,157,610\""}, "2024-02-28T22:00:00Z"},
            Case{"time", {"2024059220010"}, "2024-02-28T22:00:10Z"},
