@@ -16,6 +16,7 @@
 #include "service/cli/config_options.hpp"
 #include "service/cli/verb.hpp"
 #include "service/dds/middleware_log.hpp"
+#include "service/support/allocator.hpp"
 #include "service/support/terminal.hpp"
 #include "service/support/text.hpp"
 #include "service/support/version.hpp"
@@ -135,6 +136,7 @@ int run(int argc, char** argv) {
 }  // namespace reident::cli
 
 int main(int argc, char** argv) {
+  reident::keep_freed_memory();
   try {
     return reident::cli::run(argc, argv);
   } catch (const std::exception& error) {

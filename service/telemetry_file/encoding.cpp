@@ -128,9 +128,8 @@ std::string foreign_word(std::string_view head) {
   return least_share * in_words >= all ? std::string(first) : "";
 }
 
-bool is_binary(std::string_view head) {
+bool is_binary(std::string_view head, std::string_view encoding) {
   if (head.starts_with("\x1F\x8B") || head.starts_with("PK\x03\x04")) return true;
-  const std::string encoding = find_encoding(head);
   if (encoding.starts_with("UTF-16") || encoding.starts_with("UTF-32")) return false;
   const auto nuls = std::count(head.begin(), head.end(), '\0');
   const auto controls = std::count_if(head.begin(), head.end(), [](char c) {

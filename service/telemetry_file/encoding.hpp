@@ -17,8 +17,9 @@ std::string find_encoding(std::string_view head);
 /// of such bytes stand so.
 std::string foreign_word(std::string_view head);
 
-/// Whether bytes are those of a packed or binary file: no text in any encoding.
-bool is_binary(std::string_view head);
+/// Whether bytes are those of a packed or binary file: no text in any encoding. `encoding` is what
+/// find_encoding() says of them.
+bool is_binary(std::string_view head, std::string_view encoding);
 
 /// Converts a stream of bytes to UTF-8. What the encoding does not know becomes U+FFFD.
 class Decoder {

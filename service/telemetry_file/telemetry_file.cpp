@@ -35,7 +35,7 @@ struct TelemetryFile::Impl {
   NumberStyle style;
   std::vector<CellFormat> formats;
   // The head, kept for finding the time.
-  std::vector<std::string> head_text;  // one a row
+  std::string head_text;  // its cells, one after the other
   std::vector<std::vector<std::string_view>> head_columns;
   std::vector<std::uint64_t> head_lines;
   std::optional<Clock> clock;
@@ -73,6 +73,7 @@ std::optional<Error> TelemetryFile::Impl::start() {
   std::string text(std::get<RowReader::Head>(head).text);
   if (!std::get<RowReader::Head>(head).is_all)
     text.resize(std::min(text.rfind(dialect.layout.line_end), text.size() - 1) + 1);
+  head_text.reserve(text.size());  // cells are no longer than what they are read from
   RowReader looked(TextSource::of_text(std::move(text), rows.source().name()));
   if (auto failed = looked.head(head_bytes); std::holds_alternative<Error>(failed))
     return std::get<Error>(failed);
@@ -84,14 +85,10 @@ std::optional<Error> TelemetryFile::Impl::start() {
     if (at == Step::error && looked.damage() == Damage::none) break;
     if (at == Step::error) continue;
     head_lines.push_back(looked.line());
-    std::string& kept = head_text.emplace_back();
-    std::size_t size = 0;
-    for (const auto& cell : looked.cells()) size += cell.size();
-    kept.reserve(std::max<std::size_t>(size, 32));
     for (std::size_t c = 0; c < head_columns.size(); ++c) {
-      const std::size_t from = kept.size();
-      kept += looked.cells()[c];
-      head_columns[c].emplace_back(kept.data() + from, kept.size() - from);
+      const std::size_t from = head_text.size();
+      head_text += looked.cells()[c];
+      head_columns[c].emplace_back(head_text.data() + from, head_text.size() - from);
     }
   }
   if (auto failed = find_cells()) return failed;

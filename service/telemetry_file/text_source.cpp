@@ -58,9 +58,9 @@ std::variant<TextSource, Error> TextSource::open(const std::filesystem::path& pa
   head.resize(std::fread(head.data(), 1, head.size(), source.file_.get()));
   if (std::ferror(source.file_.get()) != 0)
     return *source.failed("cannot be read: " + message_of(errno));
-  if (!encoding && is_binary(head))
-    return *source.failed("the file is packed or no text; unpack it, or convert it to text, first");
   source.encoding_ = encoding ? *encoding : find_encoding(head);
+  if (!encoding && is_binary(head, source.encoding_))
+    return *source.failed("the file is packed or no text; unpack it, or convert it to text, first");
   if (!encoding && source.encoding_ != "SHIFT_JIS" && !source.encoding_.starts_with("UTF-"))
     if (const std::string word = foreign_word(head); !word.empty())
       return *source.failed("its encoding is not known by its bytes; say it with --encoding: " +

@@ -187,19 +187,17 @@ void Import::commit() {
 
 }  // namespace
 
-std::variant<ImportReport, Error> import_file(storage::Database& database,
+std::variant<ImportReport, Error> import_file(storage::Database& database, Reader& file,
                                               const ImportOptions& options,
                                               const std::function<storage::Time()>& now,
                                               const ImportObserver& observer,
                                               const ImportLimits& limits) {
-  auto opened = Reader::open(options.file, options.reading);
-  if (auto* error = std::get_if<Error>(&opened)) return std::move(*error);
   std::error_code failed;
   if (!std::filesystem::is_regular_file(options.file, failed))
     return Error{options.file.string() +
                  ": is no regular file, so an import could not go on where it was stopped; save it "
                  "as one first"};
-  return Import(database, options, std::get<Reader>(opened), limits).run(now, observer);
+  return Import(database, options, file, limits).run(now, observer);
 }
 
 }  // namespace reident::transfer

@@ -15,7 +15,7 @@ namespace reident::transfer {
 
 /// Bounds of one batch, and so of the memory: some 40 MiB.
 struct ImportLimits {
-  std::uint64_t samples = 262144;
+  std::uint64_t samples = 131072;
   std::size_t frames = 65536;
 };
 
@@ -42,13 +42,14 @@ struct ImportReport {
 /// Called after each batch; false stops the import there.
 using ImportObserver = std::function<bool(const ImportProgress&)>;
 
-/// Imports the file, or goes on with an import of it that did not end: same options, same columns,
-/// same bytes so far. Requires a database that is open for writing, and a regular file that does
-/// not change meanwhile. `now` gives the times of the log. An error where the file, the options or
+/// Imports `file`, which is options.file as it was opened with options.reading, or goes on with an
+/// import of it that did not end: same options, same columns, same bytes so far. Requires a database
+/// that is open for writing, and a regular file that does not change meanwhile. `now` gives the times of the log. An error where the file, the options or
 /// a row is wrong; rows before it are in the archive, and the same call goes on there when the line
 /// is mended. Throws storage::Error when the archive cannot be written; then the same call goes on
 /// too.
 std::variant<ImportReport, csv::Error> import_file(storage::Database& database,
+                                                   telemetry_file::TelemetryFile& file,
                                                    const ImportOptions& options,
                                                    const std::function<storage::Time()>& now,
                                                    const ImportObserver& observer,

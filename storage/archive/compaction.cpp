@@ -29,7 +29,7 @@ void Compaction::step(std::size_t samples) {
     if (round_->done < round_->samples.size()) return;
     recent_.moved(series, round_->batch);
     round_->series.pop_back();
-    round_->samples = {};
+    round_->samples.cut(0);
     round_->done = 0;
   }
   if (!recent_.remove_rows(round_->batch, rows_of_a_step)) round_.reset();

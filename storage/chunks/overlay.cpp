@@ -22,6 +22,18 @@ bool follow_each_other(const SampleColumns& base, const std::vector<const Sample
   return true;
 }
 
+void make_room(SampleColumns& base, const std::vector<const SampleColumns*>& newer) {
+  std::size_t size = base.size();
+  WantedColumns has{.value = false, .quality = false, .source = false};
+  for (const SampleColumns* fragment : newer) {
+    size += fragment->size();
+    has.value |= !fragment->value.empty();
+    has.quality |= !fragment->quality.empty();
+    has.source |= !fragment->source.empty();
+  }
+  base.reserve(size, has);
+}
+
 /// All samples of the fragments in order of time, the one that stays at each time alone.
 std::vector<Place> in_order(const std::vector<const SampleColumns*>& fragments) {
   std::vector<Place> places;
@@ -42,6 +54,7 @@ std::vector<Place> in_order(const std::vector<const SampleColumns*>& fragments) 
 
 void overlay(SampleColumns& base, const std::vector<const SampleColumns*>& newer) {
   if (follow_each_other(base, newer)) {
+    make_room(base, newer);
     for (const SampleColumns* fragment : newer) base.append(*fragment, 0, fragment->size());
     return;
   }

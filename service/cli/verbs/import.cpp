@@ -128,15 +128,16 @@ int run(Arguments& arguments) {
   if (const auto refusal = complete(arguments)) return refuse(*refusal);
   if (arguments.reading.dry_run) return show(arguments.import);
   // Before a database is made for nothing.
-  const auto readable =
+  auto opened =
       telemetry_file::TelemetryFile::open(arguments.import.file, arguments.import.reading);
-  if (const auto* error = std::get_if<csv::Error>(&readable)) return refuse({error->message});
+  if (const auto* error = std::get_if<csv::Error>(&opened)) return refuse({error->message});
+  auto& file = std::get<telemetry_file::TelemetryFile>(opened);
   const StopSignal stop;
   return with_writable_database(arguments.database, [&](storage::Database& database) {
     Progress bar;
     Throughput pace;
-    const auto imported =
-        transfer::import_file(database, arguments.import, utc_now, [&](const ImportProgress& at) {
+    const auto imported = transfer::import_file(
+        database, file, arguments.import, utc_now, [&](const ImportProgress& at) {
           if (bar.due()) bar.update(at.fraction, pace.text(at.fraction, at.samples));
           return !stop.token().stop_requested();
         });

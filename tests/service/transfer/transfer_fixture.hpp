@@ -34,8 +34,12 @@ inline bool go_on(const ImportProgress&) {
 
 inline std::variant<ImportReport, csv::Error> try_import(storage::Database& database,
                                                          const ImportOptions& options,
-                                                         const ImportLimits& limits = {}) {
-  return import_file(database, options, fixed_clock, go_on, limits);
+                                                         const ImportLimits& limits = {},
+                                                         const ImportObserver& observer = go_on) {
+  auto opened = telemetry_file::TelemetryFile::open(options.file, options.reading);
+  if (auto* error = std::get_if<csv::Error>(&opened)) return std::move(*error);
+  return import_file(database, std::get<telemetry_file::TelemetryFile>(opened), options,
+                     fixed_clock, observer, limits);
 }
 
 /// Fails the test where the import does.
