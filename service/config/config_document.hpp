@@ -3,6 +3,7 @@
 
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
+#define TOML_FLOAT_CHARCONV 1
 // toml++ 3.3 asserts that a table's name begins with a letter that it may, and then refuses it.
 #define TOML_ASSERT(expression) static_assert(true)
 #include <cstdint>

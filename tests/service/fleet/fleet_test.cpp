@@ -33,6 +33,7 @@ inputs = ["u", "v"]
 outputs = ["y"]
 sample_period = "1s"
 window = "10min"
+margin = 16.4
 )";
     return folder_ / "satellite.toml";
   }
@@ -74,6 +75,7 @@ TEST_F(FleetTest, WritesWhatTheServicesRead) {
   EXPECT_TRUE(config.keep);
   EXPECT_EQ(config.spacecraft[0].name, "SAT-2");
   EXPECT_EQ(config.spacecraft[0].equipment[0].name, "PLANT");
+  EXPECT_THAT(text_of("etc/reident/SAT-2.toml"), HasSubstr(" margin = 16.4\n")) << "as it was";
   EXPECT_THAT(text_of("etc/systemd/system/reidentd@SAT-2.service.d/fleet.conf"),
               AllOf(HasSubstr("[Service]\n"), HasSubstr("\nMemoryMax=2G\n"),
                     Not(HasSubstr("CYCLONEDDS_URI"))));
