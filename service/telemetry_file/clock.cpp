@@ -71,9 +71,10 @@ std::string time_format_names() {
 }
 
 std::optional<std::int64_t> parse_time_unit(std::string_view text) {
-  if (text.empty() || text.find_first_of("0123456789.+-") != std::string_view::npos)
-    return std::nullopt;
-  return parse_duration("1" + std::string(text));
+  if (text.empty() || text.find_first_of("+-") != std::string_view::npos) return std::nullopt;
+  const bool has_number = text[0] >= '0' && text[0] <= '9';  // 10ms
+  const auto unit = parse_duration((has_number ? "" : "1") + std::string(text));
+  return unit > 0 ? unit : std::nullopt;
 }
 
 bool Clock::uses(std::size_t column) const {

@@ -77,6 +77,10 @@ class Clock {
   bool uses(std::size_t column) const;
   /// Whether times are since 1970, and not since an epoch that nobody gave.
   bool is_absolute() const { return is_absolute_; }
+  /// Since when numbers or times of day count [ns]; absent: times are dates, and wrap at nothing.
+  std::optional<std::int64_t> counts_since() const {
+    return counts_ || !is_absolute_ ? std::optional(epoch_ns_) : std::nullopt;
+  }
   /// Whether texts are of a clock that nobody named: it may be a local one.
   bool may_be_local() const { return may_be_local_; }
   /// The column that says that it is a local one, and not where; absent: none does.
@@ -107,7 +111,7 @@ class Clock {
   std::size_t clock_digits_ = 0;  // of a time of day as a number, as 93000; 0: it is no number
   bool has_decimal_comma_ = false;
   bool has_unit_behind_ = false;  // numbers are as "10 sec"
-  bool is_absolute_ = true, may_be_local_ = false;
+  bool is_absolute_ = true, counts_ = false, may_be_local_ = false;
   std::optional<std::size_t> local_by_;
   std::optional<TimeZone> zone_;
   std::optional<std::int64_t> offset_ns_;       // of texts without their own, by the column's name

@@ -18,11 +18,26 @@ constexpr double seconds_a_day = 86'400;
 constexpr double earliest_s = 631'152'000;  // 1990
 constexpr int min_serial_decimals = 4;
 constexpr std::int64_t coarsest_quantum_ns = 10 * second_ns;
+constexpr double much_less = 5;  // times, of the spans of two ways to read dates
 
 using Problem = Clock::Problem;
 
 std::string shown(std::string_view cell) {
   return "'" + std::string(cell.substr(0, 40)) + "'";
+}
+
+/// Whether a date's three numbers have two digits at most, as 24-02-28.
+bool has_short_year(std::string_view cell) {
+  cell = trimmed(cell);
+  cell = cell.substr(0, cell.find_first_not_of("0123456789-/."));
+  std::size_t parts = 1, digits = 0;
+  for (const char c : cell) {
+    const bool is_digit = c >= '0' && c <= '9';
+    digits = is_digit ? digits + 1 : 0;
+    parts += is_digit ? 0U : 1U;
+    if (digits > 2) return false;
+  }
+  return parts == 3;
 }
 
 /// Seconds since 1970 of a number in a format.
@@ -132,35 +147,65 @@ std::optional<Problem> ClockFinder::decide_parts() {
   return std::nullopt;
 }
 
-/// Whether dates such as 24-02-28 are of today with the year first alone.
-bool ClockFinder::have_year_first(std::size_t c) const {
-  bool is_needed = false;
+/// How dates such as 24-02-28 read with the year first: not of today in some row; as well as with
+/// the day or the month first; or of today in this way alone.
+ClockFinder::YearFirst ClockFinder::year_first(std::size_t c) const {
+  bool is_needed = false, differs = false;
   for (const std::string_view cell : head_.columns[c]) {
     const auto seconds = [cell](DateOrder order) {
       const auto read = read_date_text(cell, order);
       return read && read->has_date ? static_cast<double>(read->clock_ns) * 1e-9 : -1;
     };
     if (trimmed(cell).empty()) continue;
-    if (const double at = seconds(DateOrder::year_first); at < earliest_s || at > latest_s_)
-      return false;
+    const double at = seconds(DateOrder::year_first);
+    if (at < earliest_s || at > latest_s_) return YearFirst::impossible;
     const double other = seconds(DateOrder::day_first);
     is_needed = is_needed || other < 0 || other > latest_s_;
+    differs = differs || (at != other && has_short_year(cell));
   }
-  return is_needed;
+  if (is_needed) return YearFirst::alone;
+  return differs ? YearFirst::possible : YearFirst::impossible;
+}
+
+/// How far apart the dates of neighbouring rows are, in all [s].
+double ClockFinder::span(std::size_t c, DateOrder order) const {
+  double span = 0;
+  std::optional<double> before;
+  for (const std::string_view cell : head_.columns[c]) {
+    const auto read = read_date_text(cell, order);
+    if (!read) continue;
+    const double at = static_cast<double>(read->clock_ns) * 1e-9;
+    span += std::abs(at - before.value_or(at));
+    before = at;
+  }
+  return span;
 }
 
 /// Whether 03/04/2024 is in April or in March.
 std::optional<Problem> ClockFinder::decide_order(std::size_t c) {
   if (options_.order) return std::nullopt;
-  if (have_year_first(c)) {
+  const YearFirst year = year_first(c);
+  if (year == YearFirst::alone) {
     clock_.order_ = DateOrder::year_first;
     return std::nullopt;
+  }
+  if (year == YearFirst::possible) {
+    const double with_year = span(c, DateOrder::year_first),
+                 without = std::min(span(c, DateOrder::day_first), span(c, DateOrder::month_first));
+    if (with_year * much_less < without) {
+      clock_.order_ = DateOrder::year_first;
+      return std::nullopt;
+    }
+    if (without * much_less >= with_year) {
+      const auto [cell, line] = first_cell(c);
+      return Problem{line, shown(cell) + " in column '" + head_.names[c] +
+                               "' may have the year or the day first; say --time-format ymd, dmy "
+                               "or mdy"};
+    }
   }
   bool day_first = false, month_first = false;
   std::string_view ambiguous;
   std::uint64_t line = 0;
-  std::int64_t span[2] = {0, 0}, before[2] = {0, 0};
-  bool any = false;
   for (std::size_t row = 0; row < head_.columns[c].size(); ++row) {
     const std::string_view cell = head_.columns[c][row];
     const auto one = read_date_text(cell, DateOrder::day_first),
@@ -178,20 +223,16 @@ std::optional<Problem> ClockFinder::decide_order(std::size_t c) {
       if (first && second && *first > 12) day_first = true;
       if (first && second && *second > 12) month_first = true;
     }
-    const std::int64_t times[2] = {one->clock_ns, other->clock_ns};
-    for (int i = 0; i < 2; ++i) {
-      if (any) span[i] += std::abs(times[i] / second_ns - before[i] / second_ns);
-      before[i] = times[i];
-    }
-    any = true;
   }
   if (day_first != month_first) {
     clock_.order_ = day_first ? DateOrder::day_first : DateOrder::month_first;
     return std::nullopt;
   }
   if (ambiguous.empty()) return std::nullopt;
-  if (span[0] * 5 < span[1] || span[1] * 5 < span[0]) {
-    clock_.order_ = span[0] < span[1] ? DateOrder::day_first : DateOrder::month_first;
+  const double with_day = span(c, DateOrder::day_first),
+               with_month = span(c, DateOrder::month_first);
+  if (with_day * much_less < with_month || with_month * much_less < with_day) {
+    clock_.order_ = with_day < with_month ? DateOrder::day_first : DateOrder::month_first;
     return std::nullopt;
   }
   return Problem{line, shown(ambiguous) + " in column '" + head_.names[c] +
@@ -230,6 +271,7 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
   if (is_text) {
     clock_.format_ = TimeFormat::text;
     if (auto problem = decide_order(c)) return problem;
+    clock_.counts_ = dated == 0;
     clock_.is_absolute_ = dated > 0 || options_.epoch_ns.has_value();
     clock_.may_be_local_ = offsets == 0 && !clock_.zone_;
     const auto text = read_date_text(first_text, clock_.order_);
@@ -276,7 +318,8 @@ void ClockFinder::take(TimeFormat format, std::int64_t unit_ns, int decimals, do
                        std::string_view evidence) {
   clock_.format_ = format;
   clock_.unit_ns_ = unit_ns;
-  clock_.is_absolute_ = format != TimeFormat::elapsed || options_.epoch_ns.has_value();
+  clock_.counts_ = format == TimeFormat::elapsed;
+  clock_.is_absolute_ = !clock_.counts_ || options_.epoch_ns.has_value();
   clock_.description_ = describe_format(format, unit_ns) + std::string(evidence);
   const bool is_serial = format == TimeFormat::excel || format == TimeFormat::mjd ||
                          format == TimeFormat::jd || format == TimeFormat::matlab;
@@ -286,13 +329,41 @@ void ClockFinder::take(TimeFormat format, std::int64_t unit_ns, int decimals, do
     clock_.quantum_ns_ = quantum_of(unit_ns, decimals, value);
 }
 
+/// Where the name says a unit or an epoch that is not known here, which may not pass as seconds.
+std::optional<Problem> ClockFinder::unknown_count(std::size_t c, const NameHint& hint,
+                                                  const std::vector<double>& values) const {
+  if (!hint.since.empty() && !options_.epoch_ns && !options_.format)
+    return Problem{first_cell(c).second,
+                   fmt::format("column '{}' counts since {}; say when that is with --epoch, as {}",
+                               head_.names[c], hint.since, hint.epoch)};
+  if (options_.unit_ns || options_.format) return std::nullopt;
+  if (!hint.unknown_unit.empty()) return unknown_unit(c, hint.unknown_unit);
+  if (hint.format == TimeFormat::dotnet && !in_window(values, TimeFormat::dotnet, second_ns))
+    return unknown_unit(c, "ticks");
+  return std::nullopt;
+}
+
+Problem ClockFinder::unknown_unit(std::size_t c, std::string_view unit) const {
+  return {first_cell(c).second,
+          fmt::format("column '{}' counts in '{}', which is no unit that is known here; say what "
+                      "that is with --time-unit, as ms or 10ms",
+                      head_.names[c], unit)};
+}
+
 std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vector<double>& values,
                                                   int decimals) {
   NameHint hint = hint_of(head_.names[c], unit(c));
   if (unit_behind_) hint.unit_ns = unit_behind_;
+  if (auto problem = unknown_count(c, hint, values)) return problem;
   const std::int64_t unit = options_.unit_ns.value_or(hint.unit_ns.value_or(second_ns));
   const auto by_size = unit_by_size(values);
   const double value = values.empty() ? 0 : values.front();
+  if (hint.epoch_ns && !options_.epoch_ns && !options_.format) {
+    clock_.epoch_ns_ = *hint.epoch_ns;
+    take(TimeFormat::elapsed, unit, decimals, value, " by the name");
+    clock_.is_absolute_ = true;
+    return std::nullopt;
+  }
   if (options_.format) {
     take(*options_.format,
          *options_.format == TimeFormat::unix && !options_.unit_ns && !hint.unit_ns

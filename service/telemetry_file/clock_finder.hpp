@@ -45,7 +45,9 @@ class ClockFinder {
   void take_zone_of_names();
   bool find_zone_column();
   void find_fraction_column();
-  bool have_year_first(std::size_t c) const;
+  enum class YearFirst { impossible, possible, alone };
+  YearFirst year_first(std::size_t c) const;
+  double span(std::size_t c, DateOrder order) const;
   std::optional<Clock::Problem> decide_order(std::size_t c);
   std::optional<Clock::Problem> decide_one(std::size_t c);
   bool in_window(const std::vector<double>& values, TimeFormat format, std::int64_t unit_ns) const;
@@ -53,6 +55,9 @@ class ClockFinder {
   bool is_absolute_number(const std::vector<double>& values) const;
   void take(TimeFormat format, std::int64_t unit_ns, int decimals, double value,
             std::string_view evidence);
+  Clock::Problem unknown_unit(std::size_t c, std::string_view unit) const;
+  std::optional<Clock::Problem> unknown_count(std::size_t c, const NameHint& hint,
+                                              const std::vector<double>& values) const;
   std::optional<Clock::Problem> decide_number(std::size_t c, const std::vector<double>& values,
                                               int decimals);
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <map>
 
+#include "service/support/text.hpp"
+#include "service/telemetry_file/date_text.hpp"
+
 namespace reident::telemetry_file {
 namespace {
 
@@ -27,14 +30,45 @@ std::vector<std::string> words_of(std::string_view name) {
 }
 
 std::optional<std::int64_t> unit_of(const std::string& word) {
-  static const std::map<std::string, std::int64_t> units = {
-      {"ns", 1},           {"nsec", 1},         {"nanoseconds", 1},     {"us", 1000},
-      {"usec", 1000},      {"\xC2\xB5s", 1000}, {"microseconds", 1000}, {"ms", ms},
-      {"msec", ms},        {"millis", ms},      {"milliseconds", ms},   {"millisec", ms},
-      {"millisecond", ms}, {"micros", 1000},    {"microsecond", 1000},  {"s", s},
-      {"sec", s},          {"secs", s},         {"second", s},          {"seconds", s},
-      {"min", 60 * s},     {"minutes", 60 * s}, {"h", 3600 * s},        {"hours", 3600 * s},
-      {"d", 86400 * s},    {"days", 86400 * s}};
+  static const std::map<std::string, std::int64_t> units = {{"ns", 1},
+                                                            {"nsec", 1},
+                                                            {"nanoseconds", 1},
+                                                            {"us", 1000},
+                                                            {"usec", 1000},
+                                                            {"\xC2\xB5s", 1000},
+                                                            {"microseconds", 1000},
+                                                            {"ms", ms},
+                                                            {"msec", ms},
+                                                            {"millis", ms},
+                                                            {"milliseconds", ms},
+                                                            {"millisec", ms},
+                                                            {"millisecond", ms},
+                                                            {"micros", 1000},
+                                                            {"microsecond", 1000},
+                                                            {"s", s},
+                                                            {"sec", s},
+                                                            {"secs", s},
+                                                            {"second", s},
+                                                            {"seconds", s},
+                                                            {"min", 60 * s},
+                                                            {"minutes", 60 * s},
+                                                            {"h", 3600 * s},
+                                                            {"hours", 3600 * s},
+                                                            {"d", 86400 * s},
+                                                            {"days", 86400 * s},
+                                                            {"mins", 60 * s},
+                                                            {"minute", 60 * s},
+                                                            {"hr", 3600 * s},
+                                                            {"hrs", 3600 * s},
+                                                            {"hour", 3600 * s},
+                                                            {"day", 86400 * s},
+                                                            {"week", 604800 * s},
+                                                            {"weeks", 604800 * s},
+                                                            {"microsec", 1000},
+                                                            {"usecs", 1000},
+                                                            {"msecs", ms},
+                                                            {"nanosec", 1},
+                                                            {"nsecs", 1}};
   const auto found = units.find(word);
   return found == units.end() ? std::nullopt : std::optional(found->second);
 }
@@ -56,6 +90,48 @@ std::optional<TimeFormat> format_of(const std::string& word) {
       {"ticks", TimeFormat::dotnet}};
   const auto found = formats.find(word);
   return found == formats.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// What stands in brackets at the end of a name.
+std::string_view bracketed(std::string_view name) {
+  name = trimmed(name);
+  if (!name.ends_with(')') && !name.ends_with(']')) return {};
+  const auto open = name.find_last_of("([");
+  return open == std::string_view::npos ? std::string_view()
+                                        : trimmed(name.substr(open + 1, name.size() - open - 2));
+}
+
+/// A short word that has to be a unit, or one with a number, and none that is known.
+bool is_unknown_unit(std::string_view said) {
+  constexpr std::size_t longest = 8;
+  const auto words = words_of(said);
+  if (words.empty() || words.size() > 2 || said.size() > longest || zone_hint_of({}, said))
+    return false;
+  if (words.size() == 2 && words[0].find_first_not_of("0123456789") != std::string::npos)
+    return false;
+  return words.size() == 2 || (!unit_of(words[0]) && !format_of(words[0]));
+}
+
+void note_epoch(std::string_view text, NameHint& hint) {
+  std::string low;
+  for (const char c : text) low += static_cast<char>(c >= 'A' && c <= 'Z' ? c | 0x20 : c);
+  if (low.find("j2000") != std::string::npos) {
+    hint.since = "J2000";
+    hint.epoch = "2000-01-01T11:58:55.816Z";
+    return;
+  }
+  const auto at = low.find("since");
+  if (at == std::string::npos) return;
+  std::string since(text.substr(at + 5));
+  since.erase(since.find_last_not_of(" )]_") + 1);
+  since.erase(0, since.find_first_not_of(" _"));
+  const auto date = read_date_text(since, DateOrder::year_first);
+  if (date && date->has_date && !date->is_ordered)
+    hint.epoch_ns = date->clock_ns - date->offset_ns.value_or(0);
+  else if (since.find_first_of("0123456789") != std::string::npos) {
+    hint.since = since;
+    hint.epoch = "2000-01-01T00:00:00Z";
+  }
 }
 
 std::optional<ZoneHint> zone_in(std::string_view text) {
@@ -114,7 +190,15 @@ NameHint hint_of(std::string_view name, std::string_view unit) {
       // The time of a GPS week is no time since 1980.
       if (!hint.format || *format == TimeFormat::elapsed) hint.format = format;
     }
-  if (words.size() > 1) hint.unit_ns = unit_of(words.back());
+  constexpr std::size_t is_no_part = 4;  // letters of a unit that stands alone; day is of a date
+  const auto since = std::find(words.begin(), words.end(), "since");
+  if (since != words.begin() && since != words.end())
+    hint.unit_ns = unit_of(*(since - 1));
+  else if (words.size() > 1 || (!words.empty() && words.back().size() >= is_no_part))
+    hint.unit_ns = unit_of(words.back());
+  for (const std::string_view said : {bracketed(name), trimmed(unit)})
+    if (is_unknown_unit(said)) hint.unknown_unit = said;
+  for (const std::string_view text : {name, unit}) note_epoch(text, hint);
   const auto unit_words = words_of(unit);
   if (!unit_words.empty()) {
     if (const auto said = unit_of(unit_words.front())) hint.unit_ns = said;
@@ -134,8 +218,9 @@ bool is_named_like_a_time(std::string_view name) {
     }
     all += word;
   }
-  constexpr std::array<std::string_view, 9> hints = {"time", "unix",  "date",  "utc",    "epoch",
-                                                     "zeit", "datum", "stamp", "elapsed"};
+  constexpr std::array<std::string_view, 11> hints = {"time",  "unix",    "date",  "utc",
+                                                      "epoch", "zeit",    "datum", "stamp",
+                                                      "since", "elapsed", "j2000"};
   return std::any_of(hints.begin(), hints.end(),
                      [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
 }

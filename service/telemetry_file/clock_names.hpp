@@ -14,6 +14,9 @@ namespace reident::telemetry_file {
 struct NameHint {
   std::optional<std::int64_t> unit_ns;
   std::optional<TimeFormat> format;
+  std::optional<std::int64_t> epoch_ns;  // of "seconds since 2000-01-01 00:00:00"
+  std::string since, epoch;              // an epoch that is not that sure, as J2000, and its time
+  std::string unknown_unit;              // what stands in brackets, or in the row of units, as hl
 };
 NameHint hint_of(std::string_view name, std::string_view unit);
 

@@ -38,7 +38,7 @@ std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t li
 }
 
 bool ClockWatch::begins_daylight_saving(std::int64_t time_ns) const {
-  if (!may_be_local_ || !is_absolute_ || usual_ns_ == 0 || usual_ns_ > hour_ns / 4) return false;
+  if (!may_be_local_ || since_ns_ || usual_ns_ == 0 || usual_ns_ > hour_ns / 4) return false;
   std::int64_t expected_ns = 0;
   if (__builtin_add_overflow(*last_ns_, usual_ns_, &expected_ns)) return false;
   const std::int64_t of_day_ns = ((expected_ns % day_ns) + day_ns) % day_ns;
@@ -69,13 +69,14 @@ ClockStep ClockWatch::explained(std::int64_t time_ns, std::uint64_t line) const 
   }
   for (const Wrap& wrap : wraps) {
     const double ns = wrap.counts * static_cast<double>(unit_ns_);
-    if (is_absolute_ || ns > 9e18 || !by_about(ns) || ns < 4 * usual_ns) continue;
+    if (!since_ns_ || ns > 9e18 || !by_about(ns) || ns < 4 * usual_ns) continue;
     step.kind = ClockStep::Kind::wrap;
     step.missing_ns = static_cast<std::int64_t>(ns);
     step.what = fmt::format("the clock goes back {}: a counter that wraps at {}", back, wrap.text);
     return step;
   }
-  if (!is_absolute_ && std::abs(static_cast<double>(time_ns)) <= tolerance_ns) {
+  if (since_ns_ &&
+      std::abs(static_cast<double>(time_ns) - static_cast<double>(*since_ns_)) <= tolerance_ns) {
     step.kind = ClockStep::Kind::restart;
     step.what =
         fmt::format("the clock goes back {} to zero: whatever counts was started again", back);

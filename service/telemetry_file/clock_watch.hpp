@@ -26,10 +26,10 @@ struct ClockStep {
 /// Looks at the times of rows in their order.
 class ClockWatch {
  public:
-  /// Watches a clock in units of `unit_ns` whose times are since an epoch or, not `is_absolute`,
-  /// since nobody knows when; `may_be_local`: it may have a daylight change.
-  ClockWatch(std::int64_t unit_ns, bool is_absolute, bool may_be_local)
-      : unit_ns_(unit_ns), is_absolute_(is_absolute), may_be_local_(may_be_local) {}
+  /// Watches a clock in units of `unit_ns`, which counts since `since_ns`, or shows dates;
+  /// `may_be_local`: it may have a daylight change.
+  ClockWatch(std::int64_t unit_ns, std::optional<std::int64_t> since_ns, bool may_be_local)
+      : unit_ns_(unit_ns), since_ns_(since_ns), may_be_local_(may_be_local) {}
 
   /// Returns the step where the time is earlier than the one before.
   std::optional<ClockStep> next(std::int64_t time_ns, std::uint64_t line);
@@ -41,7 +41,8 @@ class ClockWatch {
   bool begins_daylight_saving(std::int64_t time_ns) const;
 
   std::int64_t unit_ns_;
-  bool is_absolute_, may_be_local_;
+  std::optional<std::int64_t> since_ns_;
+  bool may_be_local_;
   std::optional<std::int64_t> last_ns_;
   std::int64_t usual_ns_ = 0;  // the last step ahead
   std::uint64_t hour_ahead_line_ = 0;

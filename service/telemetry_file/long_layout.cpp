@@ -14,14 +14,15 @@ namespace reident::telemetry_file {
 namespace {
 
 /// From the surest on.
-constexpr std::array<std::string_view, 22> parameter_names = {
-    "parameter", "parametername", "param",   "mnemonic",    "field",   "tagname",
-    "tag",       "pointname",     "point",   "signal",      "channel", "metric",
-    "sensor",    "variable",      "item",    "nodeid",      "series",  "name",
-    "key",       "messstelle",    "varname", "variablename"};
-constexpr std::array<std::string_view, 12> value_names = {
-    "value", "engvalue", "engineeringvalue", "calibratedvalue", "eng",    "varvalue",
-    "wert",  "messwert", "valeur",           "valor",           "valore", "val"};
+constexpr std::array<std::string_view, 25> parameter_names = {
+    "parameter",    "parametername", "param",  "mnemonic", "field",  "tagname",    "tag",
+    "pointname",    "point",         "signal", "channel",  "metric", "sensor",     "variable",
+    "item",         "nodeid",        "series", "name",     "key",    "messstelle", "varname",
+    "variablename", "entityid",      "entity", "pid"};
+constexpr std::array<std::string_view, 15> value_names = {
+    "value",    "engvalue", "engineeringvalue", "calibratedvalue", "eng",
+    "varvalue", "wert",     "messwert",         "valeur",          "valor",
+    "valore",   "val",      "reading",          "state",           "data"};
 
 std::string letters_of(std::string_view name) {
   std::string letters;

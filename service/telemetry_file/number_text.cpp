@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> wide_blanks = {"\xC2\xA0", "\xE2\x80\xAF",
                                                          "\xE2\x80\x89"};
+constexpr std::string_view typographic_apostrophe = "\xE2\x80\x99";
 constexpr std::array<std::string_view, 2> minuses = {"\xE2\x88\x92", "\xE2\x80\x93"};
 constexpr std::size_t longest_suffix = 12;
 
@@ -56,6 +57,8 @@ std::string_view group_mark(std::string_view text, char thousands) {
     for (const std::string_view blank : wide_blanks)
       if (text.starts_with(blank)) return text.substr(0, blank.size());
   }
+  if (thousands == '\'' && text.starts_with(typographic_apostrophe))
+    return text.substr(0, typographic_apostrophe.size());
   if (thousands != '\0' && text.starts_with(thousands)) return text.substr(0, 1);
   return {};
 }
@@ -97,6 +100,30 @@ bool take_exponent(std::string_view& text, std::string& plain, unsigned& spellin
   text.remove_prefix(at + digits);
   if (d) spelling |= fortran;
   return true;
+}
+
+/// Takes a power of ten that stands apart, as in 5.8 E-3 and 5.8x10^-3, where nothing is behind it.
+void take_power(std::string_view& text, std::string& plain, unsigned& spelling) {
+  std::string_view rest = without_blanks(text);
+  std::string power = plain;
+  if (!take_exponent(rest, power, spelling)) {
+    constexpr std::array<std::string_view, 4> times = {"\xC3\x97", "\xC2\xB7", "x", "*"};
+    const auto sign = std::find_if(times.begin(), times.end(),
+                                   [&](std::string_view one) { return rest.starts_with(one); });
+    if (sign == times.end()) return;
+    rest = without_blanks(rest.substr(sign->size()));
+    if (!rest.starts_with("10")) return;
+    rest.remove_prefix(2);
+    if (rest.starts_with('^')) rest.remove_prefix(1);
+    const int of_power = take_sign(rest, spelling);
+    const std::size_t digits = leading_digits(rest);
+    power += (of_power < 0 ? "e-" : "e") + std::string(rest.substr(0, digits));
+    if (digits == 0) return;
+    rest.remove_prefix(digits);
+  }
+  if (!without_blanks(rest).empty()) return;
+  text = {};
+  plain = power;
 }
 
 std::optional<double> converted(std::string_view text) {
@@ -176,7 +203,7 @@ std::optional<NumberText> read_number(std::string_view cell, NumberStyle style) 
     if (style.decimal == ',') read.spelling |= decimal_comma;
   }
   if (plain.find_first_of("0123456789", before) == std::string::npos) return std::nullopt;
-  take_exponent(text, plain, read.spelling);
+  if (!take_exponent(text, plain, read.spelling)) take_power(text, plain, read.spelling);
   const auto value = converted(plain);
   if (!value) return std::nullopt;
   read.value = *value;
@@ -207,13 +234,10 @@ std::optional<MarkEvidence> marks_in(std::string_view cell) {
   while (count < groups.size()) {
     groups[count] = leading_digits(text);
     text.remove_prefix(groups[count++]);
-    std::string_view mark = group_mark(text, ' ');
-    char as = mark.empty() ? '\0' : ' ';
-    for (const char c : {'.', ',', '\''})
-      if (mark.empty() && text.starts_with(c)) {
-        mark = text.substr(0, 1);
-        as = c;
-      }
+    std::string_view mark;
+    char as = '\0';
+    for (const char c : {' ', '\'', '.', ','})
+      if (mark.empty() && !(mark = group_mark(text, c)).empty()) as = c;
     const std::size_t next = leading_digits(text.substr(mark.size()));
     if (as == '\0' || (next == 0 && as != '.' && as != ',')) break;
     if (as == ' ' && next != 3) break;  // a unit, or the next thing

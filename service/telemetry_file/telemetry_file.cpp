@@ -235,7 +235,7 @@ std::optional<Error> TelemetryFile::find_time(bool is_series_after_series) {
   at.clock_at_start = at.clock;
   if (!is_series_after_series && !at.options.force_times)
     if (auto error = at.refuse_repeated_times()) return error;
-  at.watch.emplace(at.clock->unit_ns(), at.clock->is_absolute(), at.clock->may_be_local());
+  at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local());
   return std::nullopt;
 }
 
@@ -463,7 +463,7 @@ std::optional<Error> TelemetryFile::go_on_at(std::uint64_t position, std::uint64
     }
   }
   if (at.clock)
-    at.watch.emplace(at.clock->unit_ns(), at.clock->is_absolute(), at.clock->may_be_local());
+    at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local());
   return at.rows.start(at.dialect.layout, position, line);
 }
 

@@ -1,6 +1,7 @@
 #include "service/transfer/import_rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -158,9 +159,12 @@ class LongRows : public ImportRows {
   LongRows(const ImportOptions& options, const Reader& reader, const storage::Archive& archive,
            telemetry_file::LongLayout layout);
 
+  /// Once the reader knows its time.
+  void note_left_out(const Reader& reader);
   bool knows_spacecraft() const { return spacecraft_ || options_.spacecraft; }
 
   std::optional<Error> add(const Reader& reader, ImportBatch& batch) override;
+  std::vector<std::string> left_out() const override { return left_out_; }
 
  private:
   std::optional<Error> read_quality(const Reader& reader, storage::Quality& quality) const;
@@ -180,6 +184,7 @@ class LongRows : public ImportRows {
   const std::size_t parameter_, value_;
   std::optional<std::size_t> spacecraft_, source_, origin_, quality_, unit_;
   std::map<std::string, ParameterBook> books_;
+  std::vector<std::string> left_out_;
 
   // What the row before had: most rows differ from it in time and value alone.
   std::string cell_of_spacecraft_, cell_of_source_, cell_of_origin_;
@@ -205,6 +210,20 @@ LongRows::LongRows(const ImportOptions& options, const Reader& reader,
   origin_ = column("origin", options.origin.has_value());
   quality_ = column("quality", false);
   unit_ = column("unit", false);
+}
+
+void LongRows::note_left_out(const Reader& reader) {
+  constexpr std::array<std::string_view, 5> known = {"spacecraft", "source", "origin", "quality",
+                                                     "unit"};
+  for (std::size_t c = 0; c < reader.columns().size(); ++c) {
+    const std::string& name = reader.columns()[c];
+    if (c != parameter_ && c != value_ && !reader.is_time(c) && !name.empty() &&
+        std::find(known.begin(), known.end(), name) == known.end())
+      left_out_.push_back(fmt::format(
+          "column '{}' is left out: of rows with a sample each, parameter, time and value are "
+          "read, and spacecraft, origin, source, quality and unit (--names gives other names)",
+          name));
+  }
 }
 
 std::optional<Error> LongRows::add(const Reader& reader, ImportBatch& batch) {
@@ -343,6 +362,7 @@ std::variant<std::unique_ptr<ImportRows>, Error> import_rows(const ImportOptions
     auto rows = std::make_unique<LongRows>(options, reader, archive, *layout);
     if (!rows->knows_spacecraft()) return needs_spacecraft();
     if (auto error = reader.find_time(true)) return *std::move(error);
+    rows->note_left_out(reader);
     return rows;
   }
   if (!options.spacecraft) return needs_spacecraft();

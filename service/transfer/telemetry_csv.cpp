@@ -12,7 +12,10 @@ namespace {
 
 bool same_words(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-    return x == y || (x == '_' && y == ' ') || (x == ' ' && y == '_');
+    const auto plain = [](char c) {
+      return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c == '_' ? ' ' : c;
+    };
+    return plain(x) == plain(y);
   });
 }
 

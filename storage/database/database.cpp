@@ -89,6 +89,17 @@ void refuse_what_is_not_ours(Connection& connection, const fs::path& path) {
                                                ": use a newer reident, the file is left as it is");
 }
 
+void refuse_a_shard(Connection& connection, const fs::path& path) {
+  sqlite::Query table =
+      connection.query("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'shard'");
+  if (!table.step()) return;
+  sqlite::Query itself = connection.query("SELECT 1 FROM shard WHERE id = 0");
+  if (itself.step())
+    throw Error(Error::Kind::cannot_open,
+                "database " + path.string() +
+                    " is a shard of an archive, which never changes: name the archive's database");
+}
+
 void refuse_older_schema(Connection& connection, const fs::path& path) {
   const std::int64_t version = pragma(connection, "user_version");
   if (version == schema::version) return;
@@ -116,6 +127,7 @@ Connection open_writer(const fs::path& path, Durability durability) {
     throw Error(Error::Kind::read_only,
                 "database " + path.string() + " cannot be written: check its permissions");
   if (!is_empty(connection)) refuse_what_is_not_ours(connection, path);
+  refuse_a_shard(connection, path);
   if (pragma(connection, "user_version") != schema::version) bring_up_to_date(connection);
   connection.execute("PRAGMA journal_mode = WAL; PRAGMA journal_size_limit = 67108864");
   connection.fold_log();

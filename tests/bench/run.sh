@@ -99,9 +99,11 @@ case $what in
     ;;
   fuzz)
     deploy/install_packages.sh --with-tests
-    cmake --preset fuzz >/dev/null
-    cmake --build --preset fuzz --target fuzz_targets >/dev/null
-    exec python3 tests/bench/fuzz.py build/fuzz "$@"
+    for preset in fuzz fuzz-quick; do
+      cmake --preset $preset >/dev/null
+      cmake --build --preset $preset --target fuzz_targets >/dev/null
+    done
+    exec python3 tests/bench/fuzz.py build/fuzz build/fuzz-quick "$@"
     ;;
   record)
     [ $# -gt 0 ] || usage

@@ -193,6 +193,33 @@ TEST(TelemetryClock, AsksWhereManyRowsHaveTheTimeOfTheRowBefore) {
   EXPECT_EQ(refused(text), "");
 }
 
+TEST(TelemetryClock, TakesAShortYearFirstWhereTheRowsAreThenNearEachOther) {
+  EXPECT_EQ(first_time("time", {"24-03-01 10:00", "24-03-02 10:00"}), "2024-03-01T10:00:00Z");
+  EXPECT_EQ(first_time("Date,Time", {"24/03/01,10:00", "24/03/02,10:00"}), "2024-03-01T10:00:00Z");
+  EXPECT_EQ(first_time("time", {"10-03-24", "11-03-24", "12-03-24"}), "2024-03-10T00:00:00Z");
+  EXPECT_EQ(first_time("time", {"28-02-24 10:00"}), "2024-02-28T10:00:00Z");
+  EXPECT_THAT(first_time("time", {"24-03-01 10:00", "24-03-01 10:10"}), HasSubstr("ymd, dmy"));
+}
+
+TEST(TelemetryClock, CountsInTheUnitAndSinceTheTimeThatTheNameSays) {
+  TimeOptions from;
+  from.epoch_ns = parse_time("2024-02-28T00:00:00Z");
+  for (const char* name : {"Time (hr)", "time_hours", "Time [hrs]"})
+    EXPECT_EQ(first_time(name, {"2", "3"}, from), "2024-02-28T02:00:00Z") << name;
+  EXPECT_EQ(first_time("t (mins)", {"2"}, from), "2024-02-28T00:02:00Z");
+  EXPECT_EQ(first_time("time (weeks)", {"1"}, from), "2024-03-06T00:00:00Z");
+  EXPECT_EQ(first_time("time (seconds since 2000-01-01 00:00:00)", {"762429600"}),
+            "2024-02-28T10:00:00Z");
+  for (const char* name : {"Time (10 ms)", "time (orbits)", "Time [hl]", "time (ticks)"}) {
+    EXPECT_THAT(first_time(name, {"2"}, from), HasSubstr("--time-unit")) << name;
+    TimeOptions said = from;
+    said.unit_ns = parse_time_unit("10ms");
+    EXPECT_EQ(first_time(name, {"200"}, said), "2024-02-28T00:00:02Z") << name;
+  }
+  for (const char* name : {"t_j2000_s", "sec_since_2000", "Seconds since J2000"})
+    EXPECT_THAT(first_time(name, {"762429600"}), HasSubstr("--epoch, as 2000-01-01T")) << name;
+}
+
 TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
   EXPECT_THAT(first_time("OBT", {"762472800.0"}), HasSubstr("--epoch"));
   EXPECT_THAT(first_time("year,day", {"2024,28", "2024,29"}), HasSubstr("no column looks like"));
@@ -237,7 +264,7 @@ TEST(TelemetryClock, SubtractsTheLeapSecondsOfGps) {
 
 TEST(TelemetryClockWatch, NotesAnHourThatIsLeftOutInTheNight) {
   const auto line_of = [](std::vector<const char*> times) {
-    ClockWatch watch(1'000'000'000, true, true);
+    ClockWatch watch(1'000'000'000, std::nullopt, true);
     for (std::size_t i = 0; i < times.size(); ++i) watch.next(*parse_time(times[i]), i + 2);
     return watch.hour_ahead_line();
   };
@@ -247,7 +274,7 @@ TEST(TelemetryClockWatch, NotesAnHourThatIsLeftOutInTheNight) {
 }
 
 TEST(TelemetryClockWatch, TakesTimesThatAreCenturiesApart) {
-  ClockWatch watch(1'000'000'000, true, true);
+  ClockWatch watch(1'000'000'000, std::nullopt, true);
   const std::int64_t far = std::numeric_limits<std::int64_t>::max();
   for (const std::int64_t time : {-far, far, far - 1, std::int64_t{0}, far - 10, far, -far})
     watch.next(time, 2);
@@ -257,19 +284,25 @@ TEST(TelemetryClockWatch, TakesTimesThatAreCenturiesApart) {
 TEST(TelemetryClockWatch, SaysWhatAStepBackLooksLike) {
   constexpr std::int64_t s = 1'000'000'000;
   struct Case {
-    bool is_absolute, may_be_local;
+    std::optional<std::int64_t> since_s;
+    bool may_be_local;
     std::vector<std::int64_t> times_s;
     ClockStep::Kind kind;
   };
   for (const Case& c : {
-           Case{true, true, {10'000, 10'010, 6'420}, ClockStep::Kind::hour},
-           Case{true, false, {10'000, 10'010, 6'420}, ClockStep::Kind::out_of_order},
-           Case{false, false, {65'520, 65'530, 4}, ClockStep::Kind::wrap},
-           Case{false, false, {604'780, 604'790, 0}, ClockStep::Kind::wrap},
-           Case{false, false, {5'000, 5'010, 0}, ClockStep::Kind::restart},
-           Case{true, true, {10'000, 10'010, 10'005}, ClockStep::Kind::out_of_order},
+           Case{{}, true, {10'000, 10'010, 6'420}, ClockStep::Kind::hour},
+           Case{{}, false, {10'000, 10'010, 6'420}, ClockStep::Kind::out_of_order},
+           Case{0, false, {65'520, 65'530, 4}, ClockStep::Kind::wrap},
+           Case{0, false, {604'780, 604'790, 0}, ClockStep::Kind::wrap},
+           Case{0, false, {5'000, 5'010, 0}, ClockStep::Kind::restart},
+           Case{1'000'000, false, {1'065'520, 1'065'530, 1'000'004}, ClockStep::Kind::wrap},
+           Case{1'000'000, false, {1'005'000, 1'005'010, 1'000'000}, ClockStep::Kind::restart},
+           Case{1'000'000, true, {1'086'380, 1'086'390, 1'000'000}, ClockStep::Kind::wrap},
+           Case{{}, true, {10'000, 10'010, 10'005}, ClockStep::Kind::out_of_order},
        }) {
-    ClockWatch watch(s, c.is_absolute, c.may_be_local);
+    std::optional<std::int64_t> since;
+    if (c.since_s) since = *c.since_s * s;
+    ClockWatch watch(s, since, c.may_be_local);
     EXPECT_FALSE(watch.next(c.times_s[0] * s, 2));
     EXPECT_FALSE(watch.next(c.times_s[1] * s, 3));
     const auto step = watch.next(c.times_s[2] * s, 4);

@@ -250,8 +250,8 @@ TEST_F(ImportTest, StoppedAnywhereItGoesOnToTheSameContents) {
     std::uint64_t samples = 0;
     for (bool complete = false; !complete;) {
       std::uint64_t batches = random() % 6;
-      const auto result = test::try_import(
-          other, chosen, small, [&](const ImportProgress&) { return batches-- > 0; });
+      const auto result = test::try_import(other, chosen, small,
+                                           [&](const ImportProgress&) { return batches-- > 0; });
       const auto& report = std::get<ImportReport>(result);
       EXPECT_EQ(report.resumed_at == 0, samples == 0);
       samples += report.samples;
@@ -261,6 +261,19 @@ TEST_F(ImportTest, StoppedAnywhereItGoesOnToTheSameContents) {
     }
     EXPECT_EQ(test::exported(other), all);
   }
+}
+
+TEST_F(ImportTest, WhatAFileOfOneSampleARowHasBesidesIsNamed) {
+  const ImportReport report = test::import(
+      database, options("Tag,Timestamp,Value,Status,quality\n"
+                        "u,2024-02-28T22:00:00Z,1.5,Bad,GOOD\nv,2024-02-28T22:00:00Z,2.5,Ok,\n"));
+  EXPECT_EQ(report.total.stored, 2U);
+  EXPECT_THAT(report.remarks, ElementsAre(HasSubstr("'Status' is left out")));
+  EXPECT_EQ(test::import(database, options("entity_id,state,last_changed\n"
+                                           "a,5.8,2024-02-28T22:00:00Z\nb,27.3,"
+                                           "2024-02-28T22:00:03Z\n"))
+                .new_parameters,
+            2U);
 }
 
 TEST_F(ImportTest, QuotesLineEndsAndAByteOrderMarkDoNotMatter) {

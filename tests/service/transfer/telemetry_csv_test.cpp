@@ -34,6 +34,7 @@ TEST(TelemetryCsv, QualitiesAreReadAsTheyAreShown) {
   for (const Quality quality : storage::qualities)
     EXPECT_EQ(parse_quality(storage::name(quality)), quality);
   EXPECT_EQ(parse_quality(" out_of_limits "), Quality::out_of_limits);
+  EXPECT_EQ(parse_quality("GOOD"), Quality::good);
   EXPECT_EQ(parse_quality("fine"), std::nullopt);
 }
 

@@ -147,6 +147,14 @@ TEST_F(Split, AShardIsAnArchiveByItself) {
   }
 }
 
+TEST_F(Split, AShardIsNoDatabaseThatCanBeWritten) {
+  const SplitReport report = split();
+  const auto before = contents(path);
+  EXPECT_THROW(Database(shard(report, 0), Mode::read_write), Error);
+  EXPECT_THROW(Database(shard(report, 0), Mode::update), Error);
+  EXPECT_EQ(contents(path), before);
+}
+
 TEST_F(Split, LateSamplesOfAClosedYearAreReadWithItAndSplitAgain) {
   split();
   const std::uint64_t in_shards = chunks_of_shards();
