@@ -309,6 +309,7 @@ std::string describe(const CellFormat& format) {
   add((format.spelling & fortran) != 0, "exponents with D");
   add((format.spelling & true_minus) != 0, "U+2212 is minus");
   add((format.spelling & in_formula) != 0, "numbers as formulas");
+  add((format.spelling & power_apart) != 0, "powers of ten behind numbers");
   add(!format.unit.empty(), fmt::format("in {}", format.unit));
   add(!format.no_value.empty(), fmt::format("{} is no value", format.no_value));
   add((format.spelling & with_suffix) != 0 && format.unit.empty(),

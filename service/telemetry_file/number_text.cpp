@@ -124,6 +124,7 @@ void take_power(std::string_view& text, std::string& plain, unsigned& spelling) 
   if (!without_blanks(rest).empty()) return;
   text = {};
   plain = power;
+  spelling |= power_apart;
 }
 
 std::optional<double> converted(std::string_view text) {
@@ -177,6 +178,7 @@ std::optional<NumberText> read_number(std::string_view cell, NumberStyle style) 
     if (const auto value = plain_number(cell)) return NumberText{*value, 0, {}};
   std::string_view text = without_blanks(cell);
   NumberText read;
+  if (text.size() < trimmed(cell).size()) read.spelling |= in_wide_blanks;
   if (text.size() > 3 && text.starts_with("=\"") && text.ends_with('"')) {
     read.spelling |= in_formula;
     text = without_blanks(text.substr(2, text.size() - 3));

@@ -25,7 +25,9 @@ enum Spelling : unsigned {
   fortran = 16,      // 1.5D+02
   with_suffix = 32,  // a unit or a flag behind it
   decimal_comma = 64,
-  in_formula = 128,  // ="4.2"
+  in_formula = 128,     // ="4.2"
+  power_apart = 256,    // 5.8 E-3, 5.8x10^-3
+  in_wide_blanks = 512  // such as a blank without a break
 };
 
 /// A number and how it is written.
