@@ -177,11 +177,10 @@ void Search::score_compressed(std::size_t fold_index, std::size_t horizon_index)
   const RangeSums& sums = data_.sums[fold_index];
   std::optional<Compressed>& compressed = compressed_[horizon_index * folds() + fold_index];
   if (!compressed) {
-    compressed = Compressed{
-        .projection = Projection(compress(sums, data_.normalisation, record,
-                                          segments_within(record, fold.fit),
-                                          space_.horizons[horizon_index])),
-        .gammas = {}};
+    compressed = Compressed{.projection = Projection(compress(sums, data_.normalisation, record,
+                                                              segments_within(record, fold.fit),
+                                                              space_.horizons[horizon_index])),
+                            .gammas = {}};
     for (const Weighting weighting : space_.weightings)
       compressed->gammas.push_back(compressed->projection.observability(weighting).gamma);
   }

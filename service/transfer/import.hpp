@@ -43,11 +43,11 @@ struct ImportReport {
 using ImportObserver = std::function<bool(const ImportProgress&)>;
 
 /// Imports `file`, which is options.file as it was opened with options.reading, or goes on with an
-/// import of it that did not end: same options, same columns, same bytes so far. Requires a database
-/// that is open for writing, and a regular file that does not change meanwhile. `now` gives the times of the log. An error where the file, the options or
-/// a row is wrong; rows before it are in the archive, and the same call goes on there when the line
-/// is mended. Throws storage::Error when the archive cannot be written; then the same call goes on
-/// too.
+/// import of it that did not end: same options, same columns, same bytes so far. Requires a
+/// database that is open for writing, and a regular file that does not change meanwhile. `now`
+/// gives the times of the log. An error where the file, the options or a row is wrong; rows before
+/// it are in the archive, and the same call goes on there when the line is mended. Throws
+/// storage::Error when the archive cannot be written; then the same call goes on too.
 std::variant<ImportReport, csv::Error> import_file(storage::Database& database,
                                                    telemetry_file::TelemetryFile& file,
                                                    const ImportOptions& options,

@@ -22,11 +22,12 @@ class Care(EndToEnd):
             connection.close()
 
     def test_a_backup_at_full_speed_is_sound_and_holds_what_was_sent(self):
-        csv = plant.write(self.folder / "t.csv", list(plant.rows(40_000)))
+        # Enough rows that they are still being sent when a backup on a busy machine ends.
+        csv = plant.write(self.folder / "t.csv", list(plant.rows(160_000)))
         copy = self.folder / "copy.db"
         self.configure([plant.equipment(window="1h", slide="1h")])
         daemon = self.start_daemon()
-        replay = self.replay(csv, "--speed", "max", "--history", 50_000)
+        replay = self.replay(csv, "--speed", "max", "--history", 170_000)
         wait_until(self.stored, "telemetry is being stored")
         status, text = self.reident("backup", self.database, copy, "--json")
         self.assertEqual(status, 0, text)
@@ -39,7 +40,7 @@ class Care(EndToEnd):
 
         self.assertEqual(replay.wait(), 0, replay.text())
         self.wait_idle()
-        self.assertEqual(self.stored(), 120_000)
+        self.assertEqual(self.stored(), 480_000)
         status, text = self.reident("backup", self.database, copy, "--replace")
         self.assertEqual(status, 0, text)
         self.assertEqual(self.tables(copy), self.tables(self.database))
