@@ -125,7 +125,9 @@ void note_epoch(std::string_view text, NameHint& hint) {
   std::string since(text.substr(at + 5));
   since.erase(since.find_last_not_of(" )]_") + 1);
   since.erase(0, since.find_first_not_of(" _"));
-  const auto date = read_date_text(since, DateOrder::year_first);
+  const bool is_year =
+      since.size() == 4 && since.find_first_not_of("0123456789") == std::string::npos;
+  const auto date = read_date_text(since + (is_year ? "-01-01" : ""), DateOrder::year_first);
   if (date && date->has_date && !date->is_ordered)
     hint.epoch_ns = date->clock_ns - date->offset_ns.value_or(0);
   else if (since.find_first_of("0123456789") != std::string::npos) {
@@ -199,6 +201,7 @@ NameHint hint_of(std::string_view name, std::string_view unit) {
   for (const std::string_view said : {bracketed(name), trimmed(unit)})
     if (is_unknown_unit(said)) hint.unknown_unit = said;
   for (const std::string_view text : {name, unit}) note_epoch(text, hint);
+  if (hint.epoch_ns == 0) hint.epoch_ns.reset();  // as all that has no other epoch
   const auto unit_words = words_of(unit);
   if (!unit_words.empty()) {
     if (const auto said = unit_of(unit_words.front())) hint.unit_ns = said;

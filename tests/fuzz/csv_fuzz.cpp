@@ -85,8 +85,8 @@ void check_cell(const std::string& cell) {
   }
 }
 
-/// The C library loads a converter again for each file where none of its kind is in use, which takes
-/// longer than reading the file.
+/// The C library loads a converter again for each file where none of its kind is in use, which
+/// takes longer than reading the file.
 std::vector<std::unique_ptr<Decoder>> keep_converters() {
   std::vector<std::unique_ptr<Decoder>> kept;
   for (const char* encoding :

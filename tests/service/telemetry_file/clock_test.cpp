@@ -216,7 +216,9 @@ TEST(TelemetryClock, CountsInTheUnitAndSinceTheTimeThatTheNameSays) {
     said.unit_ns = parse_time_unit("10ms");
     EXPECT_EQ(first_time(name, {"200"}, said), "2024-02-28T00:00:02Z") << name;
   }
-  for (const char* name : {"t_j2000_s", "sec_since_2000", "Seconds since J2000"})
+  EXPECT_EQ(first_time("sec_since_2000", {"762429600"}), "2024-02-28T10:00:00Z");
+  EXPECT_EQ(first_time("seconds since 1970", {"1709157600"}), "2024-02-28T22:00:00Z");
+  for (const char* name : {"t_j2000_s", "Seconds since J2000"})
     EXPECT_THAT(first_time(name, {"762429600"}), HasSubstr("--epoch, as 2000-01-01T")) << name;
 }
 
