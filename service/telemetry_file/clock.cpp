@@ -101,7 +101,7 @@ std::optional<std::int64_t> Clock::absolute(const DateText& text) {
   if (text.offset_ns)
     return __builtin_sub_overflow(text.clock_ns, *text.offset_ns, &time) ? std::nullopt
                                                                          : std::optional(time);
-  if (__builtin_add_overflow(text.clock_ns, text.has_date ? 0 : epoch_ns_, &time))
+  if (__builtin_add_overflow(text.clock_ns, text.has_date ? 0 : epoch_ns_.value_or(0), &time))
     return std::nullopt;
   if (offset_ns_ && __builtin_sub_overflow(time, *offset_ns_, &time)) return std::nullopt;
   return zone_ ? zone_->to_utc(time) : std::optional(time);
@@ -150,7 +150,7 @@ std::optional<std::int64_t> Clock::read_number_of(std::string_view cell) const {
   if (has_unit_behind_) cell = without_unit(cell);
   const auto time = rounded(parse_count(cell, unit_ns_), quantum_ns_);
   std::int64_t sum = 0;
-  if (!time || __builtin_add_overflow(*time, epoch_ns_, &sum)) return std::nullopt;
+  if (!time || __builtin_add_overflow(*time, epoch_ns_.value_or(0), &sum)) return std::nullopt;
   return sum;
 }
 

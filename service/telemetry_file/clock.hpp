@@ -32,7 +32,8 @@ enum class TimeFormat {
 std::optional<TimeFormat> parse_time_format(std::string_view text);
 std::string time_format_names();
 
-/// Nanoseconds of a unit "ns", "us", "ms", "s", "min", "h" or "d"; empty for anything else.
+/// Nanoseconds of a unit "ns", "us", "ms", "s", "min", "h" or "d", or of so many of it as in
+/// "10ms"; empty for anything else.
 std::optional<std::int64_t> parse_time_unit(std::string_view text);
 
 struct TimeOptions {
@@ -76,10 +77,10 @@ class Clock {
   /// Whether it reads a column, as one of those or for the zone or the part of a second.
   bool uses(std::size_t column) const;
   /// Whether times are since 1970, and not since an epoch that nobody gave.
-  bool is_absolute() const { return is_absolute_; }
+  bool is_absolute() const { return !counts_ || epoch_ns_; }
   /// Since when numbers or times of day count [ns]; absent: times are dates, and wrap at nothing.
   std::optional<std::int64_t> counts_since() const {
-    return counts_ || !is_absolute_ ? std::optional(epoch_ns_) : std::nullopt;
+    return counts_ ? std::optional(epoch_ns_.value_or(0)) : std::nullopt;
   }
   /// Whether texts are of a clock that nobody named: it may be a local one.
   bool may_be_local() const { return may_be_local_; }
@@ -106,12 +107,13 @@ class Clock {
   DateOrder order_ = DateOrder::day_first;
   std::int64_t unit_ns_ = 1'000'000'000;
   std::vector<std::int64_t> part_unit_ns_;  // of hours, minutes, seconds behind the date's parts
-  std::int64_t epoch_ns_ = 0;
-  std::int64_t quantum_ns_ = 1;   // what days, hours and minutes are rounded to
+  std::optional<std::int64_t> epoch_ns_;    // of counts and times of day; absent: nobody gave one
+  std::int64_t quantum_ns_ = 1;             // what days, hours and minutes are rounded to
   std::size_t clock_digits_ = 0;  // of a time of day as a number, as 93000; 0: it is no number
   bool has_decimal_comma_ = false;
   bool has_unit_behind_ = false;  // numbers are as "10 sec"
-  bool is_absolute_ = true, counts_ = false, may_be_local_ = false;
+  bool counts_ = false;           // times are numbers since something, or times of day
+  bool may_be_local_ = false;
   std::optional<std::size_t> local_by_;
   std::optional<TimeZone> zone_;
   std::optional<std::int64_t> offset_ns_;       // of texts without their own, by the column's name

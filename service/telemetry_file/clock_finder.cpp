@@ -91,7 +91,7 @@ std::variant<Clock, Problem> ClockFinder::run() {
       return Problem{0, "--time-zone " + *options_.zone +
                             " is not known here; name it as Europe/Berlin or UTC"};
   }
-  clock_.epoch_ns_ = options_.epoch_ns.value_or(0);
+  clock_.epoch_ns_ = options_.epoch_ns;
   clock_.has_decimal_comma_ = head_.style.decimal == ',';
   if (options_.order) clock_.order_ = *options_.order;
   if (auto problem = choose_columns()) return *std::move(problem);
@@ -99,7 +99,7 @@ std::variant<Clock, Problem> ClockFinder::run() {
           clock_.parts_ == Clock::Parts::one ? decide_one(clock_.columns_.front()) : decide_parts())
     return *std::move(problem);
   if (clock_.zone_) clock_.description_ += ", " + *options_.zone;
-  if (clock_.may_be_local_ && clock_.is_absolute_ && !find_zone_column()) take_zone_of_names();
+  if (clock_.may_be_local_ && clock_.is_absolute() && !find_zone_column()) take_zone_of_names();
   find_fraction_column();
   return std::move(clock_);
 }
@@ -272,7 +272,6 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
     clock_.format_ = TimeFormat::text;
     if (auto problem = decide_order(c)) return problem;
     clock_.counts_ = dated == 0;
-    clock_.is_absolute_ = dated > 0 || options_.epoch_ns.has_value();
     clock_.may_be_local_ = offsets == 0 && !clock_.zone_;
     const auto text = read_date_text(first_text, clock_.order_);
     if (text) clock_.description_ = describe_text(first_text, clock_.order_, *text);
@@ -319,7 +318,6 @@ void ClockFinder::take(TimeFormat format, std::int64_t unit_ns, int decimals, do
   clock_.format_ = format;
   clock_.unit_ns_ = unit_ns;
   clock_.counts_ = format == TimeFormat::elapsed;
-  clock_.is_absolute_ = !clock_.counts_ || options_.epoch_ns.has_value();
   clock_.description_ = describe_format(format, unit_ns) + std::string(evidence);
   const bool is_serial = format == TimeFormat::excel || format == TimeFormat::mjd ||
                          format == TimeFormat::jd || format == TimeFormat::matlab;
@@ -359,9 +357,8 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
   const auto by_size = unit_by_size(values);
   const double value = values.empty() ? 0 : values.front();
   if (hint.epoch_ns && !options_.epoch_ns && !options_.format) {
-    clock_.epoch_ns_ = *hint.epoch_ns;
+    clock_.epoch_ns_ = hint.epoch_ns;
     take(TimeFormat::elapsed, unit, decimals, value, " by the name");
-    clock_.is_absolute_ = true;
     return std::nullopt;
   }
   if (options_.format) {
@@ -374,8 +371,7 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
   }
   if (options_.epoch_ns || options_.unit_ns) {
     take(options_.epoch_ns ? TimeFormat::elapsed : TimeFormat::unix, unit, decimals, value, "");
-    if (!options_.epoch_ns && !in_window(values, TimeFormat::unix, unit))
-      clock_.is_absolute_ = false;
+    if (!options_.epoch_ns && !in_window(values, TimeFormat::unix, unit)) clock_.counts_ = true;
     return std::nullopt;
   }
   if (hint.format && *hint.format != TimeFormat::unix) {

@@ -126,7 +126,8 @@ std::optional<Error> take_time(const ReadingArguments& arguments, ReadingOptions
   if (arguments.time_unit) {
     time.unit_ns = parse_time_unit(*arguments.time_unit);
     if (!time.unit_ns)
-      return wrong("--time-unit", *arguments.time_unit, "one of ns, us, ms, s, min, h, d");
+      return wrong("--time-unit", *arguments.time_unit,
+                   "one of ns, us, ms, s, min, h, d, or so many of it, as 10ms");
   }
   if (arguments.epoch) {
     time.epoch_ns = parse_time(*arguments.epoch);
@@ -184,7 +185,7 @@ void add_reading_options(CLI::App& app, ReadingArguments& arguments) {
   text("--time-format", arguments.time_format,
        "iso, dmy, mdy, ymd, unix, elapsed, excel, mjd, jd, matlab, filetime, gps", "NAME");
   text("--time-unit", arguments.time_unit,
-       "what numbers of the time count: ns, us, ms, s, min, h, d", "UNIT");
+       "what numbers of the time count: ns, us, ms, s, min, h, d, or 10ms", "UNIT");
   text("--time-zone", arguments.time_zone, "of times without an offset, as Europe/Berlin (UTC)",
        "ZONE");
   text("--epoch", arguments.epoch, "time since when numbers of the time count", "TIME");

@@ -13,7 +13,8 @@
 
 namespace reident::transfer {
 
-/// Bounds of one batch, and so of the memory: some 40 MiB.
+/// Bounds of one batch, and so of the memory. With twice as many samples an import takes more of
+/// the processor, for new pages; with half as many too, for commits.
 struct ImportLimits {
   std::uint64_t samples = 131072;
   std::size_t frames = 65536;

@@ -1,7 +1,6 @@
 #include "service/transfer/import_rows.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -183,6 +182,7 @@ class LongRows : public ImportRows {
   const std::string own_source_;
   const std::size_t parameter_, value_;
   std::optional<std::size_t> spacecraft_, source_, origin_, quality_, unit_;
+  std::vector<std::size_t> known_;  // columns that have a meaning
   std::map<std::string, ParameterBook> books_;
   std::vector<std::string> left_out_;
 
@@ -199,10 +199,12 @@ LongRows::LongRows(const ImportOptions& options, const Reader& reader,
       archive_(archive),
       own_source_(source_of(options)),
       parameter_(layout.parameter),
-      value_(layout.value) {
+      value_(layout.value),
+      known_{parameter_, value_} {
   const auto column = [&](std::string_view name, bool is_asked_for) {
     const auto found = reader.find(name);
     const auto* at = std::get_if<std::size_t>(&found);
+    if (at) known_.push_back(*at);
     return at && !is_asked_for ? std::optional(*at) : std::nullopt;
   };
   spacecraft_ = column("spacecraft", options.spacecraft.has_value());
@@ -213,12 +215,9 @@ LongRows::LongRows(const ImportOptions& options, const Reader& reader,
 }
 
 void LongRows::note_left_out(const Reader& reader) {
-  constexpr std::array<std::string_view, 5> known = {"spacecraft", "source", "origin", "quality",
-                                                     "unit"};
   for (std::size_t c = 0; c < reader.columns().size(); ++c) {
     const std::string& name = reader.columns()[c];
-    if (c != parameter_ && c != value_ && !reader.is_time(c) && !name.empty() &&
-        std::find(known.begin(), known.end(), name) == known.end())
+    if (!reader.is_time(c) && !name.empty() && !std::ranges::count(known_, c))
       left_out_.push_back(fmt::format(
           "column '{}' is left out: of rows with a sample each, parameter, time and value are "
           "read, and spacecraft, origin, source, quality and unit (--names gives other names)",

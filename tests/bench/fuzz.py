@@ -4,7 +4,7 @@
 
 Each target (all of them by default) runs so many inputs in the build QUICK, without sanitizers, or
 for so long where that ends first. Then the build BUILD, with sanitizers, runs what was found worth
-keeping, and a fiftieth as many inputs more: an input takes it ten times as long. As many targets
+keeping, and a fiftieth as many inputs more: an input takes it several times as long. As many targets
 run at a time as there are cores, at the lowest priority. They go on from what earlier runs kept
 (BUILD/corpus). What is found is left in BUILD/finds. The last line is one JSON object; the exit
 status is 1 where something was found.

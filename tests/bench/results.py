@@ -625,7 +625,7 @@ def web(figures):
 
 
 @section("fuzz", "Fuzzing",
-         "libFuzzer. Most inputs run without sanitizers, which take ten times as long. What was worth "
+         "libFuzzer. Most inputs run without sanitizers, which take several times as long. What was worth "
          "keeping, and more, runs with the address and undefined-behaviour sanitizers. Every target "
          "goes on from what earlier runs kept. What was found before has tests.")
 def fuzz(figures):

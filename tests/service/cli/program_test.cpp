@@ -12,6 +12,7 @@
 #include "service/dds/dds.hpp"
 #include "service/support/terminal.hpp"
 #include "tests/service/cli/cli_fixture.hpp"
+#include "tests/support/wait_for_reader.hpp"
 
 namespace reident::cli::program_test {
 namespace {
@@ -303,8 +304,7 @@ TEST_F(Status, WaitsForTwoBeatsThatWereSentSinceItAsked) {
   int since = 0;
   const test::Ran ran = run_beside(
       [&](int number) {
-        while (since == 0 && writer.matched_readers() == 0)
-          std::this_thread::sleep_for(std::chrono::milliseconds(1));  // poll
+        if (since == 0) reident::test::wait_for_reader(writer);
         return since++ == 0 ? without_frames(number + 1) : beat(number + 1);
       },
       command({"--wait", "idle", "--timeout", "60", "--json"}));
