@@ -138,6 +138,7 @@ void ArchiveWriter::store(std::vector<TelemetryEvent>&& batch, const std::atomic
       }
       tasks_changed_.wait_for(mutex_, retry_wait);
     }
+    run_tasks();  // alarms say what is wrong, retention makes room
   }
 }
 

@@ -41,6 +41,7 @@ Pair::Pair(const Config& config, Clock clock, dds::Participant& participant, Arc
       replication_(config, std::move(clock), participant, writer, ready_,
                    {listener_.copied, [this] { listener_.overruled(replication_.registry()); }}),
       rule_(config.strength, instant_now()),
+      writer_(writer),
       taking_over_(writer, ready_),
       sign_of_life_(writer, ready_) {
   ready_.attach(leaders_);
@@ -188,7 +189,7 @@ void Pair::say_that_it_leads(const Standing& ours, Instant now) {
 
 bool Pair::archive_works(Instant now) {
   sign_of_life_.finish();
-  if (!sign_of_life_.is_pending()) {
+  if (!sign_of_life_.is_pending() && writer_.counts().last_error.empty()) {
     life_seen_ = now;
     sign_of_life_.post([](auto&, auto&) {}, {});
   }

@@ -68,7 +68,7 @@ class Pair {
   void take_over(const Standing& ours);
   void step_down();
   void say_that_it_leads(const Standing& ours, Instant now);
-  /// False where the archive's thread has been stuck for long, as on a full disk.
+  /// False where the archive's thread has been stuck for long, or could store no telemetry.
   bool archive_works(Instant now);
   /// Has the other one take the rows that it lacks, before leadership ends.
   void share_the_last();
@@ -83,6 +83,7 @@ class Pair {
   dds::WaitSet ready_;
   Replication replication_;
   LeadershipRule rule_;
+  const ArchiveWriter& writer_;
   PostedTask taking_over_;
   RepeatedError take_over_failure_;
   PostedTask sign_of_life_;

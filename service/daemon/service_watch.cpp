@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "service/history/overview_rows.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/log.hpp"
-#include "service/support/size_text.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 
@@ -23,7 +23,6 @@ using storage::Alarm;
 constexpr storage::Time second = 1'000'000'000;
 constexpr storage::Time heartbeats_missed = 5 * second;  // then a service has ended
 constexpr storage::Time swap_time = 30 * second;         // that a simulator may take
-constexpr std::uint64_t least_room = std::uint64_t{256} << 20;
 constexpr std::size_t most_text = 60'000;  // bytes: a status with more is refused by its readers
 constexpr std::string_view of_the_league = "champion_failed";  // raised and cleared there
 
@@ -121,18 +120,9 @@ std::vector<Alarm> ServiceWatch::services() const {
 std::vector<Alarm> ServiceWatch::disk_and_damage() const {
   std::vector<Alarm> alarms;
   const ArchiveWriter::Counts counts = parts_.writer.counts();
-  std::error_code error;
-  const auto folder = std::filesystem::absolute(parts_.config.database).parent_path();
-  const auto room = std::filesystem::space(folder, error);
   if (!counts.last_error.empty())
     alarms.push_back({"disk", {}, counts.last_error, parts_.clock()});
-  else if (!error && room.available < least_room)
-    alarms.push_back({"disk",
-                      {},
-                      fmt::format("Less than {} is left on the disk of {}. Make room, or give the "
-                                  "archive a max_size.",
-                                  size_text(least_room), folder.string()),
-                      parts_.clock()});
+  history::add_full_disk(parts_.config.database, parts_.clock(), alarms);
   const std::string& damage = counts.last_damage.empty() ? parts_.damage : counts.last_damage;
   if (!damage.empty()) alarms.push_back({"damage", {}, damage, parts_.clock()});
   return alarms;

@@ -5,7 +5,10 @@
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "service/history/row_values.hpp"
+#include "service/support/size_text.hpp"
 #include "service/support/text.hpp"
 
 namespace reident::history {
@@ -170,6 +173,22 @@ Alarm no_service_alarm(const std::filesystem::path& database, storage::Time now)
           "No service runs on " + database.string() +
               ": what is below is as the last one left it. Start reidentd.",
           now};
+}
+
+void add_full_disk(const std::filesystem::path& database, storage::Time now,
+                   std::vector<Alarm>& alarms) {
+  constexpr std::uint64_t least_room = std::uint64_t{256} << 20;
+  if (std::ranges::count(alarms, "disk", &Alarm::code) > 0) return;
+  std::error_code error;
+  const auto folder = std::filesystem::absolute(database).parent_path();
+  const auto room = std::filesystem::space(folder, error);
+  if (error || room.available >= least_room) return;
+  alarms.push_back({"disk",
+                    {},
+                    fmt::format("Less than {} is left on the disk of {}. Make room, or give the "
+                                "archive a max_size.",
+                                size_text(least_room), folder.string()),
+                    now});
 }
 
 void add_alarms_of(const std::vector<ServiceStatus>& services, std::vector<Alarm>& alarms) {

@@ -57,6 +57,11 @@ void add_untried(const storage::EquipmentName& name, std::vector<OverviewRow>& r
 /// The alarm of a configured database that no service has open.
 storage::Alarm no_service_alarm(const std::filesystem::path& database, storage::Time now);
 
+/// Adds the alarm of a disk with next to no room left, unless there is one of its code: a full disk
+/// records none.
+void add_full_disk(const std::filesystem::path& database, storage::Time now,
+                   std::vector<storage::Alarm>& alarms);
+
 /// Adds the alarms of those that are of a pair and do not lead it: the database has none of them.
 void add_alarms_of(const std::vector<ServiceStatus>& services, std::vector<storage::Alarm>& alarms);
 

@@ -113,6 +113,7 @@ Json overview_view(const Stored& stored, const Config& config,
   auto alarms = stored.history.alarms();
   if (heard.empty() && !storage::Database::has_writer(config.database))
     alarms.insert(alarms.begin(), history::no_service_alarm(config.database, utc_now()));
+  history::add_full_disk(config.database, utc_now(), alarms);
   history::add_alarms_of(heard, alarms);
   auto rows = stored.history.overview();
   for (const SpacecraftConfig& spacecraft : config.spacecraft)

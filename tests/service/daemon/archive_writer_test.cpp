@@ -102,6 +102,7 @@ TEST_F(Writer, KeepsABatchThatTheDiskRefusesAndStoresItWhenThereIsRoom) {
   EXPECT_TRUE(eventually([&] { return queue.waits() > 0; })) << "the source is held back";
   writer.goes_on();
   EXPECT_TRUE(eventually([&] { return writer.goes_on(); })) << "it tries again";
+  writer.post([](auto&, auto&) {}).get();  // what is wrong can be recorded
   full.reset();
   source.join();
   end();
