@@ -120,8 +120,7 @@ std::vector<Alarm> ServiceWatch::services() const {
 std::vector<Alarm> ServiceWatch::disk_and_damage() const {
   std::vector<Alarm> alarms;
   const ArchiveWriter::Counts counts = parts_.writer.counts();
-  if (!counts.last_error.empty())
-    alarms.push_back({"disk", {}, counts.last_error, parts_.clock()});
+  if (!counts.last_error.empty()) alarms.push_back({"disk", {}, counts.last_error, parts_.clock()});
   history::add_full_disk(parts_.config.database, parts_.clock(), alarms);
   const std::string& damage = counts.last_damage.empty() ? parts_.damage : counts.last_damage;
   if (!damage.empty()) alarms.push_back({"damage", {}, damage, parts_.clock()});
