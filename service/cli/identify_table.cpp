@@ -130,7 +130,7 @@ class Parts {
     const std::int64_t time = file.time_ns();
     const auto& step = file.clock_step();
     // A step from one part to another is none of a clock.
-    if (clock.last_ns && time < *clock.last_ns && step) {
+    if (clock.last_ns && time <= *clock.last_ns && step) {
       const bool is_sorted = step->kind == ClockStep::Kind::out_of_order && is_absolute_;
       if (step->missing_ns != 0)
         clock.ahead_ns += step->missing_ns;

@@ -121,6 +121,11 @@ struct Counts {
 
 }  // namespace
 
+bool has_state(const StateMap& states, std::string_view word) {
+  return std::any_of(states.begin(), states.end(),
+                     [&](const auto& state) { return state.first == word; });
+}
+
 const StateMap* given_states(const CellOptions& options, const std::string& column) {
   for (const auto& [name, states] : options.states)
     if (name == column) return &states;
@@ -251,8 +256,10 @@ CellFormat find_format(std::span<const std::string_view> cells, const std::strin
         words.size() < most_states ? states_of(words, given_states(options, column)) : StateMap{};
     format.kind = format.states.empty() ? CellFormat::Kind::text : CellFormat::Kind::state;
     format.may_be_states = words.size() < most_states;
+    const StateMap* const given = given_states(options, column);
     for (const std::string& word : words)
-      if (format.words.size() < words_shown) format.words.push_back(word);
+      if (format.words.size() < words_shown && !(given && has_state(*given, word)))
+        format.words.push_back(word);
     return format;
   }
   format.kind = CellFormat::Kind::number;

@@ -52,13 +52,15 @@ struct CellFormat {
   std::string unit;       // behind every number; empty: none, or flags
   StateMap states;
   std::vector<std::string> missing;
-  std::string no_value;            // the first word among numbers that is none, as NA; or empty
-  std::vector<std::string> words;  // of a column of text: the first different ones, at most 5
-  bool may_be_states = false;      // of a column of text: so few words that they may be states
+  std::string no_value;  // the first word among numbers that is none, as NA; or empty
+  /// Of a column of text: the first different words that no state was given for, at most 5.
+  std::vector<std::string> words;
+  bool may_be_states = false;  // of a column of text: so few words that they may be states
 };
 
 /// The states that the options give for a column, or for all; null where there are none.
 const StateMap* given_states(const CellOptions& options, const std::string& column);
+bool has_state(const StateMap& states, std::string_view word);
 
 /// Finds the style in which the numbers of a table are written from its cells, column by column;
 /// `separator` is that of the file. An error text that shows a cell where two styles are possible.

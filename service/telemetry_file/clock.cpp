@@ -96,6 +96,15 @@ std::optional<std::int64_t> Clock::read(std::span<const std::string_view> cells)
   return time;
 }
 
+/// A time of day; one that is a number, as 93000, with the zeros that it has lost and colons.
+std::string Clock::clock_text(std::string_view cell) const {
+  std::string clock(trimmed(cell));
+  if (clock_digits_ == 0 || !all_digits(clock)) return clock;
+  if (clock.size() < clock_digits_) clock.insert(0, clock_digits_ - clock.size(), '0');
+  for (std::size_t at = 2; at < clock.size(); at += 3) clock.insert(at, 1, ':');
+  return clock;
+}
+
 std::optional<std::int64_t> Clock::absolute(const DateText& text) {
   std::int64_t time = 0;
   if (text.offset_ns)
@@ -103,6 +112,9 @@ std::optional<std::int64_t> Clock::absolute(const DateText& text) {
                                                                          : std::optional(time);
   if (__builtin_add_overflow(text.clock_ns, text.has_date ? 0 : epoch_ns_.value_or(0), &time))
     return std::nullopt;
+  if (counts_first_day_ && !text.has_date && __builtin_sub_overflow(time, day_ns, &time))
+    return std::nullopt;
+  if (is_gps_date_) return utc_of_gps_date(time);
   if (offset_ns_ && __builtin_sub_overflow(time, *offset_ns_, &time)) return std::nullopt;
   return zone_ ? zone_->to_utc(time) : std::optional(time);
 }
@@ -151,6 +163,7 @@ std::optional<std::int64_t> Clock::read_number_of(std::string_view cell) const {
   const auto time = rounded(parse_count(cell, unit_ns_), quantum_ns_);
   std::int64_t sum = 0;
   if (!time || __builtin_add_overflow(*time, epoch_ns_.value_or(0), &sum)) return std::nullopt;
+  if (counts_first_day_ && __builtin_sub_overflow(sum, day_ns, &sum)) return std::nullopt;
   return sum;
 }
 
@@ -163,8 +176,9 @@ std::optional<std::int64_t> Clock::read_one(std::string_view cell) {
       if (const auto time = parse_time(text)) return time;
   } else if (format_ != TimeFormat::text) {
     const auto time = read_number_of(cell);
-    return time && zone_ && format_ == TimeFormat::excel ? zone_->to_utc(*time) : time;
-  } else if (!zone_ && !offset_ns_) {
+    if (!time || format_ != TimeFormat::excel) return time;
+    return absolute({.clock_ns = *time, .offset_ns = {}, .has_date = true, .is_ordered = false});
+  } else if (!zone_ && !offset_ns_ && !is_gps_date_) {
     const std::string_view text = trimmed(cell);
     if (text.size() > 4 && text[4] == '-')
       if (const auto time = parse_time(text)) return time;
@@ -182,9 +196,15 @@ std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> 
     return absolute(*day);
   }
   if (parts_ == Parts::joined) {
-    std::string clock(trimmed(cells[columns_[1]]));
-    if (clock_digits_ != 0 && clock.size() < clock_digits_)
-      clock.insert(0, clock_digits_ - clock.size(), '0');
+    const std::string clock = clock_text(cells[columns_[1]]);
+    if (adds_clock_) {
+      const auto date = read_date_text(cells[columns_[0]], order_);
+      auto of_day = read_date_text(clock, order_);
+      if (!date || !of_day || of_day->has_date) return std::nullopt;
+      of_day->clock_ns += date->clock_ns;
+      of_day->has_date = true;
+      return absolute(*of_day);
+    }
     const auto text =
         read_date_text(std::string(trimmed(cells[columns_[0]])) + " " + clock, order_);
     return text ? absolute(*text) : std::nullopt;
@@ -218,7 +238,7 @@ std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> 
   const std::size_t first = is_ordinal ? 2 : 3;
   for (std::size_t part = first; part < columns_.size(); ++part) {
     if (part_unit_ns_[part - first] == 0) {  // a time of day as text
-      const auto of_day = read_date_text(cells[columns_[part]], order_);
+      const auto of_day = read_date_text(clock_text(cells[columns_[part]]), order_);
       if (!of_day || of_day->has_date) return std::nullopt;
       time.clock_ns += of_day->clock_ns;
       time.offset_ns = of_day->offset_ns;

@@ -46,6 +46,8 @@ struct TimeOptions {
   std::optional<std::int64_t> epoch_ns;  // of elapsed times
 };
 
+struct LineAbove;  // dialect.hpp
+
 /// The cells of the head of a file, column by column, and the line of each.
 struct HeadCells {
   const std::vector<std::string>& names;
@@ -53,6 +55,7 @@ struct HeadCells {
   std::span<const std::vector<std::string_view>> columns;
   std::span<const std::uint64_t> lines;
   NumberStyle style;
+  std::span<const LineAbove> above;  // lines above the header
 };
 
 /// Reads times. The times before decide which of two equal hours a local time is in: rows are read
@@ -84,8 +87,9 @@ class Clock {
   }
   /// Whether texts are of a clock that nobody named: it may be a local one.
   bool may_be_local() const { return may_be_local_; }
-  /// The column that says that it is a local one, and not where; absent: none does.
-  std::optional<std::size_t> local_by() const { return local_by_; }
+  /// What says that it is a local one, and not where, as "column 'local_time'"; empty: nothing
+  /// does.
+  const std::string& local_by() const { return local_by_; }
   std::int64_t unit_ns() const { return unit_ns_; }
   /// Whether the times of rows before decide what a cell means.
   bool depends_on_order() const { return zone_.has_value(); }
@@ -100,6 +104,7 @@ class Clock {
   std::optional<std::int64_t> read_parts(std::span<const std::string_view> cells);
   std::optional<std::int64_t> read_number_of(std::string_view cell) const;
   std::optional<std::int64_t> absolute(const DateText& text);
+  std::string clock_text(std::string_view cell) const;
 
   std::vector<std::size_t> columns_;
   Parts parts_ = Parts::one;
@@ -109,14 +114,17 @@ class Clock {
   std::vector<std::int64_t> part_unit_ns_;  // of hours, minutes, seconds behind the date's parts
   std::optional<std::int64_t> epoch_ns_;    // of counts and times of day; absent: nobody gave one
   std::int64_t quantum_ns_ = 1;             // what days, hours and minutes are rounded to
-  std::size_t clock_digits_ = 0;  // of a time of day as a number, as 93000; 0: it is no number
+  std::size_t clock_digits_ = 0;   // of a time of day as a number, as 93000; 0: it is no number
+  bool adds_clock_ = false;        // dates have a clock, which shows midnight in all rows
+  bool counts_first_day_ = false;  // times of day have the day of the year, and no year
+  bool is_gps_date_ = false;       // dates are those of GPS
   bool has_decimal_comma_ = false;
   bool has_unit_behind_ = false;  // numbers are as "10 sec"
   bool counts_ = false;           // times are numbers since something, or times of day
   bool may_be_local_ = false;
-  std::optional<std::size_t> local_by_;
+  std::string local_by_;
   std::optional<TimeZone> zone_;
-  std::optional<std::int64_t> offset_ns_;       // of texts without their own, by the column's name
+  std::optional<std::int64_t> offset_ns_;       // of texts without their own, where it is said
   std::optional<std::size_t> zone_column_;      // or by this column of each row
   std::optional<std::size_t> fraction_column_;  // parts of a second
   std::int64_t fraction_unit_ns_ = 0;

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "service/support/text.hpp"
 #include "service/telemetry_file/clock_finder.hpp"
 #include "service/telemetry_file/time_units.hpp"
@@ -18,6 +20,10 @@ bool is_date_alone(std::string_view cell, DateOrder order) {
   const auto date = read_date_text(cell, order);
   const auto both = read_date_text(std::string(cell) + " 01:00", order);
   return date && date->has_date && both && both->clock_ns == date->clock_ns + hour_ns;
+}
+
+bool has_clock(std::string_view cell) {
+  return cell.find(':') != std::string_view::npos;
 }
 
 /// Whether a cell is a time of day; digits alone are one where the name says so.
@@ -39,6 +45,10 @@ std::optional<std::size_t> ClockFinder::column(std::string_view name) const {
 std::optional<std::size_t> ClockFinder::part(TimePart part) const {
   for (std::size_t c = 0; c < head_.names.size(); ++c)
     if (part_of(head_.names[c]) == part) return c;
+  if (part != TimePart::minute) return std::nullopt;
+  for (std::size_t c = 1; c < head_.names.size(); ++c)  // HH, mm: what is a month elsewhere
+    if (part_of(head_.names[c]) == TimePart::month && part_of(head_.names[c - 1]) == TimePart::hour)
+      return c;
   return std::nullopt;
 }
 
@@ -76,6 +86,7 @@ bool ClockFinder::find_calendar() {
   };
   const bool of_day = add(TimePart::second_of_day, second_ns) ||
                       add(TimePart::millisecond_of_day, 1'000'000) || add(TimePart::clock, 0);
+  if (of_day && units.back() == 0) count_clock_digits(columns.back());
   if (!of_day && add(TimePart::hour, hour_ns)) {
     if (add(TimePart::minute, minute_ns)) add(TimePart::second, second_ns);
   } else if (!of_day) {
@@ -105,7 +116,7 @@ bool ClockFinder::find_zone_column() {
     if (is_one && first.find('/') != std::string_view::npos)
       clock_.zone_ = TimeZone::named(std::string(first));
     if (clock_.zone_) {
-      clock_.local_by_.reset();
+      clock_.local_by_.clear();
       clock_.may_be_local_ = false;
       clock_.description_ += ", " + std::string(first);
       return true;
@@ -117,10 +128,11 @@ bool ClockFinder::find_zone_column() {
       return !cell.empty() && (is_named || is_word) && read_offset(cell).has_value();
     };
     if (!std::all_of(cells.begin(), cells.end(), is_zone)) {
-      if (is_named && !trimmed(first_cell(c).first).empty()) clock_.local_by_ = c;
+      if (is_named && !trimmed(first_cell(c).first).empty())
+        clock_.local_by_ = "column '" + head_.names[c] + "'";
       continue;
     }
-    clock_.local_by_.reset();
+    clock_.local_by_.clear();
     clock_.zone_column_ = c;
     clock_.may_be_local_ = false;
     clock_.description_ += ", zones in column " + head_.names[c];
@@ -134,7 +146,7 @@ void ClockFinder::find_fraction_column() {
   const std::size_t last = *std::max_element(clock_.columns_.begin(), clock_.columns_.end());
   const std::size_t c = last + 1;
   if (c >= head_.names.size() || clock_.parts_ == Clock::Parts::gps_week) return;
-  const auto unit = fraction_of_second(head_.names[c]);
+  const auto unit = fraction_of_second(head_.names[c], head_.names[last]);
   if (!unit) return;
   const auto is_whole = [](std::string_view cell) {
     const auto clock = cell.rfind(':');
@@ -181,13 +193,31 @@ bool ClockFinder::find_date_and_clock() {
 /// The time of day that belongs to a column of dates alone.
 std::optional<std::size_t> ClockFinder::clock_beside(std::size_t date) const {
   const auto cell = first_cell(date).first;
-  if (!is_date_alone(cell, clock_.order_)) return std::nullopt;
+  if (!is_date_alone(cell, clock_.order_) && !are_midnights(date)) return std::nullopt;
   if (is_digits(cell) && part_of(head_.names[date]) != TimePart::date) return std::nullopt;
   for (std::size_t c = 0; c < head_.names.size(); ++c)
     if (c != date && is_clock_alone(first_cell(c).first, part_of(head_.names[c]) == TimePart::clock,
                                     clock_.order_))
       return c;
   return std::nullopt;
+}
+
+void ClockFinder::count_clock_digits(std::size_t c) {
+  clock_.clock_digits_ = 0;
+  for (const std::string_view cell : head_.columns[c])
+    if (is_digits(trimmed(cell)))
+      clock_.clock_digits_ = std::max(clock_.clock_digits_, trimmed(cell).size() > 4 ? 6UL : 4UL);
+}
+
+/// Whether the dates of a column have a clock, which shows midnight in all rows.
+bool ClockFinder::are_midnights(std::size_t c) const {
+  const auto& cells = head_.columns[c];
+  return has_clock(first_cell(c).first) &&
+         std::all_of(cells.begin(), cells.end(), [&](std::string_view cell) {
+           const auto date = read_date_text(cell, clock_.order_);
+           return trimmed(cell).empty() ||
+                  (date && date->has_date && !date->offset_ns && date->clock_ns % day_ns == 0);
+         });
 }
 
 bool ClockFinder::join(std::size_t date, std::optional<std::size_t> clock) {
@@ -197,10 +227,8 @@ bool ClockFinder::join(std::size_t date, std::optional<std::size_t> clock) {
       counts_seconds(*clock))
     return set_parts(Clock::Parts::joined, {date, *clock},
                      {what == TimePart::millisecond_of_day ? second_ns / 1000 : second_ns});
-  clock_.clock_digits_ = 0;
-  for (const std::string_view cell : head_.columns[*clock])
-    if (is_digits(trimmed(cell)))
-      clock_.clock_digits_ = std::max(clock_.clock_digits_, trimmed(cell).size() > 4 ? 6UL : 4UL);
+  count_clock_digits(*clock);
+  clock_.adds_clock_ = has_clock(first_cell(date).first);
   return set_parts(Clock::Parts::joined, {date, *clock}, {});
 }
 
@@ -240,12 +268,44 @@ std::optional<Problem> ClockFinder::choose_columns() {
     if (!read_number(first_cell(c).first, head_.style) &&
         read_date_text(first_cell(c).first, clock_.order_))
       return choose({c});
+  if (find_seconds_and_parts()) return std::nullopt;
+  for (std::size_t c = 0; c < head_.names.size(); ++c)
+    if (auto problem = unknown_zone(c)) return problem;
   // Below the first name stands the unit of a time.
   if (!head_.names.empty() && hint_of({}, unit(0)).unit_ns && holds_time(0)) return choose({0});
   return Problem{head_.lines.empty() ? 0 : head_.lines.front(),
                  "no column looks like a time; name it with --time, or the line of the header "
                  "with --header (the columns are: " +
                      joined(head_.names) + ")"};
+}
+
+/// Seconds since 1970, and parts of a second behind them, as sec and nanosec.
+bool ClockFinder::find_seconds_and_parts() {
+  for (std::size_t c = 0; c + 1 < head_.names.size(); ++c) {
+    const auto seconds = plain_number(first_cell(c).first);
+    if (!seconds || !is_absolute_number({*seconds}) ||
+        !fraction_of_second(head_.names[c + 1], head_.names[c]))
+      continue;
+    clock_.columns_ = {c};
+    return true;
+  }
+  return false;
+}
+
+/// Dates that a word stands behind, and no zone that is known.
+std::optional<Problem> ClockFinder::unknown_zone(std::size_t c) const {
+  const auto [cell, line] = first_cell(c);
+  const auto blank = cell.rfind(' ');
+  if (blank == std::string_view::npos) return std::nullopt;
+  const std::string_view word = cell.substr(blank + 1);
+  const auto is_capital = [](char letter) { return letter >= 'A' && letter <= 'Z'; };
+  if (word.size() < 2 || !std::all_of(word.begin(), word.end(), is_capital)) return std::nullopt;
+  const auto date = read_date_text(cell.substr(0, blank), clock_.order_);
+  if (!date || !date->has_date) return std::nullopt;
+  return Problem{line,
+                 fmt::format("'{}' in column '{}' is in a zone, {}, that is not known here or "
+                             "stands for several; write the offset in its place, as +05:30",
+                             cell, head_.names[c], word)};
 }
 
 std::optional<Problem> ClockFinder::choose(std::vector<std::size_t> columns) {

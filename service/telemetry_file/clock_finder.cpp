@@ -22,10 +22,6 @@ constexpr double much_less = 5;  // times, of the spans of two ways to read date
 
 using Problem = Clock::Problem;
 
-std::string shown(std::string_view cell) {
-  return "'" + std::string(cell.substr(0, 40)) + "'";
-}
-
 /// Whether a date's three numbers have two digits at most, as 24-02-28.
 bool has_short_year(std::string_view cell) {
   cell = trimmed(cell);
@@ -87,9 +83,10 @@ int decimals_of(std::string_view cell, char mark) {
 std::variant<Clock, Problem> ClockFinder::run() {
   if (options_.zone) {
     clock_.zone_ = TimeZone::named(*options_.zone);
-    if (!clock_.zone_)
+    if (!clock_.zone_) clock_.offset_ns_ = read_offset(*options_.zone);
+    if (!clock_.zone_ && !clock_.offset_ns_)
       return Problem{0, "--time-zone " + *options_.zone +
-                            " is not known here; name it as Europe/Berlin or UTC"};
+                            " is not known here; name it as Europe/Berlin, +01:00 or UTC"};
   }
   clock_.epoch_ns_ = options_.epoch_ns;
   clock_.has_decimal_comma_ = head_.style.decimal == ',';
@@ -98,9 +95,13 @@ std::variant<Clock, Problem> ClockFinder::run() {
   if (auto problem =
           clock_.parts_ == Clock::Parts::one ? decide_one(clock_.columns_.front()) : decide_parts())
     return *std::move(problem);
-  if (clock_.zone_) clock_.description_ += ", " + *options_.zone;
-  if (clock_.may_be_local_ && clock_.is_absolute() && !find_zone_column()) take_zone_of_names();
+  if (options_.zone) clock_.description_ += ", " + *options_.zone;
+  if (clock_.may_be_local_ && clock_.is_absolute() && !find_zone_column()) {
+    take_zone_of_names();
+    if (clock_.may_be_local_) take_zone_of_lines();
+  }
   find_fraction_column();
+  if (clock_.zone_ && is_newest_first()) clock_.zone_->put_newest_first();
   return std::move(clock_);
 }
 
@@ -109,23 +110,50 @@ void ClockFinder::take_zone_of_names() {
   for (const std::size_t c : clock_.columns_) {
     const auto hint = zone_hint_of(head_.names[c], unit(c));
     if (!hint) continue;
-    if (hint->is_local) {
-      clock_.local_by_ = c;
-      continue;
-    }
-    clock_.local_by_.reset();
-    clock_.may_be_local_ = false;
-    if (hint->offset_ns)
-      clock_.offset_ns_ = hint->offset_ns;
-    else
-      clock_.zone_ = TimeZone::named(hint->name);
-    if (hint->offset_ns != 0) clock_.description_ += ", " + hint->name + " by the name";
-    return;
+    take_zone(*hint, "column '" + head_.names[c] + "'", "by the name");
+    if (!hint->is_local) return;
   }
 }
 
+/// The zone that a line above the header says, as "Timezone;Europe/Berlin".
+void ClockFinder::take_zone_of_lines() {
+  for (const LineAbove& line : head_.above)
+    if (const auto hint = zone_hint_of_line(line.text)) {
+      const std::string where = "line " + std::to_string(line.number);
+      take_zone(*hint, fmt::format("{} ({})", where, shown(trimmed(line.text))), "by " + where);
+    }
+}
+
+void ClockFinder::take_zone(const ZoneHint& hint, const std::string& where,
+                            std::string_view evidence) {
+  if (hint.is_local) {
+    clock_.local_by_ = where;
+    return;
+  }
+  clock_.local_by_.clear();
+  clock_.may_be_local_ = false;
+  if (hint.offset_ns)
+    clock_.offset_ns_ = hint.offset_ns;
+  else
+    clock_.zone_ = TimeZone::named(hint.name);
+  if (hint.offset_ns != 0) clock_.description_ += fmt::format(", {} {}", hint.name, evidence);
+}
+
+/// Whether the last row of the head is earlier than the first.
+bool ClockFinder::is_newest_first() const {
+  Clock reading = clock_;
+  std::vector<std::string_view> cells(head_.columns.size());
+  std::optional<std::int64_t> first, last;
+  for (std::size_t row = 0; row < head_.lines.size(); ++row) {
+    for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = head_.columns[c][row];
+    last = reading.read(cells);
+    if (!first) first = last;
+  }
+  return first && last && *last < *first;
+}
+
 std::optional<Problem> ClockFinder::decide_parts() {
-  clock_.may_be_local_ = clock_.parts_ != Clock::Parts::gps_week && !clock_.zone_;
+  clock_.may_be_local_ = clock_.parts_ != Clock::Parts::gps_week && !options_.zone;
   switch (clock_.parts_) {
     case Clock::Parts::joined:
       clock_.description_ = "a date and a time of day";
@@ -239,6 +267,24 @@ std::optional<Problem> ClockFinder::decide_order(std::size_t c) {
                            "' may have the day or the month first; say --time-format dmy or mdy"};
 }
 
+/// Dates of GPS and TAI are ahead of UTC by leap seconds; some receivers write UTC as GPS time.
+std::optional<Problem> ClockFinder::decide_scale(std::size_t c) {
+  clock_.is_gps_date_ = options_.format == TimeFormat::gps;
+  if (options_.format) return std::nullopt;
+  const std::string scale = time_scale_of(head_.names[c], unit(c));
+  if (scale.empty()) return std::nullopt;
+  const auto [cell, line] = first_cell(c);
+  return Problem{
+      line, scale == "GPS"
+                ? fmt::format("{} in column '{}' may be GPS time, which is leap seconds ahead of "
+                              "UTC; say --time-format gps, which takes them out, or iso for UTC",
+                              shown(cell), head_.names[c])
+                : fmt::format("{} in column '{}' is {} by the name, which is more than half a "
+                              "minute ahead of UTC; write UTC, or take the dates for UTC with "
+                              "--time-format iso",
+                              shown(cell), head_.names[c], scale)};
+}
+
 std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
   std::size_t filled = 0, numbers = 0, texts = 0, offsets = 0, dated = 0;
   std::vector<double> values;
@@ -266,13 +312,18 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
   }
   const bool is_text =
       options_.format
-          ? *options_.format == TimeFormat::text
+          ? *options_.format == TimeFormat::text ||
+                (*options_.format == TimeFormat::gps && numbers == 0 && texts > 0)
           : texts > 0 && (numbers == 0 || (texts == filled && !is_absolute_number(values)));
   if (is_text) {
     clock_.format_ = TimeFormat::text;
     if (auto problem = decide_order(c)) return problem;
     clock_.counts_ = dated == 0;
-    clock_.may_be_local_ = offsets == 0 && !clock_.zone_;
+    clock_.may_be_local_ = offsets == 0 && !options_.zone;
+    clock_.counts_first_day_ = dated == 0 && is_day_of_year(head_.names[c]);
+    if (dated > 0 && offsets == 0) {
+      if (auto problem = decide_scale(c)) return problem;
+    }
     const auto text = read_date_text(first_text, clock_.order_);
     if (text) clock_.description_ = describe_text(first_text, clock_.order_, *text);
     return std::nullopt;
@@ -285,6 +336,7 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
     return std::nullopt;
   }
   if (numbers == 0 && filled > 0 && !options_.format) {
+    if (auto problem = unknown_zone(c)) return problem;
     const auto [cell, line] = first_cell(c);
     return Problem{line,
                    shown(cell) + " in column '" + head_.names[c] +
@@ -318,6 +370,7 @@ void ClockFinder::take(TimeFormat format, std::int64_t unit_ns, int decimals, do
   clock_.format_ = format;
   clock_.unit_ns_ = unit_ns;
   clock_.counts_ = format == TimeFormat::elapsed;
+  clock_.may_be_local_ = format == TimeFormat::excel && !options_.zone;
   clock_.description_ = describe_format(format, unit_ns) + std::string(evidence);
   const bool is_serial = format == TimeFormat::excel || format == TimeFormat::mjd ||
                          format == TimeFormat::jd || format == TimeFormat::matlab;
@@ -352,6 +405,10 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
                                                   int decimals) {
   NameHint hint = hint_of(head_.names[c], unit(c));
   if (unit_behind_) hint.unit_ns = unit_behind_;
+  if (is_day_of_year(head_.names[c]) && options_.epoch_ns && !options_.unit_ns) {
+    hint.unit_ns = day_ns;
+    clock_.counts_first_day_ = true;
+  }
   if (auto problem = unknown_count(c, hint, values)) return problem;
   const std::int64_t unit = options_.unit_ns.value_or(hint.unit_ns.value_or(second_ns));
   const auto by_size = unit_by_size(values);

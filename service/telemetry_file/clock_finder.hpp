@@ -11,6 +11,7 @@
 
 #include "service/telemetry_file/clock.hpp"
 #include "service/telemetry_file/clock_names.hpp"
+#include "service/telemetry_file/dialect.hpp"
 
 namespace reident::telemetry_file {
 
@@ -34,7 +35,11 @@ class ClockFinder {
   bool find_date_and_clock();
   bool join(std::size_t date, std::optional<std::size_t> clock);
   std::optional<std::size_t> clock_beside(std::size_t date) const;
+  void count_clock_digits(std::size_t c);
+  bool are_midnights(std::size_t c) const;
   bool find_gps_week();
+  bool find_seconds_and_parts();
+  std::optional<Clock::Problem> unknown_zone(std::size_t c) const;
   bool find_set();
   std::string_view unit(std::size_t c) const;
   bool holds_time(std::size_t c) const;
@@ -43,6 +48,10 @@ class ClockFinder {
   std::optional<Clock::Problem> choose_named(const std::string& asked);
   std::optional<Clock::Problem> decide_parts();
   void take_zone_of_names();
+  void take_zone_of_lines();
+  void take_zone(const ZoneHint& hint, const std::string& where, std::string_view evidence);
+  bool is_newest_first() const;
+  std::optional<Clock::Problem> decide_scale(std::size_t c);
   bool find_zone_column();
   void find_fraction_column();
   enum class YearFirst { impossible, possible, alone };

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <initializer_list>
 #include <map>
 
 #include "service/support/text.hpp"
 #include "service/telemetry_file/date_text.hpp"
+#include "service/telemetry_file/number_text.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -68,7 +71,9 @@ std::optional<std::int64_t> unit_of(const std::string& word) {
                                                             {"usecs", 1000},
                                                             {"msecs", ms},
                                                             {"nanosec", 1},
-                                                            {"nsecs", 1}};
+                                                            {"nsecs", 1},
+                                                            {"nanosecs", 1},
+                                                            {"nanos", 1}};
   const auto found = units.find(word);
   return found == units.end() ? std::nullopt : std::optional(found->second);
 }
@@ -155,7 +160,18 @@ std::optional<ZoneHint> zone_in(std::string_view text) {
 
 }  // namespace
 
+/// The zone of "(PDH-CSV 4.0) (W. Europe Standard Time)(-60)", in minutes west of UTC.
+std::optional<ZoneHint> zone_of_windows_counters(std::string_view name) {
+  const auto minutes = plain_number(bracketed(name));
+  if (!name.starts_with("(PDH-CSV") || !minutes || std::abs(*minutes) > 24 * 60)
+    return std::nullopt;
+  const std::string_view rest = name.substr(0, name.find_last_of('('));
+  return ZoneHint{std::string(bracketed(rest)), -static_cast<std::int64_t>(*minutes) * 60 * s,
+                  false};
+}
+
 std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view unit) {
+  if (auto zone = zone_of_windows_counters(name)) return zone;
   for (const std::string_view text : {unit, name})
     if (auto zone = zone_in(text)) return zone;
   for (const std::string_view text : {unit, name})
@@ -166,22 +182,68 @@ std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view uni
   return std::nullopt;
 }
 
+std::optional<ZoneHint> zone_hint_of_line(std::string_view line) {
+  const auto words = words_of(line);
+  const auto has = [&](std::initializer_list<std::string_view> any) {
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+      return std::find(any.begin(), any.end(), word) != any.end();
+    });
+  };
+  const bool is_of_zone = is_named_like_a_zone(line);
+  if (!is_of_zone && !has({"times", "timestamps", "zeiten", "zeitstempel", "heures", "horas"}))
+    return std::nullopt;
+  if (auto zone = zone_in(line)) return zone;
+  const auto sign = line.find_first_of("+-");
+  if (is_of_zone && sign != std::string_view::npos) {
+    const std::string_view said = line.substr(sign, line.find_first_of(" \t,;)]\"", sign) - sign);
+    if (const auto offset = read_offset(said)) return ZoneHint{std::string(said), offset, false};
+  }
+  if (is_of_zone || has({"local", "lokal", "lokale", "locale", "locales", "ortszeit"}))
+    return ZoneHint{std::string(trimmed(line)), {}, true};
+  return std::nullopt;
+}
+
 bool is_named_like_a_zone(std::string_view name) {
   std::string all;
   for (const std::string& word : words_of(name)) {
     if (word == "tz") return true;
     all += word;
   }
-  constexpr std::array<std::string_view, 5> hints = {"timezone", "zeitzone", "utcoffset",
-                                                     "gmtoffset", "tzoffset"};
+  constexpr std::array<std::string_view, 8> hints = {
+      "timezone", "zeitzone",      "utcoffset",   "gmtoffset",
+      "tzoffset", "fuseauhoraire", "zonahoraria", "fusohor\xC3\xA1rio"};
   return std::any_of(hints.begin(), hints.end(),
                      [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
 }
 
-std::optional<std::int64_t> fraction_of_second(std::string_view name) {
-  const auto words = words_of(name);
-  const auto unit = words.size() == 1 ? unit_of(words.front()) : std::nullopt;
+std::optional<std::int64_t> fraction_of_second(std::string_view name, std::string_view seconds) {
+  const auto words = words_of(name), others = words_of(seconds);
+  const bool is_alone = words.size() == 1;
+  const bool is_pair = words.size() > 1 && words.size() == others.size() &&
+                       std::equal(words.begin(), words.end() - 1, others.begin()) &&
+                       unit_of(others.back()) == s;
+  const auto unit = is_alone || is_pair ? unit_of(words.back()) : std::nullopt;
   return unit && *unit < s ? unit : std::nullopt;
+}
+
+std::string time_scale_of(std::string_view name, std::string_view unit) {
+  for (const std::string_view text : {unit, name})
+    for (const std::string& word : words_of(text)) {
+      if (word == "gps" || word == "gpst" || word == "gnss" || word == "gpstime") return "GPS";
+      if (word == "tai") return "TAI";
+      if (word == "tt" || word == "tdt") return "TT";
+      if (word == "tdb") return "TDB";
+    }
+  return {};
+}
+
+bool is_day_of_year(std::string_view name) {
+  std::string all;
+  for (const std::string& word : words_of(name)) {
+    if (word == "doy" || word == "ddd" || word == "yday") return true;
+    all += word;
+  }
+  return all.find("dayofyear") != std::string::npos;
 }
 
 NameHint hint_of(std::string_view name, std::string_view unit) {
@@ -211,6 +273,17 @@ NameHint hint_of(std::string_view name, std::string_view unit) {
   return hint;
 }
 
+bool is_named_like_a_spacecraft(std::string_view name) {
+  auto words = words_of(name);
+  if (words.size() > 1 && (words.back() == "id" || words.back() == "name")) words.pop_back();
+  std::string all;
+  for (const std::string& word : words) all += word;
+  constexpr std::array<std::string_view, 10> names = {
+      "spacecraft", "satellite", "sat",      "satid",   "scid",
+      "norad",      "noradid",   "noradcat", "vehicle", "satellit"};
+  return std::find(names.begin(), names.end(), all) != names.end();
+}
+
 bool is_named_like_a_time(std::string_view name) {
   const auto words = words_of(name);
   std::string all;
@@ -221,11 +294,18 @@ bool is_named_like_a_time(std::string_view name) {
     }
     all += word;
   }
+  if (all == "xvalue") return true;  // of LabVIEW
   constexpr std::array<std::string_view, 11> hints = {"time",  "unix",    "date",  "utc",
                                                       "epoch", "zeit",    "datum", "stamp",
                                                       "since", "elapsed", "j2000"};
   return std::any_of(hints.begin(), hints.end(),
                      [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
+}
+
+bool are_named_alike(std::string_view name, std::string_view other) {
+  const auto words = words_of(name), others = words_of(other);
+  return std::find_first_of(words.begin(), words.end(), others.begin(), others.end()) !=
+         words.end();
 }
 
 TimePart part_of(std::string_view name) {
@@ -285,6 +365,8 @@ TimePart part_of(std::string_view name) {
       {"utctime", TimePart::clock},
       {"timeutc", TimePart::clock},
       {"timeofday", TimePart::clock},
+      {"hhmm", TimePart::clock},
+      {"hhmmss", TimePart::clock},
       {"gpsweek", TimePart::gps_week},
       {"week", TimePart::gps_week},
       {"wn", TimePart::gps_week},

@@ -29,14 +29,31 @@ struct ZoneHint {
 };
 std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view unit);
 
+/// What a line above the header says about the clock of all dates, as "Timezone;Europe/Berlin" and
+/// "All times are CET"; local where it says a zone that is not known here.
+std::optional<ZoneHint> zone_hint_of_line(std::string_view line);
+
+/// "GPS", "TAI", "TT" or "TDB" where a column of dates is named so; else empty.
+std::string time_scale_of(std::string_view name, std::string_view unit);
+
+/// Whether a column is named as one of days of the year.
+bool is_day_of_year(std::string_view name);
+
 /// Whether a column is named as one of zones or offsets.
 bool is_named_like_a_zone(std::string_view name);
 
-/// The unit of a column that is called ms, usec, nanoseconds or the like, and nothing else.
-std::optional<std::int64_t> fraction_of_second(std::string_view name);
+/// The unit of a column that is called ms, usec, nanoseconds or the like, and nothing else but what
+/// the column of seconds is called too, as stamp.secs and stamp.nsecs.
+std::optional<std::int64_t> fraction_of_second(std::string_view name, std::string_view seconds);
+
+/// Whether a column is named as one of spacecraft.
+bool is_named_like_a_spacecraft(std::string_view name);
 
 /// Whether a column is named as times are.
 bool is_named_like_a_time(std::string_view name);
+
+/// Whether two names share a word.
+bool are_named_alike(std::string_view name, std::string_view other);
 
 /// What a column is a part of a time by its name.
 enum class TimePart {

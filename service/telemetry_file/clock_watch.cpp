@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "service/support/floor_divide.hpp"
 #include "service/support/time_text.hpp"
 #include "service/telemetry_file/time_units.hpp"
 
@@ -28,13 +29,23 @@ constexpr std::array<Wrap, 8> wraps = {{{65'536, "65,536"},
 
 std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t line) {
   std::optional<ClockStep> step;
-  if (last_ns_ && time_ns < *last_ns_) step = explained(time_ns, line);
+  if (last_ns_ && (time_ns < *last_ns_ || repeats_an_hour(time_ns)))
+    step = explained(time_ns, line);
   if (last_ns_ && time_ns > *last_ns_) {
     if (hour_ahead_line_ == 0 && begins_daylight_saving(time_ns)) hour_ahead_line_ = line;
     if (__builtin_sub_overflow(time_ns, *last_ns_, &usual_ns_)) usual_ns_ = 0;
   }
   last_ns_ = time_ns;
   return step;
+}
+
+/// Whether hourly telemetry has one time twice where daylight saving ends: in the night of a
+/// Sunday.
+bool ClockWatch::repeats_an_hour(std::int64_t time_ns) const {
+  constexpr std::int64_t sunday = 3;  // days since 1970-01-01
+  const std::int64_t days = floor_divide(time_ns, day_ns);
+  return may_be_local_ && !since_ns_ && time_ns == *last_ns_ && usual_ns_ == hour_ns &&
+         ((days % 7) + 7) % 7 == sunday && time_ns - days * day_ns < 4 * hour_ns;
 }
 
 bool ClockWatch::begins_daylight_saving(std::int64_t time_ns) const {
@@ -58,13 +69,27 @@ ClockStep ClockWatch::explained(std::int64_t time_ns, std::uint64_t line) const 
   const double tolerance_ns = std::max(static_cast<double>(second_ns), 2 * usual_ns);
   const auto by_about = [&](double ns) { return std::abs(lost_ns - ns) <= tolerance_ns; };
   const std::string back = duration_text(step.back_ns);
+  const auto hour_of_day = [](std::int64_t ns) {
+    return (ns - floor_divide(ns, day_ns) * day_ns) / hour_ns;
+  };
+  if (hour_of_day(*last_ns_) == 12 && hour_of_day(time_ns) == 1 &&
+      by_about(static_cast<double>(12 * hour_ns))) {
+    step.kind = ClockStep::Kind::half_day;
+    step.what = fmt::format(
+        "the clock goes back {}, twelve hours less a step: a clock of twelve hours, without AM "
+        "and PM",
+        back);
+    return step;
+  }
   if (may_be_local_ && by_about(static_cast<double>(hour_ns))) {
     step.kind = ClockStep::Kind::hour;
     step.missing_ns = hour_ns;
-    step.what = fmt::format(
-        "the clock goes back {}, an hour less a step: a local time at the end of daylight "
-        "saving",
-        back);
+    step.what = step.back_ns == 0
+                    ? "the clock shows an hour twice: a local time at the end of daylight saving"
+                    : fmt::format(
+                          "the clock goes back {}, an hour less a step: a local time at the end of "
+                          "daylight saving",
+                          back);
     return step;
   }
   for (const Wrap& wrap : wraps) {

@@ -13,6 +13,7 @@ struct ClockStep {
   enum class Kind {
     out_of_order,  // nothing known: a row that came late
     hour,          // an hour: daylight saving of a local time
+    half_day,      // twelve hours: a clock of twelve hours without AM and PM
     restart,       // to zero: whatever counts began again
     wrap,          // a counter of a whole number of bits or of a day or week began again
   };
@@ -31,7 +32,8 @@ class ClockWatch {
   ClockWatch(std::int64_t unit_ns, std::optional<std::int64_t> since_ns, bool may_be_local)
       : unit_ns_(unit_ns), since_ns_(since_ns), may_be_local_(may_be_local) {}
 
-  /// Returns the step where the time is earlier than the one before.
+  /// Returns the step where the time is earlier than the one before, or stands still for the hour
+  /// that a local clock is set back.
   std::optional<ClockStep> next(std::int64_t time_ns, std::uint64_t line);
   /// The first line before which a local clock goes ahead an hour, in the night; 0: it does not.
   std::uint64_t hour_ahead_line() const { return hour_ahead_line_; }
@@ -39,6 +41,7 @@ class ClockWatch {
  private:
   ClockStep explained(std::int64_t time_ns, std::uint64_t line) const;
   bool begins_daylight_saving(std::int64_t time_ns) const;
+  bool repeats_an_hour(std::int64_t time_ns) const;
 
   std::int64_t unit_ns_;
   std::optional<std::int64_t> since_ns_;

@@ -8,6 +8,11 @@
 
 namespace reident::telemetry_file {
 
+std::string shown(std::string_view cell) {
+  constexpr std::size_t longest = 40;
+  return "'" + std::string(cell.substr(0, longest)) + "'";
+}
+
 std::string unit_name(std::int64_t unit_ns) {
   static const std::map<std::int64_t, std::string> names = {
       {1, "nanoseconds"},          {1000, "microseconds"},      {1'000'000, "milliseconds"},

@@ -1,4 +1,4 @@
-// What a clock is called in the description of a file.
+// What clocks and cells are called in descriptions and messages.
 #pragma once
 
 #include <string>
@@ -8,6 +8,8 @@
 
 namespace reident::telemetry_file {
 
+/// A cell in quotes, cut where it is long.
+std::string shown(std::string_view cell);
 /// "milliseconds"
 std::string unit_name(std::int64_t unit_ns);
 /// "milliseconds since 1970"

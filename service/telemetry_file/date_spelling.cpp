@@ -146,6 +146,11 @@ std::string plain_spelling(std::string_view cell) {
   text = std::string(trimmed(text));
   if (text.starts_with('\'')) text.erase(0, 1);
   if (text.find_first_of("0123456789") == std::string::npos) return text;
+  for (const std::string_view days : {" days ", " day "})  // 2 days 22:00:30
+    if (const auto at = text.find(days); at != std::string::npos && digit_at(text, 0))
+      text.replace(at, days.size(), " ");
+  if (const auto comma = text.find(','); comma < text.find(':') && digit_at(text, comma - 1))
+    text[comma] = ' ';  // 28.2.2024, 22:00
   mend_half(text);
   mend_brackets(text);
   drop_weekday(text);

@@ -22,12 +22,14 @@ struct NamedOffset {
   std::string_view name;
   int minutes;
 };
-/// Names of zones that stand for one offset (those of RFC 822, and of Europe).
-constexpr std::array<NamedOffset, 22> named_offsets = {
+/// Names of zones that stand for one offset everywhere. IST and BST do not.
+constexpr std::array<NamedOffset, 34> named_offsets = {
     {{"z", 0},      {"utc", 0},    {"gmt", 0},    {"ut", 0},     {"wet", 0},    {"west", 60},
      {"cet", 60},   {"met", 60},   {"mez", 60},   {"cest", 120}, {"mest", 120}, {"mesz", 120},
      {"eet", 120},  {"eest", 180}, {"est", -300}, {"edt", -240}, {"cst", -360}, {"cdt", -300},
-     {"mst", -420}, {"mdt", -360}, {"pst", -480}, {"pdt", -420}}};
+     {"mst", -420}, {"mdt", -360}, {"pst", -480}, {"pdt", -420}, {"msk", 180},  {"sast", 120},
+     {"hkt", 480},  {"sgt", 480},  {"jst", 540},  {"kst", 540},  {"aest", 600}, {"aedt", 660},
+     {"nzst", 720}, {"nzdt", 780}, {"brt", -180}, {"art", -180}}};
 
 bool digit(char c) {
   return c >= '0' && c <= '9';
@@ -359,6 +361,18 @@ std::string_view without_brackets(std::string_view cell) {
   return has_brackets ? trimmed(cell.substr(1, cell.size() - 2)) : cell;
 }
 
+/// 240228220030, and 202402282200 from the year 2020 on; both may begin with 200 and 201.
+std::optional<DateText> read_twelve_digits(Parts text) {
+  const int first = text.number(2), second = text.number(2);
+  const bool is_long = first == 20 && second >= 20;
+  if (first < 21 && !is_long) return std::nullopt;
+  const int year = 2000 + (is_long ? second : first);
+  const int month = is_long ? text.number(2) : second;
+  const auto days = days_of(year, month, text.number(2));
+  const auto clock = days ? take_clock(text) : std::nullopt;
+  return clock && text.empty() ? with_day({}, *days, *clock) : std::nullopt;
+}
+
 std::optional<DateText> read_plain(std::string_view cell, DateOrder order) {
   Parts text(without_brackets(cell));
   DateText read;
@@ -370,6 +384,7 @@ std::optional<DateText> read_plain(std::string_view cell, DateOrder order) {
   const std::size_t digits = text.digits();
   // Thirteen digits of another begin are milliseconds since 1970.
   const bool packed = digits == 13 && text.front() == '2';
+  if (digits == 12) return read_twelve_digits(text);
   const bool year_first = digits == 4 || digits == 7 || digits == 8 || packed || digits == 14;
   const auto days = year_first ? take_year_first(text, separator)
                                : take_year_last(text, order, separator, read.is_ordered);

@@ -20,6 +20,7 @@ struct DateText {
 
 /// Reads any of these, with blanks around, a weekday in front, and a Z, UTC, GMT or +02:00 behind:
 ///   2024-02-28, 2024/2/28, 2024.02.28, 20240228, 2024-Feb-28, 28-Feb-2024, Feb 28 2024
+///   240228220030, 202402282200
 ///   28.02.2024, 28/02/2024, 02/28/2024 (by `order` where both are possible), 28.02.24
 ///   2024-059, 2024:059, 2024.059, 2024/059, 24-059, 2024059T (day of the year), 2024-W09-3
 /// followed by a T, a blank, or what separates the date's parts, and then

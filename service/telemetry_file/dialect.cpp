@@ -120,9 +120,15 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
   if (told && !separator) separator = told;
   if (told) lines[0].text = {};
   layout.comment = options.comment ? *options.comment : find_comment(lines);
+  if (!head.is_all && std::all_of(lines.begin(), lines.end(), [&](const HeadLine& line) {
+        return is_blank(line) || is_comment(line, layout.comment);
+      }))
+    return at_line(name, lines.back().number,
+                   "up to here stand comments alone, more than are looked through; cut them off");
   layout.separator = separator ? *separator : find_separator(lines, layout.comment);
   split(lines, layout.separator);
-  if (layout.separator == ' ') layout.places = find_places(lines, layout.comment);
+  if (is_of_blanks(layout.separator))
+    layout.places = find_places(lines, layout.separator, layout.comment);
   layout.cells = usual_cells(lines, layout.comment);
   if (auto error = refuse_one_cell(lines, layout, options, name)) return *std::move(error);
   if (!options.names.empty() && layout.cells == 0) layout.cells = options.names.size();
@@ -146,7 +152,7 @@ std::variant<Dialect, Error> find_dialect(const RowReader::Head& head,
   if (cells.size() + 1 == layout.cells) layout.cells = cells.size();
   for (const HeadLine& line : lines)
     if (line.number < (header ? dialect.header_line : first_row + 1) && !is_blank(line))
-      ++dialect.lines_above;
+      dialect.above.push_back({line.number, std::string(line.text)});
   if (first_row < lines.size()) {
     dialect.first_line = lines[first_row].number;
     dialect.first_position = lines[first_row].position;

@@ -175,18 +175,19 @@ namespace {
 
 constexpr double lines_in_place = 0.95;
 
-std::vector<std::string_view> cells_in(std::string& text) {
+std::vector<std::string_view> cells_in(std::string& text, char separator) {
   std::vector<std::string_view> cells;
-  if (split_cells(text, ' ', cells)) cells.clear();
+  if (split_cells(text, separator, cells)) cells.clear();
   return cells;
 }
 
 /// The places that the cells of these lines take; none where two columns stand in one.
-std::vector<Place> places_of(const std::vector<const HeadLine*>& lines, std::size_t count) {
+std::vector<Place> places_of(const std::vector<const HeadLine*>& lines, char separator,
+                             std::size_t count) {
   std::vector<Place> places(count, {std::string_view::npos, 0});
   for (const HeadLine* line : lines) {
     std::string text(line->text);
-    const auto cells = cells_in(text);
+    const auto cells = cells_in(text, separator);
     for (std::size_t c = 0; c < count && c < cells.size(); ++c) {
       const auto begin = static_cast<std::size_t>(cells[c].data() - text.data());
       places[c].begin = std::min(places[c].begin, begin);
@@ -200,7 +201,7 @@ std::vector<Place> places_of(const std::vector<const HeadLine*>& lines, std::siz
 
 }  // namespace
 
-std::vector<Place> find_places(HeadLines& lines, const std::string& comment) {
+std::vector<Place> find_places(HeadLines& lines, char separator, const std::string& comment) {
   std::size_t most = 0;
   bool differ = false;
   for (const HeadLine& line : lines) {
@@ -216,8 +217,8 @@ std::vector<Place> find_places(HeadLines& lines, const std::string& comment) {
     full.push_back(&line);
     if (std::any_of(line.cells.begin(), line.cells.end(), looks_like_value)) rows.push_back(&line);
   }
-  auto places = places_of(full, most);
-  if (places.empty()) places = places_of(rows, most);
+  auto places = places_of(full, separator, most);
+  if (places.empty()) places = places_of(rows, separator, most);
   if (places.empty()) return {};
   HeadLines placed = lines;
   std::size_t short_lines = 0, in_place = 0;
@@ -225,7 +226,7 @@ std::vector<Place> find_places(HeadLines& lines, const std::string& comment) {
     if (is_blank(*line) || is_comment(*line, comment) || line->cells.size() == most) continue;
     ++short_lines;
     std::string text(line->text);
-    auto cells = cells_in(text);
+    auto cells = cells_in(text, separator);
     if (cells.empty() || !place_cells(text, places, cells)) continue;
     line->cells.assign(cells.begin(), cells.end());
     ++in_place;

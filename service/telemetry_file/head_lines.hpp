@@ -38,7 +38,7 @@ char find_separator(HeadLines& lines, const std::string& comment);
 
 /// Where the cells of columns of fixed width stand, where lines that blanks cut have fewer cells
 /// than others; their blank cells are put in. Empty where the lines do not show it.
-std::vector<Place> find_places(HeadLines& lines, const std::string& comment);
+std::vector<Place> find_places(HeadLines& lines, char separator, const std::string& comment);
 
 /// Whether a cell has the look of a number or a time, in whatever spelling.
 bool looks_like_value(std::string_view cell);

@@ -70,6 +70,13 @@ class Head {
     if (!is_row(lines_[i], values_)) return true;
     return is_first && names_parameters(lines_[i], values_);
   }
+  /// Whether a line is none of metadata, as "Samples 20 20" above rows that begin with a number.
+  bool has_first_value(std::size_t i) const {
+    const auto first = std::find(values_.begin(), values_.end(), true);
+    const auto column = static_cast<std::size_t>(first - values_.begin());
+    return first == values_.end() || trimmed(lines_[i].cells[column]).empty() ||
+           looks_like_value(lines_[i].cells[column]);
+  }
   /// The first line of the rows: behind the last lines of text at the top.
   std::size_t first_row() const {
     std::size_t rows = 0, last_text = lines_.size();
@@ -79,7 +86,7 @@ class Head {
       if (!has_cells(i)) continue;
       if (is_text(i, is_first)) {
         if (seen.insert(lines_[i].text).second) last_text = i;
-      } else {
+      } else if (has_first_value(i)) {
         ++rows;
       }
       is_first = false;
@@ -164,6 +171,13 @@ bool are_names(const HeadLine& line) {
   return empty <= 1;
 }
 
+/// Whether a line is a title in the first of several cells.
+bool is_title(const HeadLine& line) {
+  return line.cells.size() > 2 &&
+         std::count_if(line.cells.begin(), line.cells.end(),
+                       [](const std::string& cell) { return !trimmed(cell).empty(); }) == 1;
+}
+
 /// The header among lines of text: the one with the names that are wanted; the one above units;
 /// the upper of two, whose lower one describes, unless the upper one alone has blanks in its names.
 std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& block,
@@ -180,6 +194,8 @@ std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& bl
   for (const std::size_t i : block)
     if (!are_units(lines[i])) names.push_back(i);
   if (names.empty()) return block.front();
+  const auto is_of_title = [&](std::size_t i) { return is_title(lines[i]); };
+  if (!std::all_of(names.begin(), names.end(), is_of_title)) std::erase_if(names, is_of_title);
   // A line such as "Avg", "Avg" below the names describes them.
   if (std::any_of(names.begin(), names.end(), [&](std::size_t i) { return are_names(lines[i]); }))
     std::erase_if(names, [&](std::size_t i) { return !are_names(lines[i]); });
@@ -276,13 +292,6 @@ Error no_names(const HeadLines& lines, std::size_t first_row, const Layout& layo
                  "the line holds values ('" + std::string(line.text.substr(0, 40)) +
                      "'), and no line above it names the columns; name them with --names "
                      "NAME,NAME,..., or say with --header N which line does");
-}
-
-/// Whether a line is a title in the first of several cells.
-bool is_title(const HeadLine& line) {
-  return line.cells.size() > 2 &&
-         std::count_if(line.cells.begin(), line.cells.end(),
-                       [](const std::string& cell) { return !trimmed(cell).empty(); }) == 1;
 }
 
 }  // namespace

@@ -186,8 +186,8 @@ void add_reading_options(CLI::App& app, ReadingArguments& arguments) {
        "iso, dmy, mdy, ymd, unix, elapsed, excel, mjd, jd, matlab, filetime, gps", "NAME");
   text("--time-unit", arguments.time_unit,
        "what numbers of the time count: ns, us, ms, s, min, h, d, or 10ms", "UNIT");
-  text("--time-zone", arguments.time_zone, "of times without an offset, as Europe/Berlin (UTC)",
-       "ZONE");
+  text("--time-zone", arguments.time_zone,
+       "of times without an offset, as Europe/Berlin or +01:00 (UTC)", "ZONE");
   text("--epoch", arguments.epoch, "time since when numbers of the time count", "TIME");
   text("--clock-back", arguments.clock_back,
        "what happens where the clock was set back, restarted or wrapped: stop or go-on", "NAME");

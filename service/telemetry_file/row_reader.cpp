@@ -97,6 +97,11 @@ std::string comment_advice(std::string_view line) {
   return {};
 }
 
+/// Whether a line goes on with \" that does not close its cell.
+bool is_escaped_quote(std::span<const char> rest, char separator) {
+  return rest.size() > 2 && rest[1] == '"' && !separates(rest[2], separator);
+}
+
 std::optional<std::string_view> split_cells(std::span<char> line, char separator,
                                             std::vector<std::string_view>& cells) {
   cells.clear();
@@ -114,7 +119,10 @@ std::optional<std::string_view> split_cells(std::span<char> line, char separator
       std::size_t last = first;
       while (true) {
         if (at >= line.size()) return open_quote;
-        if (line[at] == '"' && (++at >= line.size() || line[at] != '"')) break;
+        if (line[at] == '\\' && is_escaped_quote(line.subspan(at), separator))
+          ++at;
+        else if (line[at] == '"' && (++at >= line.size() || line[at] != '"'))
+          break;
         line[last++] = line[at++];
       }
       cells.emplace_back(line.data() + first, last - first);
@@ -267,6 +275,11 @@ RowReader::Step RowReader::next() {
       row_begin_ = row_end_ = begin_;
       return Step::end;
     }
+    if (constexpr std::string_view mark = "\xEF\xBB\xBF";  // of a file that was joined
+        buffer_.compare(begin_, mark.size(), mark) == 0) {
+      begin_ += mark.size();
+      consumed_ += mark.size();
+    }
     const std::size_t following = std::min(row_end + 1, buffer_.size());
     while (row_end > begin_ && buffer_[row_end - 1] == '\r') --row_end;
     const std::string_view text(buffer_.data() + begin_, row_end - begin_);
@@ -315,6 +328,10 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
   consumed_ += following - begin_;
   begin_ = following;
   if (fits) return Step::row;
+  if (is_cut && text.find_first_not_of('\0') == std::string_view::npos) {  // padding of a file
+    cut_line_ = line_;
+    return Step::end;
+  }
   if (has_nul_bytes()) {
     error_ = error_here({});
     damage_ = Damage::nul_bytes;

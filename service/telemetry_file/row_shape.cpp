@@ -55,15 +55,15 @@ void drop_blank_ends(HeadLines& lines, Layout& layout) {
 void join_cells(HeadLines& lines, Layout& layout) {
   if (layout.cells < 2) return;
   drop_blank_ends(lines, layout);
-  if (layout.separator == ' ' &&
-      rows_have_one_more(lines, layout.cells, layout.comment, [](const auto& cells) {
+  const bool is_of_dates = layout.separator == ' ' || layout.separator == ',';
+  if (is_of_dates && rows_have_one_more(lines, layout.cells, layout.comment, [](const auto& cells) {
         const auto date = read_date_text(cells[0], DateOrder::day_first);
         return date && date->has_date && cells[1].find(':') != std::string::npos;
       })) {
     layout.joins_date = true;
     for (HeadLine& line : lines)
       if (line.cells.size() == layout.cells) {
-        line.cells[0] += " " + line.cells[1];
+        line.cells[0] += (layout.separator == ',' ? "," : " ") + line.cells[1];
         line.cells.erase(line.cells.begin() + 1);
       }
     --layout.cells;

@@ -6,7 +6,9 @@
 
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
+#include "service/telemetry_file/clock_words.hpp"
 #include "service/telemetry_file/date_text.hpp"
+#include "service/telemetry_file/head_checks.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -14,13 +16,6 @@ namespace {
 constexpr std::size_t head_bytes = std::size_t{1} << 20;
 constexpr std::size_t head_rows = 20'000;
 constexpr std::int64_t earliest_ns = 631'152'000'000'000'000;  // 1990
-constexpr std::size_t cell_shown = 40;
-constexpr double most_repeated = 0.2;  // of the rows, with the time of the row before
-
-std::string quoted(std::string_view cell) {
-  return "'" + std::string(cell.substr(0, cell_shown)) + "'";
-}
-
 }  // namespace
 
 struct TelemetryFile::Impl {
@@ -51,7 +46,6 @@ struct TelemetryFile::Impl {
   std::uint64_t line_of(std::size_t row, std::size_t column, std::uint64_t own) const;
   std::uint64_t line_of(std::size_t row, std::uint64_t own) const;
   std::optional<Error> find_cells();
-  std::optional<Error> refuse_repeated_times() const;
   Step fail(Damage what, Error why) {
     damage = what;
     error = std::move(why);
@@ -107,39 +101,6 @@ std::optional<Error> TelemetryFile::Impl::find_cells() {
   for (std::size_t c = 0; c < head_columns.size(); ++c)
     formats.push_back(find_format(head_columns[c], dialect.columns[c], style, options.cells));
   return std::nullopt;
-}
-
-/// A row with the time of the row before and another value contradicts it. Many do where the time
-/// is cut off, or is read from a part of it, or where each row is a sample of another parameter.
-std::optional<Error> TelemetryFile::Impl::refuse_repeated_times() const {
-  Clock reading = *clock;
-  std::vector<std::string_view> cells(head_columns.size());
-  std::optional<std::int64_t> before;
-  std::size_t repeated = 0, first = 0;
-  for (std::size_t row = 0; row < head_lines.size(); ++row) {
-    const auto last = cells;
-    for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = head_columns[c][row];
-    const auto time = reading.read(cells);
-    const auto differs = [&](std::size_t c) {
-      const std::string_view now = trimmed(cells[c]), then = trimmed(last[c]);
-      return !now.empty() && !then.empty() && now != then && !reading.uses(c);
-    };
-    bool contradicts = false;
-    for (std::size_t c = 0; c < cells.size() && time && time == before && !contradicts; ++c)
-      contradicts = differs(c);
-    if (contradicts && repeated++ == 0) first = row;
-    before = time;
-  }
-  if (static_cast<double>(repeated) <= most_repeated * static_cast<double>(head_lines.size()))
-    return std::nullopt;
-  const std::size_t column = reading.columns().front();
-  return Error{fmt::format(
-      "{}:{}: {} in column '{}' is the time of the row before, and other values stand there, as in "
-      "{} of the first {} rows. Is the time cut off, or a part of it in another column (--time "
-      "DATE,CLOCK)? Is each row one sample (call the columns parameter, time and value with "
-      "--names)? --force-times takes the times as they are",
-      rows.source().name(), line_of(first, head_lines[first]), quoted(head_columns[column][first]),
-      dialect.columns[column], repeated, head_lines.size())};
 }
 
 std::uint64_t TelemetryFile::Impl::line_of(std::size_t row, std::size_t column,
@@ -209,32 +170,41 @@ bool TelemetryFile::has_rows() const {
 
 std::string TelemetryFile::first_word(std::size_t column) const {
   const auto& cells = impl_->head_columns[column];
+  const StateMap* const given = given_states(impl_->options.cells, columns()[column]);
   for (std::size_t row = 0; row < cells.size(); ++row)
-    if (!trimmed(cells[row]).empty())
-      return fmt::format("{} in line {}", quoted(cells[row]),
+    if (!trimmed(cells[row]).empty() && !(given && has_state(*given, trimmed(cells[row]))))
+      return fmt::format("{} in line {}", shown(cells[row]),
                          impl_->line_of(row, column, impl_->head_lines[row]));
   return "no cell";
 }
 
-std::optional<Error> TelemetryFile::find_time(bool is_series_after_series) {
+std::optional<Error> TelemetryFile::find_time(bool is_series_after_series, bool of_one_spacecraft) {
   Impl& at = *impl_;
   if (is_series_after_series) at.options.clock_may_go_back = true;
-  const HeadCells head{at.dialect.columns, at.dialect.units, at.head_columns, at.head_lines,
-                       at.style};
+  const auto refuse = [&](const Clock::Problem& problem) {
+    const std::string line = problem.line == 0 ? "" : ":" + std::to_string(problem.line);
+    return Error{at.rows.source().name() + line + ": " + problem.text};
+  };
+  std::vector<std::uint64_t> lines = at.head_lines;
+  for (std::size_t row = 0; row < lines.size(); ++row) lines[row] = at.line_of(row, lines[row]);
+  const HeadCells head{at.dialect.columns, at.dialect.units, at.head_columns, lines,
+                       at.style,           at.dialect.above};
   auto found = Clock::find(head, at.options.time, at.options.latest_ns);
-  if (const auto* problem = std::get_if<Clock::Problem>(&found)) {
-    const std::string line = problem->line == 0 ? "" : ":" + std::to_string(problem->line);
-    return Error{at.rows.source().name() + line + ": " + problem->text};
-  }
+  if (const auto* problem = std::get_if<Clock::Problem>(&found)) return refuse(*problem);
   at.clock = std::get<Clock>(std::move(found));
-  if (const auto by = at.clock->local_by(); by && !at.options.any_epoch && !at.options.force_times)
+  if (const std::string& by = at.clock->local_by();
+      !by.empty() && !at.options.any_epoch && !at.options.force_times)
     return Error{fmt::format(
-        "{}: by column '{}' the time is a local one; say of which zone with --time-zone, as "
-        "Europe/Berlin, or UTC, or name another column with --time",
-        at.rows.source().name(), at.dialect.columns[*by])};
+        "{}: by {} the time is a local one; say of which zone with --time-zone, as Europe/Berlin, "
+        "+01:00 or UTC, or name another column with --time",
+        at.rows.source().name(), by)};
   at.clock_at_start = at.clock;
-  if (!is_series_after_series && !at.options.force_times)
-    if (auto error = at.refuse_repeated_times()) return error;
+  if (!at.options.force_times) {
+    auto problem = of_one_spacecraft ? several_spacecraft(head, *at.clock) : std::nullopt;
+    if (!problem && !at.options.time.column) problem = clocks_of_their_own(head);
+    if (!problem && !is_series_after_series) problem = repeated_times(head, *at.clock);
+    if (problem) return refuse(*problem);
+  }
   at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local());
   return std::nullopt;
 }
@@ -369,7 +339,7 @@ TelemetryFile::Step TelemetryFile::Impl::read_time() {
   const auto time = clock->read(rows.cells());
   if (!time && is_another_header()) return fail_at_header();
   const auto here = [&](std::string_view what) {
-    return rows.error_here(fmt::format("{} in column '{}' {}", quoted(rows.cells()[column]),
+    return rows.error_here(fmt::format("{} in column '{}' {}", shown(rows.cells()[column]),
                                        dialect.columns[column], what));
   };
   if (!time) {
@@ -399,7 +369,9 @@ TelemetryFile::Step TelemetryFile::Impl::read_time() {
   step = watch->next(time_ns, rows.line());
   if (step && step->kind != ClockStep::Kind::out_of_order && !options.clock_may_go_back) {
     const std::string_view remedy =
-        step->kind == ClockStep::Kind::hour
+        step->kind == ClockStep::Kind::half_day
+            ? "write the times with 24 hours, or with AM and PM, or go on with --clock-back go-on"
+        : step->kind == ClockStep::Kind::hour
             ? "name the zone with --time-zone, as Europe/Berlin, or go on with --clock-back go-on"
             : "go on with --clock-back go-on, or import each part by itself with its own --epoch";
     return fail(Damage::none, rows.error_here(fmt::format("{}; {}", step->what, remedy)));
@@ -436,7 +408,7 @@ Error TelemetryFile::error_here(std::string_view what) const {
 }
 Error TelemetryFile::cell_error(std::size_t column, std::string_view what) const {
   return Error{fmt::format("{}:{}: {} in column '{}' {}", impl_->rows.source().name(), line(column),
-                           quoted(cells()[column]), columns()[column], what)};
+                           shown(cells()[column]), columns()[column], what)};
 }
 std::uint64_t TelemetryFile::bytes_read() const {
   return impl_->rows.bytes_read();

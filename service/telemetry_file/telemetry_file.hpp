@@ -73,8 +73,10 @@ class TelemetryFile {
   std::string first_word(std::size_t column) const;
 
   /// Finds the time of rows; from then on each row has one. An error where no column is a time. The
-  /// clock of a file that holds one series after another goes back where the next one begins.
-  std::optional<Error> find_time(bool is_series_after_series = false);
+  /// clock of a file that holds one series after another goes back where the next one begins. Where
+  /// rows are to be `of_one_spacecraft`, and a column names several, that is an error too.
+  std::optional<Error> find_time(bool is_series_after_series = false,
+                                 bool of_one_spacecraft = true);
   const Clock& clock() const;
   bool is_time(std::size_t column) const;
 

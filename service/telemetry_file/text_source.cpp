@@ -25,8 +25,8 @@ std::string cannot_open(int code) {
 std::string readings_of(const std::string& word) {
   constexpr std::size_t most_bytes = 24;
   std::string readings;
-  for (const char* encoding : {"GB18030", "BIG5", "EUC-KR", "EUC-JP", "WINDOWS-1251", "KOI8-R",
-                               "WINDOWS-1253", "WINDOWS-1250", "WINDOWS-1252"}) {
+  for (const char* encoding : {"GB18030", "BIG5", "EUC-KR", "EUC-JP", "SHIFT_JIS", "WINDOWS-1251",
+                               "KOI8-R", "WINDOWS-1253", "WINDOWS-1250", "WINDOWS-1252"}) {
     const auto decoder = Decoder::of(encoding);
     std::string text;
     if (decoder) decoder->decode(word.substr(0, most_bytes), true, text);
@@ -34,6 +34,13 @@ std::string readings_of(const std::string& word) {
     readings += (readings.empty() ? "" : ", ") + std::string(encoding) + " (" + text + ")";
   }
   return readings;
+}
+
+/// The text before the NUL bytes that a block of a disk was filled up with. One is the end of a
+/// text in UTF-16.
+std::string_view without_padding(std::string_view head) {
+  const std::size_t end = head.find_last_not_of('\0') + 1;
+  return head.size() - end > 3 ? head.substr(0, end) : head;
 }
 
 }  // namespace
@@ -58,11 +65,12 @@ std::variant<TextSource, Error> TextSource::open(const std::filesystem::path& pa
   head.resize(std::fread(head.data(), 1, head.size(), source.file_.get()));
   if (std::ferror(source.file_.get()) != 0)
     return *source.failed("cannot be read: " + message_of(errno));
-  source.encoding_ = encoding ? *encoding : find_encoding(head);
-  if (!encoding && is_binary(head, source.encoding_))
+  const std::string_view evidence = without_padding(head);
+  source.encoding_ = encoding ? *encoding : find_encoding(evidence);
+  if (!encoding && is_binary(evidence, source.encoding_))
     return *source.failed("the file is packed or no text; unpack it, or convert it to text, first");
   if (!encoding && source.encoding_ != "SHIFT_JIS" && !source.encoding_.starts_with("UTF-"))
-    if (const std::string word = foreign_word(head); !word.empty())
+    if (const std::string word = foreign_word(evidence); !word.empty())
       return *source.failed("its encoding is not known by its bytes; say it with --encoding: " +
                             readings_of(word));
   if (source.encoding_ == "UTF-8" || source.encoding_ == "utf-8") {

@@ -41,8 +41,12 @@ std::optional<std::int64_t> TimeZone::to_utc(std::int64_t local_ns) {
     return local_ns - std::chrono::duration_cast<std::chrono::nanoseconds>(at.offset).count();
   };
   std::int64_t result = utc(info.first);
-  if (info.result == date::local_info::ambiguous && last_ns_ && result <= *last_ns_)
-    result = utc(info.second);
+  if (info.result == date::local_info::ambiguous) {
+    const std::int64_t later = utc(info.second);
+    const bool is_later =
+        is_newest_first_ ? !last_ns_ || later < *last_ns_ : last_ns_ && result <= *last_ns_;
+    if (is_later) result = later;
+  }
   last_ns_ = result;
   return result;
 }
@@ -53,6 +57,12 @@ std::int64_t utc_of_gps(std::int64_t gps_ns) {
   for (const std::int64_t leap : leaps)
     if (utc - (ahead + 1) * second_ns >= leap * second_ns) ++ahead;
   return utc - ahead * second_ns;
+}
+
+std::optional<std::int64_t> utc_of_gps_date(std::int64_t date_ns) {
+  std::int64_t gps_ns = 0;
+  if (__builtin_sub_overflow(date_ns, gps_epoch_s * second_ns, &gps_ns)) return std::nullopt;
+  return utc_of_gps(gps_ns);
 }
 
 }  // namespace reident::telemetry_file

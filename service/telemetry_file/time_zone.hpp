@@ -15,15 +15,20 @@ class TimeZone {
 
   /// Returns the UTC time of a local one [ns since 1970]; empty in the hour that a change leaves
   /// out. Of the two in an hour that comes twice, the first one behind the last result, else the
-  /// later one.
+  /// later one; where the newest comes first, the last one before it, else the earlier one.
   std::optional<std::int64_t> to_utc(std::int64_t local_ns);
+  void put_newest_first() { is_newest_first_ = true; }
 
  private:
   const void* zone_ = nullptr;
+  bool is_newest_first_ = false;
   std::optional<std::int64_t> last_ns_;
 };
 
 /// Returns UTC for GPS seconds [ns since 1980-01-06, leap seconds not left out].
 std::int64_t utc_of_gps(std::int64_t gps_ns);
+/// Returns UTC for a date of GPS, which is as many leap seconds ahead [ns since 1970]; empty
+/// outside 64 bits.
+std::optional<std::int64_t> utc_of_gps_date(std::int64_t date_ns);
 
 }  // namespace reident::telemetry_file

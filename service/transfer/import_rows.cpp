@@ -360,7 +360,8 @@ std::variant<std::unique_ptr<ImportRows>, Error> import_rows(const ImportOptions
                    "each parameter"};
     auto rows = std::make_unique<LongRows>(options, reader, archive, *layout);
     if (!rows->knows_spacecraft()) return needs_spacecraft();
-    if (auto error = reader.find_time(true)) return *std::move(error);
+    if (auto error = reader.find_time(true, options.spacecraft.has_value()))
+      return *std::move(error);
     rows->note_left_out(reader);
     return rows;
   }

@@ -12,13 +12,14 @@ using testing::HasSubstr;
 
 constexpr std::int64_t in_2026 = 1'780'000'000'000'000'000;
 
-/// The time of the first row below a header with the column `name`, or the error.
+/// The time of the first row below a header with the column `name`, or the error; above it stand
+/// the lines of `above`.
 std::string first_time(const std::string& names, const std::vector<std::string>& cells,
-                       const TimeOptions& time = {}) {
+                       const TimeOptions& time = {}, const std::string& above = {}) {
   ReadingOptions options;
   options.time = time;
   options.latest_ns = in_2026;
-  std::string text = names + ",x\n";
+  std::string text = above + names + ",x\n";
   for (const std::string& cell : cells) text += cell + ",1.5\n";
   auto opened = TelemetryFile::of_text(text, "t.csv", options);
   if (const auto* error = std::get_if<Error>(&opened)) return error->message;
@@ -32,101 +33,124 @@ TEST(TelemetryClock, ARowWithoutAYearHasNoTime) {
     EXPECT_THAT(first_time("year,doy", {rest, "2024,60", "2024,61"}), HasSubstr("t.csv"));
 }
 
+struct FormCase {
+  const char* names;
+  std::vector<std::string> cells;
+  const char* time;
+};
+
 TEST(TelemetryClock, ReadsEveryForm) {
-  struct Case {
-    const char* names;
-    std::vector<std::string> cells;
-    const char* time;
-  };
-  for (const Case& c : {
-           Case{"time", {"2024-02-28T22:00:00.5Z"}, "2024-02-28T22:00:00.5Z"},
-           Case{"time", {"2024-02-28T23:00:00+01:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024-060T22:00:00Z"}, "2024-02-29T22:00:00Z"},
-           Case{"time", {"2024:060:22:00:00.000"}, "2024-02-29T22:00:00Z"},
-           Case{"time", {"2024.060.22.00.00.250"}, "2024-02-29T22:00:00.25Z"},
-           Case{"unix_s", {"0.1709157600D+10"}, "2024-02-28T22:00:00Z"},
-           Case{"YYYYDDD,SOD", {"2024059,79200.500"}, "2024-02-28T22:00:00.5Z"},
-           Case{"time", {"24.060.22.00.00.250"}, "2024-02-29T22:00:00.25Z"},
-           Case{"time", {"\"Feb 28, 2024 @ 22:00:00.250\""}, "2024-02-28T22:00:00.25Z"},
-           Case{"time",
-                {"2024\u5E7402\u670828\u65E5 22\u664200\u520630\u79D2"},
-                "2024-02-28T22:00:30Z"},
-           Case{"time", {"2024-W09-3T22:00:00Z"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"28.02.2024 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time",
-                {"02/28/2024 10:00:00 PM", "02/28/2024 10:00:10 PM"},
-                "2024-02-28T22:00:00Z"},
-           Case{"time", {"28-Feb-2024 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"20240228220000", "20240228220010"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2016-12-31T23:59:60Z"}, "2017-01-01T00:00:00Z"},
-           Case{"time", {"1709157600"}, "2024-02-28T22:00:00Z"},
-           Case{"timeStamp", {"1709157600000"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"1709157600000000"}, "2024-02-28T22:00:00Z"},
-           Case{"time_ns", {"1709157600000000000"}, "2024-02-28T22:00:00Z"},
-           Case{"Timestamp", {"133536312000000000"}, "2024-02-28T22:00:00Z"},
-           Case{"Time", {"45350.9166666667", "45350.9167824074"}, "2024-02-28T22:00:00Z"},
-           Case{"MJD", {"60368.91666667"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2460369.41666667"}, "2024-02-28T22:00:00Z"},
-           Case{"gps_s", {"1393192818"}, "2024-02-28T22:00:00Z"},
-           Case{"week,tow", {"2303,338418"}, "2024-02-28T22:00:00Z"},
-           Case{"year,doy,sec_of_day", {"2024,059,79200"}, "2024-02-28T22:00:00Z"},
-           Case{"Year,Month,Day,Hour,Minute,Second",
-                {"2024,2,28,22,0,0.5"},
-                "2024-02-28T22:00:00.5Z"},
-           Case{"Date,Time", {"2024-02-28,22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"Data,Hora", {"28/02/2024,22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"Jour,Moment", {"28.02.2024,22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"date,time", {"20240229,93000", "20240229,103000"}, "2024-02-29T09:30:00Z"},
-           Case{"YYYY,MM,DD,HH,MI,SS", {"2024,02,28,22,00,10"}, "2024-02-28T22:00:10Z"},
-           Case{"year,doy", {"2024,59.91666667"}, "2024-02-28T22:00:00Z"},
-           Case{"year,doy", {"2024,9.5"}, "2024-01-09T12:00:00Z"},
-           Case{"GPSWeek,GPSSec", {"2303,338418.000"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"\"1,709,157,600\"", "\"1,709,157,610\""}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024059220010"}, "2024-02-28T22:00:10Z"},
-           Case{"time", {"24-059T22:00:10"}, "2024-02-28T22:00:10Z"},
-           Case{"time", {"[2024-02-28 22:00:00]"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"Wed Feb 28 22:00:10 UTC 2024"}, "2024-02-28T22:00:10Z"},
-           Case{"time", {"28. Februar 2024 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"1 juil. 2024 22:00:00"}, "2024-07-01T22:00:00Z"},
-           Case{"time", {"28 f\xC3\xA9vr. 2024 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024-10-27 02:10:00 CEST"}, "2024-10-27T00:10:00Z"},
-           Case{"time", {"Mi 28.02.2024 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"mer. 28/02/2024 22h00m30s"}, "2024-02-28T22:00:30Z"},
-           Case{"time", {"Mar 28 2024 22:00:00"}, "2024-03-28T22:00:00Z"},
-           Case{"Date,Heure", {"28/02/2024,22h00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"28.02.2024 22:00:00 Uhr"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024. 02. 28. 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"28/02/2024 10:00:00 p.\u00A0m."}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"02/28/2024 10:00:00\u202FPM"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024-02-28 \uC624\uD6C4 10:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024. 2. 28. \uC624\uC804 10:00:00"}, "2024-02-28T10:00:00Z"},
-           Case{"time", {"2024/02/28 \u4E0B\u5348 10:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"28/2/2024 10:00:00 \u03BC\u03BC"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024-02-28T23:00:00+01:00[Europe/Berlin]"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024-02-28 23:00:00 (CET)"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"28FEB2024:22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"2024-02-28_22-00-30"}, "2024-02-28T22:00:30Z"},
-           Case{"time", {"22:00:30.500 28.02.2024"}, "2024-02-28T22:00:30.5Z"},
-           Case{"time", {"'2024-02-28 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"Date,Time", {"24-02-28,22:00:00", "24-02-28,22:00:10"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"24/02/28 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time", {"28/02/24 22:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"datenum", {"739310.9166666667", "739310.9167824074"}, "2024-02-28T22:00:00Z"},
-           Case{"JD", {"2460369.416666667", "2460369.416782407"}, "2024-02-28T22:00:00Z"},
-           Case{"time_ticks", {"638447544000000000"}, "2024-02-28T22:00:00Z"},
-           Case{"Zeit (MEZ)", {"28.02.2024 23:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time_CEST", {"2024-02-29T00:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"Time [UTC+01:00]", {"2024-02-28 23:00:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time [Europe/Berlin]", {"2024-07-01 00:00:00"}, "2024-06-30T22:00:00Z"},
-           Case{"datum,zeit,zone", {"28.02.2024,23:00:00,MEZ"}, "2024-02-28T22:00:00Z"},
-           Case{"Local time,UTC", {"2024-02-28 23:00,2024-02-28 22:00"}, "2024-02-28T22:00:00Z"},
-           Case{"time,zone", {"2024-07-01 00:00,Europe/Berlin"}, "2024-06-30T22:00:00Z"},
-           Case{"time,utc_offset", {"2024-02-28 23:00:00,+01:00"}, "2024-02-28T22:00:00Z"},
-           Case{"date,time,ms",
-                {"2024-02-28,22:00:00,7", "2024-02-28,22:00:00,507"},
-                "2024-02-28T22:00:00.007Z"},
-           Case{"time_s,usec", {"1709157600,250000"}, "2024-02-28T22:00:00.25Z"},
-           Case{"time (CET)", {"2024-02-28 23:00:00+02:00"}, "2024-02-28T21:00:00Z"},
+  for (const FormCase& c : {
+           FormCase{"time", {"2024-02-28T22:00:00.5Z"}, "2024-02-28T22:00:00.5Z"},
+           FormCase{"time", {"2024-02-28T23:00:00+01:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024-060T22:00:00Z"}, "2024-02-29T22:00:00Z"},
+           FormCase{"time", {"2024:060:22:00:00.000"}, "2024-02-29T22:00:00Z"},
+           FormCase{"time", {"2024.060.22.00.00.250"}, "2024-02-29T22:00:00.25Z"},
+           FormCase{"unix_s", {"0.1709157600D+10"}, "2024-02-28T22:00:00Z"},
+           FormCase{"YYYYDDD,SOD", {"2024059,79200.500"}, "2024-02-28T22:00:00.5Z"},
+           FormCase{"time", {"24.060.22.00.00.250"}, "2024-02-29T22:00:00.25Z"},
+           FormCase{"time", {"\"Feb 28, 2024 @ 22:00:00.250\""}, "2024-02-28T22:00:00.25Z"},
+           FormCase{"time",
+                    {"2024\u5E7402\u670828\u65E5 22\u664200\u520630\u79D2"},
+                    "2024-02-28T22:00:30Z"},
+           FormCase{"time", {"2024-W09-3T22:00:00Z"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"28.02.2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time",
+                    {"02/28/2024 10:00:00 PM", "02/28/2024 10:00:10 PM"},
+                    "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"28-Feb-2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"20240228220000", "20240228220010"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2016-12-31T23:59:60Z"}, "2017-01-01T00:00:00Z"},
+           FormCase{"time", {"1709157600"}, "2024-02-28T22:00:00Z"},
+           FormCase{"timeStamp", {"1709157600000"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"1709157600000000"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time_ns", {"1709157600000000000"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Timestamp", {"133536312000000000"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Time", {"45350.9166666667", "45350.9167824074"}, "2024-02-28T22:00:00Z"},
+           FormCase{"MJD", {"60368.91666667"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2460369.41666667"}, "2024-02-28T22:00:00Z"},
+           FormCase{"gps_s", {"1393192818"}, "2024-02-28T22:00:00Z"},
+           FormCase{"week,tow", {"2303,338418"}, "2024-02-28T22:00:00Z"},
+           FormCase{"year,doy,sec_of_day", {"2024,059,79200"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Year,Month,Day,Hour,Minute,Second",
+                    {"2024,2,28,22,0,0.5"},
+                    "2024-02-28T22:00:00.5Z"},
+           FormCase{"Date,Time", {"2024-02-28,22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Data,Hora", {"28/02/2024,22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Jour,Moment", {"28.02.2024,22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"date,time", {"20240229,93000", "20240229,103000"}, "2024-02-29T09:30:00Z"},
+           FormCase{"YYYY,MM,DD,HH,MI,SS", {"2024,02,28,22,00,10"}, "2024-02-28T22:00:10Z"},
+           FormCase{"year,doy", {"2024,59.91666667"}, "2024-02-28T22:00:00Z"},
+           FormCase{"year,doy", {"2024,9.5"}, "2024-01-09T12:00:00Z"},
+           FormCase{"GPSWeek,GPSSec", {"2303,338418.000"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"\"1,709,157,600\"", "\"1,709,157,610\""}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024059220010"}, "2024-02-28T22:00:10Z"},
+           FormCase{"time", {"24-059T22:00:10"}, "2024-02-28T22:00:10Z"},
+           FormCase{"time", {"[2024-02-28 22:00:00]"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"Wed Feb 28 22:00:10 UTC 2024"}, "2024-02-28T22:00:10Z"},
+           FormCase{"time", {"28. Februar 2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"1 juil. 2024 22:00:00"}, "2024-07-01T22:00:00Z"},
+           FormCase{"time", {"28 f\xC3\xA9vr. 2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024-10-27 02:10:00 CEST"}, "2024-10-27T00:10:00Z"},
+           FormCase{"time", {"Mi 28.02.2024 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"mer. 28/02/2024 22h00m30s"}, "2024-02-28T22:00:30Z"},
+           FormCase{"time", {"Mar 28 2024 22:00:00"}, "2024-03-28T22:00:00Z"},
+           FormCase{"Date,Heure", {"28/02/2024,22h00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"28.02.2024 22:00:00 Uhr"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024. 02. 28. 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"28/02/2024 10:00:00 p.\u00A0m."}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"02/28/2024 10:00:00\u202FPM"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024-02-28 \uC624\uD6C4 10:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024. 2. 28. \uC624\uC804 10:00:00"}, "2024-02-28T10:00:00Z"},
+           FormCase{"time", {"2024/02/28 \u4E0B\u5348 10:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"28/2/2024 10:00:00 \u03BC\u03BC"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024-02-28T23:00:00+01:00[Europe/Berlin]"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024-02-28 23:00:00 (CET)"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"28FEB2024:22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024-02-28_22-00-30"}, "2024-02-28T22:00:30Z"},
+           FormCase{"time", {"22:00:30.500 28.02.2024"}, "2024-02-28T22:00:30.5Z"},
+           FormCase{"time", {"'2024-02-28 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{
+               "Date,Time", {"24-02-28,22:00:00", "24-02-28,22:00:10"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"24/02/28 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"28/02/24 22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"datenum", {"739310.9166666667", "739310.9167824074"}, "2024-02-28T22:00:00Z"},
+           FormCase{"JD", {"2460369.416666667", "2460369.416782407"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time_ticks", {"638447544000000000"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Zeit (MEZ)", {"28.02.2024 23:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time_CEST", {"2024-02-29T00:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Time [UTC+01:00]", {"2024-02-28 23:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time [Europe/Berlin]", {"2024-07-01 00:00:00"}, "2024-06-30T22:00:00Z"},
+           FormCase{"datum,zeit,zone", {"28.02.2024,23:00:00,MEZ"}, "2024-02-28T22:00:00Z"},
+           FormCase{
+               "Local time,UTC", {"2024-02-28 23:00,2024-02-28 22:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time,zone", {"2024-07-01 00:00,Europe/Berlin"}, "2024-06-30T22:00:00Z"},
+           FormCase{"time,utc_offset", {"2024-02-28 23:00:00,+01:00"}, "2024-02-28T22:00:00Z"},
+       })
+    EXPECT_EQ(first_time(c.names, c.cells), c.time) << c.cells[0];
+}
+
+TEST(TelemetryClock, ReadsTheFormsOfPrograms) {
+  for (const FormCase& c : {
+           FormCase{"date,time,ms",
+                    {"2024-02-28,22:00:00,7", "2024-02-28,22:00:00,507"},
+                    "2024-02-28T22:00:00.007Z"},
+           FormCase{"time_s,usec", {"1709157600,250000"}, "2024-02-28T22:00:00.25Z"},
+           FormCase{"time (CET)", {"2024-02-28 23:00:00+02:00"}, "2024-02-28T21:00:00Z"},
+           FormCase{"(PDH-CSV 4.0) (W. Europe Standard Time)(-60)",
+                    {"02/28/2024 23:00:00.000"},
+                    "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"2024-02-29 07:00:00 JST"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"240228220010", "240228220020"}, "2024-02-28T22:00:10Z"},
+           FormCase{"time", {"202402282210", "202402282220"}, "2024-02-28T22:10:00Z"},
+           FormCase{"header.stamp.secs,header.stamp.nsecs",
+                    {"1709157600,500000000", "1709157601,0"},
+                    "2024-02-28T22:00:00.5Z"},
+           FormCase{"sec,nanosec", {"1709157600,500000000"}, "2024-02-28T22:00:00.5Z"},
+           FormCase{"Date,Time", {"2024-02-28 00:00:00,22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"year,doy,hhmm", {"2024,059,930", "2024,059,2200"}, "2024-02-28T09:30:00Z"},
+           FormCase{"YYYY,MM,DD,hh,mm,ss", {"2024,2,28,22,0,10"}, "2024-02-28T22:00:10Z"},
+           FormCase{"time", {"\"28.2.2024, 22:00:00\""}, "2024-02-28T22:00:00Z"},
        })
     EXPECT_EQ(first_time(c.names, c.cells), c.time) << c.cells[0];
 }
@@ -168,9 +192,62 @@ TEST(TelemetryClock, ReadsTimesThatHavePassedAsTheyAreWritten) {
                                          {"t", "26:00:10", "2024-02-29T02:00:10Z"},
                                          {"Time", "59:10.5", "2024-02-28T00:59:10.5Z"},
                                          {"Time", "10 sec", "2024-02-28T00:00:10Z"},
+                                         {"Time", "1 days 02:00:10.5", "2024-02-29T02:00:10.5Z"},
+                                         {"X_Value", "0.500000", "2024-02-28T00:00:00.5Z"},
                                          {"t (min)", "0.166667", "2024-02-28T00:00:10Z"},
                                          {"Time [h]", "0.00277778", "2024-02-28T00:00:10Z"}})
     EXPECT_EQ(first_time(name, {cell}, epoch), time) << cell;
+}
+
+TEST(TelemetryClock, BeginsDaysOfTheYearWithTheFirst) {
+  TimeOptions epoch;
+  epoch.epoch_ns = parse_time("2024-01-01T00:00:00Z");
+  EXPECT_EQ(first_time("doy_time", {"059:22:00:00"}, epoch), "2024-02-28T22:00:00Z");
+  epoch.column = "doy";
+  EXPECT_EQ(first_time("doy", {"59.91666667"}, epoch), "2024-02-28T22:00:00Z");
+}
+
+TEST(TelemetryClock, IsInTheZoneThatALineAboveTheHeaderSays) {
+  const auto time = [](const std::string& above, const TimeOptions& options = {}) {
+    return first_time("time,y", {"2024-07-01 00:00:00,1"}, options, above);
+  };
+  for (const char* above : {"Timezone,Europe/Berlin\n", "# Zeitzone: Europe/Berlin\n",
+                            "Device,EPS\nAll times are CEST (UTC+2),\n", "Time zone,+02:00\n"})
+    EXPECT_EQ(time(above), "2024-06-30T22:00:00Z") << above;
+  for (const char* above : {"Exported at 2024-07-02 10:00 CEST,\n", "# Time zone: UTC\n"})
+    EXPECT_EQ(time(above), "2024-07-01T00:00:00Z") << above;
+  const std::string unknown = "# Time zone: W. Europe Standard Time\n";
+  EXPECT_THAT(time(unknown), AllOf(HasSubstr("by line 1"), HasSubstr("--time-zone")));
+  for (const char* zone : {"Europe/Berlin", "+02:00"}) {
+    TimeOptions given;
+    given.zone = zone;
+    EXPECT_EQ(time(unknown, given), "2024-06-30T22:00:00Z");
+  }
+}
+
+TEST(TelemetryClock, TakesLeapSecondsOutOfDatesWhereItIsTold) {
+  const std::vector<std::string> cells = {"2024-02-28T22:00:18"};
+  EXPECT_THAT(first_time("gps_time", cells), HasSubstr("--time-format gps"));
+  EXPECT_THAT(first_time("time_TAI", cells), HasSubstr("--time-format iso"));
+  EXPECT_EQ(first_time("gps_time", {"2024-02-28T22:00:18Z"}), "2024-02-28T22:00:18Z");
+  TimeOptions format;
+  format.format = TimeFormat::gps;
+  EXPECT_EQ(first_time("gps_time", cells, format), "2024-02-28T22:00:00Z");
+  format.format = TimeFormat::text;
+  EXPECT_EQ(first_time("gps_time", cells, format), "2024-02-28T22:00:18Z");
+}
+
+TEST(TelemetryClock, AsksWhereRowsAreOfSeveralClocksOrSpacecraft) {
+  EXPECT_THAT(first_time("time_a,a,time_b", {"2024-02-28T22:00:00Z,1,2024-02-28T22:00:03Z",
+                                             "2024-02-28T22:00:10Z,1,2024-02-28T22:00:13Z"}),
+              HasSubstr("'time_a' and 'time_b'"));
+  EXPECT_EQ(first_time("time_a,a,time_b", {"2024-02-28T22:00:00Z,1,2024-02-28T22:00:00Z",
+                                           "2024-02-28T22:00:10Z,1,2024-02-28T22:00:10Z"}),
+            "2024-02-28T22:00:00Z");
+  for (const char* name : {"satellite", "Spacecraft ID", "norad_id"})
+    EXPECT_THAT(first_time(std::string("time,") + name,
+                           {"2024-02-28T22:00:00Z,41", "2024-02-28T22:00:03Z,42"}),
+                HasSubstr("t.csv:3"));
 }
 
 TEST(TelemetryClock, AsksWhereManyRowsHaveTheTimeOfTheRowBefore) {
@@ -238,6 +315,7 @@ TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
   named.column = "time";
   EXPECT_THAT(first_time("year,doy,sec_of_day", {"2024,059,79200"}, named),
               HasSubstr("--time year,doy,sec_of_day"));
+  EXPECT_THAT(first_time("time", {"2024-02-28 22:00:00 IST"}), HasSubstr("+05:30"));
   named.zone = "Mars/Olympus";
   EXPECT_THAT(first_time("time", {"2024-02-28"}, named), HasSubstr("Europe/Berlin"));
 }
@@ -254,6 +332,11 @@ TEST(TelemetryClock, KnowsTheHourThatComesTwice) {
   EXPECT_EQ(utc("2024-10-27T03:00:00"), "2024-10-27T02:00:00Z");
   EXPECT_EQ(utc("2024-07-01T12:00:00"), "2024-07-01T10:00:00Z");
   EXPECT_FALSE(zone->to_utc(*parse_time("2024-03-31T02:30:00"))) << "the hour that is left out";
+  zone->put_newest_first();
+  EXPECT_EQ(utc("2024-10-27T03:00:00"), "2024-10-27T02:00:00Z");
+  EXPECT_EQ(utc("2024-10-27T02:30:00"), "2024-10-27T01:30:00Z");
+  EXPECT_EQ(utc("2024-10-27T02:00:00"), "2024-10-27T01:00:00Z");
+  EXPECT_EQ(utc("2024-10-27T02:30:00"), "2024-10-27T00:30:00Z");
 }
 
 TEST(TelemetryClock, SubtractsTheLeapSecondsOfGps) {
@@ -293,6 +376,8 @@ TEST(TelemetryClockWatch, SaysWhatAStepBackLooksLike) {
   };
   for (const Case& c : {
            Case{{}, true, {10'000, 10'010, 6'420}, ClockStep::Kind::hour},
+           Case{{}, true, {262'800, 266'400, 266'400}, ClockStep::Kind::hour},  // a Sunday at 2
+           Case{{}, true, {46'780, 46'790, 3'600}, ClockStep::Kind::half_day},
            Case{{}, false, {10'000, 10'010, 6'420}, ClockStep::Kind::out_of_order},
            Case{0, false, {65'520, 65'530, 4}, ClockStep::Kind::wrap},
            Case{0, false, {604'780, 604'790, 0}, ClockStep::Kind::wrap},

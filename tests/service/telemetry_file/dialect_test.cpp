@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/telemetry_file/long_layout.hpp"
 
@@ -244,6 +245,38 @@ TEST(TelemetryDialect, OfWhatDatabasesPrintLeavesOutRulesAndTheFooter) {
   }
 }
 
+TEST(TelemetryDialect, OfWhatDatabasesPrintInColumnsKeepsBlankCells) {
+  const std::string text =
+      "time                 u    v\n"
+      "-------------------  ---  ---\n"
+      "2024-02-28 22:00:00  6.1  28.1\n"
+      "2024-02-28 22:00:10  6.2      \n"
+      "2024-02-28 22:00:20       28.3\n"
+      "2024-02-28 22:00:30  6.4  28.4\n";
+  auto file = std::get<TelemetryFile>(TelemetryFile::of_text(text, "t.txt", {}));
+  std::vector<std::string> second;
+  while (file.next() == TelemetryFile::Step::row) second.emplace_back(trimmed(file.cells()[1]));
+  EXPECT_THAT(second, ElementsAre("6.1", "6.2", "", "6.4"));
+}
+
+TEST(TelemetryDialect, HasItsHeaderBelowMetadataAndTitlesThatLookLikeRows) {
+  std::string text = "Writer\t2\n";
+  for (const char* name : {"Samples", "X0", "Delta_X", "Gain", "Offset", "Rate", "Range"})
+    text += std::string(name) + "\t20\t20\t\n";
+  text += "***End_of_Header***\t\t\t\nX_Value\tu\tv\tComment\n";
+  for (int row = 0; row < 8; ++row) text += fmt::format("0.{}\t1.{}\t2.{}\t\n", row, row, row);
+  const auto dialect = std::get<Dialect>(dialect_of(text, {}));
+  EXPECT_THAT(dialect.columns, ElementsAre("X_Value", "u", "v", "Comment"));
+  EXPECT_EQ(dialect.first_line, 11U);
+}
+
+TEST(TelemetryDialect, JoinsADateAndAClockWithACommaBetweenThem) {
+  const std::string text = "time,u\n28.2.2024, 22:00:00,6.1\n28.2.2024, 22:00:10,6.2\n";
+  auto file = std::get<TelemetryFile>(TelemetryFile::of_text(text, "t.csv", {}));
+  ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+  EXPECT_THAT(file.cells(), ElementsAre("28.2.2024, 22:00:00", "6.1"));
+}
+
 TEST(TelemetryDialect, LeavesNumbersOfRowsWithoutAName) {
   auto opened = TelemetryFile::of_text(
       "\"time\" \"u\"\n\"1\" \"2024-02-28T22:00:00Z\" 1.5\n\"2\" \"2024-02-28T22:00:10Z\" 1.6\n",
@@ -393,6 +426,15 @@ TEST(TelemetryCells, WithAFlagOfLimitsAreFlagged) {
   const CellFormat format = format_of(cells);
   EXPECT_TRUE(read_cell("28.4 H", format).is_flagged);
   EXPECT_FALSE(read_cell("27.9", format).is_flagged);
+}
+
+TEST(TelemetryCells, NameTheStateThatNoNumberWasGivenFor) {
+  ReadingOptions options;
+  options.cells.states = {{"mode", {{"SAFE", 0}, {"SUN", 1}}}};
+  const std::string text = "time,mode\n1,SAFE\n2,SUN\n3,EARTH\n";
+  const auto file = std::get<TelemetryFile>(TelemetryFile::of_text(text, "t.csv", options));
+  EXPECT_EQ(file.first_word(1), "'EARTH' in line 4");
+  EXPECT_THAT(file.format(1).words, ElementsAre("EARTH"));
 }
 
 TEST(TelemetryCells, OfMissingValuesAndStatesAreAsGiven) {

@@ -97,6 +97,11 @@ TEST(TelemetryRows, AreCutIntoCells) {
       {"a,\n1,\n", {{"a", ""}, {"1", ""}}},
       {",,\n1,2,3\n", {{"", "", ""}, {"1", "2", "3"}}},
       {"a,b\n", {{"a", "b"}}},
+      {"a,b\n1,2\n\xEF\xBB\xBF"
+       "a,b\n3,4\n",
+       {{"a", "b"}, {"1", "2"}, {"3", "4"}}},
+      {"a,b\n\"x \\\"y\\\" z\",2\n", {{"a", "b"}, {"x \"y\" z", "2"}}},
+      {"a,b\n\"C:\\\",2\n", {{"a", "b"}, {"C:\\", "2"}}},
   };
   for (const auto& c : cases) EXPECT_EQ(rows_of(c.text), c.rows) << c.text;
 }
@@ -176,6 +181,16 @@ TEST(TelemetryRows, ThatAreCommentsAmongOthersAreFoundByTheirMark) {
   for (int row = 0; row < 40; ++row) ASSERT_EQ(file.next(), TelemetryFile::Step::row) << row;
   EXPECT_EQ(file.next(), TelemetryFile::Step::end);
   EXPECT_THAT(file.found(), HasSubstr("comments begin with #"));
+}
+
+TEST_F(TelemetryRowFile, EndsBeforeTheNulBytesThatFillABlock) {
+  auto opened = TelemetryFile::open(write("time,x\n1,2\n3,4\n" + std::string(512, '\0')), {});
+  ASSERT_TRUE(std::holds_alternative<TelemetryFile>(opened)) << std::get<Error>(opened).message;
+  auto& read = std::get<TelemetryFile>(opened);
+  EXPECT_EQ(read.next(), TelemetryFile::Step::row);
+  EXPECT_EQ(read.next(), TelemetryFile::Step::row);
+  EXPECT_EQ(read.next(), TelemetryFile::Step::end);
+  EXPECT_EQ(read.remarks().size(), 1U);
 }
 
 TEST(TelemetryRows, WithNulBytesAreBadByThemselves) {
