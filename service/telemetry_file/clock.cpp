@@ -218,6 +218,7 @@ std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> 
     return utc_of_gps(*week + *of_week);
   }
   const bool is_ordinal = parts_ == Parts::day_of_year;
+  const bool is_dated = parts_ == Parts::dated;
   std::string_view second = trimmed(cells[columns_[1]]);
   std::int64_t of_day_ns = 0;
   if (const auto point = second.find(has_decimal_comma_ ? ',' : '.');
@@ -227,15 +228,16 @@ std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> 
     of_day_ns = *rounded(fraction, quantum_ns_);
     second = second.substr(0, point);
   }
-  std::string date = std::string(trimmed(cells[columns_[0]])) + "/";
+  std::string date(trimmed(cells[columns_[0]]));
+  if (!is_dated) date += "/";
   if (is_ordinal) date.append(3 - std::min<std::size_t>(second.size(), 3), '0');  // 9 is 009
-  date += second;
-  if (!is_ordinal) date += "/" + std::string(trimmed(cells[columns_[2]]));
+  if (!is_dated) date += second;
+  if (parts_ == Parts::calendar) date += "/" + std::string(trimmed(cells[columns_[2]]));
   const auto day = read_date_text(date, order_);
   if (!day) return std::nullopt;
   DateText time = *day;
   time.clock_ns += of_day_ns;
-  const std::size_t first = is_ordinal ? 2 : 3;
+  const std::size_t first = is_dated ? 1 : is_ordinal ? 2 : 3;
   for (std::size_t part = first; part < columns_.size(); ++part) {
     if (part_unit_ns_[part - first] == 0) {  // a time of day as text
       const auto of_day = read_date_text(clock_text(cells[columns_[part]]), order_);

@@ -97,7 +97,7 @@ class Clock {
   const std::string& description() const { return description_; }
 
  private:
-  enum class Parts { one, joined, calendar, day_of_year, gps_week };
+  enum class Parts { one, joined, dated, calendar, day_of_year, gps_week };
   friend class ClockFinder;
 
   std::optional<std::int64_t> read_one(std::string_view cell);

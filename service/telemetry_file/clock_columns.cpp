@@ -68,14 +68,8 @@ bool ClockFinder::set_parts(Clock::Parts parts, std::vector<std::size_t> columns
   return true;
 }
 
-/// Year with month and day, or day of the year, and the time of day.
-bool ClockFinder::find_calendar() {
-  const auto year = part(TimePart::year), month = part(TimePart::month), day = part(TimePart::day);
-  auto of_year = part(TimePart::day_of_year);
-  if (year && !of_year && day && !month && (is_asked_ || counts_days_of_year(*day))) of_year = day;
-  if (!year || (!of_year && (!month || !day))) return false;
-  std::vector<std::size_t> columns =
-      of_year ? std::vector{*year, *of_year} : std::vector{*year, *month, *day};
+/// Adds the columns of a time of day; returns the unit of each, 0 for a text.
+std::vector<std::int64_t> ClockFinder::add_time_of_day(std::vector<std::size_t>& columns) {
   std::vector<std::int64_t> units;
   const auto add = [&](TimePart wanted, std::int64_t unit) {
     const auto at = part(wanted);
@@ -92,6 +86,28 @@ bool ClockFinder::find_calendar() {
   } else if (!of_day) {
     add(TimePart::second, second_ns);
   }
+  return units;
+}
+
+/// A date, and hours, minutes and seconds.
+bool ClockFinder::find_date_and_parts() {
+  const auto date = part(TimePart::date);
+  if (!date || !part(TimePart::hour) || !is_date_alone(first_cell(*date).first, clock_.order_))
+    return false;
+  std::vector<std::size_t> columns = {*date};
+  auto units = add_time_of_day(columns);
+  return set_parts(Clock::Parts::dated, std::move(columns), std::move(units));
+}
+
+/// Year with month and day, or day of the year, and the time of day.
+bool ClockFinder::find_calendar() {
+  const auto year = part(TimePart::year), month = part(TimePart::month), day = part(TimePart::day);
+  auto of_year = part(TimePart::day_of_year);
+  if (year && !of_year && day && !month && (is_asked_ || counts_days_of_year(*day))) of_year = day;
+  if (!year || (!of_year && (!month || !day))) return false;
+  std::vector<std::size_t> columns =
+      of_year ? std::vector{*year, *of_year} : std::vector{*year, *month, *day};
+  auto units = add_time_of_day(columns);
   return set_parts(of_year ? Clock::Parts::day_of_year : Clock::Parts::calendar, std::move(columns),
                    std::move(units));
 }
@@ -241,7 +257,7 @@ bool ClockFinder::find_gps_week() {
 }
 
 bool ClockFinder::find_set() {
-  return find_calendar() || find_date_and_clock() || find_gps_week();
+  return find_calendar() || find_date_and_clock() || find_date_and_parts() || find_gps_week();
 }
 
 std::string_view ClockFinder::unit(std::size_t c) const {

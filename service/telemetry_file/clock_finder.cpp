@@ -156,6 +156,7 @@ std::optional<Problem> ClockFinder::decide_parts() {
   clock_.may_be_local_ = clock_.parts_ != Clock::Parts::gps_week && !options_.zone;
   switch (clock_.parts_) {
     case Clock::Parts::joined:
+    case Clock::Parts::dated:
       clock_.description_ = "a date and a time of day";
       break;
     case Clock::Parts::calendar:
@@ -171,7 +172,8 @@ std::optional<Problem> ClockFinder::decide_parts() {
       clock_.description_ = "GPS week and " + unit_name(clock_.unit_ns_);
       break;
   }
-  if (clock_.parts_ == Clock::Parts::joined) return decide_order(clock_.columns_.front());
+  if (clock_.parts_ == Clock::Parts::joined || clock_.parts_ == Clock::Parts::dated)
+    return decide_order(clock_.columns_.front());
   return std::nullopt;
 }
 

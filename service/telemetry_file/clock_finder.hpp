@@ -31,7 +31,9 @@ class ClockFinder {
   bool counts_seconds(std::size_t c) const;
   bool set_parts(Clock::Parts parts, std::vector<std::size_t> columns,
                  std::vector<std::int64_t> units);
+  std::vector<std::int64_t> add_time_of_day(std::vector<std::size_t>& columns);
   bool find_calendar();
+  bool find_date_and_parts();
   bool find_date_and_clock();
   bool join(std::size_t date, std::optional<std::size_t> clock);
   std::optional<std::size_t> clock_beside(std::size_t date) const;
