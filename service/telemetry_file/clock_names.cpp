@@ -273,15 +273,17 @@ NameHint hint_of(std::string_view name, std::string_view unit) {
   return hint;
 }
 
-bool is_named_like_a_spacecraft(std::string_view name) {
+bool is_named_like_a_spacecraft(std::string_view name, bool holds_numbers) {
   auto words = words_of(name);
-  if (words.size() > 1 && (words.back() == "id" || words.back() == "name")) words.pop_back();
+  const bool is_id = words.size() > 1 && words.back() == "id";
+  if (is_id || (words.size() > 1 && words.back() == "name")) words.pop_back();
   std::string all;
   for (const std::string& word : words) all += word;
-  constexpr std::array<std::string_view, 10> names = {
-      "spacecraft", "satellite", "sat",      "satid",   "scid",
-      "norad",      "noradid",   "noradcat", "vehicle", "satellit"};
-  return std::find(names.begin(), names.end(), all) != names.end();
+  constexpr std::array<std::string_view, 5> ids = {"scid", "satid", "norad", "noradid", "noradcat"};
+  constexpr std::array<std::string_view, 5> names = {"spacecraft", "satellite", "sat", "vehicle",
+                                                     "satellit"};
+  return std::find(ids.begin(), ids.end(), all) != ids.end() ||
+         ((is_id || !holds_numbers) && std::find(names.begin(), names.end(), all) != names.end());
 }
 
 bool is_named_like_a_time(std::string_view name) {

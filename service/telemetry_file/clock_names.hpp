@@ -46,8 +46,9 @@ bool is_named_like_a_zone(std::string_view name);
 /// the column of seconds is called too, as stamp.secs and stamp.nsecs.
 std::optional<std::int64_t> fraction_of_second(std::string_view name, std::string_view seconds);
 
-/// Whether a column is named as one of spacecraft.
-bool is_named_like_a_spacecraft(std::string_view name);
+/// Whether a column is named as one of spacecraft. Numbers have to be called so: `sat` alone may
+/// count them.
+bool is_named_like_a_spacecraft(std::string_view name, bool holds_numbers);
 
 /// Whether a column is named as times are.
 bool is_named_like_a_time(std::string_view name);

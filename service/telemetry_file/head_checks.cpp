@@ -1,10 +1,13 @@
 #include "service/telemetry_file/head_checks.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "service/support/text.hpp"
 #include "service/telemetry_file/clock_names.hpp"
 #include "service/telemetry_file/clock_words.hpp"
+#include "service/telemetry_file/number_text.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -17,10 +20,14 @@ constexpr double most_repeated = 0.2;  // of the rows, with the time of the row 
 
 std::optional<Problem> several_spacecraft(const HeadCells& head, const Clock& clock) {
   for (std::size_t c = 0; c < head.columns.size(); ++c) {
-    if (clock.uses(c) || !is_named_like_a_spacecraft(head.names[c])) continue;
+    const auto& cells = head.columns[c];
+    const bool holds_numbers = std::any_of(cells.begin(), cells.end(), [](std::string_view cell) {
+      return plain_number(trimmed(cell)).has_value();
+    });
+    if (clock.uses(c) || !is_named_like_a_spacecraft(head.names[c], holds_numbers)) continue;
     std::string_view first;
     for (std::size_t row = 0; row < head.lines.size(); ++row) {
-      const std::string_view cell = trimmed(head.columns[c][row]);
+      const std::string_view cell = trimmed(cells[row]);
       if (cell.empty() || cell == first) continue;
       if (!first.empty())
         return Problem{

@@ -246,10 +246,12 @@ TEST(TelemetryClock, AsksWhereRowsAreOfSeveralClocksOrSpacecraft) {
   EXPECT_EQ(first_time("time_a,a,time_b", {"2024-02-28T22:00:00Z,1,2024-02-28T22:00:00Z",
                                            "2024-02-28T22:00:10Z,1,2024-02-28T22:00:10Z"}),
             "2024-02-28T22:00:00Z");
-  for (const char* name : {"satellite", "Spacecraft ID", "norad_id"})
-    EXPECT_THAT(first_time(std::string("time,") + name,
-                           {"2024-02-28T22:00:00Z,41", "2024-02-28T22:00:03Z,42"}),
-                HasSubstr("t.csv:3"));
+  const std::vector<std::string> numbers = {"2024-02-28T22:00:00Z,41", "2024-02-28T22:00:03Z,42"};
+  for (const char* name : {"satellite_id", "Spacecraft ID", "norad_id"})
+    EXPECT_THAT(first_time(std::string("time,") + name, numbers), HasSubstr("t.csv:3"));
+  EXPECT_THAT(first_time("time,satellite", {"2024-02-28T22:00:00Z,A", "2024-02-28T22:00:03Z,B"}),
+              HasSubstr("t.csv:3"));
+  EXPECT_EQ(first_time("time,sat", numbers), "2024-02-28T22:00:00Z") << "satellites in view";
 }
 
 TEST(TelemetryClock, AsksWhereManyRowsHaveTheTimeOfTheRowBefore) {
