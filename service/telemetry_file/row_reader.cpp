@@ -97,9 +97,9 @@ std::string comment_advice(std::string_view line) {
   return {};
 }
 
-/// Whether a line goes on with \" that does not close its cell.
+/// Whether a line goes on with \" in place of a doubled quote.
 bool is_escaped_quote(std::span<const char> rest, char separator) {
-  return rest.size() > 2 && rest[1] == '"' && !separates(rest[2], separator);
+  return rest.size() > 2 && rest[1] == '"' && rest[2] != '"' && !separates(rest[2], separator);
 }
 
 std::optional<std::string_view> split_cells(std::span<char> line, char separator,

@@ -102,6 +102,7 @@ TEST(TelemetryRows, AreCutIntoCells) {
        {{"a", "b"}, {"1", "2"}, {"3", "4"}}},
       {"a,b\n\"x \\\"y\\\" z\",2\n", {{"a", "b"}, {"x \"y\" z", "2"}}},
       {"a,b\n\"C:\\\",2\n", {{"a", "b"}, {"C:\\", "2"}}},
+      {"a,b\n\"x\\\"\"y\",2\n", {{"a", "b"}, {"x\\\"y", "2"}}},
   };
   for (const auto& c : cases) EXPECT_EQ(rows_of(c.text), c.rows) << c.text;
 }
