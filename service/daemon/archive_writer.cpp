@@ -104,6 +104,9 @@ void ArchiveWriter::commit(const std::vector<storage::TelemetryFrame>& frames,
     counts_.late += report.late;
     counts_.sequence_missing = missing;
     if (!report.damages.empty()) counts_.last_damage = report.damages.back();
+    if (counts_.postponed.empty() && !report.postponed.empty())
+      log::error("archive", "late samples wait for a shard", {{"error", report.postponed}});
+    counts_.postponed = report.postponed;
   }
   listener_.stored(frames, report);
 }

@@ -61,6 +61,7 @@ class ArchiveWriter {
     std::uint64_t sequence_missing = 0;  // of all sources, since the archive was made
     std::string last_error;              // empty when the last batch was stored
     std::string last_damage;             // what the archive set aside last since the start
+    std::string postponed;               // the shard that late samples wait for, and the remedy
   };
   Counts counts() const;
   /// Events queued or taken from the queue and not yet committed.

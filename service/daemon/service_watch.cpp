@@ -122,7 +122,8 @@ std::vector<Alarm> ServiceWatch::disk_and_damage() const {
   const ArchiveWriter::Counts counts = parts_.writer.counts();
   if (!counts.last_error.empty()) alarms.push_back({"disk", {}, counts.last_error, parts_.clock()});
   history::add_full_disk(parts_.config.database, parts_.clock(), alarms);
-  const std::string& damage = counts.last_damage.empty() ? parts_.damage : counts.last_damage;
+  std::string damage = counts.last_damage.empty() ? parts_.damage : counts.last_damage;
+  if (!counts.postponed.empty()) damage = "Late samples wait: " + counts.postponed;
   if (!damage.empty()) alarms.push_back({"damage", {}, damage, parts_.clock()});
   return alarms;
 }

@@ -180,7 +180,7 @@ std::optional<Error> Import::fill(bool& at_end) {
 
 void Import::commit() {
   at_.digest = digest_before(options_.file, at_.position);
-  log_.append(id_, batch_.descriptors, batch_.frames(), at_);
+  report_.postponed = log_.append(id_, batch_.descriptors, batch_.frames(), at_).postponed;
   report_.samples += batch_.samples();
   report_.new_parameters += batch_.descriptors.size();
 }

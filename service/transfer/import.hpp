@@ -37,6 +37,7 @@ struct ImportReport {
   telemetry_file::LeftOut left_out;          // rows of this run
   std::vector<std::string> first_bad_lines;  // at most 5 messages
   std::string found;                         // how the file is read
+  std::string postponed;                     // the shard that samples wait for, and the remedy
   std::vector<std::string> remarks;          // what else a user has to know, one sentence each
 };
 

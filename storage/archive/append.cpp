@@ -14,6 +14,7 @@ namespace {
 
 // Room for one series in one batch: frames may be many and of many series with a sample each.
 constexpr std::size_t reserved_arrivals = 4096;
+constexpr std::size_t postponed_of_step = 4096;
 
 bool same_value(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
@@ -44,11 +45,11 @@ AppendReport Append::run() {
   frame_source_.reserve(frames_.size());
   for (const TelemetryFrame& frame : frames_) {
     frame_source_.push_back(source_of(frame));
-    sources_[frame_source_.back()].samples += frame.samples.size();
+    if (which_ == Frames::new_ones) sources_[frame_source_.back()].samples += frame.samples.size();
   }
   sort_by_series();
   for (const SeriesArrivals& series : series_) store(series);
-  track_sequences();
+  if (which_ == Frames::new_ones) track_sequences();
   for (const Source& source : sources_) save(source);
   return std::move(report_);
 }
@@ -166,7 +167,14 @@ SampleColumns Append::settled(const SeriesArrivals& series, SeriesHead& head,
   SampleColumns landed;
   for (std::size_t i = 0; i < order.size();) {
     const Time time = time_of(series.arrivals[order[i]]);
-    std::optional<Held> kept = held(head, time);
+    std::optional<Held> kept;
+    try {
+      kept = held(head, time);
+    } catch (const ShardError& why) {
+      for (; i < order.size() && time_of(series.arrivals[order[i]]) == time; ++i)
+        postpone(head, series.arrivals[order[i]], why);
+      continue;
+    }
     const std::optional<Held> before = kept;
     bool changed = false;
     for (; i < order.size() && time_of(series.arrivals[order[i]]) == time; ++i) {
@@ -209,6 +217,16 @@ std::optional<Held> Append::held(const SeriesHead& head, Time time) {
   if (!head.last || time > *head.last || time < *head.first) return std::nullopt;
   if (const auto recent = RecentTier::find(head, time)) return recent;
   return writer_.chunks().find(head.id, time);
+}
+
+// Whether its frame is new nobody knows: it fills a gap of its source, and begins no run.
+void Append::postpone(const SeriesHead& head, const Arrival& arrival, const ShardError& why) {
+  writer_.postponed().add(
+      {.series = head.id,
+       .time = time_of(arrival),
+       .sample = {arrival.value, arrival.quality, source_of(arrival).tracker.source},
+       .is_numbered = frames_[arrival.frame].numbered},
+      why);
 }
 
 void Append::save(SeriesHead& head, SampleColumns&& landed) {
@@ -305,6 +323,63 @@ void Append::save(const Source& source) {
            source.non_finite, tracker.out_of_order, tracker.restarts, tracker.missing,
            to_column(tracker.lowest.sequence), tracker.lowest.time,
            to_column(tracker.highest.sequence), tracker.highest.time, tracker.source);
+}
+
+namespace {
+
+/// Whether its shard cannot be read yet. Then it is put back.
+bool still_waits(Writer& writer, const PostponedSample& postponed) {
+  try {
+    writer.chunks().find(postponed.series, postponed.time);
+    return false;
+  } catch (const ShardError& why) {
+    writer.postponed().add(postponed, why);
+    return true;
+  }
+}
+
+/// A frame of one sample; none where its source was removed meanwhile.
+std::optional<TelemetryFrame> frame_of(sqlite::Connection& connection,
+                                       const PostponedSample& postponed) {
+  sqlite::Query row = connection.query(
+      "SELECT source.spacecraft, name, source.origin, parameter FROM source, series "
+      "WHERE source.id = ? AND series.id = ?",
+      postponed.sample.source, postponed.series);
+  if (!row.step()) return std::nullopt;
+  return TelemetryFrame{.spacecraft = row.text(0),
+                        .source = row.text(1),
+                        .origin = row.integer<Origin>(2),
+                        .generation_time = postponed.time,
+                        .samples = {{row.integer<std::uint32_t>(3), postponed.sample.quality,
+                                     postponed.sample.value}},
+                        .numbered = postponed.is_numbered};
+}
+
+}  // namespace
+
+bool append_postponed(sqlite::Connection& connection, Writer& writer,
+                      std::vector<AppendReport::Touched>& touched) {
+  if (!writer.postponed().is_due()) return false;
+  writer.postponed().take(postponed_of_step, [&](std::vector<PostponedSample>&& postponed) {
+    std::map<std::int64_t, std::map<Time, Held>> settled;
+    std::vector<TelemetryFrame> frames;
+    for (const PostponedSample& one : postponed) {
+      if (still_waits(writer, one)) continue;
+      if (one.is_settled)
+        settled[one.series][one.time] = one.sample;
+      else if (auto frame = frame_of(connection, one))
+        frames.push_back(*std::move(frame));
+    }
+    const std::int64_t batch = writer.recent().next_batch();
+    for (const auto& [series, samples] : settled) {
+      SampleColumns columns;
+      for (const auto& [time, sample] : samples) columns.push_back(time, sample);
+      writer.recent().add(writer.recent().series(series), batch, std::move(columns));
+    }
+    for (auto& range : Append(connection, writer, frames, Append::Frames::postponed).run().touched)
+      touched.push_back(std::move(range));
+  });
+  return writer.postponed().is_due();
 }
 
 }  // namespace reident::storage

@@ -24,8 +24,12 @@ inline constexpr Time late_merge_distance = 600 * second_ns;
 /// Used once, within a transaction of the caller.
 class Append {
  public:
-  Append(sqlite::Connection& connection, Writer& writer, std::span<const TelemetryFrame> frames)
-      : connection_(connection), writer_(writer), frames_(frames) {}
+  /// Frames that waited for a shard (PostponedSamples) were counted when they came.
+  enum class Frames { new_ones, postponed };
+
+  Append(sqlite::Connection& connection, Writer& writer, std::span<const TelemetryFrame> frames,
+         Frames which = Frames::new_ones)
+      : connection_(connection), writer_(writer), frames_(frames), which_(which) {}
   AppendReport run();
 
  private:
@@ -72,10 +76,12 @@ class Append {
   void add_late_range(std::int64_t series, TimeRange range);
   void track_sequences();
   void save(const Source& source);
+  void postpone(const SeriesHead& head, const Arrival& arrival, const ShardError& why);
 
   sqlite::Connection& connection_;
   Writer& writer_;
   std::span<const TelemetryFrame> frames_;
+  const Frames which_;
   const std::int64_t batch_ = writer_.recent().next_batch();
   AppendReport report_;
   std::vector<Source> sources_;
@@ -85,5 +91,10 @@ class Append {
   std::vector<SeriesArrivals> series_;
   std::map<std::string, std::optional<Time>> seals_;
 };
+
+/// Stores some of the samples that waited for a shard and are due, and adds the ranges in which
+/// they landed. False when no more are due. Within a transaction of the caller.
+bool append_postponed(sqlite::Connection& connection, Writer& writer,
+                      std::vector<AppendReport::Touched>& touched);
 
 }  // namespace reident::storage

@@ -40,18 +40,23 @@ AppendReport Archive::append(std::span<const TelemetryFrame> frames) {
   sqlite::Transaction transaction(connection(database_));
   return archive_access(database_).write(options_, [&](Writer& writer) {
     AppendReport report = Append(connection(database_), writer, frames).run();
+    append_postponed(connection(database_), writer, report.touched);
     writer.compact_some(report.stored);
     report.damages = writer.take_damages();
+    report.postponed = writer.postponed().reason();
     transaction.commit();
     return report;
   });
 }
 
 void Archive::compact() {
-  for (bool more = true; more;) {
+  for (bool begins = true, more = true; more; begins = false) {
     sqlite::Transaction transaction(connection(database_));
     more = archive_access(database_).write(options_, [&](Writer& writer) {
-      const bool is_more = writer.compact_all_step();
+      if (begins) writer.postponed().try_again();
+      std::vector<AppendReport::Touched> touched;
+      const bool is_due = append_postponed(connection(database_), writer, touched);
+      const bool is_more = writer.compact_all_step() || is_due;
       transaction.commit();
       return is_more;
     });

@@ -39,7 +39,7 @@ struct AppendReport {
     std::uint32_t parameter = 0;
     TimeRange range;
   };
-  std::vector<Touched> touched;
+  std::vector<Touched> touched;  // of samples too that waited for a shard until now
 
   /// A run of a source whose first frame here was not the first that was sent.
   struct LateStart {
@@ -52,6 +52,9 @@ struct AppendReport {
 
   /// Samples that were found damaged in the file and set aside (SCHEMA.md), in words.
   std::vector<std::string> damages;
+  /// Which shard late samples wait for, of this and of earlier appends, and the remedy. Empty while
+  /// none does.
+  std::string postponed;
 };
 
 /// How the writer arranges samples, in numbers of samples; the defaults suit any archive.

@@ -11,7 +11,7 @@ constexpr std::size_t most_open_shards = 16;  // one a year of a long mission
 
 struct ListedShard {
   fs::path path;
-  std::string file, what;
+  std::string file, what, remedy;
 };
 
 ListedShard listed(sqlite::Connection& database, std::int64_t id) {
@@ -21,19 +21,22 @@ ListedShard listed(sqlite::Connection& database, std::int64_t id) {
     throw Error(Error::Kind::corrupt, "database " + database.path() + " has chunks in a shard " +
                                           std::to_string(id) +
                                           " that its table shard does not list: restore a backup");
-  ListedShard found{shard_path(database.path(), row.text(0)), row.text(0), {}};
+  ListedShard found{shard_path(database.path(), row.text(0)), row.text(0), {}, {}};
   found.what = "shard " + found.path.string() + ", which has telemetry from " +
                utc_text(row.integer(1)) + " to " + utc_text(row.integer(2)) + ", ";
+  found.remedy = ": put the folder " + found.path.parent_path().string() +
+                 " back, from a backup or from where the database " + database.path() +
+                 " was before";
   return found;
 }
 
-sqlite::Connection opened(const ListedShard& shard, const std::string& database) {
-  const std::string remedy = ": put the folder " + shard.path.parent_path().string() +
-                             " back, from a backup or from where the database " + database +
-                             " was before";
+ShardError cannot_be_read(const ListedShard& shard, const std::string& why) {
+  return ShardError(shard.what + "cannot be read (" + why + ")" + shard.remedy);
+}
+
+sqlite::Connection opened(const ListedShard& shard) {
   std::error_code error;
-  if (!fs::exists(shard.path, error))
-    throw Error(Error::Kind::cannot_open, shard.what + "is missing" + remedy);
+  if (!fs::exists(shard.path, error)) throw ShardError(shard.what + "is missing" + shard.remedy);
   std::string name;
   try {
     sqlite::Connection connection(sqlite::immutable_uri(shard.path), shard.path,
@@ -44,11 +47,10 @@ sqlite::Connection opened(const ListedShard& shard, const std::string& database)
     }
     if (name == shard.file) return connection;
   } catch (const Error& why) {
-    throw Error(Error::Kind::cannot_open,
-                shard.what + "cannot be read (" + why.what() + ")" + remedy);
+    throw cannot_be_read(shard, why.what());
   }
-  throw Error(Error::Kind::cannot_open,
-              shard.what + "is another file: it says that it is '" + name + "'" + remedy);
+  throw ShardError(shard.what + "is another file: it says that it is '" + name + "'" +
+                   shard.remedy);
 }
 
 }  // namespace
@@ -61,12 +63,26 @@ sqlite::Connection& ChunkBytes::shard(std::int64_t id) {
   const auto found = open_.find(id);
   if (found != open_.end()) return found->second;
   if (open_.size() == most_open_shards) open_.clear();
-  return open_.emplace(id, opened(listed(connection_, id), connection_.path())).first->second;
+  return open_.emplace(id, opened(listed(connection_, id))).first->second;
+}
+
+ShardError ChunkBytes::unreadable(std::int64_t id, const std::string& why) {
+  open_.erase(id);  // the file may be put right
+  return cannot_be_read(listed(connection_, id), why);
 }
 
 std::span<const std::uint8_t> ChunkBytes::read(ChunkPlace place) {
-  sqlite::Connection& file = place.shard == 0 ? connection_ : shard(place.shard);
-  sqlite::Query row = file.query("SELECT bytes FROM chunk_data WHERE id = ?", place.data);
+  if (place.shard == 0) return read(connection_, place.data);
+  sqlite::Connection& file = shard(place.shard);
+  try {
+    return read(file, place.data);
+  } catch (const Error& why) {
+    throw unreadable(place.shard, why.what());
+  }
+}
+
+std::span<const std::uint8_t> ChunkBytes::read(sqlite::Connection& file, std::int64_t data) {
+  sqlite::Query row = file.query("SELECT bytes FROM chunk_data WHERE id = ?", data);
   bytes_.clear();
   if (!row.step()) return {};
   const auto found = row.bytes(0);

@@ -23,6 +23,12 @@ struct ChunkPlace {
   bool operator==(const ChunkPlace&) const = default;
 };
 
+/// A shard is missing, cannot be read, or is another one. The message has the remedy.
+class ShardError : public Error {
+ public:
+  explicit ShardError(const std::string& message) : Error(Kind::cannot_open, message) {}
+};
+
 /// Where a shard is, by the name that the table `shard` has.
 std::filesystem::path shard_path(const std::filesystem::path& database, const std::string& file);
 
@@ -33,12 +39,16 @@ class ChunkBytes {
   explicit ChunkBytes(sqlite::Connection& connection) : connection_(connection) {}
 
   /// The bytes at `place`, valid until the next call; none where there is no such row. Throws
-  /// Error, with the remedy, where the shard is missing, cannot be read or is another one.
+  /// ShardError.
   std::span<const std::uint8_t> read(ChunkPlace place);
   /// A shard that the database lists, opened for reading. Throws as read() does.
   sqlite::Connection& shard(std::int64_t id);
+  /// What to throw where something in a shard is damaged.
+  ShardError unreadable(std::int64_t id, const std::string& why);
 
  private:
+  std::span<const std::uint8_t> read(sqlite::Connection& file, std::int64_t data);
+
   sqlite::Connection& connection_;
   std::map<std::int64_t, sqlite::Connection> open_;
   std::vector<std::uint8_t> bytes_;

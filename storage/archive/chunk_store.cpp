@@ -73,6 +73,11 @@ void ChunkStore::take(const ChunkRow& row, SampleColumns& samples) {
     error = {ChunkError::Kind::damaged, "holds other samples than its row says"};
   if (!error) return;
   samples.cut(before);
+  // Whoever puts the shard right has it back; here it is damaged for ever.
+  if (row.place.shard != 0 && error->kind == ChunkError::Kind::damaged)
+    throw bytes_.unreadable(
+        row.place.shard,
+        damage(connection_, {row.series, row.first, row.last, row.samples}, *error).what());
   set_aside(connection_, {row.series, row.first, row.last, row.samples}, bytes, *error);
   remove(row);
 }

@@ -43,6 +43,7 @@ class ChunkStore {
   ChunkEncoder& encoder() { return encoder_; }
 
   /// Appends a chunk's samples; `row.samples` of them, or none where it is damaged and set aside.
+  /// Throws ShardError where it is in a shard that cannot be read, as find() does.
   void take(const ChunkRow& row, SampleColumns& samples);
 
   /// Puts `samples`, cut into `pieces` chunks of nearly one size, in the place of `old`, neighbours

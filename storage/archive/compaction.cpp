@@ -58,7 +58,8 @@ std::size_t Compaction::move_range(std::int64_t series) {
   std::vector<ChunkRow> old;  // neighbours, the latest first until they are all found
   std::size_t total = last - first;
   const auto is_worth_joining = [&](const ChunkRow& row) {
-    return row.samples < chunk_samples_ && row.samples <= worth_joining * total;
+    return row.place.shard == 0 && row.samples < chunk_samples_ &&
+           row.samples <= worth_joining * total;
   };
   for (std::optional<ChunkRow> row = base;
        row && (row->last >= time[first] || is_worth_joining(*row));
@@ -73,13 +74,32 @@ std::size_t Compaction::move_range(std::int64_t series) {
 
   SampleColumns merged;
   merged.reserve(total + (joins_next ? next->samples : 0));
-  for (const ChunkRow& row : old) chunks_.take(row, merged);
+  try {
+    for (const ChunkRow& row : old) chunks_.take(row, merged);
+  } catch (const ShardError& why) {
+    return postpone(series, first, base->last, why);
+  }
   SampleColumns moving;
   moving.append(round_->samples, first, last);
   overlay(merged, {&moving});
   const bool at_the_end = !next || (joins_next && !chunks_.after(series, next->first));
   chunks_.replace(series, old, merged, piece_ends(merged.size(), at_the_end));
   return merged.size();
+}
+
+// What lands behind the chunk that cannot be read goes on.
+std::size_t Compaction::postpone(std::int64_t series, std::size_t first, Time last,
+                                 const ShardError& why) {
+  const SampleColumns& samples = round_->samples;
+  std::size_t end = first;
+  for (; end < samples.size() && samples.time[end] <= last; ++end)
+    postponed_.add({.series = series,
+                    .time = samples.time[end],
+                    .sample = {samples.value[end], samples.quality[end], samples.source[end]},
+                    .is_settled = true},
+                   why);
+  round_->done = end;
+  return end - first;
 }
 
 std::vector<std::size_t> Compaction::piece_ends(std::size_t samples, bool at_the_end) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "storage/archive/chunk_store.hpp"
+#include "storage/archive/postponed_samples.hpp"
 #include "storage/archive/recent_tier.hpp"
 
 namespace reident::storage {
@@ -19,8 +20,9 @@ class Compaction {
  public:
   /// Chunks that are filled in order of time have `chunk_samples` samples, others between half and
   /// one and a half of that.
-  Compaction(RecentTier& recent, ChunkStore& chunks, std::size_t chunk_samples)
-      : recent_(recent), chunks_(chunks), chunk_samples_(chunk_samples) {}
+  Compaction(RecentTier& recent, ChunkStore& chunks, PostponedSamples& postponed,
+             std::size_t chunk_samples)
+      : recent_(recent), chunks_(chunks), postponed_(postponed), chunk_samples_(chunk_samples) {}
 
   bool is_under_way() const { return round_.has_value(); }
   void begin();
@@ -40,10 +42,12 @@ class Compaction {
   void gather(const SeriesHead& series);
   /// Moves samples of one range between two chunks; returns how many samples it wrote.
   std::size_t move_range(std::int64_t series);
+  std::size_t postpone(std::int64_t series, std::size_t first, Time last, const ShardError& why);
   std::vector<std::size_t> piece_ends(std::size_t samples, bool at_the_end) const;
 
   RecentTier& recent_;
   ChunkStore& chunks_;
+  PostponedSamples& postponed_;
   const std::size_t chunk_samples_;
   std::optional<Round> round_;
 };

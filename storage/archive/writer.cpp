@@ -25,16 +25,22 @@ Writer::Writer(sqlite::Connection& connection, const ArchiveOptions& options)
       damage_seen_(last_damage(connection)),
       recent_(connection),
       chunks_(connection),
-      compaction_(recent_, chunks_, options.chunk_samples) {}
+      postponed_(connection),
+      compaction_(recent_, chunks_, postponed_, options.chunk_samples) {}
+
+void Writer::begin_round() {
+  compaction_.begin();
+  postponed_.try_again();
+}
 
 void Writer::compact_some(std::size_t samples_appended) {
   const bool is_due =
       recent_.samples() >= options_.recent_samples || recent_.batches() >= options_.recent_batches;
-  if (!compaction_.is_under_way() && is_due) compaction_.begin();
+  if (!compaction_.is_under_way() && is_due) begin_round();
   const std::size_t step = std::max(options_.step_samples, step_for_each_sample * samples_appended);
   if (compaction_.is_under_way()) compaction_.step(step);
   while (recent_.samples() > 2 * options_.recent_samples) {
-    if (!compaction_.is_under_way()) compaction_.begin();
+    if (!compaction_.is_under_way()) begin_round();
     compaction_.step(step);
   }
 }
@@ -42,7 +48,7 @@ void Writer::compact_some(std::size_t samples_appended) {
 bool Writer::compact_all_step() {
   if (!compaction_.is_under_way()) {
     if (recent_.batches() == 0) return false;
-    compaction_.begin();
+    begin_round();
   }
   compaction_.step(options_.step_samples);
   return true;

@@ -8,6 +8,7 @@
 #include "storage/archive/archive.hpp"
 #include "storage/archive/chunk_store.hpp"
 #include "storage/archive/compaction.hpp"
+#include "storage/archive/postponed_samples.hpp"
 #include "storage/archive/recent_tier.hpp"
 
 namespace reident::storage {
@@ -21,6 +22,7 @@ class Writer {
 
   RecentTier& recent() { return recent_; }
   ChunkStore& chunks() { return chunks_; }
+  PostponedSamples& postponed() { return postponed_; }
 
   /// True until a transaction is rolled back after the writer was made.
   bool is_current() const { return rollbacks_ == connection_.rollbacks(); }
@@ -34,12 +36,15 @@ class Writer {
   std::vector<std::string> take_damages();
 
  private:
+  void begin_round();
+
   sqlite::Connection& connection_;
   const ArchiveOptions options_;
   const std::uint64_t rollbacks_;
   std::int64_t damage_seen_;
   RecentTier recent_;
   ChunkStore chunks_;
+  PostponedSamples postponed_;
   Compaction compaction_;
 };
 

@@ -42,6 +42,7 @@ bool clean_some(Archive& archive, std::int64_t id, std::int64_t source, std::opt
   sqlite::Connection& db = connection(archive.database());
   sqlite::Transaction transaction(db);
   return archive_access(archive.database()).write(archive.options(), [&](Writer& writer) {
+    writer.postponed().forget(source);
     SeriesHead& series = writer.recent().series(id);
     ChunkStore& chunks = writer.chunks();
     std::uint64_t here = 0;

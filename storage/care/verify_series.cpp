@@ -111,7 +111,7 @@ bool SeriesVerifier::begin(std::int64_t series) {
 }
 
 void SeriesVerifier::report_set_aside(std::int64_t series) {
-  set_aside_ = 0;
+  set_aside_ = settled_and_postponed(connection_, series);
   sqlite::Query row = connection_.query(
       "SELECT first_time, last_time, samples, reason FROM damaged_chunk WHERE series = ?", series);
   while (row.step()) {

@@ -14,6 +14,7 @@ from harness import EndToEnd, wait_until
 
 NOBODY = 65534
 ROWS = 20_000
+NEW_YEAR = 1_609_459_200 - plant.START_S  # 2021
 
 
 class ArchiveFaults(EndToEnd):
@@ -253,6 +254,39 @@ class ArchiveFaults(EndToEnd):
             code, text = self.reident("backfill", "--config", config)
             self.assertNotEqual(code, 0)
             self.assertIn(f"is in use by process {daemon.process.pid}", text)
+
+    # -- a shard that is lost
+
+    def alarms(self):
+        text = self.reident("overview", "--json", "--config", self.folder / "reident.toml")[1]
+        return [alarm["text"] for alarm in json.loads(text)["alarms"] if alarm["code"] == "damage"]
+
+    def test_late_samples_of_a_lost_shard_wait_and_hold_nothing_back(self):
+        self.set_up()
+        daemon = self.start_daemon()
+        self.replay_rows("old", count=600, first=NEW_YEAR - 1200)
+        daemon.terminate()
+        code, text = self.reident("archive", "split", self.database, "--before", 2021)
+        self.assertEqual(code, 0, text)
+        shards = self.database.with_name("reident.db.shards")
+        away = shards.rename(self.folder / "away")
+
+        daemon = self.start_daemon()
+        self.replay_rows("late", count=50, first=NEW_YEAR - 900)
+        self.replay_rows("now", count=100, first=NEW_YEAR)
+        self.assertEqual(self.stored(), 3 * 700, "what is of now is stored")
+        self.assertEqual(self.query("SELECT count(*) FROM postponed_sample")[0][0], 3 * 50)
+        wait_until(lambda: any(str(shards) in text for text in self.alarms()), "an alarm names it")
+
+        daemon.terminate()
+        away.rename(shards)
+        self.start_daemon()
+        self.replay_rows("more", count=10, first=NEW_YEAR + 100)
+        self.assertEqual(self.query("SELECT count(*) FROM postponed_sample")[0][0], 0)
+        wait_until(lambda: not self.alarms(), "the alarm is over")
+        self.assertEqual(self.stored(), 3 * 710)
+        code, text = self.reident("verify", self.database)
+        self.assertEqual(code, 0, text)
 
     # -- damaged samples
 

@@ -51,6 +51,7 @@ std::optional<Refusal> complete(Arguments& arguments) {
 std::string outcome(const ImportReport& report) {
   const auto& total = report.total;
   if (!report.complete) return "stopped; the same command goes on where it ended";
+  if (!report.postponed.empty()) return "done; late samples wait: " + report.postponed;
   if (total.stored == 0 && total.conflicts == 0)
     return total.samples == 0 ? "there was no sample in it"
                               : "all of it was in the archive already";
@@ -62,6 +63,7 @@ void print_json(const ImportReport& report, double seconds) {
   const nlohmann::ordered_json object = {{"found", report.found},
                                          {"remarks", report.remarks},
                                          {"left_out", report.left_out.sentences()},
+                                         {"postponed", text_json(report.postponed)},
                                          {"complete", report.complete},
                                          {"resumed_at_line", report.resumed_at},
                                          {"rows", total.rows},

@@ -24,6 +24,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 using ::testing::StartsWith;
 using Mode = Database::Mode;
@@ -199,6 +200,102 @@ TEST_F(Split, AMissingShardIsNamedAndIngestGoesOn) {
   fs::rename(away, file);
   EXPECT_THAT(findings(path), IsEmpty());
   EXPECT_EQ(contents(path).at(1), before.at(1));
+}
+
+/// One of the shards is lost after a copy of all was made.
+class LostShard : public Split {
+ protected:
+  fs::path copied(const char* name) {
+    back_up(database, folder / name, {}, [](const auto&) { return true; });
+    return folder / name;
+  }
+  /// Two days of a closed year, of which a part came already, and a day of now.
+  static AppendReport append_late(Archive& to, Time late = begin_2023 + 100 * day) {
+    std::vector<TelemetryFrame> frames;
+    std::uint64_t sequence = 5000;
+    const auto add = [&](Time time, double value) {
+      frames.push_back(
+          frame(++sequence, time, {{1, Quality::good, value}, {2, Quality::suspect, value}}));
+    };
+    for (Time time = late; time < late + 2 * day; time += hour) add(time, 0.5);
+    add(late + hour, std::nan(""));
+    for (Time time = begin_2025 + 200 * day; time < begin_2025 + 201 * day; time += hour)
+      add(time, 0.25);
+    return to.append(frames);
+  }
+  void put_back() const {
+    fs::copy_file(fs::path(whole_.string() + ".shards") / file_.filename(), file_,
+                  fs::copy_options::overwrite_existing);
+  }
+
+  const fs::path file_ = shard(split(), 0), whole_ = copied("whole.db");
+  Database whole_database_{whole_, Mode::read_write};
+  Archive whole_archive_{whole_database_, small_chunks};
+};
+
+TEST_F(LostShard, LateSamplesWaitForItAndAllOthersAreStored) {
+  fs::remove(file_);
+  const AppendReport report = append_late(archive);
+  EXPECT_EQ(report.stored, 24U * parameters) << "those of now";
+  EXPECT_THAT(report.postponed, AllOf(HasSubstr(file_.string()), HasSubstr("put the folder")));
+  EXPECT_THAT(report.damages, IsEmpty());
+  archive.compact();
+  EXPECT_THAT(findings(path), ElementsAre(HasSubstr(file_.string())));
+  put_back();
+  archive.compact();
+  append_late(whole_archive_);
+  whole_archive_.compact();
+  EXPECT_EQ(contents(path), contents(whole_));
+  EXPECT_THAT(findings(path), IsEmpty());
+  EXPECT_THAT(append_late(archive).postponed, IsEmpty());
+}
+
+TEST_F(LostShard, LateSamplesWaitThatWereComparedWithItBefore) {
+  const fs::path third = copied("third.db");
+  const auto with_third = [&](const std::function<void(Archive&)>& work) {
+    Database opened(third, Mode::read_write);
+    Archive there(opened, small_chunks);
+    work(there);
+  };
+  with_third([](Archive& there) { append_late(there); });
+  const fs::path shard = fs::path(third.string() + ".shards") / file_.filename();
+  fs::remove(shard);
+  with_third([](Archive& there) {
+    for (int i = 0; i < 3; ++i) there.compact();
+    append_late(there);
+  });
+  EXPECT_THAT(findings(third), ElementsAre(HasSubstr(shard.string())));
+  EXPECT_THAT(rows(third, "SELECT max(settled), min(settled) FROM postponed_sample"),
+              ElementsAre("1|0"));
+  fs::copy(file_, shard);
+  EXPECT_THAT(findings(third), IsEmpty()) << "what waits is counted";
+  with_third([](Archive& there) { there.compact(); });
+  for (int i = 0; i < 2; ++i) append_late(archive);
+  archive.compact();
+  EXPECT_EQ(contents(third), contents(path));
+  EXPECT_THAT(findings(third), IsEmpty());
+}
+
+TEST_F(LostShard, DamageInsideItLosesNothing) {
+  const std::function<void()> damages[] = {
+      [&] { rows(file_, "UPDATE chunk_data SET bytes = zeroblob(200)"); },
+      [&] { fs::resize_file(file_, fs::file_size(file_) / 2); }};
+  Time late = begin_2023;
+  for (const auto& damage : damages) {
+    late += 60 * day;
+    damage();
+    const AppendReport report = append_late(archive, late);
+    EXPECT_THAT(report.postponed, HasSubstr(file_.string()));
+    EXPECT_THAT(report.damages, IsEmpty());
+    archive.compact();
+    EXPECT_THAT(findings(path), Not(IsEmpty()));
+    put_back();
+    archive.compact();
+    append_late(whole_archive_, late);
+    whole_archive_.compact();
+    EXPECT_EQ(contents(path), contents(whole_));
+    EXPECT_THAT(findings(path), IsEmpty());
+  }
 }
 
 TEST_F(Split, ABackupTakesTheShardsAlongOnceEach) {
