@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "storage/archive/chunk_bytes.hpp"
+#include "storage/care/shard_file.hpp"
 #include "storage/database/connection.hpp"
 #include "storage/database/file_guard.hpp"
 #include "storage/database/partial_file.hpp"
@@ -101,6 +102,16 @@ bool copy_pages(Connection& source, Connection& target, std::uint32_t pages_of_s
   return true;
 }
 
+bool is_sound(const fs::path& shard, const std::string& name) {
+  try {
+    Connection connection(sqlite::immutable_uri(shard), shard,
+                          SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+    return has_content_of(connection, name);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 /// Shards of the copy in its own folder. One that is there is of that content by its name. False
 /// when it was stopped; what was copied by then is of use to the next backup.
 bool copy_shards(Connection& source, const fs::path& copy, BackupReport& report,
@@ -126,6 +137,11 @@ bool copy_shards(Connection& source, const fs::path& copy, BackupReport& report,
           error == std::errc::no_space_on_device ? Error::Kind::full : Error::Kind::cannot_open,
           "shard " + from.string() + " cannot be copied to " + to.string() + " (" +
               error.message() + "): check the disk, its room and the permissions");
+    if (!is_sound(partial.path(), file))
+      throw Error(Error::Kind::corrupt,
+                  "shard " + from.string() +
+                      " is damaged ('reident verify' shows where), or the disk of the copy fails: "
+                      "its copy was not kept; restore the shard from an earlier backup");
     partial.publish(true);
     report.shard_bytes += fs::file_size(to);
   }

@@ -1,5 +1,6 @@
 #include "storage/care/shard_file.hpp"
 
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <vector>
@@ -150,6 +151,13 @@ void fill(Connection& from, Connection& to, const ShardFile& file) {
 }
 
 }  // namespace
+
+bool has_content_of(Connection& shard, const std::string& name) {
+  std::int64_t year = 0;
+  std::from_chars(name.data(), name.data() + name.size(), year);
+  const std::optional<ShardFile> found = describe(shard, year);
+  return found && found->name == name;
+}
 
 std::optional<ShardFile> write_shard(Connection& database, std::int64_t year) {
   const sqlite::ReadTransaction snapshot(database);

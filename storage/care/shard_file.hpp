@@ -27,4 +27,8 @@ struct ShardFile {
 /// Throws Error where the database or the disk refuses.
 std::optional<ShardFile> write_shard(sqlite::Connection& database, std::int64_t year);
 
+/// Whether the chunks in `shard` are those that its name was made of. Reads all of them. Throws
+/// Error where it cannot.
+bool has_content_of(sqlite::Connection& shard, const std::string& name);
+
 }  // namespace reident::storage

@@ -314,6 +314,20 @@ TEST_F(Split, ABackupTakesTheShardsAlongOnceEach) {
   EXPECT_EQ(contents(copy), contents(path));
 }
 
+TEST_F(LostShard, ABackupDoesNotKeepADamagedOne) {
+  const fs::path earlier = copied("earlier.db");
+  rows(file_, "UPDATE chunk_data SET bytes = zeroblob(length(bytes)) WHERE id = 1");
+  const fs::path copy = folder / "copy.db";
+  EXPECT_THAT(error_of([&] { back_up(database, copy, {}, [](const auto&) { return true; }); }),
+              AllOf(StartsWith("corrupt: "), HasSubstr(file_.string())));
+  EXPECT_FALSE(fs::exists(copy));
+  EXPECT_FALSE(fs::exists(fs::path(copy.string() + ".shards") / file_.filename()));
+  EXPECT_EQ(
+      back_up(database, earlier, {.replace = true}, [](const auto&) { return true; })->shard_bytes,
+      0U)
+      << "it has the whole one";
+}
+
 TEST_F(Split, RetentionRemovesAShardOfWhichNothingIsLeft) {
   const SplitReport report = split();
   const auto keep = [&](Time age) {
