@@ -34,8 +34,9 @@ std::vector<Reign> decisions_by_telemetry(const HistoryReader& history,
   std::vector<Reign> all;
   Time reached = INT64_MIN;  // by the decisions so far
   for (Decision& decision : history.decisions(equipment)) {
+    // Blocks before the window's end may decide, and nobody has the version before that.
     const Time own =
-        judged_until(decision).value_or(std::max(reached, window_ends[decision.version]));
+        std::max(judged_until(decision).value_or(reached), window_ends[decision.version]);
     reached = std::max(reached, own);
     all.push_back({std::move(decision), own});
   }

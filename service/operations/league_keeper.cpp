@@ -181,12 +181,14 @@ void LeagueKeeper::catch_up(const storage::Archive& archive, Member& member, Tim
 bool LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter& writer,
                           const Finding& finding, DecisionKind kind,
                           const std::vector<Reason>& reasons, Time now) {
+  auto version = *registry.version(spacecraft_, equipment_.name, finding.version);
+  // A first version may be good enough on blocks of its own window.
+  const Time until = std::max(now, version.window.end);
   ordered_json evidence = to_json(finding);
-  evidence["until_ns"] = now;
+  evidence["until_ns"] = until;
   if (league_.champion) evidence["champion"] = league_.champion->version;
-  return writer.decide(*standing_,
-                       {*registry.version(spacecraft_, equipment_.name, finding.version),
-                        decision_of(kind, reasons, std::move(evidence)), now});
+  return writer.decide(
+      *standing_, {std::move(version), decision_of(kind, reasons, std::move(evidence)), until});
 }
 
 bool LeagueKeeper::asked_an_operator(const storage::Registry& registry,

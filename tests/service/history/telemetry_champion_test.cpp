@@ -54,6 +54,14 @@ TEST_F(TelemetryChampion, FollowsTheTelemetryThatWasJudgedAndNotTheClock) {
   EXPECT_EQ(first_champion(StoredHistory(database_), bdr_)->from, 150);
 }
 
+TEST_F(TelemetryChampion, BeginsNotBeforeTheEndOfItsWindow) {
+  version(100);
+  decide(1, DecisionKind::approve, 95);  // on blocks of the window
+  EXPECT_EQ(at(99), 0);
+  EXPECT_EQ(at(100), 1);
+  EXPECT_EQ(tenures(StoredHistory(database_), bdr_).front().from, 100);
+}
+
 TEST_F(TelemetryChampion, AnOperatorsDecisionCountsFromWhereTheGateHadComeTo) {
   for (const Time end : {100, 200}) version(end);
   decide(1, DecisionKind::approve, 150);

@@ -128,6 +128,9 @@ TEST_F(Sweep, GivesTheBitsOfOneMachine) {
       one, config, {"SAT", "", tasks.spacecraft[0].range, {}}, workers,
       [](storage::Time reached) { return reached; }, [](const BackfillProgress&) { return true; });
   EXPECT_GT(progress.approved, 1U);
+  const storage::Registry registry(one);
+  for (const storage::Decision& decision : registry.decisions("SAT", "PLANT"))
+    EXPECT_GE(decision.time, registry.version("SAT", "PLANT", decision.version)->window.end);
   const auto report = report_of(tasks);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->at("windows"), progress.windows);
