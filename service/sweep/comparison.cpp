@@ -144,6 +144,26 @@ ordered_json ServedVersions::regret(TimeRange range) const {
   return count == 0 ? ordered_json() : ordered_json(std::exp(sum / static_cast<double>(count)));
 }
 
+/// What came of the windows of a sweep, the most frequent first.
+std::string outcomes_of(storage::Database& sweep, const EquipmentName& equipment) {
+  const storage::Registry registry(sweep);
+  storage::HistoryFilter filter;
+  filter.spacecraft = equipment.spacecraft;
+  filter.equipment = equipment.equipment;
+  std::map<std::string, std::size_t> counts;
+  for (const storage::Attempt& attempt : registry.attempts(filter)) ++counts[attempt.outcome];
+  if (counts.empty()) return "no window was tried";
+  std::vector<std::pair<std::string, std::size_t>> sorted(counts.begin(), counts.end());
+  std::ranges::stable_sort(sorted, std::ranges::greater(),
+                           &std::pair<std::string, std::size_t>::second);
+  std::string text;
+  for (const auto& [outcome, count] : sorted)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, outcome);
+  const auto decisions = registry.decisions(equipment.spacecraft, equipment.equipment);
+  if (!decisions.empty()) text += "; last: " + decisions.back().reason;
+  return text;
+}
+
 ordered_json compare_equipment(storage::Database& sweep, storage::Database& actual,
                                const EquipmentConfig& equipment, const EquipmentName& name,
                                TimeRange range) {
@@ -171,6 +191,7 @@ ordered_json compare_equipment(storage::Database& sweep, storage::Database& actu
            {{"blocks", common},
             {"would_mrse_percent", percent(would_common)},
             {"was_mrse_percent", percent(was_common)}}},
+          {"outcomes", outcomes_of(sweep, name)},
           {"note", was.note()}};
 }
 

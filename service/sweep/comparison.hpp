@@ -20,6 +20,7 @@ namespace reident::sweep {
 ///                regret (below), null where it is not known
 ///   common       blocks, would_mrse_percent, was_mrse_percent: on blocks that both have a version
 ///                for. Null where there is none
+///   outcomes     what came of the windows of the sweep, in words: "40 not_excited, 2 challenger"
 ///   note         why versions that really ran could not be run on this telemetry; empty else
 ///
 /// Errors are of free runs without interruption, as in a simulator, on blocks that count. Regret is

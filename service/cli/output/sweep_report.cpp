@@ -40,6 +40,13 @@ std::string first_of(const ordered_json& side) {
   return "-";
 }
 
+std::string note_of(const ordered_json& equipment) {
+  std::string note = equipment.at("note").get<std::string>();
+  if (first_of(equipment.at("would")) != "-") return note;
+  if (!note.empty()) note += "; ";
+  return note + "would publish nothing: " + equipment.value("outcomes", "");
+}
+
 std::string name_of(const ordered_json& spacecraft, const ordered_json& equipment) {
   return fmt::format("{}/{}", spacecraft.at("name").get<std::string>(),
                      equipment.at("equipment").get<std::string>());
@@ -60,7 +67,7 @@ std::string sweep_table(const ordered_json& report, std::size_t rows, std::size_
                        {name_of(spacecraft, one), versions_of(was), versions_of(would),
                         first_of(was), first_of(would), number(common.at("was_mrse_percent")),
                         number(common.at("would_mrse_percent")), number(was.at("regret")),
-                        number(would.at("regret")), one.at("note").get<std::string>()}});
+                        number(would.at("regret")), note_of(one)}});
     }
   std::ranges::stable_sort(lines, std::ranges::greater(), &Line::change);
   constexpr auto right = Table::Align::right;

@@ -1,6 +1,7 @@
 #include <fstream>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "service/operations/backfill.hpp"
@@ -161,6 +162,7 @@ TEST_F(Sweep, ComparesWithWhatReallyWas) {
   run_all(strict);
   const ordered_json none = report_of(strict)->at("spacecraft")[0].at("equipment")[0];
   EXPECT_EQ(none.at("would").at("publications"), ordered_json::array());
+  EXPECT_THAT(none.at("outcomes").get<std::string>(), testing::HasSubstr("error_above_limit"));
   EXPECT_EQ(none.at("was").at("publications"), plant.at("was").at("publications"));
   EXPECT_TRUE(none.at("common").at("was_mrse_percent").is_null());
   EXPECT_GT(none.at("was").at("mrse_percent"), 0.0);
