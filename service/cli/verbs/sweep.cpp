@@ -99,34 +99,36 @@ int print_report(const Plan& plan, const Arguments& arguments) {
   return exit_done;
 }
 
-/// Does the tasks that are left, on all cores. One that fails does not keep the others.
-void run_here(const Plan& plan, TaskKind kind, WorkerPool& workers, const StopSignal& stop) {
-  const sweep::TaskStates before = sweep::states(plan, kind);
+/// Does the tasks, on all cores. One that fails does not keep the others.
+void run_here(const Plan& plan, TaskKind kind, const std::vector<std::size_t>& tasks,
+              WorkerPool& workers, const StopSignal& stop) {
   Mutex mutex;
   std::size_t ended = 0;
   Progress bar;
-  workers.for_each(before.left.size(), [&](std::size_t i) {
+  workers.for_each(tasks.size(), [&](std::size_t i) {
     if (stop.token().stop_requested()) return;
     try {
-      run_task(plan, {kind, before.left[i]}, workers,
-               [&] { return stop.token().stop_requested(); });
+      run_task(plan, {kind, tasks[i]}, workers, [&] { return stop.token().stop_requested(); });
     } catch (const std::invalid_argument&) {
       throw;
     } catch (const std::exception&) {
       // The folder has the reason, and the states show it.
     }
     const MutexLock lock(mutex);
-    bar.update(static_cast<double>(++ended) / static_cast<double>(before.left.size()),
-               fmt::format("{} {}/{}", name(kind), ended, before.left.size()));
+    bar.update(static_cast<double>(++ended) / static_cast<double>(tasks.size()),
+               fmt::format("{} {}/{}", name(kind), ended, tasks.size()));
   });
   bar.clear();
 }
 
 int run_here(const Plan& plan, const Arguments& arguments, const StopSignal& stop) {
   WorkerPool workers(usable_cores());
-  run_here(plan, TaskKind::candidates, workers, stop);
-  if (sweep::states(plan, TaskKind::candidates).left.empty())
-    run_here(plan, TaskKind::judgement, workers, stop);
+  run_here(plan, TaskKind::candidates, sweep::states(plan, TaskKind::candidates).left, workers,
+           stop);
+  std::vector<std::size_t> judgements = sweep::states(plan, TaskKind::judgement).left;
+  for (const std::size_t task : sweep::states(plan, TaskKind::candidates).left)
+    std::erase(judgements, plan.candidates[task].spacecraft);
+  run_here(plan, TaskKind::judgement, judgements, workers, stop);
   if (stop.token().stop_requested())
     print_error("reident: stopped; reident sweep {} goes on where it ended", plan.folder.string());
   return print_report(plan, arguments);
