@@ -64,9 +64,9 @@ void read_derived(TableReader& reader, ConfigDocument& document, EquipmentConfig
 }
 
 /// Adds the inputs of the equipment's operating regimes, once the others are whole.
-void read_regimes(TableReader& reader, EquipmentConfig& equipment) {
+void read_regimes(TableReader& reader, bool others_are_whole, EquipmentConfig& equipment) {
   const auto regimes = reader.texts("regimes");
-  if (!regimes || equipment.inputs.empty()) return;
+  if (!regimes || !others_are_whole || equipment.inputs.empty()) return;
   const std::size_t before = equipment.inputs.size();
   for (const std::string& regime : *regimes) {
     const auto mistakes =
@@ -156,6 +156,8 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
   const auto phase = reader.duration("phase", 0, day);
   const auto window = reader.duration("window", second, 3650 * day);
   const auto slide = reader.duration("slide", millisecond, 3650 * day);
+  const auto min_interval = reader.duration("min_interval", 0, 3650 * day);
+  const auto cycle = reader.duration("cycle", period.value_or(millisecond), 3650 * day);
   if (!period) return;
   equipment.sample_period = *period;
   equipment.sample_hold = hold.value_or(3 * *period);
@@ -180,9 +182,7 @@ void read_timing(TableReader& reader, bool signals_and_orders_are_right,
       static_cast<std::int64_t>(equipment.validation_share * static_cast<double>(ticks));
   equipment.slide = slide.value_or(std::max<std::int64_t>(1, share_ticks) * *period);
   // Shorter than it takes to notice that a champion drifts.
-  equipment.min_interval =
-      reader.duration("min_interval", 0, 3650 * day).value_or(equipment.slide / 4);
-  const auto cycle = reader.duration("cycle", *period, 3650 * day);
+  equipment.min_interval = min_interval.value_or(equipment.slide / 4);
   equipment.cycle = cycle.value_or(std::max<std::int64_t>(1, share_ticks) * *period);
   if (slide || !reader.has("slide")) check_slide(reader, equipment);
 }
@@ -198,7 +198,7 @@ void read_equipment(const toml::table& table, ConfigDocument& document,
   const std::size_t before = document.mistakes.size();
   read_signals(reader, equipment);
   read_derived(reader, document, equipment);
-  if (document.mistakes.size() == before) read_regimes(reader, equipment);
+  read_regimes(reader, document.mistakes.size() == before, equipment);
   read_order(reader, equipment);
   assign(equipment.horizon, reader.integer_or_auto("horizon", 2, max_horizon));
   if (equipment.horizon && *equipment.horizon < least_horizon(equipment))
