@@ -1,6 +1,7 @@
 #include "service/cli/config_options.hpp"
 
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <unistd.h>
 
@@ -10,12 +11,27 @@
 #include "service/support/utc_clock.hpp"
 
 namespace reident::cli {
+namespace {
+
+/// A service with ports of its own is found by its clients alone: `reident fleet init` has put what
+/// makes one beside its configuration. CYCLONEDDS_URI comes first where it is set.
+void join_as_client_of(const std::filesystem::path& configuration) {
+  std::error_code error;
+  const std::filesystem::path file = std::filesystem::absolute(configuration, error).parent_path() /
+                                     "cyclonedds" /
+                                     (configuration.stem().string() + "-clients.xml");
+  if (!error && std::filesystem::exists(file, error))
+    ::setenv("CYCLONEDDS_URI", ("file://" + file.string()).c_str(), 0);
+}
+
+}  // namespace
 
 std::variant<std::optional<Config>, Refusal> chosen_config(const std::optional<std::string>& file) {
   const std::string path = file.value_or(default_config_file);
   std::error_code error;
   if (!file && !std::filesystem::exists(path, error)) return std::nullopt;
   auto loaded = load_config(path);
+  join_as_client_of(path);
   if (auto* config = std::get_if<Config>(&loaded)) return std::move(*config);
   const auto& mistakes = std::get<std::vector<ConfigMistake>>(loaded);
   std::string text = mistake_text(path, mistakes.front());

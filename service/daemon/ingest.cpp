@@ -54,6 +54,7 @@ Ingest::Ingest(dds::Participant& participant, const Config& config,
       ready_(participant),
       simulators_(simulators),
       clock_(std::move(clock)) {
+  for (const SpacecraftConfig& one : config.spacecraft) spacecraft_.insert(one.name);
   ready_.attach(descriptors_);
   ready_.attach(frames_);
   ready_.attach(acknowledgements_);
@@ -87,6 +88,8 @@ void Ingest::count_rejected() {
 }
 
 void Ingest::hear(const ModelAcknowledgement& acknowledgement) {
+  // One of several spacecraft says in each one's partition what it runs of all.
+  if (!spacecraft_.contains(acknowledgement.spacecraft)) return;
   if (simulators_.hear(acknowledgement, clock_())) log_acknowledgement(acknowledgement);
 }
 

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "service/config/config.hpp"
@@ -56,6 +58,7 @@ class Ingest {
   dds::Reader<ModelAcknowledgement> acknowledgements_;
   dds::WaitSet ready_;
   SimulatorBook& simulators_;
+  std::set<std::string> spacecraft_;  // that are configured
   const Clock clock_;
   std::uint32_t listeners_ = 0;  // simulators at the last look
   bool are_leaving_ = false;

@@ -70,6 +70,8 @@ host = "127.0.0.1"
         wait_until(lambda: adopted() == set(asked), "it runs the models of both")
         for name in asked:
             wait_until(lambda: self.acknowledged(name), f"the service of {name} has heard of it")
+        for name in asked:
+            self.assertEqual(self.simulators(name), [("trainer", name, "current")])
         code, instances = self.status()
         self.assertEqual({one["instance"] for one in instances if one["with_champion"]}, set(asked))
 
@@ -87,6 +89,14 @@ host = "127.0.0.1"
         status, text = self.reident("overview", "--json", "--config",
                                     self.configurations / f"{name}.toml")
         return json.loads(text)["equipment"][0]["simulators_current"] == 1
+
+    def simulators(self, name):
+        """As an operator sees them who names nothing but the service's configuration."""
+        status, text = self.reident("simulators", "--json", "--config",
+                                    self.configurations / f"{name}.toml")
+        self.assertEqual(status, 0, text)
+        return [(one["simulator"], one["spacecraft"], one["state"])
+                for one in json.loads(text)["simulators"]]
 
 
 if __name__ == "__main__":

@@ -102,6 +102,7 @@ std::vector<SimulatorRow> list_simulators(const PartitionSurvey& sight,
     if ((!wanted.spacecraft.empty() && said.spacecraft != wanted.spacecraft) ||
         (!wanted.equipment.empty() && said.equipment != wanted.equipment))
       continue;
+    if (!sight.spacecraft.empty() && !sight.spacecraft.contains(said.spacecraft)) continue;
     SimulatorRow row{said, std::nullopt, SimulatorState::unknown};
     const auto champion = sight.champions.find({said.spacecraft, said.equipment});
     if (champion != sight.champions.end()) row.champion = champion->second;

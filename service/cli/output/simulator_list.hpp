@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct PublishedVersion {
 struct PartitionSurvey {
   std::vector<ModelAcknowledgement> simulators;
   std::map<storage::EquipmentName, PublishedVersion> champions;
-  std::size_t services = 0;      // that publish versions; 0: the champions are not known
+  std::size_t services = 0;            // that publish versions; 0: the champions are not known
+  std::set<std::string> spacecraft{};  // that they keep; empty: not known
   bool misses_security = false;  // others are secured and the survey is not: it heard none of them
 };
 
@@ -51,7 +53,8 @@ struct SimulatorRow {
   std::string text() const;
 };
 
-/// Sorted by simulator, spacecraft and equipment. An empty name selects every one.
+/// Sorted by simulator, spacecraft and equipment. An empty name selects every one. What a simulator
+/// of several spacecraft runs of others than the services' is in their own partitions.
 std::vector<SimulatorRow> list_simulators(const PartitionSurvey& sight,
                                           const storage::EquipmentName& wanted);
 

@@ -103,6 +103,10 @@ TEST(SimulatorList, IsSortedAndSelectedByEquipment) {
   EXPECT_THAT(names({"", "BDR"}),
               ::testing::ElementsAre("a OLD/BDR", "a SAT/BDR", "b OLD/BDR", "b SAT/BDR"));
   EXPECT_THAT(names({"SAT", "BDR"}), ::testing::ElementsAre("a SAT/BDR", "b SAT/BDR"));
+  sight.services = 1;
+  sight.spacecraft = {"SAT"};
+  EXPECT_THAT(names({"", "BDR"}), ::testing::ElementsAre("a SAT/BDR", "b SAT/BDR"))
+      << "OLD is of another partition";
 }
 
 }  // namespace
