@@ -33,6 +33,7 @@ std::optional<Instance> read_instance(const fs::path& file) {
   }
   const Config& config = std::get<Config>(loaded);
   std::error_code unknown;
+  instance.has_service = false;
   if (!fs::exists(config.database, unknown) && !unknown) {
     instance.problem = fmt::format(
         "database {} is not there: start the service, which makes it, or check the path",
@@ -71,7 +72,8 @@ std::size_t Instance::waiting() const {
 }
 
 bool Instance::needs_action() const {
-  return is_of_site && (!problem.empty() || !has_service || unseen_alarms() > 0 || waiting() > 0);
+  return is_of_site &&
+         (!problem.empty() || !has_service.value_or(false) || unseen_alarms() > 0 || waiting() > 0);
 }
 
 std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers) {
@@ -94,8 +96,8 @@ std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers
                                 " holds no configuration (*.toml): name the folder of the "
                                 "instances, such as /etc/reident");
   const auto badness = [](const Instance& one) {
-    return std::tuple(one.is_of_site, !one.problem.empty(), !one.has_service, one.unseen_alarms(),
-                      one.waiting());
+    return std::tuple(one.is_of_site, !one.problem.empty(), !one.has_service.value_or(false),
+                      one.unseen_alarms(), one.waiting());
   };
   std::ranges::stable_sort(instances, std::ranges::greater(), badness);
   return instances;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace reident::fleet {
 
 /// One service's configuration, and how the models that it keeps are.
 struct Instance {
-  std::string name;                        // of the file
-  std::string problem;                     // why nothing is known; empty else
-  bool is_of_site = true;                  // or never started, and in no table of the site
-  bool has_service = false;                // a process has the database open for writing
+  std::string name;        // of the file
+  std::string problem;     // why nothing is known; empty else
+  bool is_of_site = true;  // or never started, and in no table of the site
+  /// Whether a process has the database open for writing; absent where nobody can say which.
+  std::optional<bool> has_service{};
   std::vector<history::OverviewRow> rows;  // also of equipment that no window was tried of
   std::vector<storage::Alarm> alarms;
 

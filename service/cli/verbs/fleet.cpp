@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,6 +28,7 @@ using fleet::Instance;
 using nlohmann::ordered_json;
 
 constexpr std::size_t rows_of_screen = 20;
+constexpr std::size_t lines_of_screen = 22;       // with the title, without the lines behind
 constexpr std::size_t most_without_network = 14;  // a source and a console have to join too
 
 struct Arguments {
@@ -113,12 +115,23 @@ std::optional<storage::Time> oldest_telemetry(const Instance& instance) {
 std::string note_of(const Instance& instance) {
   if (!instance.is_of_site) return "never started, and in no table of the site";
   if (!instance.problem.empty()) return instance.problem;
+  const std::string stopped =
+      instance.has_service.value_or(true)
+          ? ""
+          : fmt::format("stopped: journalctl -u reidentd@{} says why", instance.name);
   for (const storage::Alarm& alarm : instance.alarms)
-    if (alarm.acknowledged_by.empty()) return alarm.code + ": " + alarm.text;
-  return {};
+    if (alarm.acknowledged_by.empty())
+      return fmt::format("{}{}{}: {}", stopped, stopped.empty() ? "" : "; ", alarm.code,
+                         alarm.text);
+  return stopped;
 }
 
-void print_table(const std::vector<Instance>& instances, bool all) {
+std::string service_of(const Instance& instance) {
+  if (!instance.has_service) return "?";
+  return *instance.has_service ? "runs" : "none";
+}
+
+std::string table_text(const std::vector<Instance>& instances, std::size_t shown) {
   constexpr auto right = Table::Align::right;
   Table table({{"instance"},
                {"service"},
@@ -128,17 +141,37 @@ void print_table(const std::vector<Instance>& instances, bool all) {
                {"telemetry", right},
                {"worst"}});
   const storage::Time now = utc_now();
-  const std::size_t shown = all ? instances.size() : std::min(rows_of_screen, instances.size());
   for (std::size_t i = 0; i < shown; ++i) {
     const Instance& one = instances[i];
     const auto telemetry = oldest_telemetry(one);
-    table.add({one.name, one.has_service ? "runs" : "none",
-               fmt::format("{}/{}", with_champion(one), one.rows.size()),
+    table.add({one.name, service_of(one), fmt::format("{}/{}", with_champion(one), one.rows.size()),
                fmt::format("{}", one.waiting()), fmt::format("{}", one.unseen_alarms()),
                telemetry ? rough_duration_text(now - *telemetry) : "-", note_of(one)},
               shows_colours() && one.needs_action() ? Table::Look::urgent : Table::Look::plain);
   }
-  fmt::print("{}", table.text(terminal_width()));
+  return table.text(terminal_width());
+}
+
+/// As a terminal shows it, which breaks what is too wide.
+std::size_t lines_of(std::string_view text) {
+  const std::size_t width = terminal_width();
+  std::size_t lines = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::size_t columns = display_width(text.substr(begin, end - begin));
+    lines += width == 0 || columns == 0 ? 1 : (columns + width - 1) / width;
+    begin = end + 1;
+  }
+  return lines;
+}
+
+void print_table(const std::vector<Instance>& instances, bool all) {
+  std::size_t shown = all ? instances.size() : std::min(rows_of_screen, instances.size());
+  std::string text = table_text(instances, shown);
+  // Where a text goes over several lines, less of them is a screen.
+  while (!all && shown > 1 && lines_of(text) > lines_of_screen)
+    text = table_text(instances, --shown);
+  fmt::print("{}", text);
   const auto act = std::ranges::count_if(instances, &Instance::needs_action);
   fmt::print("{}{} instances, {} need somebody\n",
              shown < instances.size()
@@ -157,7 +190,7 @@ void print_json(const std::vector<Instance>& instances) {
                     {"act", one.needs_action()},
                     {"of_site", one.is_of_site},
                     {"problem", text_json(one.problem)},
-                    {"service", one.has_service},
+                    {"service", one.has_service ? ordered_json(*one.has_service) : ordered_json()},
                     {"equipment", one.rows.size()},
                     {"with_champion", with_champion(one)},
                     {"waiting", one.waiting()},

@@ -70,7 +70,7 @@ Overview read_fleet(const std::string& folder) {
     std::ranges::move(one.alarms, std::back_inserter(overview.alarms));
     if (!one.problem.empty())
       overview.alarms.push_back(no_service(one.name + ": " + one.problem, overview.now));
-    else if (!one.has_service)
+    else if (!one.has_service.value_or(false))
       overview.alarms.push_back(
           no_service("No service runs for " + one.name + ". Start it.", overview.now));
   }

@@ -199,13 +199,18 @@ TEST_F(FleetTest, ShowsTheWorstFirst) {
   EXPECT_EQ(instances[0].name, "C");
   EXPECT_THAT(instances[0].problem, HasSubstr("C/reident.db"));
   EXPECT_EQ(instances[1].name, "B");
-  EXPECT_FALSE(instances[1].has_service);
+  EXPECT_EQ(instances[1].has_service, false);
   EXPECT_EQ(instances[1].unseen_alarms(), 1U);
   EXPECT_EQ(instances[2].name, "A");
-  EXPECT_TRUE(instances[2].has_service);
+  EXPECT_EQ(instances[2].has_service, true);
   EXPECT_FALSE(instances[2].needs_action());
   EXPECT_EQ(instances[2].rows.size(), 1U) << "equipment that nothing was tried of";
   EXPECT_THROW(fleet::read_instances(folder_ / "A", workers), std::invalid_argument);
+  std::ofstream(folder_ / "etc/reident/A.toml", std::ios::app) << "wrong = 1\n";
+  const auto changed = fleet::read_instances(folder_ / "etc/reident", workers);
+  const auto wrong = std::ranges::find(changed, "A", &fleet::Instance::name);
+  EXPECT_EQ(wrong->has_service, std::nullopt) << "whose database is it?";
+  EXPECT_TRUE(wrong->needs_action());
 }
 
 TEST_F(FleetTest, TellsASitesInstancesFromWhatTheyWereMadeOf) {
