@@ -11,6 +11,7 @@
 
 #include "service/cli/config_options.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/replace_option.hpp"
 #include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/config/fleet_table.hpp"
@@ -34,7 +35,7 @@ constexpr std::size_t most_without_network = 14;  // a source and a console have
 struct Arguments {
   std::string table, host, helm, root = "/";
   std::string folder = "/etc/reident";
-  bool dry_run = false, all = false, json = false;
+  bool dry_run = false, replace = false, all = false, json = false;
 };
 
 void print_command(const char* command, const std::vector<std::string>& names) {
@@ -53,6 +54,8 @@ int init(const Arguments& arguments) {
   }
   const auto& table = std::get<Fleet>(loaded);
   if (!arguments.helm.empty()) {
+    if (const auto refusal = exists_already(arguments.helm, arguments.replace))
+      return refuse(*refusal);
     OutputFile output(arguments.helm);
     output.write(fleet::helm_values(table));
     output.finish();
@@ -236,6 +239,8 @@ std::function<int()> declare(CLI::App& command) {
       ->excludes("--root")
       ->excludes("--host")
       ->excludes("--dry-run");
+  add_replace_option(*make, arguments->replace);
+  make->get_option("--replace")->needs("--helm");
   CLI::App* show =
       command.add_subcommand("status", "Show how the instances of this machine are, worst first");
   show->add_option("folder", arguments->folder, "where the configurations are, one an instance")

@@ -34,6 +34,15 @@ window = "10min"
   }
 };
 
+TEST_F(Fleet, ReplacesValuesOfHelmOnRequestAlone) {
+  write_table(1);
+  write("site.json", "mine\n");
+  EXPECT_THAT(refusal_of({"fleet", "init", "fleet.toml", "--helm", "site.json"}),
+              HasSubstr("--replace"));
+  EXPECT_EQ(reident({"fleet", "init", "fleet.toml", "--helm", "site.json", "--replace"}).status, 0);
+  EXPECT_EQ(reident({"fleet", "init", "fleet.toml", "--root", "root"}).status, 0);
+}
+
 TEST_F(Fleet, StatusIsAScreenAtMost) {
   write_table(40);
   ASSERT_EQ(reident({"fleet", "init", "fleet.toml", "--root", "."}).status, 0);
