@@ -91,6 +91,9 @@ std::variant<std::string, std::vector<ConfigMistake>> changed_config(
   ConfigDocument document = parse_document(std::string(std::istreambuf_iterator<char>(stream), {}));
   std::vector<ConfigMistake> mistakes;
   set_names(changes, document.table, mistakes);
+  if (const auto& security = std::get<Config>(loaded).security; !security.empty())
+    section(document.table, "dds")
+        .insert_or_assign("security", std::filesystem::absolute(security).string());
   for (const std::string& text : changes.equipment) {
     const auto change = change_of(text);
     if (!change)
@@ -106,7 +109,8 @@ std::variant<std::string, std::vector<ConfigMistake>> changed_config(
   text << document.table << '\n';
   auto changed = parse_config(text.str(), file.parent_path());
   if (auto* of_changes = std::get_if<std::vector<ConfigMistake>>(&changed)) {
-    for (ConfigMistake& mistake : *of_changes) mistake.line = 0;  // nobody has seen this text
+    for (ConfigMistake& mistake : *of_changes)  // in a text that nobody has seen
+      mistake = {0, "with the changes: " + mistake.message};
     return std::move(*of_changes);
   }
   return text.str();

@@ -25,7 +25,8 @@ struct ConfigChanges {
 };
 
 /// Returns the text of the configuration in `file` with the changes; or every mistake of the file,
-/// of the changes, or of what these make of it. A relative path of the database stays relative.
+/// of the changes, or of what these make of it. A relative path of the database stays relative; the
+/// folder of the security becomes absolute.
 std::variant<std::string, std::vector<ConfigMistake>> changed_config(
     const std::filesystem::path& file, const ConfigChanges& changes);
 

@@ -29,11 +29,11 @@ std::string configuration_of(const FleetInstance& instance, std::uint32_t domain
                                               .partition = instance.partition,
                                               .domain = domain});
   if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&text)) {
-    std::string all;
+    std::string all = fmt::format("spacecraft {}: ", instance.name);
     for (const ConfigMistake& mistake : *mistakes)
-      all +=
-          fmt::format("{}{}{}: {}", all.empty() ? "" : "; ", instance.configuration.string(),
-                      mistake.line == 0 ? "" : fmt::format(":{}", mistake.line), mistake.message);
+      all += fmt::format(
+          "{}{}{}: {}", &mistake == &mistakes->front() ? "" : "; ", instance.configuration.string(),
+          mistake.line == 0 ? "" : fmt::format(":{}", mistake.line), mistake.message);
     throw std::invalid_argument(all);
   }
   return fmt::format("# {}\n{}", mark, std::get<std::string>(text));

@@ -139,6 +139,24 @@ TEST_F(FleetTest, RefusesAConfigurationOfTwoSpacecraft) {
   EXPECT_THROW(fleet::site_files(two), std::invalid_argument);
 }
 
+TEST_F(FleetTest, NamesTheSpacecraftAndTheChangesThatAreWrong) {
+  Fleet fleet = site({"SAT-1"});
+  fleet.instances[0].partition = "operations/*";
+  try {
+    fleet::site_files(fleet);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("SAT-1"), HasSubstr("with the changes: [dds]")));
+  }
+}
+
+TEST_F(FleetTest, TakesTheSecurityOfTheBaseFromItsFolder) {
+  const Fleet fleet = site({"SAT-1"});
+  std::ofstream(folder_ / "satellite.toml", std::ios::app) << "[dds]\nsecurity = \"keys\"\n";
+  EXPECT_THAT(fleet::site_files(fleet).at("etc/reident/SAT-1.toml"),
+              HasSubstr((folder_ / "keys").string()));
+}
+
 TEST_F(FleetTest, GivesEachServiceAPortAndEachClientThoseThatItNeeds) {
   Fleet fleet = site({"SAT-1", "SAT-2", "SAT-3"});
   fleet.network = FleetNetwork{"10.0.0.1", 1};
