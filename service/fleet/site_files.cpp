@@ -59,6 +59,13 @@ class Network {
 
   std::map<fs::path, std::string> files() const {
     std::map<fs::path, std::string> files;
+    const auto add = [&files](const std::string& name, std::string text) {
+      if (!files.emplace(name, std::move(text)).second)
+        throw std::invalid_argument(fmt::format(
+            "cyclonedds/{} would be the file of two: rename the spacecraft that has its "
+            "name",
+            name));
+    };
     std::vector<std::string> gateways, all;
     for (const int index : gateways_) gateways.push_back(address(fleet_.network->host, index));
     all = gateways;
@@ -68,13 +75,14 @@ class Network {
       own.push_back(address(one.host, index));
       all.push_back(own.back());
       // Without any peer the middleware would ask the first ports of its machine: other services.
-      files[one.name + ".xml"] = text(one.host, index, {own.back()});
-      files[one.name + "-clients.xml"] = text(client_host(), std::nullopt, own);
+      add(one.name + ".xml", text(one.host, index, {own.back()}));
+      add(one.name + "-clients.xml", text(client_host(), std::nullopt, own));
     }
-    files["clients.xml"] = text(client_host(), std::nullopt, all);
+    add("clients.xml", text(client_host(), std::nullopt, all));
     for (std::size_t i = 0; i < gateways_.size(); ++i)
-      files[fmt::format("gateway-{}.xml", i + 1)] = text(
-          fleet_.network->host, gateways_[i], {all.begin() + std::ssize(gateways_), all.end()});
+      add(fmt::format("gateway-{}.xml", i + 1),
+          text(fleet_.network->host, gateways_[i],
+               {all.begin() + std::ssize(gateways_), all.end()}));
     return files;
   }
 

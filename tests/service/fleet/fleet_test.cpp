@@ -157,6 +157,16 @@ TEST_F(FleetTest, TakesTheSecurityOfTheBaseFromItsFolder) {
               HasSubstr((folder_ / "keys").string()));
 }
 
+TEST_F(FleetTest, RefusesNamesWhoseFilesWouldBeOne) {
+  for (const char* name : {"SAT-1-clients", "clients", "gateway-1"}) {
+    Fleet fleet = site({"SAT-1", name});
+    fleet::site_files(fleet);
+    fleet.network = FleetNetwork{"127.0.0.1", 1};
+    for (FleetInstance& one : fleet.instances) one.host = "127.0.0.1";
+    EXPECT_THROW(fleet::site_files(fleet), std::invalid_argument) << name;
+  }
+}
+
 TEST_F(FleetTest, GivesEachServiceAPortAndEachClientThoseThatItNeeds) {
   Fleet fleet = site({"SAT-1", "SAT-2", "SAT-3"});
   fleet.network = FleetNetwork{"10.0.0.1", 1};
