@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <initializer_list>
 #include <set>
+#include <system_error>
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -72,7 +74,29 @@ std::optional<std::string> read_host(TableReader& reader) {
 
 /// systemd would take the rest of the path for another one, or replace what it holds.
 bool is_plain_path(const std::string& path) {
-  return path.find_first_of(" \t\n\r\"'\\%") == std::string::npos;
+  return path.find_first_of(" \t\n\r\"'\\%$") == std::string::npos;
+}
+
+/// Each folder has one spelling.
+std::filesystem::path folder_of(const std::string& text) {
+  const std::filesystem::path path = std::filesystem::path(text).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+std::optional<std::string> read_page(TableReader& reader) {
+  auto page = reader.text("page");
+  if (!page) return page;
+  const std::size_t colon = std::min(page->rfind(':'), page->size());
+  int port = 0;
+  const char* end = page->data() + page->size();
+  const char* digits = page->data() + std::min(colon + 1, page->size());
+  const auto read = std::from_chars(digits, end, port);
+  if (colon == 0 || page->find_first_of(" \t\n\r/") != std::string::npos ||
+      read.ec != std::errc{} || read.ptr != end || port < 1 || port > 65535)
+    reader.mistake("page", fmt::format("page \"{}\" has to be the host and port of a page, such as "
+                                       "\"127.0.0.1:8480\"",
+                                       *page));
+  return page;
 }
 
 std::optional<FleetNetwork> read_network(TableReader& fleet, ConfigDocument& document) {
@@ -115,7 +139,7 @@ void refuse_shared(const FleetInstance& one, TableReader& reader, Taken& taken) 
   if (!taken.names.insert(one.name).second) return refuse("name", "the name");
   if (!taken.partitions.insert(one.partition).second)
     refuse("partition", "partition " + one.partition);
-  if (!taken.folders.insert(one.data.lexically_normal().string()).second)
+  if (!taken.folders.insert(one.data.string()).second)
     refuse("data", "folder " + one.data.string());
   if (one.page && !taken.pages.insert(*one.page).second) refuse("page", "page " + *one.page);
 }
@@ -130,7 +154,7 @@ std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocum
   const auto partition = reader.text("partition"), data = reader.text("data");
   const auto memory_max = read_memory_max(reader), cpu_quota = read_cpu_quota(reader);
   FleetInstance instance;
-  instance.page = reader.text("page");
+  instance.page = read_page(reader);
   const auto host = read_host(reader);
   if (host && !fleet.network)
     reader.mistake("host", "host needs a [fleet.network], which says that there is one");
@@ -149,14 +173,15 @@ std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocum
                    "or in [fleet] for all");
   instance.configuration = folder / source.value_or("");
   instance.partition = with_name(partition.value_or(defaults.partition), *name);
-  instance.data = with_name(data.value_or(defaults.data), *name);
+  instance.data = folder_of(with_name(data.value_or(defaults.data), *name));
   if (!instance.data.is_absolute())
     reader.mistake("data",
                    fmt::format("data {} has to be an absolute path", instance.data.string()));
   if (is_unit_name(*name) && !is_plain_path(instance.data.string()))
-    reader.mistake("data", fmt::format("data {} has to be a path without blanks, quotes, \\ and %: "
-                                       "units hold it",
-                                       instance.data.string()));
+    reader.mistake("data",
+                   fmt::format("data {} has to be a path without blanks, quotes, \\, % and $: "
+                               "units hold it",
+                               instance.data.string()));
   instance.memory_max = memory_max ? memory_max : defaults.memory_max;
   instance.cpu_quota = cpu_quota ? cpu_quota : defaults.cpu_quota;
   refuse_shared(instance, reader, taken);

@@ -126,8 +126,10 @@ class Network {
 };
 
 std::string drop_in_of(const FleetInstance& instance) {
-  std::string text =
-      fmt::format("# {}\n[Service]\nReadWritePaths=-{}\n", mark, instance.data.string());
+  std::string text = fmt::format(
+      "# {0}\n[Service]\nReadWritePaths=-{1}\n"
+      "ExecStartPre=+/usr/bin/install -d -o reident -g reident -m 0750 {1}\n",
+      mark, instance.data.string());
   if (instance.memory_max) text += fmt::format("MemoryMax={}\n", *instance.memory_max);
   if (instance.cpu_quota) text += fmt::format("CPUQuota={}\n", *instance.cpu_quota);
   if (instance.host.empty()) return text;

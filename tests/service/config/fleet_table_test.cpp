@@ -98,12 +98,30 @@ TEST_F(FleetTable, NamesEachMistakeWithItsLine) {
       {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\npage = \"h:1\"\n"
        "[[spacecraft]]\nname = \"B\"\npage = \"h:1\"\n",
        8, "page h:1"},
+      {"[fleet]\nconfiguration = \"x\"\ndata = \"/x\"\n[[spacecraft]]\nname = \"A\"\n"
+       "[[spacecraft]]\nname = \"B\"\ndata = \"//x/./\"\n",
+       8, "folder /x"},
   };
   for (const auto& [text, line, words] : cases) {
     const ConfigMistake found = mistake(text);
     EXPECT_EQ(found.line, line) << text;
     EXPECT_THAT(found.message, HasSubstr(words)) << text;
   }
+}
+
+TEST_F(FleetTable, RefusesAPageThatIsNoHostAndPort) {
+  for (const char* page : {"", "8480", "host", "host:", ":8480", "host:0", "host:70000", "host:80a",
+                           "http://host:80", "my host:80"})
+    EXPECT_THAT(mistake("[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\npage = \"" +
+                        std::string(page) + "\"\n")
+                    .message,
+                HasSubstr("host and port"))
+        << page;
+  EXPECT_EQ(fleet("[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\npage = "
+                  "\"[::1]:8480\"\n")
+                .instances[0]
+                .page,
+            "[::1]:8480");
 }
 
 TEST_F(FleetTable, SaysThatAFolderIsNone) {

@@ -78,6 +78,8 @@ TEST_F(FleetTest, WritesWhatTheServicesRead) {
   EXPECT_THAT(text_of("etc/reident/SAT-2.toml"), HasSubstr(" margin = 16.4\n")) << "as it was";
   EXPECT_THAT(text_of("etc/systemd/system/reidentd@SAT-2.service.d/fleet.conf"),
               AllOf(HasSubstr("[Service]\n"), HasSubstr("\nMemoryMax=2G\n"),
+                    HasSubstr("\nExecStartPre=+/usr/bin/install -d -o reident -g reident -m 0750 " +
+                              (folder_ / "SAT-2").string() + "\n"),
                     Not(HasSubstr("CYCLONEDDS_URI"))));
   const auto targets = nlohmann::json::parse(text_of("etc/reident/targets.json"));
   ASSERT_EQ(targets.size(), 1U);
