@@ -67,6 +67,10 @@ void set_names(const ConfigChanges& changes, toml::table& document,
     section(document, "archive").insert_or_assign("database", changes.database.string());
   if (!changes.service.empty())
     section(document, "service").insert_or_assign("name", changes.service);
+  if (changes.strength > 0) {
+    section(document, "service").insert_or_assign("standby", true);
+    section(document, "service").insert_or_assign("strength", changes.strength);
+  }
   if (!changes.partition.empty())
     section(document, "dds").insert_or_assign("partition", changes.partition);
   if (changes.domain)

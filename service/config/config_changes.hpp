@@ -22,6 +22,7 @@ struct ConfigChanges {
   std::string spacecraft{};  // the name of the only one
   std::string service{}, partition{};
   std::optional<std::uint32_t> domain{};
+  int strength = 0;  // in a pair of services
 };
 
 /// Returns the text of the configuration in `file` with the changes; or every mistake of the file,

@@ -22,7 +22,7 @@ struct FleetDefaults {
   std::optional<std::string> configuration;
   std::string partition = "operations/{}";
   std::string data = "/var/lib/reident/{}";
-  std::optional<std::string> memory_max, cpu_quota;
+  std::optional<std::string> memory_max, cpu_quota, standby;
 };
 
 std::string with_name(std::string text, const std::string& name) {
@@ -62,13 +62,13 @@ std::optional<std::string> read_cpu_quota(TableReader& reader) {
 }
 
 /// The middleware takes an interface by its address, not by a name.
-std::optional<std::string> read_host(TableReader& reader) {
-  auto host = reader.text("host");
+std::optional<std::string> read_host(TableReader& reader, std::string_view key = "host") {
+  auto host = reader.text(key);
   in_addr address{};
   if (host && inet_pton(AF_INET, host->c_str(), &address) != 1)
-    reader.mistake("host", fmt::format("host \"{}\" is no address of a machine; use one such as "
-                                       "\"10.0.0.1\"",
-                                       *host));
+    reader.mistake(key, fmt::format("{} \"{}\" is no address of a machine; use one such as "
+                                    "\"10.0.0.1\"",
+                                    key, *host));
   return host;
 }
 
@@ -122,7 +122,10 @@ void read_defaults(const toml::table& table, ConfigDocument& document, Fleet& fl
   defaults.data = reader.text("data").value_or(defaults.data);
   defaults.memory_max = read_memory_max(reader);
   defaults.cpu_quota = read_cpu_quota(reader);
+  defaults.standby = read_host(reader, "standby");
   fleet.network = read_network(reader, document);
+  if (defaults.standby && !fleet.network)
+    reader.mistake("standby", "standby needs a [fleet.network], by which the two find each other");
   reader.refuse_unknown_keys();
 }
 
@@ -144,9 +147,9 @@ void refuse_shared(const FleetInstance& one, TableReader& reader, Taken& taken) 
   if (one.page && !taken.pages.insert(*one.page).second) refuse("page", "page " + *one.page);
 }
 
-std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocument& document,
-                                           const Fleet& fleet, const FleetDefaults& defaults,
-                                           const std::filesystem::path& folder, Taken& taken) {
+void read_instance(const toml::table& table, ConfigDocument& document,
+                   const FleetDefaults& defaults, const std::filesystem::path& folder, Taken& taken,
+                   Fleet& fleet) {
   TableReader reader(table, "[[spacecraft]]", document);
   reader.require("name", "\"SAT-1\"");
   const auto name = reader.text("name");
@@ -155,13 +158,22 @@ std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocum
   const auto memory_max = read_memory_max(reader), cpu_quota = read_cpu_quota(reader);
   FleetInstance instance;
   instance.page = read_page(reader);
-  const auto host = read_host(reader);
-  if (host && !fleet.network)
-    reader.mistake("host", "host needs a [fleet.network], which says that there is one");
-  if (fleet.network) instance.host = host.value_or(fleet.network->host);
+  const auto host = read_host(reader), standby = read_host(reader, "standby");
+  for (const char* key : {"host", "standby"})
+    if (reader.has(key) && !fleet.network)
+      reader.mistake(key,
+                     fmt::format("{} needs a [fleet.network], which says that there is one", key));
+  const std::string second = standby ? *standby : defaults.standby.value_or("");
+  if (fleet.network) {
+    instance.host = host.value_or(fleet.network->host);
+    if (second == instance.host)
+      reader.mistake(
+          standby ? "standby" : "host",
+          fmt::format("host {} is that of the standby too; name another machine", instance.host));
+  }
   reader.refuse_unknown_keys();
-  if (!name) return std::nullopt;
-  instance.name = *name;
+  if (!name) return;
+  instance.name = instance.spacecraft = *name;
   if (!is_unit_name(*name))
     reader.mistake("name", fmt::format("{} has to have letters, digits, - _ and . alone: it is "
                                        "part of a unit's name and of a file's",
@@ -185,7 +197,17 @@ std::optional<FleetInstance> read_instance(const toml::table& table, ConfigDocum
   instance.memory_max = memory_max ? memory_max : defaults.memory_max;
   instance.cpu_quota = cpu_quota ? cpu_quota : defaults.cpu_quota;
   refuse_shared(instance, reader, taken);
-  return instance;
+  instance.strength = second.empty() ? 0 : 2;
+  fleet.instances.push_back(instance);
+  if (second.empty()) return;
+  // Its folder is on a machine of its own.
+  instance.name += "-standby";
+  instance.strength = 1;
+  instance.host = second;
+  instance.page.reset();
+  if (!taken.names.insert(instance.name).second)
+    reader.mistake("name", fmt::format("{} is the name of a standby too", instance.name));
+  fleet.instances.push_back(std::move(instance));
 }
 
 }  // namespace
@@ -201,8 +223,7 @@ std::variant<Fleet, std::vector<ConfigMistake>> load_fleet(const std::filesystem
   if (const toml::table* table = reader.section("fleet"))
     read_defaults(*table, document, fleet, defaults);
   for (const toml::table* table : reader.sections("spacecraft"))
-    if (auto one = read_instance(*table, document, fleet, defaults, file.parent_path(), taken))
-      fleet.instances.push_back(*std::move(one));
+    read_instance(*table, document, defaults, file.parent_path(), taken, fleet);
   reader.refuse_unknown_keys();
   if (fleet.instances.empty() && document.mistakes.empty())
     document.mistakes.push_back({0, "has no [[spacecraft]] with a name"});

@@ -14,7 +14,9 @@ namespace reident {
 
 /// One service, reidentd@NAME.
 struct FleetInstance {
-  std::string name;                     // of the spacecraft and of the service
+  std::string name;  // of the spacecraft; that of its standby ends with -standby
+  std::string spacecraft;
+  int strength = 0;                     // in a pair: 2, and 1 the standby; 0: it has none
   std::filesystem::path configuration;  // that it is made of
   std::string partition;
   std::filesystem::path data;                        // absolute; folder of its database

@@ -24,10 +24,11 @@ constexpr std::string_view mark = "made by reident fleet init: change the table,
 std::string configuration_of(const FleetInstance& instance, std::uint32_t domain) {
   const auto text =
       changed_config(instance.configuration, {.database = instance.data / "reident.db",
-                                              .spacecraft = instance.name,
-                                              .service = instance.name,
+                                              .spacecraft = instance.spacecraft,
+                                              .service = instance.spacecraft,
                                               .partition = instance.partition,
-                                              .domain = domain});
+                                              .domain = domain,
+                                              .strength = instance.strength});
   if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&text)) {
     std::string all = fmt::format("spacecraft {}: ", instance.name);
     for (const ConfigMistake& mistake : *mistakes)
@@ -67,15 +68,20 @@ class Network {
             name));
     };
     std::vector<std::string> gateways, all;
+    std::map<std::string, std::vector<std::string>> services;  // of each spacecraft: one, or a pair
     for (const int index : gateways_) gateways.push_back(address(fleet_.network->host, index));
     all = gateways;
     for (const FleetInstance& one : fleet_.instances) {
+      all.push_back(address(one.host, indices_.at(one.name)));
+      services[one.spacecraft].push_back(all.back());
+    }
+    for (const FleetInstance& one : fleet_.instances) {
       const int index = indices_.at(one.name);
+      const std::vector<std::string>& of_spacecraft = services.at(one.spacecraft);
       std::vector<std::string> own = gateways;
-      own.push_back(address(one.host, index));
-      all.push_back(own.back());
+      own.insert(own.end(), of_spacecraft.begin(), of_spacecraft.end());
       // Without any peer the middleware would ask the first ports of its machine: other services.
-      add(one.name + ".xml", text(one.host, index, {own.back()}));
+      add(one.name + ".xml", text(one.host, index, of_spacecraft));
       add(one.name + "-clients.xml", text(client_host(), std::nullopt, own));
     }
     add("clients.xml", text(client_host(), std::nullopt, all));
@@ -143,8 +149,8 @@ std::string targets_of(const Fleet& fleet) {
   nlohmann::ordered_json targets = nlohmann::ordered_json::array();
   for (const FleetInstance& one : fleet.instances)
     if (one.page)
-      targets.push_back(
-          {{"targets", {*one.page}}, {"labels", {{"spacecraft", one.name}, {"made_by", mark}}}});
+      targets.push_back({{"targets", {*one.page}},
+                         {"labels", {{"spacecraft", one.spacecraft}, {"made_by", mark}}}});
   return targets.dump(1) + "\n";
 }
 

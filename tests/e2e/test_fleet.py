@@ -4,6 +4,7 @@ import json
 import os
 import unittest
 
+import pair
 import plant
 from harness import EndToEnd, wait_until
 
@@ -97,6 +98,47 @@ host = "127.0.0.1"
         self.assertEqual(status, 0, text)
         return [(one["simulator"], one["spacecraft"], one["state"])
                 for one in json.loads(text)["simulators"]]
+
+
+@unittest.skipUnless(pair.can_make_hosts(), "needs root, ip, nft and network namespaces")
+class FleetOfTwoMachines(EndToEnd):
+    def test_the_standby_of_the_table_takes_over(self):
+        hosts = pair.make_hosts(self)
+        self.configure([plant.equipment()])
+        table = self.folder / "fleet.toml"
+        table.write_text(f'''[fleet]
+configuration = "reident.toml"
+data = "{self.folder}/data/{{}}"
+standby = "{hosts[1].address}"
+[fleet.network]
+host = "{hosts[2].address}"
+[[spacecraft]]
+name = "SAT-1"
+''')
+        services, folder = {}, self.folder / "etc/reident"
+        for strength, name in (2, "SAT-1"), (1, "SAT-1-standby"):
+            host = hosts[strength]
+            status, text = self.reident("fleet", "init", table, "--root", self.folder, "--host",
+                                        host.address)
+            self.assertEqual(status, 0, text)
+            config = folder / f"{name}.toml"
+            # The folders of two machines are one here.
+            config.write_text(config.read_text().replace("data/SAT-1", f"data/{name}"))
+            (self.folder / "data" / name).mkdir(parents=True)
+            host.uri = f"file://{folder}/cyclonedds/{name}.xml"
+            services[strength] = self.start("reidentd", "--config", config, name=name, host=host)
+        hosts[1].uri = f"file://{folder}/cyclonedds/SAT-1-clients.xml"
+
+        def roles():
+            status, text = self.reident("status", "--json", "--config", folder / "SAT-1.toml",
+                                        host=hosts[1])
+            first = json.loads(text) if status == 0 else {"service": "", "others": []}
+            return {one["service"]: one["pair"]["role"] for one in [first, *first["others"]]
+                    if "pair" in one}
+
+        wait_until(lambda: roles() == {"SAT-1-2": "leads", "SAT-1-1": "follows"}, "it is a pair")
+        services[2].kill()
+        wait_until(lambda: roles().get("SAT-1-1") == "leads", "the standby leads")
 
 
 if __name__ == "__main__":

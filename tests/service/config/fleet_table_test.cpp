@@ -98,6 +98,12 @@ TEST_F(FleetTable, NamesEachMistakeWithItsLine) {
       {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\npage = \"h:1\"\n"
        "[[spacecraft]]\nname = \"B\"\npage = \"h:1\"\n",
        8, "page h:1"},
+      {"[fleet]\nconfiguration = \"x\"\nstandby = \"10.0.0.2\"\n[[spacecraft]]\nname = \"A\"\n", 3,
+       "[fleet.network]"},
+      {"[fleet]\nconfiguration = \"x\"\n[fleet.network]\nhost = \"10.0.0.1\"\n[[spacecraft]]\nname "
+       "= "
+       "\"A\"\nstandby = \"10.0.0.1\"\n",
+       7, "another machine"},
       {"[fleet]\nconfiguration = \"x\"\ndata = \"/x\"\n[[spacecraft]]\nname = \"A\"\n"
        "[[spacecraft]]\nname = \"B\"\ndata = \"//x/./\"\n",
        8, "folder /x"},

@@ -46,6 +46,7 @@ margin = 16.4
       one.configuration = configuration();
       one.partition = "operations/" + name;
       one.data = folder_ / name;
+      one.spacecraft = name;
       one.name = std::move(name);
       fleet.instances.push_back(std::move(one));
     }
@@ -196,6 +197,44 @@ TEST_F(FleetTest, GivesEachServiceAPortAndEachClientThoseThatItNeeds) {
                     Not(HasSubstr("10.0.0.1:8164"))));
   EXPECT_THAT(files.at("etc/systemd/system/reidentd@SAT-3.service.d/fleet.conf"),
               AllOf(HasSubstr("cyclonedds/SAT-3.xml\n"), HasSubstr("IPAddressAllow=any\n")));
+}
+
+TEST_F(FleetTest, GivesAPairToASpacecraftWithAStandby) {
+  std::ofstream(folder_ / "fleet.toml") << R"([fleet]
+configuration = "satellite.toml"
+standby = "10.0.0.2"
+[fleet.network]
+host = "10.0.0.1"
+[[spacecraft]]
+name = "SAT-1"
+[[spacecraft]]
+name = "SAT-2"
+host = "10.0.0.3"
+)";
+  configuration();
+  const auto table = load_fleet(folder_ / "fleet.toml");
+  ASSERT_TRUE(std::holds_alternative<Fleet>(table));
+  const auto files = fleet::site_files(std::get<Fleet>(table));
+  const auto config_of = [&](const fs::path& name) {
+    const auto parsed = parse_config(files.at("etc/reident" / name), folder_.path());
+    return std::get<Config>(parsed);
+  };
+  const Config first = config_of("SAT-1.toml"), second = config_of("SAT-1-standby.toml");
+  EXPECT_EQ(first.pair, "SAT-1");
+  EXPECT_EQ(second.pair, "SAT-1");
+  EXPECT_EQ(first.strength, 2);
+  EXPECT_EQ(second.strength, 1);
+  EXPECT_EQ(first.partition, second.partition);
+  EXPECT_EQ(second.spacecraft[0].name, "SAT-1");
+  const auto peers = AllOf(HasSubstr("10.0.0.1:7410"), HasSubstr("10.0.0.2:7410"));
+  for (const char* name : {"SAT-1", "SAT-1-standby", "SAT-1-clients", "clients", "gateway-1"})
+    EXPECT_THAT(files.at(fs::path("etc/reident/cyclonedds") / (name + std::string(".xml"))), peers)
+        << name;
+  EXPECT_THAT(files.at("etc/reident/cyclonedds/SAT-2.xml"),
+              AllOf(HasSubstr("10.0.0.2:7412"), Not(HasSubstr("10.0.0.1:7410"))));
+  const auto of_second = fleet::site_files(std::get<Fleet>(table), "10.0.0.2");
+  EXPECT_TRUE(of_second.contains("etc/reident/SAT-2-standby.toml"));
+  EXPECT_FALSE(of_second.contains("etc/reident/SAT-2.toml"));
 }
 
 TEST_F(FleetTest, TakesThePortsOfSeveralDomainsForManyServices) {
