@@ -79,6 +79,9 @@ bool Instance::needs_action() const {
 std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers) {
   std::vector<fs::path> files;
   std::error_code error;
+  if (fs::is_regular_file(folder, error))
+    throw std::invalid_argument(
+        folder.string() + " is a file: name the folder of the instances, such as /etc/reident");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::ranges::sort(files);

@@ -193,6 +193,8 @@ Plan make_plan(const Question& question, const fs::path& folder,
     refuse_another_question(plan, question, *read_task_file(plan_file(folder)));
     return plan;
   }
+  if (fs::is_regular_file(folder))
+    refuse(fmt::format("{} is a file: name a folder for the sweep", folder.string()));
   for (const char* part : {"candidates", "judged", "failed"}) fs::create_directories(folder / part);
   Plan plan;
   plan.folder = fs::canonical(folder);

@@ -33,7 +33,8 @@ std::int64_t year_of_newest(const storage::Database& database) {
   return storage::year_of(std::min(newest, utc_now()));
 }
 
-void print(const Arguments& arguments, std::int64_t before, const storage::SplitReport& report) {
+void print(const Arguments& arguments, const std::filesystem::path& database, std::int64_t before,
+           const storage::SplitReport& report) {
   if (arguments.json) {
     nlohmann::ordered_json shards = nlohmann::ordered_json::array();
     for (const auto& shard : report.made)
@@ -49,7 +50,7 @@ void print(const Arguments& arguments, std::int64_t before, const storage::Split
     return;
   }
   for (const auto& shard : report.made)
-    fmt::print("{}.shards/{}: {} samples, {}\n", arguments.file, shard.file, shard.samples,
+    fmt::print("{}.shards/{}: {} samples, {}\n", database.string(), shard.file, shard.samples,
                size_text(shard.bytes));
   if (report.chunks == 0)
     fmt::print("nothing to split: no telemetry of before {} is in the database itself\n", before);
@@ -71,7 +72,7 @@ int split(const Arguments& arguments) {
       });
   if (report.complete && report.chunks > 0) give_back_room(database);
   bar.clear();
-  print(arguments, before, report);
+  print(arguments, database.path(), before, report);
   if (!report.complete)
     print_error("reident: stopped; every sample is there, and the same command goes on");
   return report.complete ? exit_done : exit_failed;

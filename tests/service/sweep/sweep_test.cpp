@@ -204,6 +204,7 @@ TEST_F(Sweep, KeepsToItsQuestion) {
   EXPECT_THROW(plan("other", {"windw=13min"}), std::invalid_argument);
   EXPECT_THROW(plan("other", {"NOBODY.window=13min"}), std::invalid_argument);
   EXPECT_THROW(sweep::read_plan(folder("nowhere")), std::invalid_argument);
+  EXPECT_THROW(plan("reident.toml"), std::invalid_argument) << "a file";
   ordered_json older = *sweep::read_task_file(folder("tasks") / "plan.json");
   older["program_version"] = "0.0.1";
   sweep::write_task_file(folder("tasks") / "plan.json", older);

@@ -140,6 +140,12 @@ TEST_F(Care, SplitMovesClosedYearsAndEverythingIsReadAsBefore) {
   EXPECT_THAT(refusal_of({"archive", "split", "reident.db"}), HasSubstr("stop the service"));
 }
 
+TEST_F(Care, SplitThroughALinkNamesTheFolderThatHasTheShards) {
+  std::filesystem::create_symlink("reident.db", folder() / "link.db");
+  EXPECT_THAT(reident({"archive", "split", "link.db", "--before", "2024"}).out,
+              HasSubstr("reident.db.shards/"));
+}
+
 TEST_F(Care, WhatChangesADatabaseMakesNone) {
   write("reident.toml",
         "[archive]\ndatabase = \"mistyped.db\"\n[[spacecraft]]\nname = \"CB4\"\n"

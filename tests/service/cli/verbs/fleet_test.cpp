@@ -43,6 +43,11 @@ TEST_F(Fleet, ReplacesValuesOfHelmOnRequestAlone) {
   EXPECT_EQ(reident({"fleet", "init", "fleet.toml", "--root", "root"}).status, 0);
 }
 
+TEST_F(Fleet, StatusOfAFileIsRefused) {
+  write_table(1);
+  EXPECT_THAT(refusal_of({"fleet", "status", "fleet.toml"}), HasSubstr("is a file"));
+}
+
 TEST_F(Fleet, StatusIsAScreenAtMost) {
   write_table(40);
   ASSERT_EQ(reident({"fleet", "init", "fleet.toml", "--root", "."}).status, 0);
