@@ -91,6 +91,8 @@ class Clock {
   /// does.
   const std::string& local_by() const { return local_by_; }
   std::int64_t unit_ns() const { return unit_ns_; }
+  /// Whether most rows of the head are earlier than the one before.
+  bool is_newest_first() const { return is_newest_first_; }
   /// Whether the times of rows before decide what a cell means.
   bool depends_on_order() const { return zone_.has_value(); }
   /// "day of year", "milliseconds since 1970 by the name".
@@ -122,6 +124,7 @@ class Clock {
   bool has_unit_behind_ = false;  // numbers are as "10 sec"
   bool counts_ = false;           // times are numbers since something, or times of day
   bool may_be_local_ = false;
+  bool is_newest_first_ = false;
   std::string local_by_;
   std::optional<TimeZone> zone_;
   std::optional<std::int64_t> offset_ns_;       // of texts without their own, where it is said

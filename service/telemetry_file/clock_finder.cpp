@@ -101,7 +101,9 @@ std::variant<Clock, Problem> ClockFinder::run() {
     if (clock_.may_be_local_) take_zone_of_lines();
   }
   find_fraction_column();
-  if (clock_.zone_ && is_newest_first()) clock_.zone_->put_newest_first();
+  clock_.is_newest_first_ = is_newest_first();
+  if (clock_.is_newest_first_) clock_.description_ += ", newest first";
+  if (clock_.zone_ && clock_.is_newest_first_) clock_.zone_->put_newest_first();
   return std::move(clock_);
 }
 
@@ -139,17 +141,21 @@ void ClockFinder::take_zone(const ZoneHint& hint, const std::string& where,
   if (hint.offset_ns != 0) clock_.description_ += fmt::format(", {} {}", hint.name, evidence);
 }
 
-/// Whether the last row of the head is earlier than the first.
+/// Whether the clock goes back between most of the first rows.
 bool ClockFinder::is_newest_first() const {
+  constexpr std::size_t rows_looked_at = 1000;
   Clock reading = clock_;
+  reading.zone_.reset();
   std::vector<std::string_view> cells(head_.columns.size());
-  std::optional<std::int64_t> first, last;
-  for (std::size_t row = 0; row < head_.lines.size(); ++row) {
+  std::optional<std::int64_t> before;
+  std::size_t back = 0, ahead = 0;
+  for (std::size_t row = 0; row < std::min(head_.lines.size(), rows_looked_at); ++row) {
     for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = head_.columns[c][row];
-    last = reading.read(cells);
-    if (!first) first = last;
+    const auto time = reading.read(cells);
+    if (time && before) (*time < *before ? back : ahead) += *time == *before ? 0U : 1U;
+    if (time) before = time;
   }
-  return first && last && *last < *first;
+  return back > 1 && back > 3 * ahead;
 }
 
 std::optional<Problem> ClockFinder::decide_parts() {

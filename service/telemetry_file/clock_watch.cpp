@@ -29,6 +29,16 @@ constexpr std::array<Wrap, 8> wraps = {{{65'536, "65,536"},
 
 std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t line) {
   std::optional<ClockStep> step;
+  if (is_newest_first_) {
+    // Seen in a mirror, it goes on as other clocks do.
+    if (__builtin_sub_overflow(-1, time_ns, &time_ns)) return step;
+    const auto last = last_ns_;
+    if (last && time_ns < *last) step = explained(time_ns, line);
+    if (last && time_ns > *last && __builtin_sub_overflow(time_ns, *last, &usual_ns_))
+      usual_ns_ = 0;
+    last_ns_ = time_ns;
+    return step && step->kind == ClockStep::Kind::hour ? step : std::nullopt;
+  }
   if (last_ns_ && (time_ns < *last_ns_ || repeats_an_hour(time_ns)))
     step = explained(time_ns, line);
   if (last_ns_ && time_ns > *last_ns_) {
@@ -49,7 +59,7 @@ bool ClockWatch::repeats_an_hour(std::int64_t time_ns) const {
 }
 
 bool ClockWatch::begins_daylight_saving(std::int64_t time_ns) const {
-  if (!may_be_local_ || since_ns_ || usual_ns_ == 0 || usual_ns_ > hour_ns / 4) return false;
+  if (!may_be_local_ || since_ns_ || usual_ns_ == 0 || usual_ns_ > hour_ns) return false;
   std::int64_t expected_ns = 0;
   if (__builtin_add_overflow(*last_ns_, usual_ns_, &expected_ns)) return false;
   const std::int64_t of_day_ns = ((expected_ns % day_ns) + day_ns) % day_ns;

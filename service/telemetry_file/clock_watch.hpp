@@ -28,12 +28,18 @@ struct ClockStep {
 class ClockWatch {
  public:
   /// Watches a clock in units of `unit_ns`, which counts since `since_ns`, or shows dates;
-  /// `may_be_local`: it may have a daylight change.
-  ClockWatch(std::int64_t unit_ns, std::optional<std::int64_t> since_ns, bool may_be_local)
-      : unit_ns_(unit_ns), since_ns_(since_ns), may_be_local_(may_be_local) {}
+  /// `may_be_local`: it may have a daylight change. Where the newest comes first, steps back are
+  /// usual, and steps ahead are told.
+  ClockWatch(std::int64_t unit_ns, std::optional<std::int64_t> since_ns, bool may_be_local,
+             bool is_newest_first = false)
+      : unit_ns_(unit_ns),
+        since_ns_(since_ns),
+        may_be_local_(may_be_local),
+        is_newest_first_(is_newest_first) {}
 
   /// Returns the step where the time is earlier than the one before, or stands still for the hour
-  /// that a local clock is set back.
+  /// that a local clock is set back; where the newest comes first, the step where such a clock goes
+  /// the other way.
   std::optional<ClockStep> next(std::int64_t time_ns, std::uint64_t line);
   /// The first line before which a local clock goes ahead an hour, in the night; 0: it does not.
   std::uint64_t hour_ahead_line() const { return hour_ahead_line_; }
@@ -46,6 +52,7 @@ class ClockWatch {
   std::int64_t unit_ns_;
   std::optional<std::int64_t> since_ns_;
   bool may_be_local_;
+  bool is_newest_first_;
   std::optional<std::int64_t> last_ns_;
   std::int64_t usual_ns_ = 0;  // the last step ahead
   std::uint64_t hour_ahead_line_ = 0;

@@ -205,7 +205,8 @@ std::optional<Error> TelemetryFile::find_time(bool is_series_after_series, bool 
     if (!problem && !is_series_after_series) problem = repeated_times(head, *at.clock);
     if (problem) return refuse(*problem);
   }
-  at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local());
+  at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local(),
+                   at.clock->is_newest_first());
   return std::nullopt;
 }
 
@@ -435,7 +436,8 @@ std::optional<Error> TelemetryFile::go_on_at(std::uint64_t position, std::uint64
     }
   }
   if (at.clock)
-    at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local());
+    at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local(),
+                     at.clock->is_newest_first());
   return at.rows.start(at.dialect.layout, position, line);
 }
 

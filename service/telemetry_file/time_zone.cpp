@@ -2,7 +2,9 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 #include <date/tz.h>
 
@@ -40,15 +42,24 @@ std::optional<std::int64_t> TimeZone::to_utc(std::int64_t local_ns) {
   const auto utc = [&](const date::sys_info& at) {
     return local_ns - std::chrono::duration_cast<std::chrono::nanoseconds>(at.offset).count();
   };
-  std::int64_t result = utc(info.first);
-  if (info.result == date::local_info::ambiguous) {
-    const std::int64_t later = utc(info.second);
-    const bool is_later =
-        is_newest_first_ ? !last_ns_ || later < *last_ns_ : last_ns_ && result <= *last_ns_;
-    if (is_later) result = later;
+  const bool comes_twice = info.result == date::local_info::ambiguous;
+  const bool is_changed = goes_over(local_ns);
+  is_in_other_ = comes_twice && (is_in_other_ || is_changed);
+  return utc(comes_twice && is_in_other_ != is_newest_first_ ? info.second : info.first);
+}
+
+/// Whether the clock goes the other way from the last time by about an hour, less a usual step.
+bool TimeZone::goes_over(std::int64_t local_ns) {
+  constexpr std::int64_t least_ns = 30 * minute_ns;
+  const std::int64_t last_ns = std::exchange(last_ns_, local_ns).value_or(local_ns);
+  std::int64_t on_ns = 0;
+  if (__builtin_sub_overflow(local_ns, last_ns, &on_ns) || on_ns == INT64_MIN) return false;
+  if (is_newest_first_) on_ns = -on_ns;
+  if (on_ns > 0) {
+    usual_ns_ = on_ns;
+    return false;
   }
-  last_ns_ = result;
-  return result;
+  return usual_ns_ <= hour_ns && usual_ns_ - on_ns >= least_ns;
 }
 
 std::int64_t utc_of_gps(std::int64_t gps_ns) {

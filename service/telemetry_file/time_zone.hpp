@@ -14,15 +14,20 @@ class TimeZone {
   static std::optional<TimeZone> named(const std::string& name);
 
   /// Returns the UTC time of a local one [ns since 1970]; empty in the hour that a change leaves
-  /// out. Of the two in an hour that comes twice, the first one behind the last result, else the
-  /// later one; where the newest comes first, the last one before it, else the earlier one.
+  /// out. An hour that comes twice is the first one until the clock goes back by about an hour in
+  /// it, less a step: rows of one time, or a little out of order, stay in the same. Where the
+  /// newest comes first it is the second one until the clock goes ahead so.
   std::optional<std::int64_t> to_utc(std::int64_t local_ns);
   void put_newest_first() { is_newest_first_ = true; }
 
  private:
   const void* zone_ = nullptr;
+  bool goes_over(std::int64_t local_ns);
+
   bool is_newest_first_ = false;
-  std::optional<std::int64_t> last_ns_;
+  bool is_in_other_ = false;  // of the two hours, in the one that comes later in the file
+  std::optional<std::int64_t> last_ns_;  // local
+  std::int64_t usual_ns_ = 0;            // the last step on
 };
 
 /// Returns UTC for GPS seconds [ns since 1980-01-06, leap seconds not left out].

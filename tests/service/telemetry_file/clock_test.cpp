@@ -324,6 +324,20 @@ TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
   EXPECT_THAT(first_time("time", {"2024-02-28"}, named), HasSubstr("Europe/Berlin"));
 }
 
+TEST(TelemetryClock, OfHourlyRowsMayHaveTheNewestFirst) {
+  const std::vector<std::string> cells = {"2024-07-01 05:00", "2024-07-01 04:00",
+                                          "2024-07-01 03:00"};
+  EXPECT_EQ(first_time("time", cells), "2024-07-01T05:00:00Z");
+  ClockWatch watch(1'000'000'000, std::nullopt, true, true);
+  for (const char* time : {"2024-07-01 05:00:00", "2024-07-01 04:00:00", "2024-07-01 03:00:00"})
+    EXPECT_FALSE(watch.next(*parse_time(time), 2));
+  for (const char* time : {"2024-10-27 02:00:10", "2024-10-27 02:00:00"})
+    EXPECT_FALSE(watch.next(*parse_time(time), 3));
+  const auto step = watch.next(*parse_time("2024-10-27 02:59:50"), 4);
+  ASSERT_TRUE(step);
+  EXPECT_EQ(step->kind, ClockStep::Kind::hour);
+}
+
 TEST(TelemetryClock, KnowsTheHourThatComesTwice) {
   auto zone = TimeZone::named("Europe/Berlin");
   ASSERT_TRUE(zone);
@@ -336,6 +350,11 @@ TEST(TelemetryClock, KnowsTheHourThatComesTwice) {
   EXPECT_EQ(utc("2024-10-27T03:00:00"), "2024-10-27T02:00:00Z");
   EXPECT_EQ(utc("2024-07-01T12:00:00"), "2024-07-01T10:00:00Z");
   EXPECT_FALSE(zone->to_utc(*parse_time("2024-03-31T02:30:00"))) << "the hour that is left out";
+  for (const char* local : {"2024-10-27T01:59:50", "2024-10-27T02:00:00", "2024-10-27T02:00:00",
+                            "2024-10-27T02:00:20", "2024-10-27T02:00:10"})
+    EXPECT_EQ(zone->to_utc(*parse_time(local)), *parse_time(local) - 7200 * 1'000'000'000LL)
+        << "rows of one time, and out of order";
+  zone = TimeZone::named("Europe/Berlin");
   zone->put_newest_first();
   EXPECT_EQ(utc("2024-10-27T03:00:00"), "2024-10-27T02:00:00Z");
   EXPECT_EQ(utc("2024-10-27T02:30:00"), "2024-10-27T01:30:00Z");
