@@ -14,6 +14,7 @@
 #include "service/cli/identify_table.hpp"
 #include "service/model/regime_inputs.hpp"
 #include "service/support/text.hpp"
+#include "service/telemetry_file/clock_names.hpp"
 #include "service/telemetry_file/long_layout.hpp"
 
 namespace reident::cli {
@@ -96,6 +97,7 @@ std::variant<TelemetryFile, Refusal> open_file(const DataRequest& request) {
         fmt::format("{} can be read only once; save it to a file first", request.file.string())};
   telemetry_file::ReadingOptions reading = request.reading;
   reading.any_epoch = true;                         // nothing is stored
+  reading.continues_clock = false;                  // each segment has a clock (IdentifyTable)
   if (request.segment) reading.force_times = true;  // records may go on side by side
   reading.clock_may_go_back = true;
   for (const auto* names : {&request.inputs, &request.outputs})
@@ -226,6 +228,20 @@ void warn_of_held_rows(IdentifyData& data) {
         rows, static_cast<double>(rows) * data.record.period_s));
 }
 
+/// Where neither the time nor a period was given.
+void warn_of_unused_time(const DataRequest& request, const std::vector<std::string>& columns,
+                         IdentifyData& data) {
+  for (const std::string& column : columns)
+    if (telemetry_file::is_named_like_a_time(column) && !contains(request.inputs, column) &&
+        !contains(request.outputs, column)) {
+      data.warnings.push_back(
+          fmt::format("column {} may be the time of the rows and is not used, they are taken to be "
+                      "1 s apart; say --time {} or --period",
+                      column, column));
+      return;
+    }
+}
+
 /// Without a time column ticks are rows of the file.
 void warn_of_late_start(IdentifyData& data, Index asked) {
   const auto parts = segments_within(data.record, data.identify);
@@ -301,6 +317,7 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   data.outputs = request.outputs;
   data.found = file.found();
   data.warnings = table.warnings;
+  if (!has_time && !request.period_s) warn_of_unused_time(request, file.columns(), data);
   if (std::max(identify.begin, validate.begin) < std::min(identify.end, validate.end))
     data.warnings.push_back(
         "the validation rows overlap the identification rows: the validation error is not an error "

@@ -183,7 +183,9 @@ std::optional<std::int64_t> Clock::read_one(std::string_view cell) {
     if (text.size() > 4 && text[4] == '-')
       if (const auto time = parse_time(text)) return time;
   }
-  const auto text = read_date_text(cell, order_);
+  auto text = read_date_text(cell, order_);
+  if (text && counts_minutes_ && std::count(cell.begin(), cell.end(), ':') == 1)
+    text->clock_ns /= 60;
   return text ? absolute(*text) : std::nullopt;
 }
 

@@ -119,6 +119,7 @@ class Clock {
   std::size_t clock_digits_ = 0;   // of a time of day as a number, as 93000; 0: it is no number
   bool adds_clock_ = false;        // dates have a clock, which shows midnight in all rows
   bool counts_first_day_ = false;  // times of day have the day of the year, and no year
+  bool counts_minutes_ = false;    // a clock of two parts is minutes and seconds
   bool is_gps_date_ = false;       // dates are those of GPS
   bool has_decimal_comma_ = false;
   bool has_unit_behind_ = false;  // numbers are as "10 sec"

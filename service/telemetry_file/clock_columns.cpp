@@ -157,12 +157,26 @@ bool ClockFinder::find_zone_column() {
   return false;
 }
 
+/// A column called sec, fraction or the like whose cells are all parts of a second, as 0.250.
+bool ClockFinder::is_part_of_second(std::size_t c) const {
+  const auto& cells = head_.columns[c];
+  const bool has_point = std::any_of(cells.begin(), cells.end(), [](std::string_view cell) {
+    return cell.find('.') != std::string_view::npos;
+  });
+  return is_named_like_a_part_of_second(head_.names[c]) && has_point &&
+         std::all_of(cells.begin(), cells.end(), [](std::string_view cell) {
+           const auto value = plain_number(trimmed(cell));
+           return value && *value >= 0 && *value < 1;
+         });
+}
+
 /// A column of milliseconds or the like right behind times of whole seconds.
 void ClockFinder::find_fraction_column() {
   const std::size_t last = *std::max_element(clock_.columns_.begin(), clock_.columns_.end());
   const std::size_t c = last + 1;
   if (c >= head_.names.size() || clock_.parts_ == Clock::Parts::gps_week) return;
-  const auto unit = fraction_of_second(head_.names[c], head_.names[last]);
+  const auto unit = is_part_of_second(c) ? std::optional(second_ns)
+                                         : fraction_of_second(head_.names[c], head_.names[last]);
   if (!unit) return;
   const auto is_whole = [](std::string_view cell) {
     const auto clock = cell.rfind(':');
@@ -171,7 +185,8 @@ void ClockFinder::find_fraction_column() {
   };
   const auto fits = [&](std::string_view cell) {
     const auto value = plain_number(trimmed(cell));
-    return is_digits(trimmed(cell)) && value && *value * static_cast<double>(*unit) < 1e9;
+    return (is_digits(trimmed(cell)) || *unit == second_ns) && value &&
+           *value * static_cast<double>(*unit) < 1e9;
   };
   const auto& cells = head_.columns[c];
   if (cells.empty() ||
@@ -249,7 +264,9 @@ bool ClockFinder::join(std::size_t date, std::optional<std::size_t> clock) {
 }
 
 bool ClockFinder::find_gps_week() {
-  const auto week = part(TimePart::gps_week), second = part(TimePart::week_second);
+  const auto week = part(TimePart::gps_week);
+  auto second = part(TimePart::week_second);
+  if (week && !second && part(TimePart::second) == *week + 1) second = *week + 1;
   if (!week || !second || !plain_number(first_cell(*week).first)) return false;
   clock_.unit_ns_ = options_.unit_ns.value_or(
       hint_of(head_.names[*second], unit(*second)).unit_ns.value_or(second_ns));
@@ -327,7 +344,7 @@ std::optional<Problem> ClockFinder::unknown_zone(std::size_t c) const {
 std::optional<Problem> ClockFinder::choose(std::vector<std::size_t> columns) {
   const std::size_t first = columns.front();
   clock_.columns_ = std::move(columns);
-  if (!options_.format) join(first, clock_beside(first));
+  if (!options_.format || options_.format == TimeFormat::gps) join(first, clock_beside(first));
   return std::nullopt;
 }
 

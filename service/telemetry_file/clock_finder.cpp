@@ -107,40 +107,6 @@ std::variant<Clock, Problem> ClockFinder::run() {
   return std::move(clock_);
 }
 
-/// The zone that the name of a column says, as "Zeit (MEZ)".
-void ClockFinder::take_zone_of_names() {
-  for (const std::size_t c : clock_.columns_) {
-    const auto hint = zone_hint_of(head_.names[c], unit(c));
-    if (!hint) continue;
-    take_zone(*hint, "column '" + head_.names[c] + "'", "by the name");
-    if (!hint->is_local) return;
-  }
-}
-
-/// The zone that a line above the header says, as "Timezone;Europe/Berlin".
-void ClockFinder::take_zone_of_lines() {
-  for (const LineAbove& line : head_.above)
-    if (const auto hint = zone_hint_of_line(line.text)) {
-      const std::string where = "line " + std::to_string(line.number);
-      take_zone(*hint, fmt::format("{} ({})", where, shown(trimmed(line.text))), "by " + where);
-    }
-}
-
-void ClockFinder::take_zone(const ZoneHint& hint, const std::string& where,
-                            std::string_view evidence) {
-  if (hint.is_local) {
-    clock_.local_by_ = where;
-    return;
-  }
-  clock_.local_by_.clear();
-  clock_.may_be_local_ = false;
-  if (hint.offset_ns)
-    clock_.offset_ns_ = hint.offset_ns;
-  else
-    clock_.zone_ = TimeZone::named(hint.name);
-  if (hint.offset_ns != 0) clock_.description_ += fmt::format(", {} {}", hint.name, evidence);
-}
-
 /// Whether the clock goes back between most of the first rows.
 bool ClockFinder::is_newest_first() const {
   constexpr std::size_t rows_looked_at = 1000;
@@ -178,6 +144,9 @@ std::optional<Problem> ClockFinder::decide_parts() {
       clock_.description_ = "GPS week and " + unit_name(clock_.unit_ns_);
       break;
   }
+  if (clock_.parts_ != Clock::Parts::gps_week)
+    for (const std::size_t c : clock_.columns_)
+      if (auto problem = decide_scale(c)) return problem;
   if (clock_.parts_ == Clock::Parts::joined || clock_.parts_ == Clock::Parts::dated)
     return decide_order(clock_.columns_.front());
   return std::nullopt;
@@ -275,24 +244,6 @@ std::optional<Problem> ClockFinder::decide_order(std::size_t c) {
                            "' may have the day or the month first; say --time-format dmy or mdy"};
 }
 
-/// Dates of GPS and TAI are ahead of UTC by leap seconds; some receivers write UTC as GPS time.
-std::optional<Problem> ClockFinder::decide_scale(std::size_t c) {
-  clock_.is_gps_date_ = options_.format == TimeFormat::gps;
-  if (options_.format) return std::nullopt;
-  const std::string scale = time_scale_of(head_.names[c], unit(c));
-  if (scale.empty()) return std::nullopt;
-  const auto [cell, line] = first_cell(c);
-  return Problem{
-      line, scale == "GPS"
-                ? fmt::format("{} in column '{}' may be GPS time, which is leap seconds ahead of "
-                              "UTC; say --time-format gps, which takes them out, or iso for UTC",
-                              shown(cell), head_.names[c])
-                : fmt::format("{} in column '{}' is {} by the name, which is more than half a "
-                              "minute ahead of UTC; write UTC, or take the dates for UTC with "
-                              "--time-format iso",
-                              shown(cell), head_.names[c], scale)};
-}
-
 std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
   std::size_t filled = 0, numbers = 0, texts = 0, offsets = 0, dated = 0;
   std::vector<double> values;
@@ -328,6 +279,7 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
     if (auto problem = decide_order(c)) return problem;
     clock_.counts_ = dated == 0;
     clock_.may_be_local_ = offsets == 0 && !options_.zone;
+    clock_.counts_minutes_ = dated == 0 && counts_minutes(head_.names[c]);
     clock_.counts_first_day_ = dated == 0 && is_day_of_year(head_.names[c]);
     if (dated > 0 && offsets == 0) {
       if (auto problem = decide_scale(c)) return problem;
@@ -416,6 +368,11 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
   if (is_day_of_year(head_.names[c]) && options_.epoch_ns && !options_.unit_ns) {
     hint.unit_ns = day_ns;
     clock_.counts_first_day_ = true;
+  }
+  if (auto problem = refuse_scale_of_numbers(c)) return problem;
+  if (hint.epoch_ns == gps_epoch_ns && time_scale_of(head_.names[c], unit(c)) == "GPS") {
+    hint.epoch_ns.reset();
+    hint.format = TimeFormat::gps;
   }
   if (auto problem = unknown_count(c, hint, values)) return problem;
   const std::int64_t unit = options_.unit_ns.value_or(hint.unit_ns.value_or(second_ns));

@@ -1,5 +1,5 @@
-// Finds which columns hold the time of a row (clock_columns.cpp) and what their cells mean
-// (clock_finder.cpp). Private to this folder.
+// Finds which columns hold the time of a row (clock_columns.cpp), what their cells mean
+// (clock_finder.cpp), and in which zone and time scale (clock_zones.cpp). Private to this folder.
 #pragma once
 
 #include <optional>
@@ -54,8 +54,10 @@ class ClockFinder {
   void take_zone(const ZoneHint& hint, const std::string& where, std::string_view evidence);
   bool is_newest_first() const;
   std::optional<Clock::Problem> decide_scale(std::size_t c);
+  std::optional<Clock::Problem> refuse_scale_of_numbers(std::size_t c) const;
   bool find_zone_column();
   void find_fraction_column();
+  bool is_part_of_second(std::size_t c) const;
   enum class YearFirst { impossible, possible, alone };
   YearFirst year_first(std::size_t c) const;
   double span(std::size_t c, DateOrder order) const;

@@ -141,8 +141,15 @@ void note_epoch(std::string_view text, NameHint& hint) {
   }
 }
 
+/// Words that are a zone in any case: none is a word of another meaning, or a part of one.
+bool is_zone_in_small_letters(std::string_view word) {
+  constexpr std::string_view zones =
+      " utc gmt cet cest mez mesz edt cst cdt mst mdt pst pdt jst kst ";
+  return zones.find(" " + std::string(word) + " ") != std::string_view::npos;
+}
+
 std::optional<ZoneHint> zone_in(std::string_view text) {
-  constexpr std::string_view ends = " \t_()[],;";
+  constexpr std::string_view ends = " \t_()[],;=:";
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find_first_of(ends, at), text.size());
     const std::string word(text.substr(at, end - at));
@@ -151,9 +158,12 @@ std::optional<ZoneHint> zone_in(std::string_view text) {
       return ZoneHint{word, {}, false};
     const bool is_name = word.size() >= 3 && word[0] >= 'A' && word[0] <= 'Z' && word[1] >= 'A' &&
                          word[1] <= 'Z' && word != "MET";  // mission elapsed time
-    const bool is_utc = word == "utc" || word == "gmt";
-    const auto offset = is_name || is_utc ? read_offset(word) : std::nullopt;
+    const bool is_small = is_zone_in_small_letters(word);
+    const auto offset = is_name || is_small ? read_offset(word) : std::nullopt;
     if (offset) return ZoneHint{word, offset, false};
+    const auto slash = word.find('/');  // Zeit/MEZ
+    if (slash != std::string::npos)
+      if (auto zone = zone_in(std::string_view(word).substr(slash + 1))) return zone;
   }
   return std::nullopt;
 }
@@ -177,9 +187,30 @@ std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view uni
   for (const std::string_view text : {unit, name})
     for (const std::string& word : words_of(text))
       if (word == "local" || word == "localtime" || word == "lokal" || word == "lokalzeit" ||
-          word == "ortszeit")
+          word == "ortszeit" || word == "locale" || word == "locais" ||
+          word ==
+              "\xE5\x8C\x97\xE4\xBA\xAC"
+              "\xE6\x97\xB6\xE9\x97\xB4")
         return ZoneHint{word, {}, true};
+  for (const std::string_view said : {trimmed(unit), bracketed(name)})
+    if (said.starts_with('+') || said.starts_with('-'))
+      if (const auto offset = read_offset(said)) return ZoneHint{std::string(said), offset, false};
   return std::nullopt;
+}
+
+std::string unknown_zone_of(std::string_view name, std::string_view unit) {
+  constexpr std::string_view others =
+      " ISO MJD MET UT1 TAI GPS GPST GNSS TDB TDT UNIX POSIX SCET OBT SCLK CUC CDS DOY EPOCH DATE "
+      "TIME ";
+  for (const std::string_view said : {trimmed(unit), bracketed(name)}) {
+    const bool is_short = said.size() >= 3 && said.size() <= 5 &&
+                          said.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == said.npos;
+    if (said.starts_with("UTC")) continue;
+    if (is_short ? others.find(" " + std::string(said) + " ") == others.npos
+                 : said.ends_with(" Time"))
+      return std::string(said);
+  }
+  return {};
 }
 
 std::optional<ZoneHint> zone_hint_of_line(std::string_view line) {
@@ -190,9 +221,12 @@ std::optional<ZoneHint> zone_hint_of_line(std::string_view line) {
     });
   };
   const bool is_of_zone = is_named_like_a_zone(line);
-  if (!is_of_zone && !has({"times", "timestamps", "zeiten", "zeitstempel", "heures", "horas"}))
-    return std::nullopt;
-  if (auto zone = zone_in(line)) return zone;
+  const bool is_of_times = has({"times", "timestamps", "zeiten", "zeitstempel", "zeitangaben",
+                                "heures", "horas", "zone"}) ||
+                           (has({"time", "zeit"}) && has({"local", "lokale", "ortszeit"}));
+  const bool is_offset = has({"offset"});
+  if (!is_of_zone && !is_of_times) return std::nullopt;
+  if (auto zone = zone_in(line); zone && !is_offset) return zone;
   const auto sign = line.find_first_of("+-");
   if (is_of_zone && sign != std::string_view::npos) {
     const std::string_view said = line.substr(sign, line.find_first_of(" \t,;)]\"", sign) - sign);
@@ -226,15 +260,38 @@ std::optional<std::int64_t> fraction_of_second(std::string_view name, std::strin
   return unit && *unit < s ? unit : std::nullopt;
 }
 
+bool is_named_like_a_part_of_second(std::string_view name) {
+  std::string all;
+  for (const std::string& word : words_of(name)) all += word;
+  constexpr std::array<std::string_view, 9> names = {
+      "s", "sec", "second", "frac", "fraction", "fracsec", "subsec", "subsecond", "subseconds"};
+  return std::find(names.begin(), names.end(), all) != names.end();
+}
+
 std::string time_scale_of(std::string_view name, std::string_view unit) {
   for (const std::string_view text : {unit, name})
     for (const std::string& word : words_of(text)) {
       if (word == "gps" || word == "gpst" || word == "gnss" || word == "gpstime") return "GPS";
-      if (word == "tai") return "TAI";
+      if (word == "tai" || word == "tai93") return "TAI";
       if (word == "tt" || word == "tdt") return "TT";
       if (word == "tdb") return "TDB";
     }
   return {};
+}
+
+bool says_time_scale(std::string_view line) {
+  std::string all;
+  for (const std::string& word : words_of(line)) all += word;
+  constexpr std::array<std::string_view, 7> hints = {
+      "timesystem", "timescale", "timereference", "zeitsystem", "zeitskala", "timesare", "timesin"};
+  return std::any_of(hints.begin(), hints.end(),
+                     [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
+}
+
+bool counts_minutes(std::string_view name) {
+  const std::string_view said = bracketed(name);
+  return said == "mm:ss" || said == "m:ss" || said == "MM:SS" || said == "min:sec" ||
+         said == "min:s";
 }
 
 bool is_day_of_year(std::string_view name) {
@@ -264,6 +321,12 @@ NameHint hint_of(std::string_view name, std::string_view unit) {
     if (is_unknown_unit(said)) hint.unknown_unit = said;
   for (const std::string_view text : {name, unit}) note_epoch(text, hint);
   if (hint.epoch_ns == 0) hint.epoch_ns.reset();  // as all that has no other epoch
+  const TimePart part = part_of(name);
+  const bool is_of_week = part == TimePart::week_second && words.back() == "week";
+  if (part == TimePart::second_of_day || is_of_week)
+    hint.unit_ns = s;
+  else if (part == TimePart::millisecond_of_day)
+    hint.unit_ns = ms;
   const auto unit_words = words_of(unit);
   if (!unit_words.empty()) {
     if (const auto said = unit_of(unit_words.front())) hint.unit_ns = said;
@@ -344,6 +407,7 @@ TimePart part_of(std::string_view name) {
       {"secofday", TimePart::second_of_day},
       {"secondofday", TimePart::second_of_day},
       {"secondsofday", TimePart::second_of_day},
+      {"secsofday", TimePart::second_of_day},
       {"sod", TimePart::second_of_day},
       {"secday", TimePart::second_of_day},
       {"msofday", TimePart::millisecond_of_day},
@@ -383,6 +447,7 @@ TimePart part_of(std::string_view name) {
       {"sow", TimePart::week_second},
       {"gpssow", TimePart::week_second},
       {"secondofweek", TimePart::week_second},
+      {"secondsofweek", TimePart::week_second},
       {"timeofweek", TimePart::week_second},
       {"gpsseconds", TimePart::week_second},
       {"secofweek", TimePart::week_second},

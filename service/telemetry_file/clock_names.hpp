@@ -29,12 +29,22 @@ struct ZoneHint {
 };
 std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view unit);
 
+/// What stands in brackets behind a name, or as its unit, as a zone would that is not known here,
+/// as IST or Pacific Time; else empty.
+std::string unknown_zone_of(std::string_view name, std::string_view unit);
+
 /// What a line above the header says about the clock of all dates, as "Timezone;Europe/Berlin" and
 /// "All times are CET"; local where it says a zone that is not known here.
 std::optional<ZoneHint> zone_hint_of_line(std::string_view line);
 
 /// "GPS", "TAI", "TT" or "TDB" where a column of dates is named so; else empty.
 std::string time_scale_of(std::string_view name, std::string_view unit);
+
+/// Whether a line above the header is about the time scale of all times, as "TIME_SYSTEM = TAI".
+bool says_time_scale(std::string_view line);
+
+/// Whether a column is named as one of minutes and seconds, as "Elapsed (mm:ss)".
+bool counts_minutes(std::string_view name);
 
 /// Whether a column is named as one of days of the year.
 bool is_day_of_year(std::string_view name);
@@ -45,6 +55,9 @@ bool is_named_like_a_zone(std::string_view name);
 /// The unit of a column that is called ms, usec, nanoseconds or the like, and nothing else but what
 /// the column of seconds is called too, as stamp.secs and stamp.nsecs.
 std::optional<std::int64_t> fraction_of_second(std::string_view name, std::string_view seconds);
+
+/// Whether a column is called sec, fraction, subsecond or the like.
+bool is_named_like_a_part_of_second(std::string_view name);
 
 /// Whether a column is named as one of spacecraft. Numbers have to be called so: `sat` alone may
 /// count them.

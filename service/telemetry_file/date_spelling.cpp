@@ -96,6 +96,8 @@ void drop_weekday(std::string& text) {
     return word.size() >= letters &&
            weekdays.find(" " + word.substr(0, letters) + " ") != std::string_view::npos;
   };
+  // Mar 28 is a day of March, mar. 28/02/2024 a Tuesday.
+  if (word == "mar" && text.find_first_of("/-", end) == std::string::npos) return;
   if ((word.size() == 2 && begins_with(2)) || begins_with(3) || begins_with(4))
     text.erase(0, std::min(text.find_first_not_of(" ,.", end), text.size()));
 }
@@ -144,6 +146,7 @@ std::string plain_spelling(std::string_view cell) {
   std::string text(trimmed(cell));
   replace_all(text, signs);
   text = std::string(trimmed(text));
+  if (text.starts_with("=\"") && text.ends_with('"')) text = text.substr(2, text.size() - 3);
   if (text.starts_with('\'')) text.erase(0, 1);
   if (text.find_first_of("0123456789") == std::string::npos) return text;
   for (const std::string_view days : {" days ", " day "})  // 2 days 22:00:30

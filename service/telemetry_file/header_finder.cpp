@@ -178,6 +178,14 @@ bool is_title(const HeadLine& line) {
                        [](const std::string& cell) { return !trimmed(cell).empty(); }) == 1;
 }
 
+/// Whether a line says a zone, as "Zeitzone;MEZ", and names no columns.
+bool says_zone(const HeadLine& line) {
+  const auto filled = std::count_if(line.cells.begin(), line.cells.end(),
+                                    [](const auto& cell) { return !trimmed(cell).empty(); });
+  const auto hint = zone_hint_of_line(line.text);
+  return filled == 2 && hint && !hint->is_local && is_named_like_a_zone(line.cells.front());
+}
+
 /// The header among lines of text: the one with the names that are wanted; the one above units;
 /// the upper of two, whose lower one describes, unless the upper one alone has blanks in its names.
 std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& block,
@@ -194,8 +202,10 @@ std::size_t header_in(const HeadLines& lines, const std::vector<std::size_t>& bl
   for (const std::size_t i : block)
     if (!are_units(lines[i])) names.push_back(i);
   if (names.empty()) return block.front();
-  const auto is_of_title = [&](std::size_t i) { return is_title(lines[i]); };
-  if (!std::all_of(names.begin(), names.end(), is_of_title)) std::erase_if(names, is_of_title);
+  const auto is_no_header = [&](std::size_t i) {
+    return is_title(lines[i]) || says_zone(lines[i]);
+  };
+  if (!std::all_of(names.begin(), names.end(), is_no_header)) std::erase_if(names, is_no_header);
   // A line such as "Avg", "Avg" below the names describes them.
   if (std::any_of(names.begin(), names.end(), [&](std::size_t i) { return are_names(lines[i]); }))
     std::erase_if(names, [&](std::size_t i) { return !are_names(lines[i]); });

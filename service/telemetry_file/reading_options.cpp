@@ -136,7 +136,7 @@ std::optional<Error> take_time(const ReadingArguments& arguments, ReadingOptions
   }
   if (arguments.clock_back && *arguments.clock_back != "stop" && *arguments.clock_back != "go-on")
     return wrong("--clock-back", *arguments.clock_back, "stop or go-on");
-  options.clock_may_go_back = arguments.clock_back == "go-on";
+  options.clock_may_go_back = options.continues_clock = arguments.clock_back == "go-on";
   options.force_times = arguments.force_times;
   return std::nullopt;
 }

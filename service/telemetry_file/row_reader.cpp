@@ -45,6 +45,14 @@ bool is_wording(std::string_view cell) {
                      [](char c) { return (c | 0x20) >= 'a' && (c | 0x20) <= 'z'; });
 }
 
+/// Whether a line says how many rows there are, as "(30 rows affected)".
+bool counts_rows(std::string_view line) {
+  line = trimmed(line);
+  if (line.starts_with('(')) line.remove_prefix(1);
+  const std::size_t digits = std::min(line.find_first_not_of("0123456789"), line.size());
+  return digits > 0 && line.substr(digits).starts_with(" row");
+}
+
 }  // namespace
 
 bool place_cells(std::string_view line, const std::vector<Place>& places,
@@ -338,8 +346,8 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
     return Step::error;
   }
   const std::string advice = comment_advice(text);
-  const bool is_footer = !wrong && cells_.size() == 1 && layout_.cells > 1 &&
-                         is_wording(cells_.front()) && is_at_end();
+  const bool is_of_words = counts_rows(text) || (cells_.size() == 1 && is_wording(cells_.front()));
+  const bool is_footer = !wrong && layout_.cells > 1 && is_of_words && is_at_end();
   if (is_cut_short || is_footer) {
     cut_line_ = line_;
     return Step::end;

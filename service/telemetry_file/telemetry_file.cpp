@@ -37,6 +37,7 @@ struct TelemetryFile::Impl {
   std::optional<Clock> clock_at_start;  // before any row
   std::optional<ClockWatch> watch;
   std::optional<ClockStep> step;
+  std::int64_t ahead_ns = 0;  // of a clock that goes on where it left off
   std::int64_t time_ns = 0;
   Error error;
   Damage damage = Damage::none;
@@ -54,6 +55,8 @@ struct TelemetryFile::Impl {
   std::vector<std::string> other_readings() const;
   bool is_another_header() const;
   Step fail_at_header();
+  void start_watch();
+  void follow(std::int64_t clock_ns);
   Step read_time();
 };
 
@@ -180,7 +183,10 @@ std::string TelemetryFile::first_word(std::size_t column) const {
 
 std::optional<Error> TelemetryFile::find_time(bool is_series_after_series, bool of_one_spacecraft) {
   Impl& at = *impl_;
-  if (is_series_after_series) at.options.clock_may_go_back = true;
+  if (is_series_after_series) {
+    at.options.clock_may_go_back = true;
+    at.options.continues_clock = false;
+  }
   const auto refuse = [&](const Clock::Problem& problem) {
     const std::string line = problem.line == 0 ? "" : ":" + std::to_string(problem.line);
     return Error{at.rows.source().name() + line + ": " + problem.text};
@@ -205,8 +211,7 @@ std::optional<Error> TelemetryFile::find_time(bool is_series_after_series, bool 
     if (!problem && !is_series_after_series) problem = repeated_times(head, *at.clock);
     if (problem) return refuse(*problem);
   }
-  at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local(),
-                   at.clock->is_newest_first());
+  at.start_watch();
   return std::nullopt;
 }
 
@@ -335,6 +340,20 @@ TelemetryFile::Step TelemetryFile::Impl::fail_at_header() {
                               "columns are others or in another order; divide the file there"));
 }
 
+void TelemetryFile::Impl::start_watch() {
+  watch.emplace(clock->unit_ns(), clock->counts_since(), clock->may_be_local(),
+                clock->is_newest_first());
+  ahead_ns = 0;
+}
+
+/// Notes a row's time by its clock, and makes that of the row of it.
+void TelemetryFile::Impl::follow(std::int64_t clock_ns) {
+  step = watch->next(clock_ns, rows.line());
+  if (step && options.continues_clock)
+    ahead_ns += clock->is_newest_first() ? -step->missing_ns : step->missing_ns;
+  if (__builtin_add_overflow(clock_ns, ahead_ns, &time_ns)) time_ns = clock_ns;
+}
+
 TelemetryFile::Step TelemetryFile::Impl::read_time() {
   const std::size_t column = clock->columns().front();
   const auto time = clock->read(rows.cells());
@@ -367,13 +386,14 @@ TelemetryFile::Step TelemetryFile::Impl::read_time() {
                          clock->is_absolute() ? "what it is with --time-format or --time-unit"
                                               : "since when it counts with --epoch, or what it is "
                                                 "with --time-format or --time-unit")));
-  step = watch->next(time_ns, rows.line());
+  follow(time_ns);
   if (step && step->kind != ClockStep::Kind::out_of_order && !options.clock_may_go_back) {
     const std::string_view remedy =
         step->kind == ClockStep::Kind::half_day
             ? "write the times with 24 hours, or with AM and PM, or go on with --clock-back go-on"
         : step->kind == ClockStep::Kind::hour
-            ? "name the zone with --time-zone, as Europe/Berlin, or go on with --clock-back go-on"
+            ? "name the zone with --time-zone, as Europe/Berlin, from the first line on, or go on "
+              "with --clock-back go-on"
             : "go on with --clock-back go-on, or import each part by itself with its own --epoch";
     return fail(Damage::none, rows.error_here(fmt::format("{}; {}", step->what, remedy)));
   }
@@ -424,20 +444,20 @@ std::uint64_t TelemetryFile::size() const {
 std::optional<Error> TelemetryFile::go_on_at(std::uint64_t position, std::uint64_t line) {
   Impl& at = *impl_;
   at.clock = at.clock_at_start;
-  if (at.clock && at.clock->depends_on_order() && position > at.dialect.first_position) {
-    // The times before decide which of two hours it is.
+  if (at.clock) at.start_watch();
+  const bool depends_on_rows_before =
+      at.clock && (at.clock->depends_on_order() || at.options.continues_clock);
+  if (depends_on_rows_before && position > at.dialect.first_position) {
     if (auto error =
             at.rows.start(at.dialect.layout, at.dialect.first_position, at.dialect.first_line))
       return error;
     while (at.rows.bytes_read() < position) {
       const Step step = at.rows.next();
       if (step == Step::end) break;
-      if (step == Step::row) at.clock->read(at.rows.cells());
+      if (step != Step::row) continue;
+      if (const auto time = at.clock->read(at.rows.cells())) at.follow(*time);
     }
   }
-  if (at.clock)
-    at.watch.emplace(at.clock->unit_ns(), at.clock->counts_since(), at.clock->may_be_local(),
-                     at.clock->is_newest_first());
   return at.rows.start(at.dialect.layout, position, line);
 }
 

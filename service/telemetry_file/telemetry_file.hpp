@@ -29,6 +29,7 @@ struct ReadingOptions {
   bool force_times = false;        // times are taken as they are, whatever speaks against them
   bool any_epoch = false;          // nobody has to know since when times count
   bool clock_may_go_back = false;  // a clock that looks set back, restarted or wrapped is no error
+  bool continues_clock = false;    // behind a wrap or an hour set back it goes on where it left off
   /// Times behind it are taken for mistakes: those of tomorrow.
   std::int64_t latest_ns = std::numeric_limits<std::int64_t>::max();
 };

@@ -14,8 +14,6 @@
 namespace reident::telemetry_file {
 namespace {
 
-constexpr std::int64_t gps_epoch_s = 315'964'800;  // 1980-01-06
-
 /// UTC seconds since 1970 at which GPS became a second more ahead (IERS Bulletin C).
 constexpr std::array<std::int64_t, 18> leaps = {
     362'793'600, 394'329'600,   425'865'600,   489'024'000,   567'993'600,   631'152'000,
@@ -63,7 +61,7 @@ bool TimeZone::goes_over(std::int64_t local_ns) {
 }
 
 std::int64_t utc_of_gps(std::int64_t gps_ns) {
-  std::int64_t utc = gps_ns + gps_epoch_s * second_ns;
+  std::int64_t utc = gps_ns + gps_epoch_ns;
   std::int64_t ahead = 0;
   for (const std::int64_t leap : leaps)
     if (utc - (ahead + 1) * second_ns >= leap * second_ns) ++ahead;
@@ -72,7 +70,7 @@ std::int64_t utc_of_gps(std::int64_t gps_ns) {
 
 std::optional<std::int64_t> utc_of_gps_date(std::int64_t date_ns) {
   std::int64_t gps_ns = 0;
-  if (__builtin_sub_overflow(date_ns, gps_epoch_s * second_ns, &gps_ns)) return std::nullopt;
+  if (__builtin_sub_overflow(date_ns, gps_epoch_ns, &gps_ns)) return std::nullopt;
   return utc_of_gps(gps_ns);
 }
 

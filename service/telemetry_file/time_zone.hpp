@@ -30,6 +30,8 @@ class TimeZone {
   std::int64_t usual_ns_ = 0;            // the last step on
 };
 
+/// 1980-01-06 [ns since 1970].
+inline constexpr std::int64_t gps_epoch_ns = 315'964'800'000'000'000;
 /// Returns UTC for GPS seconds [ns since 1980-01-06, leap seconds not left out].
 std::int64_t utc_of_gps(std::int64_t gps_ns);
 /// Returns UTC for a date of GPS, which is as many leap seconds ahead [ns since 1970]; empty

@@ -181,6 +181,7 @@ std::variant<DataRequest, Refusal> complete(const Arguments& arguments) {
 int show(const DataRequest& request) {
   auto reading = request.reading;
   reading.any_epoch = true;
+  reading.continues_clock = false;
   if (request.segment) reading.force_times = true;  // as in read_data()
   const auto shown = telemetry_file::dry_run(
       telemetry_file::open_as_table(request.file, reading, request.skip_bad_lines), request.file,

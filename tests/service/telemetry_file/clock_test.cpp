@@ -148,6 +148,14 @@ TEST(TelemetryClock, ReadsTheFormsOfPrograms) {
                     "2024-02-28T22:00:00.5Z"},
            FormCase{"sec,nanosec", {"1709157600,500000000"}, "2024-02-28T22:00:00.5Z"},
            FormCase{"Date,Time", {"2024-02-28 00:00:00,22:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Date,Time,sec",
+                    {"2024-02-28,22:00:10,0.250", "2024-02-28,22:00:20,0.500"},
+                    "2024-02-28T22:00:10.25Z"},
+           FormCase{"GPS Week,Seconds of Week", {"2303,338418"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time_cet", {"2024-02-28 23:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"Zeit/MEZ", {"28.02.2024 23:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time (+0100)", {"2024-02-28 23:00:00"}, "2024-02-28T22:00:00Z"},
+           FormCase{"time", {"\"=\"\"2024-02-28 22:00:00\"\"\""}, "2024-02-28T22:00:00Z"},
            FormCase{"date,h,m,s", {"2024-02-28,22,0,10"}, "2024-02-28T22:00:10Z"},
            FormCase{"Date,Hour,Minute", {"28.02.2024,22,30"}, "2024-02-28T22:30:00Z"},
            FormCase{"year,doy,hhmm", {"2024,059,930", "2024,059,2200"}, "2024-02-28T09:30:00Z"},
@@ -194,6 +202,7 @@ TEST(TelemetryClock, ReadsTimesThatHavePassedAsTheyAreWritten) {
                                          {"t", "26:00:10", "2024-02-29T02:00:10Z"},
                                          {"Time", "59:10.5", "2024-02-28T00:59:10.5Z"},
                                          {"Time", "10 sec", "2024-02-28T00:00:10Z"},
+                                         {"Elapsed (mm:ss)", "03:52", "2024-02-28T00:03:52Z"},
                                          {"Time", "1 days 02:00:10.5", "2024-02-29T02:00:10.5Z"},
                                          {"X_Value", "0.500000", "2024-02-28T00:00:00.5Z"},
                                          {"t (min)", "0.166667", "2024-02-28T00:00:10Z"},
@@ -231,10 +240,16 @@ TEST(TelemetryClock, TakesLeapSecondsOutOfDatesWhereItIsTold) {
   const std::vector<std::string> cells = {"2024-02-28T22:00:18"};
   EXPECT_THAT(first_time("gps_time", cells), HasSubstr("--time-format gps"));
   EXPECT_THAT(first_time("time_TAI", cells), HasSubstr("--time-format iso"));
+  EXPECT_THAT(first_time("gps_date,time", {"2024-02-28,22:00:18"}), HasSubstr("--time-format gps"));
+  EXPECT_THAT(first_time("time,y", {cells[0] + ",1"}, {}, "# TIME_SYSTEM = TAI\n"),
+              HasSubstr("by line 1"));
+  EXPECT_THAT(first_time("tai_seconds_since_2000", {"762429600"}), HasSubstr("TAI"));
+  EXPECT_EQ(first_time("GPS seconds since 1980-01-06", {"1393192818"}), "2024-02-28T22:00:00Z");
   EXPECT_EQ(first_time("gps_time", {"2024-02-28T22:00:18Z"}), "2024-02-28T22:00:18Z");
   TimeOptions format;
   format.format = TimeFormat::gps;
   EXPECT_EQ(first_time("gps_time", cells, format), "2024-02-28T22:00:00Z");
+  EXPECT_EQ(first_time("gps_date,time", {"2024-02-28,22:00:18"}, format), "2024-02-28T22:00:00Z");
   format.format = TimeFormat::text;
   EXPECT_EQ(first_time("gps_time", cells, format), "2024-02-28T22:00:18Z");
 }
@@ -309,7 +324,9 @@ TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
   EXPECT_THAT(first_time("time", {"03/04/2024 22:00", "03/04/2024 22:10"}),
               HasSubstr("--time-format dmy or mdy"));
   EXPECT_THAT(first_time("time_s", {"1709157600000"}), HasSubstr("--time-unit"));
-  EXPECT_THAT(first_time("Local time", {"2024-02-28 23:00:00"}), HasSubstr("--time-zone"));
+  for (const char* name : {"Local time", "time [IST]", "Time (Pacific Time)", "Heure locale"})
+    EXPECT_THAT(first_time(name, {"2024-02-28 23:00:00"}), HasSubstr("--time-zone")) << name;
+  EXPECT_THAT(first_time("time", {"Mar 14 09:26:53"}), HasSubstr("no column looks like"));
   EXPECT_THAT(first_time("time,tz_offset_min", {"2024-02-28 23:00:00,60"}),
               HasSubstr("--time-zone"));
   EXPECT_THAT(first_time("tow_ms", {"338418.0"}),

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "service/support/time_text.hpp"
 #include "service/telemetry_file/telemetry_file.hpp"
 
 namespace reident::telemetry_file::row_reader_test {
@@ -274,6 +275,27 @@ TEST_F(TelemetryRowFile, IsReadOnFromWhereARowEnded) {
   }
   EXPECT_EQ(later.bytes_read(), later.size());
   EXPECT_EQ(later.next(), TelemetryFile::Step::end);
+}
+
+TEST_F(TelemetryRowFile, GoesOnBehindAWrapWhereItIsTold) {
+  ReadingOptions options;
+  options.time.epoch_ns = parse_time("2024-01-01T00:00:00Z");
+  options.clock_may_go_back = options.continues_clock = true;
+  auto opened = TelemetryFile::open(write("t_s,x\n65520,1\n65530,2\n4,3\n14,4\n"), options);
+  auto& file = std::get<TelemetryFile>(opened);
+  ASSERT_FALSE(file.find_time());
+  std::vector<std::string> times;
+  std::uint64_t position = 0, line = 0;
+  while (file.next() == TelemetryFile::Step::row) {
+    times.push_back(time_text(file.time_ns()));
+    if (times.size() != 2) continue;
+    position = file.bytes_read();
+    line = file.next_line();
+  }
+  EXPECT_EQ(times.back(), "2024-01-01T18:12:30Z");
+  ASSERT_FALSE(file.go_on_at(position, line));
+  ASSERT_EQ(file.next(), TelemetryFile::Step::row);
+  EXPECT_EQ(time_text(file.time_ns()), times[2]);
 }
 
 TEST_F(TelemetryRowFile, GoesOnBehindARowThatAloneIsBad) {
