@@ -20,7 +20,7 @@ class Browser(test_web.WebCase):
         done = subprocess.run(
             ["node", str(BROWSER / "page.mjs"), f"http://127.0.0.1:{self.port}/", "SAT/PLANT",
              *([os.environ["REIDENT_PICTURES"]] if "REIDENT_PICTURES" in os.environ else [])],
-            capture_output=True, text=True, timeout=6 * DEADLINE_S, check=False,
+            capture_output=True, text=True, timeout=9 * DEADLINE_S, check=False,
             env={**os.environ, **environment})
         self.assertEqual(done.returncode, 0, done.stderr[-3000:])
         return json.loads(done.stdout.splitlines()[-1])

@@ -25,7 +25,7 @@ class Care(EndToEnd):
         # Enough rows that they are still being sent when a backup on a busy machine ends.
         csv = plant.write(self.folder / "t.csv", list(plant.rows(160_000)))
         copy = self.folder / "copy.db"
-        self.configure([plant.equipment(window="1h", slide="1d")])
+        self.configure([plant.equipment(window="8h", slide="8h")])
         daemon = self.start_daemon()
         replay = self.replay(csv, "--speed", "max", "--history", 170_000)
         wait_until(self.stored, "telemetry is being stored")
