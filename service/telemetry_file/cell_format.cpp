@@ -101,9 +101,7 @@ StateMap states_of(const std::set<std::string>& words, const StateMap* given) {
       continue;
     }
     if (given) {
-      const auto named = std::find_if(given->begin(), given->end(),
-                                      [&](const auto& state) { return state.first == word; });
-      if (named == given->end()) return {};
+      if (!has_state(*given, word)) return {};
       states = *given;
       continue;
     }

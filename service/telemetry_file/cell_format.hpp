@@ -53,7 +53,7 @@ struct CellFormat {
   StateMap states;
   std::vector<std::string> missing;
   std::string no_value;  // the first word among numbers that is none, as NA; or empty
-  /// Of a column of text: the first different words that no state was given for, at most 5.
+  /// The first different words of a column of text that no state was given for, at most 5.
   std::vector<std::string> words;
   bool may_be_states = false;  // of a column of text: so few words that they may be states
 };

@@ -168,8 +168,6 @@ std::optional<ZoneHint> zone_in(std::string_view text) {
   return std::nullopt;
 }
 
-}  // namespace
-
 /// The zone of "(PDH-CSV 4.0) (W. Europe Standard Time)(-60)", in minutes west of UTC.
 std::optional<ZoneHint> zone_of_windows_counters(std::string_view name) {
   const auto minutes = plain_number(bracketed(name));
@@ -179,6 +177,8 @@ std::optional<ZoneHint> zone_of_windows_counters(std::string_view name) {
   return ZoneHint{std::string(bracketed(rest)), -static_cast<std::int64_t>(*minutes) * 60 * s,
                   false};
 }
+
+}  // namespace
 
 std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view unit) {
   if (auto zone = zone_of_windows_counters(name)) return zone;

@@ -28,17 +28,9 @@ constexpr std::array<Wrap, 8> wraps = {{{65'536, "65,536"},
 }  // namespace
 
 std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t line) {
+  // With the newest first, it goes on in a mirror as other clocks do.
+  if (is_newest_first_ && __builtin_sub_overflow(-1, time_ns, &time_ns)) return std::nullopt;
   std::optional<ClockStep> step;
-  if (is_newest_first_) {
-    // Seen in a mirror, it goes on as other clocks do.
-    if (__builtin_sub_overflow(-1, time_ns, &time_ns)) return step;
-    const auto last = last_ns_;
-    if (last && time_ns < *last) step = explained(time_ns, line);
-    if (last && time_ns > *last && __builtin_sub_overflow(time_ns, *last, &usual_ns_))
-      usual_ns_ = 0;
-    last_ns_ = time_ns;
-    return step && step->kind == ClockStep::Kind::hour ? step : std::nullopt;
-  }
   if (last_ns_ && (time_ns < *last_ns_ || repeats_an_hour(time_ns)))
     step = explained(time_ns, line);
   if (last_ns_ && time_ns > *last_ns_) {
@@ -46,6 +38,7 @@ std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t li
     if (__builtin_sub_overflow(time_ns, *last_ns_, &usual_ns_)) usual_ns_ = 0;
   }
   last_ns_ = time_ns;
+  if (is_newest_first_ && step && step->kind != ClockStep::Kind::hour) step.reset();
   return step;
 }
 
@@ -54,12 +47,14 @@ std::optional<ClockStep> ClockWatch::next(std::int64_t time_ns, std::uint64_t li
 bool ClockWatch::repeats_an_hour(std::int64_t time_ns) const {
   constexpr std::int64_t sunday = 3;  // days since 1970-01-01
   const std::int64_t days = floor_divide(time_ns, day_ns);
-  return may_be_local_ && !since_ns_ && time_ns == *last_ns_ && usual_ns_ == hour_ns &&
-         ((days % 7) + 7) % 7 == sunday && time_ns - days * day_ns < 4 * hour_ns;
+  return may_be_local_ && !is_newest_first_ && !since_ns_ && time_ns == *last_ns_ &&
+         usual_ns_ == hour_ns && ((days % 7) + 7) % 7 == sunday &&
+         time_ns - days * day_ns < 4 * hour_ns;
 }
 
 bool ClockWatch::begins_daylight_saving(std::int64_t time_ns) const {
-  if (!may_be_local_ || since_ns_ || usual_ns_ == 0 || usual_ns_ > hour_ns) return false;
+  if (!may_be_local_ || is_newest_first_ || since_ns_ || usual_ns_ == 0 || usual_ns_ > hour_ns)
+    return false;
   std::int64_t expected_ns = 0;
   if (__builtin_add_overflow(*last_ns_, usual_ns_, &expected_ns)) return false;
   const std::int64_t of_day_ns = ((expected_ns % day_ns) + day_ns) % day_ns;

@@ -22,7 +22,7 @@ struct NamedOffset {
   std::string_view name;
   int minutes;
 };
-/// Names of zones that stand for one offset everywhere. IST and BST do not.
+/// Names of zones of RFC 822, and others that stand for one offset alone. IST and BST do not.
 constexpr std::array<NamedOffset, 34> named_offsets = {
     {{"z", 0},      {"utc", 0},    {"gmt", 0},    {"ut", 0},     {"wet", 0},    {"west", 60},
      {"cet", 60},   {"met", 60},   {"mez", 60},   {"cest", 120}, {"mest", 120}, {"mesz", 120},

@@ -38,6 +38,11 @@ std::size_t plain_end(std::span<const char> line, std::size_t at, char separator
   return at;
 }
 
+/// Whether a line goes on with \" in place of a doubled quote.
+bool is_escaped_quote(std::span<const char> rest, char separator) {
+  return rest.size() > 2 && rest[1] == '"' && rest[2] != '"' && !separates(rest[2], separator);
+}
+
 /// Whether a cell is words, as "(240 rows)", and no time or number.
 bool is_wording(std::string_view cell) {
   return !plain_number(cell) && !read_date_text(cell, DateOrder::day_first) &&
@@ -103,11 +108,6 @@ std::string comment_advice(std::string_view line) {
     if (line.starts_with(mark))
       return "; where such lines are comments, say --comment '" + std::string(mark) + "'";
   return {};
-}
-
-/// Whether a line goes on with \" in place of a doubled quote.
-bool is_escaped_quote(std::span<const char> rest, char separator) {
-  return rest.size() > 2 && rest[1] == '"' && rest[2] != '"' && !separates(rest[2], separator);
 }
 
 std::optional<std::string_view> split_cells(std::span<char> line, char separator,
