@@ -24,6 +24,10 @@ constexpr std::array<std::string_view, 15> value_names = {
     "varvalue", "wert",     "messwert",         "valeur",          "valor",
     "valore",   "val",      "reading",          "state",           "data"};
 
+constexpr std::array<std::string_view, 10> unit_names = {
+    "unit",     "units",  "einheit",         "einheiten",        "engunit",
+    "engunits", "unidad", "engineeringunit", "engineeringunits", "uom"};
+
 std::string letters_of(std::string_view name) {
   std::string letters;
   for (const char c : name)
@@ -119,19 +123,31 @@ class Table {
   std::map<std::int64_t, std::vector<Row>> rows_;
 };
 
+/// What is wrong with the sample of a row that can be read.
+std::optional<Error> check_sample(const TelemetryFile& file, LongLayout layout,
+                                  UnitsOfParameters& units) {
+  const std::string_view parameter = trimmed(file.cells()[layout.parameter]);
+  if (parameter.empty())
+    return file.cell_error(layout.parameter,
+                           "names no parameter; mend the line, or leave such lines out with "
+                           "--skip-bad-lines");
+  if (!layout.unit) return std::nullopt;
+  const auto wrong = units.check(parameter, trimmed(file.cells()[*layout.unit]), file.line());
+  return wrong ? std::optional(file.error_here(*wrong)) : std::nullopt;
+}
+
 /// Reads all samples. Bad lines are an error, or left out and counted.
 std::optional<Error> read_samples(TelemetryFile& file, LongLayout layout, bool skip_bad_lines,
                                   Table& table, LeftOut& left_out) {
+  UnitsOfParameters units;
   for (auto step = file.next(); step != TelemetryFile::Step::end; step = file.next()) {
     std::optional<Error> error;
     Damage damage = Damage::value;
     if (step == TelemetryFile::Step::error) {
       error = file.error();
       damage = file.damage();
-    } else if (trimmed(file.cells()[layout.parameter]).empty()) {
-      error = file.cell_error(layout.parameter,
-                              "names no parameter; mend the line, or leave such lines out with "
-                              "--skip-bad-lines");
+    } else {
+      error = check_sample(file, layout, units);
     }
     if (!error)
       table.add(file, layout);
@@ -148,7 +164,8 @@ std::optional<Error> read_samples(TelemetryFile& file, LongLayout layout, bool s
 std::optional<LongLayout> find_long_layout(const std::vector<std::string>& columns) {
   const auto value = column_of(columns, value_names),
              parameter = column_of(columns, parameter_names);
-  return value && parameter ? std::optional(LongLayout{*parameter, *value}) : std::nullopt;
+  if (!value || !parameter) return std::nullopt;
+  return LongLayout{*parameter, *value, column_of(columns, unit_names)};
 }
 
 std::optional<LongLayout> find_long_layout(const TelemetryFile& file) {
@@ -157,6 +174,21 @@ std::optional<LongLayout> find_long_layout(const TelemetryFile& file) {
   const auto kind = file.format(layout->parameter).kind;
   const bool are_words = kind == CellFormat::Kind::text || kind == CellFormat::Kind::state;
   return are_words ? layout : std::nullopt;
+}
+
+std::optional<std::string> UnitsOfParameters::check(std::string_view parameter,
+                                                    std::string_view unit, std::uint64_t line) {
+  if (unit.empty() || (parameter == last_parameter_ && unit == last_unit_)) return std::nullopt;
+  auto at = first_.find(parameter);
+  if (at == first_.end()) at = first_.emplace(parameter, First{std::string(unit), line}).first;
+  if (const First& first = at->second; first.unit != unit)
+    return fmt::format(
+        "parameter '{}' is in {} here and in {} in line {}; write all its samples in one unit, or "
+        "those of one unit under another name",
+        parameter, unit, first.unit, first.line);
+  last_parameter_ = parameter;
+  last_unit_ = unit;
+  return std::nullopt;
 }
 
 std::variant<TelemetryFile, Error> open_as_table(const std::filesystem::path& path,

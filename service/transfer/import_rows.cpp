@@ -181,15 +181,19 @@ class LongRows : public ImportRows {
   const storage::Archive& archive_;
   const std::string own_source_;
   const std::size_t parameter_, value_;
-  std::optional<std::size_t> spacecraft_, source_, origin_, quality_, unit_;
+  std::optional<std::size_t> unit_, spacecraft_, source_, origin_, quality_;
   std::vector<std::size_t> known_;  // columns that have a meaning
-  std::map<std::string, ParameterBook> books_;
+  struct OfSpacecraft {
+    ParameterBook book;
+    telemetry_file::UnitsOfParameters units;
+  };
+  std::map<std::string, OfSpacecraft> of_spacecraft_;
   std::vector<std::string> left_out_;
 
   // What the row before had: most rows differ from it in time and value alone.
   std::string cell_of_spacecraft_, cell_of_source_, cell_of_origin_;
   std::optional<TelemetryFrame> stream_;
-  ParameterBook* book_ = nullptr;
+  OfSpacecraft* known_of_it_ = nullptr;
   Entry* entry_ = nullptr;
 };
 
@@ -200,6 +204,7 @@ LongRows::LongRows(const ImportOptions& options, const Reader& reader,
       own_source_(source_of(options)),
       parameter_(layout.parameter),
       value_(layout.value),
+      unit_(layout.unit),
       known_{parameter_, value_} {
   const auto column = [&](std::string_view name, bool is_asked_for) {
     const auto found = reader.find(name);
@@ -211,7 +216,7 @@ LongRows::LongRows(const ImportOptions& options, const Reader& reader,
   source_ = column("source", options.source.has_value());
   origin_ = column("origin", options.origin.has_value());
   quality_ = column("quality", false);
-  unit_ = column("unit", false);
+  if (unit_) known_.push_back(*unit_);
 }
 
 void LongRows::note_left_out(const Reader& reader) {
@@ -280,7 +285,13 @@ std::optional<Error> LongRows::read_stream(const Reader& reader) {
   if (stream.spacecraft.empty())
     return reader.cell_error(*spacecraft_, "names no spacecraft; name it with --spacecraft");
   stream.source = text(source_).empty() ? own_source_ : std::string(text(source_));
-  book_ = &books_.try_emplace(stream.spacecraft, archive_, stream.spacecraft).first->second;
+  auto known = of_spacecraft_.find(stream.spacecraft);
+  if (known == of_spacecraft_.end())
+    known = of_spacecraft_
+                .emplace(stream.spacecraft,
+                         OfSpacecraft{ParameterBook(archive_, stream.spacecraft), {}})
+                .first;
+  known_of_it_ = &known->second;
   entry_ = nullptr;
   cell_of_spacecraft_ = text(spacecraft_);
   cell_of_source_ = text(source_);
@@ -291,18 +302,21 @@ std::optional<Error> LongRows::read_stream(const Reader& reader) {
 
 std::optional<Error> LongRows::read_parameter(const Reader& reader, const StateMap* states) {
   const std::string_view name = trimmed(reader.cells()[parameter_]);
+  const std::string_view unit = unit_ ? trimmed(reader.cells()[*unit_]) : std::string_view();
+  if (const auto wrong = known_of_it_->units.check(name, unit, reader.line()))
+    return reader.error_here(*wrong);
   if (entry_ && entry_->descriptor.name == name) return std::nullopt;
   if (name.empty()) return reader.cell_error(parameter_, "names no parameter; mend the line");
   storage::ParameterDescriptor wanted;
   wanted.name = name;
-  if (unit_) wanted.unit = trimmed(reader.cells()[*unit_]);
+  wanted.unit = unit;
   wanted.description = "imported from " + options_.file.filename().string();
   if (states) {
     wanted.kind = storage::ParameterKind::digital;
     wanted.description =
         "states " + telemetry_file::states_text(*states) + "; " + wanted.description;
   }
-  const auto found = book_->find(wanted);
+  const auto found = known_of_it_->book.find(wanted);
   if (const auto* refusal = std::get_if<std::string>(&found))
     return reader.error_here(*refusal + "; give it another name in the file");
   entry_ = std::get<Entry*>(found);
