@@ -106,6 +106,13 @@ std::string Clock::clock_text(std::string_view cell) const {
 }
 
 std::optional<std::int64_t> Clock::absolute(const DateText& text) {
+  const auto time = counted_on(text);
+  return time && text.is_in_leap_second && follows_leap_second(*time)
+             ? std::optional(place_in_leap_second(*time))
+             : time;
+}
+
+std::optional<std::int64_t> Clock::counted_on(const DateText& text) {
   std::int64_t time = 0;
   if (text.offset_ns)
     return __builtin_sub_overflow(text.clock_ns, *text.offset_ns, &time) ? std::nullopt
@@ -173,7 +180,7 @@ std::optional<std::int64_t> Clock::read_one(std::string_view cell) {
     if (unit_ns_ == second_ns && text.size() >= 17 && all_digits(text)) return parse_count(text, 1);
     if (const auto time = parse_count(text, unit_ns_)) return time;
     if (!zone_ && !offset_ns_)
-      if (const auto time = parse_time(text)) return time;
+      if (const auto time = parse_time(text); time && !follows_leap_second(*time)) return time;
   } else if (format_ != TimeFormat::text) {
     const auto time = read_number_of(cell);
     if (!time || format_ != TimeFormat::excel) return time;
@@ -181,7 +188,7 @@ std::optional<std::int64_t> Clock::read_one(std::string_view cell) {
   } else if (!zone_ && !offset_ns_ && !is_gps_date_) {
     const std::string_view text = trimmed(cell);
     if (text.size() > 4 && text[4] == '-')
-      if (const auto time = parse_time(text)) return time;
+      if (const auto time = parse_time(text); time && !follows_leap_second(*time)) return time;
   }
   auto text = read_date_text(cell, order_);
   if (text && counts_minutes_ && std::count(cell.begin(), cell.end(), ':') == 1)
@@ -218,6 +225,15 @@ std::optional<std::int64_t> Clock::read_parts(std::span<const std::string_view> 
     const auto week = number(0, 7 * day_ns), of_week = number(1, unit_ns_);
     if (!week || !of_week) return std::nullopt;
     return utc_of_gps(*week + *of_week);
+  }
+  if (parts_ == Parts::day_count) {
+    const auto day = number(0, day_ns), of_day = number(1, part_unit_ns_.front());
+    std::int64_t time = 0;
+    if (!day || !of_day || *of_day < 0 || *of_day > day_ns + second_ns ||
+        __builtin_add_overflow(*day, *of_day, &time) ||
+        __builtin_add_overflow(time, epoch_ns_.value_or(0), &time))
+      return std::nullopt;
+    return time;
   }
   const bool is_ordinal = parts_ == Parts::day_of_year;
   const bool is_dated = parts_ == Parts::dated;

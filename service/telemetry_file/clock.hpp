@@ -46,7 +46,7 @@ struct TimeOptions {
   std::optional<std::int64_t> epoch_ns;  // of elapsed times
 };
 
-struct LineAbove;  // dialect.hpp
+struct NumberedLine;  // row_reader.hpp
 
 /// The cells of the head of a file, column by column, and the line of each.
 struct HeadCells {
@@ -55,7 +55,7 @@ struct HeadCells {
   std::span<const std::vector<std::string_view>> columns;
   std::span<const std::uint64_t> lines;
   NumberStyle style;
-  std::span<const LineAbove> above;  // lines above the header
+  std::span<const NumberedLine> above;  // lines above the header
 };
 
 /// Reads times. The times before decide which of two equal hours a local time is in: rows are read
@@ -87,6 +87,8 @@ class Clock {
   }
   /// Whether texts are of a clock that nobody named: it may be a local one.
   bool may_be_local() const { return may_be_local_; }
+  /// Whether lines above the header say the zone of all times, or could say it.
+  bool is_of_lines() const { return may_be_local_ || is_zone_of_lines_; }
   /// What says that it is a local one, and not where, as "column 'local_time'"; empty: nothing
   /// does.
   const std::string& local_by() const { return local_by_; }
@@ -99,13 +101,14 @@ class Clock {
   const std::string& description() const { return description_; }
 
  private:
-  enum class Parts { one, joined, dated, calendar, day_of_year, gps_week };
+  enum class Parts { one, joined, dated, calendar, day_of_year, gps_week, day_count };
   friend class ClockFinder;
 
   std::optional<std::int64_t> read_one(std::string_view cell);
   std::optional<std::int64_t> read_parts(std::span<const std::string_view> cells);
   std::optional<std::int64_t> read_number_of(std::string_view cell) const;
   std::optional<std::int64_t> absolute(const DateText& text);
+  std::optional<std::int64_t> counted_on(const DateText& text);  // a leap second is the next one
   std::string clock_text(std::string_view cell) const;
 
   std::vector<std::size_t> columns_;
@@ -125,6 +128,7 @@ class Clock {
   bool has_unit_behind_ = false;  // numbers are as "10 sec"
   bool counts_ = false;           // times are numbers since something, or times of day
   bool may_be_local_ = false;
+  bool is_zone_of_lines_ = false;
   bool is_newest_first_ = false;
   std::string local_by_;
   std::optional<TimeZone> zone_;

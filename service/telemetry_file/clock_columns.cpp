@@ -4,6 +4,7 @@
 
 #include "service/support/text.hpp"
 #include "service/telemetry_file/clock_finder.hpp"
+#include "service/telemetry_file/clock_words.hpp"
 #include "service/telemetry_file/time_units.hpp"
 
 namespace reident::telemetry_file {
@@ -80,7 +81,10 @@ std::vector<std::int64_t> ClockFinder::add_time_of_day(std::vector<std::size_t>&
   };
   const bool of_day = add(TimePart::second_of_day, second_ns) ||
                       add(TimePart::millisecond_of_day, 1'000'000) || add(TimePart::clock, 0);
-  if (of_day && units.back() == 0) count_clock_digits(columns.back());
+  if (of_day && units.back() == 0) {
+    count_clock_digits(columns.back());
+    if (clock_.clock_digits_ == 4) add(TimePart::second, second_ns);  // 2200, 30
+  }
   if (!of_day && add(TimePart::hour, hour_ns)) {
     if (add(TimePart::minute, minute_ns)) add(TimePart::second, second_ns);
   } else if (!of_day) {
@@ -273,8 +277,36 @@ bool ClockFinder::find_gps_week() {
   return set_parts(Clock::Parts::gps_week, {*week, *second}, {});
 }
 
+/// Days since an epoch and milliseconds of the day, as CCSDS day-segmented times.
+bool ClockFinder::find_day_count() {
+  auto day = part(TimePart::day);
+  for (std::size_t c = 0; c < head_.names.size() && !day; ++c) {
+    const NameHint hint = hint_of(head_.names[c], unit(c));  // days since 1958-01-01
+    if (hint.unit_ns == day_ns && hint.epoch_ns) day = c;
+  }
+  auto of_day = part(TimePart::millisecond_of_day);
+  if (!of_day) of_day = part(TimePart::second_of_day);
+  if (!day || !of_day || part(TimePart::year)) return false;
+  constexpr double most_of_year = 366;
+  const auto first = plain_number(first_cell(*day).first);
+  return first && *first > most_of_year && set_day_count(*day, *of_day);
+}
+
+bool ClockFinder::set_day_count(std::size_t day, std::size_t of_day) {
+  constexpr std::size_t most_digits = 5;  // more are a date
+  if (!is_digits(first_cell(day).first) || first_cell(day).first.size() > most_digits) return false;
+  const TimePart what = part_of(head_.names[of_day]);
+  auto unit_ns = hint_of(head_.names[of_day], unit(of_day)).unit_ns.value_or(second_ns);
+  if (what == TimePart::millisecond_of_day) unit_ns = second_ns / 1000;
+  if (!clock_.epoch_ns_) clock_.epoch_ns_ = hint_of(head_.names[day], unit(day)).epoch_ns;
+  clock_.counts_ = true;
+  clock_.unit_ns_ = unit_ns;
+  return set_parts(Clock::Parts::day_count, {day, of_day}, {unit_ns});
+}
+
 bool ClockFinder::find_set() {
-  return find_calendar() || find_date_and_clock() || find_date_and_parts() || find_gps_week();
+  return find_calendar() || find_date_and_clock() || find_date_and_parts() || find_gps_week() ||
+         find_day_count();
 }
 
 std::string_view ClockFinder::unit(std::size_t c) const {
@@ -304,6 +336,8 @@ std::optional<Problem> ClockFinder::choose_columns() {
   if (find_seconds_and_parts()) return std::nullopt;
   for (std::size_t c = 0; c < head_.names.size(); ++c)
     if (auto problem = unknown_zone(c)) return problem;
+  for (std::size_t c = 0; c < head_.names.size(); ++c)
+    if (auto problem = no_year(c)) return problem;
   // Below the first name stands the unit of a time.
   if (!head_.names.empty() && hint_of({}, unit(0)).unit_ns && holds_time(0)) return choose({0});
   return Problem{head_.lines.empty() ? 0 : head_.lines.front(),
@@ -339,6 +373,15 @@ std::optional<Problem> ClockFinder::unknown_zone(std::size_t c) const {
                  fmt::format("'{}' in column '{}' is in a zone, {}, that is not known here or "
                              "stands for several; write the offset in its place, as +05:30",
                              cell, head_.names[c], word)};
+}
+
+/// Dates as syslog writes them.
+std::optional<Problem> ClockFinder::no_year(std::size_t c) const {
+  const auto [cell, line] = first_cell(c);
+  const std::string mended = with_missing_year(cell);
+  if (mended.empty()) return std::nullopt;
+  return Problem{line, fmt::format("{} in column '{}' has no year; write it into each, as in {}",
+                                   shown(cell), head_.names[c], shown(mended))};
 }
 
 std::optional<Problem> ClockFinder::choose(std::vector<std::size_t> columns) {
@@ -385,7 +428,7 @@ std::optional<Problem> ClockFinder::choose_named(const std::string& asked) {
       std::is_permutation(columns.begin(), columns.end(), clock_.columns_.begin()))
     return std::nullopt;
   if (columns.size() == 2) {
-    join(columns[0], columns[1]);
+    if (!set_day_count(columns[0], columns[1])) join(columns[0], columns[1]);
     return std::nullopt;
   }
   return Problem{

@@ -125,7 +125,9 @@ bool ClockFinder::is_newest_first() const {
 }
 
 std::optional<Problem> ClockFinder::decide_parts() {
-  clock_.may_be_local_ = clock_.parts_ != Clock::Parts::gps_week && !options_.zone;
+  const bool are_numbers =
+      clock_.parts_ == Clock::Parts::gps_week || clock_.parts_ == Clock::Parts::day_count;
+  clock_.may_be_local_ = !are_numbers && !options_.zone;
   switch (clock_.parts_) {
     case Clock::Parts::joined:
     case Clock::Parts::dated:
@@ -140,11 +142,14 @@ std::optional<Problem> ClockFinder::decide_parts() {
         if (const int decimals = decimals_of(trimmed(cell), head_.style.decimal); decimals > 0)
           clock_.quantum_ns_ = quantum_of(day_ns, std::max(decimals, min_serial_decimals), 366);
       break;
+    case Clock::Parts::day_count:
+      clock_.description_ = "days and " + unit_name(clock_.part_unit_ns_.front()) + " of the day";
+      break;
     default:
       clock_.description_ = "GPS week and " + unit_name(clock_.unit_ns_);
       break;
   }
-  if (clock_.parts_ != Clock::Parts::gps_week)
+  if (!are_numbers)
     for (const std::size_t c : clock_.columns_)
       if (auto problem = decide_scale(c)) return problem;
   if (clock_.parts_ == Clock::Parts::joined || clock_.parts_ == Clock::Parts::dated)
@@ -297,6 +302,7 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
   }
   if (numbers == 0 && filled > 0 && !options_.format) {
     if (auto problem = unknown_zone(c)) return problem;
+    if (auto problem = no_year(c)) return problem;
     const auto [cell, line] = first_cell(c);
     return Problem{line,
                    shown(cell) + " in column '" + head_.names[c] +
@@ -344,9 +350,15 @@ void ClockFinder::take(TimeFormat format, std::int64_t unit_ns, int decimals, do
 std::optional<Problem> ClockFinder::unknown_count(std::size_t c, const NameHint& hint,
                                                   const std::vector<double>& values) const {
   if (!hint.since.empty() && !options_.epoch_ns && !options_.format)
-    return Problem{first_cell(c).second,
-                   fmt::format("column '{}' counts since {}; say when that is with --epoch, as {}",
-                               head_.names[c], hint.since, hint.epoch)};
+    return Problem{
+        first_cell(c).second,
+        fmt::format(
+            "column '{}' counts since {}; say when that is with --epoch, as {}", head_.names[c],
+            hint.since,
+            hint.since != "J2000" || values.empty()
+                ? "2000-01-01T00:00:00Z"
+                : fmt::format("{} where it is ET, TDB or TT, or {} where it counts as UTC",
+                              epoch_in_utc("TDB", hint, values.front()), time_text(j2000_ns)))};
   if (options_.unit_ns || options_.format) return std::nullopt;
   if (!hint.unknown_unit.empty()) return unknown_unit(c, hint.unknown_unit);
   if (hint.format == TimeFormat::dotnet && !in_window(values, TimeFormat::dotnet, second_ns))
@@ -369,7 +381,8 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
     hint.unit_ns = day_ns;
     clock_.counts_first_day_ = true;
   }
-  if (auto problem = refuse_scale_of_numbers(c)) return problem;
+  if (auto problem = refuse_scale_of_numbers(c, hint, values.empty() ? 0 : values.front()))
+    return problem;
   if (hint.epoch_ns == gps_epoch_ns && time_scale_of(head_.names[c], unit(c)) == "GPS") {
     hint.epoch_ns.reset();
     hint.format = TimeFormat::gps;

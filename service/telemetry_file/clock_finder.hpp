@@ -40,8 +40,11 @@ class ClockFinder {
   void count_clock_digits(std::size_t c);
   bool are_midnights(std::size_t c) const;
   bool find_gps_week();
+  bool find_day_count();
+  bool set_day_count(std::size_t day, std::size_t of_day);
   bool find_seconds_and_parts();
   std::optional<Clock::Problem> unknown_zone(std::size_t c) const;
+  std::optional<Clock::Problem> no_year(std::size_t c) const;
   bool find_set();
   std::string_view unit(std::size_t c) const;
   bool holds_time(std::size_t c) const;
@@ -54,7 +57,9 @@ class ClockFinder {
   void take_zone(const ZoneHint& hint, const std::string& where, std::string_view evidence);
   bool is_newest_first() const;
   std::optional<Clock::Problem> decide_scale(std::size_t c);
-  std::optional<Clock::Problem> refuse_scale_of_numbers(std::size_t c) const;
+  std::optional<Clock::Problem> refuse_scale_of_numbers(std::size_t c, const NameHint& hint,
+                                                        double value) const;
+  std::string epoch_in_utc(std::string_view scale, const NameHint& hint, double value) const;
   bool find_zone_column();
   void find_fraction_column();
   bool is_part_of_second(std::size_t c) const;

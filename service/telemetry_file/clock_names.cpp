@@ -8,6 +8,7 @@
 
 #include "service/support/text.hpp"
 #include "service/telemetry_file/date_text.hpp"
+#include "service/telemetry_file/name_words.hpp"
 #include "service/telemetry_file/number_text.hpp"
 
 namespace reident::telemetry_file {
@@ -15,22 +16,6 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t s = 1'000 * ms;
-
-/// "unix time [ms]" and "unixTimeMs" as unix, time, ms.
-std::vector<std::string> words_of(std::string_view name) {
-  std::vector<std::string> words(1);
-  char before = '\0';
-  for (const char c : name) {
-    const bool is_upper = c >= 'A' && c <= 'Z', is_lower = c >= 'a' && c <= 'z';
-    const bool is_word = is_upper || is_lower || (c >= '0' && c <= '9') || (c & 0x80) != 0;
-    const bool humps = is_upper && before >= 'a' && before <= 'z';
-    if ((!is_word || humps) && !words.back().empty()) words.emplace_back();
-    if (is_word) words.back() += static_cast<char>(is_upper ? c | 0x20 : c);
-    before = c;
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
 
 std::optional<std::int64_t> unit_of(const std::string& word) {
   static const std::map<std::string, std::int64_t> units = {{"ns", 1},
@@ -97,15 +82,6 @@ std::optional<TimeFormat> format_of(const std::string& word) {
   return found == formats.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// What stands in brackets at the end of a name.
-std::string_view bracketed(std::string_view name) {
-  name = trimmed(name);
-  if (!name.ends_with(')') && !name.ends_with(']')) return {};
-  const auto open = name.find_last_of("([");
-  return open == std::string_view::npos ? std::string_view()
-                                        : trimmed(name.substr(open + 1, name.size() - open - 2));
-}
-
 /// A short word that has to be a unit, or one with a number, and none that is known.
 bool is_unknown_unit(std::string_view said) {
   constexpr std::size_t longest = 8;
@@ -117,12 +93,39 @@ bool is_unknown_unit(std::string_view said) {
   return words.size() == 2 || (!unit_of(words[0]) && !format_of(words[0]));
 }
 
+struct NamedDays {
+  std::string_view name;
+  std::int64_t epoch_ns;
+};
+/// Days since 2000 and 1950, as ESA counts them.
+constexpr std::array<NamedDays, 2> named_days = {
+    {{"mjd2000", 946'684'800'000'000'000}, {"mjd1950", -631'152'000'000'000'000}}};
+
+/// A column of ephemeris time, as SPICE counts it; et means something else in other names.
+bool is_ephemeris_time(std::string_view name) {
+  const auto words = words_of(name);
+  if (words.empty() || (words[0] != "et" && words[0] != "ephemeris")) return false;
+  return std::all_of(words.begin() + 1, words.end(), [](const std::string& word) {
+    return word == "time" || word == "j2000" || unit_of(word);
+  });
+}
+
+/// The time that "2000-01-01T12:00:00 TDB" names, the time scale left out.
+std::optional<DateText> read_epoch(std::string since) {
+  for (const std::string_view scale : {"TDB", "TAI", "TT", "GPS"})
+    if (const auto at = since.rfind(scale);
+        at != std::string::npos && at + scale.size() == since.size())
+      since = std::string(trimmed(std::string_view(since).substr(0, at)));
+  const bool is_year =
+      since.size() == 4 && since.find_first_not_of("0123456789") == std::string::npos;
+  return read_date_text(since + (is_year ? "-01-01" : ""), DateOrder::year_first);
+}
+
 void note_epoch(std::string_view text, NameHint& hint) {
   std::string low;
   for (const char c : text) low += static_cast<char>(c >= 'A' && c <= 'Z' ? c | 0x20 : c);
   if (low.find("j2000") != std::string::npos) {
     hint.since = "J2000";
-    hint.epoch = "2000-01-01T11:58:55.816Z";
     return;
   }
   const auto at = low.find("since");
@@ -130,125 +133,15 @@ void note_epoch(std::string_view text, NameHint& hint) {
   std::string since(text.substr(at + 5));
   since.erase(since.find_last_not_of(" )]_") + 1);
   since.erase(0, since.find_first_not_of(" _"));
-  const bool is_year =
-      since.size() == 4 && since.find_first_not_of("0123456789") == std::string::npos;
-  const auto date = read_date_text(since + (is_year ? "-01-01" : ""), DateOrder::year_first);
+  const auto date = read_epoch(since);
   if (date && date->has_date && !date->is_ordered)
     hint.epoch_ns = date->clock_ns - date->offset_ns.value_or(0);
   else if (since.find_first_of("0123456789") != std::string::npos) {
     hint.since = since;
-    hint.epoch = "2000-01-01T00:00:00Z";
   }
-}
-
-/// Words that are a zone in any case: none is a word of another meaning, or a part of one.
-bool is_zone_in_small_letters(std::string_view word) {
-  constexpr std::string_view zones =
-      " utc gmt cet cest mez mesz edt cst cdt mst mdt pst pdt jst kst ";
-  return zones.find(" " + std::string(word) + " ") != std::string_view::npos;
-}
-
-std::optional<ZoneHint> zone_in(std::string_view text) {
-  constexpr std::string_view ends = " \t_()[],;=:";
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find_first_of(ends, at), text.size());
-    const std::string word(text.substr(at, end - at));
-    at = end + 1;
-    if (word.find('/') != std::string::npos && TimeZone::named(word))
-      return ZoneHint{word, {}, false};
-    const bool is_name = word.size() >= 3 && word[0] >= 'A' && word[0] <= 'Z' && word[1] >= 'A' &&
-                         word[1] <= 'Z' && word != "MET";  // mission elapsed time
-    const bool is_small = is_zone_in_small_letters(word);
-    const auto offset = is_name || is_small ? read_offset(word) : std::nullopt;
-    if (offset) return ZoneHint{word, offset, false};
-    const auto slash = word.find('/');  // Zeit/MEZ
-    if (slash != std::string::npos)
-      if (auto zone = zone_in(std::string_view(word).substr(slash + 1))) return zone;
-  }
-  return std::nullopt;
-}
-
-/// The zone of "(PDH-CSV 4.0) (W. Europe Standard Time)(-60)", in minutes west of UTC.
-std::optional<ZoneHint> zone_of_windows_counters(std::string_view name) {
-  const auto minutes = plain_number(bracketed(name));
-  if (!name.starts_with("(PDH-CSV") || !minutes || std::abs(*minutes) > 24 * 60)
-    return std::nullopt;
-  const std::string_view rest = name.substr(0, name.find_last_of('('));
-  return ZoneHint{std::string(bracketed(rest)), -static_cast<std::int64_t>(*minutes) * 60 * s,
-                  false};
 }
 
 }  // namespace
-
-std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view unit) {
-  if (auto zone = zone_of_windows_counters(name)) return zone;
-  for (const std::string_view text : {unit, name})
-    if (auto zone = zone_in(text)) return zone;
-  for (const std::string_view text : {unit, name})
-    for (const std::string& word : words_of(text))
-      if (word == "local" || word == "localtime" || word == "lokal" || word == "lokalzeit" ||
-          word == "ortszeit" || word == "locale" || word == "locais" ||
-          word ==
-              "\xE5\x8C\x97\xE4\xBA\xAC"
-              "\xE6\x97\xB6\xE9\x97\xB4")
-        return ZoneHint{word, {}, true};
-  for (const std::string_view said : {trimmed(unit), bracketed(name)})
-    if (said.starts_with('+') || said.starts_with('-'))
-      if (const auto offset = read_offset(said)) return ZoneHint{std::string(said), offset, false};
-  return std::nullopt;
-}
-
-std::string unknown_zone_of(std::string_view name, std::string_view unit) {
-  constexpr std::string_view others =
-      " ISO MJD MET UT1 TAI GPS GPST GNSS TDB TDT UNIX POSIX SCET OBT SCLK CUC CDS DOY EPOCH DATE "
-      "TIME ";
-  for (const std::string_view said : {trimmed(unit), bracketed(name)}) {
-    const bool is_short = said.size() >= 3 && said.size() <= 5 &&
-                          said.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == said.npos;
-    if (said.starts_with("UTC")) continue;
-    if (is_short ? others.find(" " + std::string(said) + " ") == others.npos
-                 : said.ends_with(" Time"))
-      return std::string(said);
-  }
-  return {};
-}
-
-std::optional<ZoneHint> zone_hint_of_line(std::string_view line) {
-  const auto words = words_of(line);
-  const auto has = [&](std::initializer_list<std::string_view> any) {
-    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-      return std::find(any.begin(), any.end(), word) != any.end();
-    });
-  };
-  const bool is_of_zone = is_named_like_a_zone(line);
-  const bool is_of_times = has({"times", "timestamps", "zeiten", "zeitstempel", "zeitangaben",
-                                "heures", "horas", "zone"}) ||
-                           (has({"time", "zeit"}) && has({"local", "lokale", "ortszeit"}));
-  const bool is_offset = has({"offset"});
-  if (!is_of_zone && !is_of_times) return std::nullopt;
-  if (auto zone = zone_in(line); zone && !is_offset) return zone;
-  const auto sign = line.find_first_of("+-");
-  if (is_of_zone && sign != std::string_view::npos) {
-    const std::string_view said = line.substr(sign, line.find_first_of(" \t,;)]\"", sign) - sign);
-    if (const auto offset = read_offset(said)) return ZoneHint{std::string(said), offset, false};
-  }
-  if (is_of_zone || has({"local", "lokal", "lokale", "locale", "locales", "ortszeit"}))
-    return ZoneHint{std::string(trimmed(line)), {}, true};
-  return std::nullopt;
-}
-
-bool is_named_like_a_zone(std::string_view name) {
-  std::string all;
-  for (const std::string& word : words_of(name)) {
-    if (word == "tz") return true;
-    all += word;
-  }
-  constexpr std::array<std::string_view, 8> hints = {
-      "timezone", "zeitzone",      "utcoffset",   "gmtoffset",
-      "tzoffset", "fuseauhoraire", "zonahoraria", "fusohor\xC3\xA1rio"};
-  return std::any_of(hints.begin(), hints.end(),
-                     [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
-}
 
 std::optional<std::int64_t> fraction_of_second(std::string_view name, std::string_view seconds) {
   const auto words = words_of(name), others = words_of(seconds);
@@ -320,6 +213,12 @@ NameHint hint_of(std::string_view name, std::string_view unit) {
   for (const std::string_view said : {bracketed(name), trimmed(unit)})
     if (is_unknown_unit(said)) hint.unknown_unit = said;
   for (const std::string_view text : {name, unit}) note_epoch(text, hint);
+  if (is_ephemeris_time(name)) hint.since = "J2000";
+  for (const NamedDays& named : named_days)
+    if (std::find(words.begin(), words.end(), named.name) != words.end()) {
+      hint.epoch_ns = named.epoch_ns;
+      hint.unit_ns = 86'400 * s;
+    }
   if (hint.epoch_ns == 0) hint.epoch_ns.reset();  // as all that has no other epoch
   const TimePart part = part_of(name);
   const bool is_of_week = part == TimePart::week_second && words.back() == "week";
@@ -359,10 +258,10 @@ bool is_named_like_a_time(std::string_view name) {
     }
     all += word;
   }
-  if (all == "xvalue") return true;  // of LabVIEW
-  constexpr std::array<std::string_view, 11> hints = {"time",  "unix",    "date",  "utc",
-                                                      "epoch", "zeit",    "datum", "stamp",
-                                                      "since", "elapsed", "j2000"};
+  if (all == "xvalue" || is_ephemeris_time(name)) return true;  // xvalue is of LabVIEW
+  constexpr std::array<std::string_view, 13> hints = {
+      "time",  "unix",  "date",    "utc",   "epoch",   "zeit",   "datum",
+      "stamp", "since", "elapsed", "j2000", "mjd2000", "mjd1950"};
   return std::any_of(hints.begin(), hints.end(),
                      [&](std::string_view hint) { return all.find(hint) != std::string::npos; });
 }
@@ -413,6 +312,14 @@ TimePart part_of(std::string_view name) {
       {"msofday", TimePart::millisecond_of_day},
       {"millisecofday", TimePart::millisecond_of_day},
       {"msod", TimePart::millisecond_of_day},
+      {"msday", TimePart::millisecond_of_day},
+      {"millisecondofday", TimePart::millisecond_of_day},
+      {"millisecondsofday", TimePart::millisecond_of_day},
+      {"cdsms", TimePart::millisecond_of_day},
+      {"cdsday", TimePart::day},
+      {"days", TimePart::day},
+      {"daycount", TimePart::day},
+      {"daynumber", TimePart::day},
       {"date", TimePart::date},
       {"datum", TimePart::date},
       {"data", TimePart::date},

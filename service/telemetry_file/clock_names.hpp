@@ -15,7 +15,7 @@ struct NameHint {
   std::optional<std::int64_t> unit_ns;
   std::optional<TimeFormat> format;
   std::optional<std::int64_t> epoch_ns;  // of "seconds since 2000-01-01 00:00:00"
-  std::string since, epoch;              // an epoch that is not that sure, as J2000, and its time
+  std::string since;                     // an epoch that is not that sure, as J2000
   std::string unknown_unit;              // what stands in brackets, or in the row of units, as hl
 };
 NameHint hint_of(std::string_view name, std::string_view unit);
@@ -33,9 +33,13 @@ std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view uni
 /// as IST or Pacific Time; else empty.
 std::string unknown_zone_of(std::string_view name, std::string_view unit);
 
-/// What a line above the header says about the clock of all dates, as "Timezone;Europe/Berlin" and
+/// What a line above the header says about the clock of all dates, as "Timezone;Europe/Berlin",
+/// "GMT+2" and
 /// "All times are CET"; local where it says a zone that is not known here.
 std::optional<ZoneHint> zone_hint_of_line(std::string_view line);
+
+/// 2000-01-01T12:00:00 [ns since 1970], which is J2000 in TT and TDB.
+inline constexpr std::int64_t j2000_ns = 946'728'000'000'000'000;
 
 /// "GPS", "TAI", "TT" or "TDB" where a column of dates is named so; else empty.
 std::string time_scale_of(std::string_view name, std::string_view unit);
@@ -51,6 +55,10 @@ bool is_day_of_year(std::string_view name);
 
 /// Whether a column is named as one of zones or offsets.
 bool is_named_like_a_zone(std::string_view name);
+
+/// Whether a word in front of a zone says that it is one: zone too, which in a column's name may be
+/// one of a heater.
+bool is_zone_key(std::string_view name);
 
 /// The unit of a column that is called ms, usec, nanoseconds or the like, and nothing else but what
 /// the column of seconds is called too, as stamp.secs and stamp.nsecs.

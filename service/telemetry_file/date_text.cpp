@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <string>
+#include <vector>
 
 #include "service/support/text.hpp"
 #include "service/telemetry_file/date_spelling.hpp"
@@ -69,6 +70,11 @@ class Parts {
     while (count < text_.size() && digit(text_[count])) ++count;
     return count;
   }
+  /// Whether a time of day comes next, as 22:00:30, and no short year in front of one.
+  bool is_clock() const {
+    return digits() == 2 && text_.size() > 2 && text_[2] == ':' &&
+           std::count(text_.begin(), text_.end(), ':') <= 2;
+  }
   /// Requires so many digits.
   int number(std::size_t count) {
     int value = 0;
@@ -109,16 +115,21 @@ class Parts {
     }
     return taken;
   }
-  /// Digits as a part of a second [ns], those below a nanosecond cut off.
+  /// Digits as a part of a second [ns], those below a nanosecond cut off; 250.000.000 is 250.
   std::int64_t fraction() {
     std::int64_t value = 0, unit = second_ns;
+    const bool is_in_groups = digits() == 3;
     for (; digit(front()); text_.remove_prefix(1)) {
       unit /= 10;
       value += (text_.front() - '0') * unit;
+      if (is_in_groups && text_.size() > 4 && text_[1] == '.' && digit(text_[2]))
+        text_.remove_prefix(1);
     }
     return value;
   }
   Parts saved() const { return *this; }
+  /// Whether the clock that was taken has a second 60.
+  bool has_second_60 = false;
 
  private:
   std::string_view text_;
@@ -181,6 +192,7 @@ std::optional<std::int64_t> take_year_first(Parts& text, char& separator) {
   if (text.digits() == 3) return days_of_ordinal(year, text.number(3));
   std::optional<int> month = letter(text.front()) ? month_of(text.word()) : text.whole(1, 2);
   if (!month || !text.take(separator)) return std::nullopt;
+  if (separator == ' ') text.take_blanks();  // 2024 Nov  3
   const auto day = text.whole(1, 2);
   return day ? days_of(year, *month, *day) : std::nullopt;
 }
@@ -214,6 +226,7 @@ std::optional<std::int64_t> take_year_last(Parts& text, DateOrder order, char& s
   text.take_blanks();
   const std::size_t digits = text.digits();
   if (digits != 4 && (digits != 2 || separator == '\0')) return std::nullopt;
+  if (text.is_clock()) return std::nullopt;  // Nov 27 10:00:00, 28.02. 22:00:00
   if (order == DateOrder::year_first && digits == 2 && second)
     return days_of(2000 + *first, *second, text.number(2));
   const int year = digits == 4 ? text.number(4) : 2000 + text.number(2);
@@ -276,6 +289,7 @@ std::optional<std::int64_t> take_clock(Parts& text, bool has_passed = false) {
   }
   const bool midnight = hour == 24 && minute == 0 && second == 0;
   if ((hour > 23 && !midnight && !has_passed) || minute > 59 || second > 60) return std::nullopt;
+  text.has_second_60 = second == 60;
   return hour * hour_ns + minute * minute_ns + second * second_ns + fraction;
 }
 
@@ -343,6 +357,7 @@ std::optional<DateText> read_year_at_end(Parts text) {
   if (!day || !text.take_blanks()) return std::nullopt;
   const auto clock = take_clock(text);
   if (!clock || !text.take_blanks()) return std::nullopt;
+  read.is_in_leap_second = text.has_second_60;
   if (letter(text.front())) {
     const std::string name = text.word();
     Parts alone(name);
@@ -398,6 +413,7 @@ std::optional<DateText> read_plain(std::string_view cell, DateOrder order) {
   if (text.take('@')) text.take_blanks();  // Feb 28, 2024 @ 22:00
   const auto clock = take_clock(text);
   if (!clock || !take_offset(text, read.offset_ns)) return std::nullopt;
+  read.is_in_leap_second = text.has_second_60;
   return with_day(read, *days, *clock);
 }
 
@@ -407,6 +423,21 @@ std::optional<std::int64_t> read_offset(std::string_view text) {
   Parts parts(trimmed(text));
   std::optional<std::int64_t> offset;
   return take_offset(parts, offset) ? offset : std::nullopt;
+}
+
+std::string with_missing_year(std::string_view cell) {
+  cell = trimmed(cell);
+  const auto reads = [](const std::string& text) {
+    const auto read = read_date_text(text, DateOrder::day_first);
+    return read && read->has_date;
+  };
+  if (cell.find(':') == std::string_view::npos || reads(std::string(cell))) return {};
+  std::vector<std::string> spellings = {"2024 " + std::string(cell)};
+  for (auto at = cell.find(' '); at != std::string_view::npos; at = cell.find(' ', at + 1))
+    for (const char* year : {"2024", " 2024"})
+      spellings.push_back(std::string(cell).insert(at, year));
+  const auto found = std::find_if(spellings.begin(), spellings.end(), reads);
+  return found == spellings.end() ? std::string() : *found;
 }
 
 std::optional<DateText> read_date_text(std::string_view cell, DateOrder order) {

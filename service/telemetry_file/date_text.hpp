@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace reident::telemetry_file {
@@ -16,6 +17,7 @@ struct DateText {
   std::optional<std::int64_t> offset_ns;  // of that clock, east of UTC; absent: not said
   bool has_date = true;                   // false: a time of day, or one that has passed, alone
   bool is_ordered = false;                // the order of day and month was needed to read it
+  bool is_in_leap_second = false;         // the clock shows the second 60
 };
 
 /// Reads any of these, with blanks around, a weekday in front, and a Z, UTC, GMT or +02:00 behind:
@@ -30,6 +32,9 @@ struct DateText {
 /// second 60 is the next minute's 0. Other spellings are those of date_spelling.hpp. Empty where
 /// the text is none.
 std::optional<DateText> read_date_text(std::string_view text, DateOrder order);
+
+/// A date and time that lacks the year, as Nov 27 10:00:00, with one; empty for any other text.
+std::string with_missing_year(std::string_view cell);
 
 /// Returns how far east of UTC a clock is that CET, UTC, GMT+1 or +02:00 names; empty for others.
 std::optional<std::int64_t> read_offset(std::string_view text);

@@ -25,11 +25,6 @@ struct DialectOptions {
   std::vector<std::string> wanted;           // names that the header must have, where they decide
 };
 
-struct LineAbove {
-  std::uint64_t number = 0;
-  std::string text;
-};
-
 struct Dialect {
   Layout layout;
   std::vector<std::string> columns;  // names in the order of the file; no two equal but empty ones
@@ -39,7 +34,7 @@ struct Dialect {
   std::uint64_t units_line = 0;            // 0: none
   std::uint64_t first_line = 1;            // of the rows
   std::uint64_t first_position = 0;        // in bytes of the text
-  std::vector<LineAbove> above;            // the header: titles, metadata, comments
+  std::vector<NumberedLine> above;         // the header: titles, metadata, comments
 };
 
 /// Finds the dialect of the text that `head` is the beginning of; `name` stands for the file. An

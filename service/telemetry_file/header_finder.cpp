@@ -183,7 +183,8 @@ bool says_zone(const HeadLine& line) {
   const auto filled = std::count_if(line.cells.begin(), line.cells.end(),
                                     [](const auto& cell) { return !trimmed(cell).empty(); });
   const auto hint = zone_hint_of_line(line.text);
-  return filled == 2 && hint && !hint->is_local && is_named_like_a_zone(line.cells.front());
+  if (!hint || line.cells.empty()) return false;
+  return filled == 1 ? !hint->is_local : filled == 2 && is_zone_key(line.cells.front());
 }
 
 /// The header among lines of text: the one with the names that are wanted; the one above units;

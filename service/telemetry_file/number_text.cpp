@@ -217,6 +217,12 @@ std::optional<NumberText> read_number(std::string_view cell, NumberStyle style) 
   return read;
 }
 
+bool may_be_hexadecimal(std::string_view cell) {
+  cell = trimmed(cell);
+  return cell.size() > 1 && cell.find_first_of("0123456789") != std::string_view::npos &&
+         cell.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
+}
+
 bool is_flag(std::string_view suffix) {
   constexpr std::array<std::string_view, 19> flags = {
       "H", "L",  "HH", "LL", "HI",  "LO",     "HIHI", "LOLO", "*", "**",

@@ -44,6 +44,9 @@ std::optional<double> plain_number(std::string_view cell);
 /// Returns the number in a cell, in any spelling that goes with the style.
 std::optional<NumberText> read_number(std::string_view cell, NumberStyle style);
 
+/// Whether a cell may be a hexadecimal number without 0x, as A0 and 1F.
+bool may_be_hexadecimal(std::string_view cell);
+
 /// Whether a suffix is a flag of limits or quality, as H, LL, * or !, and no unit.
 bool is_flag(std::string_view suffix);
 

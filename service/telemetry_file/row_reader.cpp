@@ -12,6 +12,7 @@ namespace reident::telemetry_file {
 namespace {
 
 constexpr std::size_t max_row_bytes = std::size_t{16} << 20;
+constexpr std::size_t most_comments = 100;  // between two rows that are looked at
 constexpr std::string_view open_quote =
     "a quoted cell that starts in this row is not closed; add the \"";
 
@@ -266,7 +267,10 @@ RowReader::Step RowReader::find_row_end(std::size_t& row_end, bool& is_cut) {
 /// Whether a line is blank, ruled, a comment or the header again.
 bool RowReader::is_passed_over(std::string_view text) {
   if (text.empty() || is_ruled(trimmed(text))) return true;
-  if (!layout_.comment.empty() && text.starts_with(layout_.comment)) return true;
+  if (!layout_.comment.empty() && text.starts_with(layout_.comment)) {
+    if (comments_.size() < most_comments) comments_.push_back({next_line_, std::string(text)});
+    return true;
+  }
   if (layout_.header.empty() || text != layout_.header) return false;
   if (repeated_headers_++ == 0) first_repeated_header_ = next_line_;
   return true;
@@ -274,6 +278,7 @@ bool RowReader::is_passed_over(std::string_view text) {
 
 RowReader::Step RowReader::next() {
   damage_ = Damage::none;
+  comments_.clear();
   while (true) {
     bool is_cut = false;
     std::size_t row_end = 0;
@@ -305,6 +310,7 @@ RowReader::Step RowReader::take_row(std::size_t row_end, std::size_t following, 
   row_begin_ = begin_;
   row_end_ = row_end;
   line_ = next_line_;
+  is_unended_ = is_cut;
   const std::string_view text(buffer_.data() + begin_, row_end - begin_);
   const auto line_ends = [&](std::size_t end) {
     return static_cast<std::uint64_t>(

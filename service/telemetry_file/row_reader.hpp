@@ -58,6 +58,11 @@ void join_date(std::vector<std::string_view>& cells);
 /// Whether a line is ruled, as "-----+-----" below a header. Requires a text without blanks around.
 bool is_ruled(std::string_view text);
 
+struct NumberedLine {
+  std::uint64_t number = 0;
+  std::string text;
+};
+
 /// What lines of comments begin with.
 inline constexpr std::array<std::string_view, 4> comment_marks = {"#", "%", "//", "!"};
 
@@ -99,6 +104,14 @@ class RowReader {
   /// holds NUL bytes.
   Error error_here(std::string_view what) const;
   bool has_nul_bytes() const;
+  /// The text of the row or of the bad line, valid until the next call of next().
+  std::string_view text() const {
+    return std::string_view(buffer_).substr(row_begin_, row_end_ - row_begin_);
+  }
+  /// Whether the text ends right behind the row, without a line end.
+  bool is_unended() const { return is_unended_; }
+  /// The comments that next() passed over last, at most 100 of them.
+  const std::vector<NumberedLine>& comments() const { return comments_; }
 
   std::uint64_t bytes_read() const { return consumed_; }  // of the text, up to the end of the row
   std::uint64_t next_line() const { return next_line_; }
@@ -129,6 +142,8 @@ class RowReader {
   std::vector<std::string_view> cells_;
   std::uint64_t line_ = 0, next_line_ = 1;
   std::uint64_t repeated_headers_ = 0, first_repeated_header_ = 0, cut_line_ = 0;
+  std::vector<NumberedLine> comments_;
+  bool is_unended_ = false;
   Error error_;
   Damage damage_ = Damage::none;
 };

@@ -1,5 +1,6 @@
 #include "service/telemetry_file/time_zone.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -72,6 +73,28 @@ std::optional<std::int64_t> utc_of_gps_date(std::int64_t date_ns) {
   std::int64_t gps_ns = 0;
   if (__builtin_sub_overflow(date_ns, gps_epoch_ns, &gps_ns)) return std::nullopt;
   return utc_of_gps(gps_ns);
+}
+
+std::int64_t ahead_of_utc(std::string_view scale, std::int64_t utc_ns) {
+  constexpr std::int64_t tai_of_gps_ns = 19 * second_ns, tt_of_tai_ns = 32'184'000'000;
+  const auto of_gps = std::count_if(leaps.begin(), leaps.end(), [&](std::int64_t leap) {
+    return floor_divide(utc_ns, second_ns) >= leap;
+  });
+  std::int64_t ahead_ns = of_gps * second_ns;
+  if (scale != "GPS") ahead_ns += tai_of_gps_ns;
+  if (scale == "TT" || scale == "TDB") ahead_ns += tt_of_tai_ns;
+  return ahead_ns;
+}
+
+bool follows_leap_second(std::int64_t utc_ns) {
+  const std::int64_t second = floor_divide(utc_ns, second_ns);
+  return second % 86'400 == 0 && std::find(leaps.begin(), leaps.end(), second) != leaps.end();
+}
+
+std::int64_t place_in_leap_second(std::int64_t utc_ns) {
+  constexpr std::int64_t place_ns = second_ns / 1000;
+  const std::int64_t second = floor_divide(utc_ns, second_ns) * second_ns;
+  return second - place_ns + (utc_ns - second) / 1000;
 }
 
 }  // namespace reident::telemetry_file

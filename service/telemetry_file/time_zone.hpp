@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace reident::telemetry_file {
 
@@ -37,5 +38,14 @@ std::int64_t utc_of_gps(std::int64_t gps_ns);
 /// Returns UTC for a date of GPS, which is as many leap seconds ahead [ns since 1970]; empty
 /// outside 64 bits.
 std::optional<std::int64_t> utc_of_gps_date(std::int64_t date_ns);
+
+/// How far a time scale, GPS, TAI, TT or TDB, is ahead of UTC at a time [ns].
+std::int64_t ahead_of_utc(std::string_view scale, std::int64_t utc_ns);
+
+/// Whether a time is within the second behind a leap second, which has no number of its own.
+bool follows_leap_second(std::int64_t utc_ns);
+/// Returns the place of a time in a leap second, which counted on would be in the second behind it:
+/// the last millisecond before that, a thousand times shorter, so that no other time is there.
+std::int64_t place_in_leap_second(std::int64_t utc_ns);
 
 }  // namespace reident::telemetry_file

@@ -60,7 +60,7 @@ TEST(TelemetryClock, ReadsEveryForm) {
                     "2024-02-28T22:00:00Z"},
            FormCase{"time", {"28-Feb-2024 22:00:00"}, "2024-02-28T22:00:00Z"},
            FormCase{"time", {"20240228220000", "20240228220010"}, "2024-02-28T22:00:00Z"},
-           FormCase{"time", {"2016-12-31T23:59:60Z"}, "2017-01-01T00:00:00Z"},
+           FormCase{"time", {"2016-12-31T23:59:60Z"}, "2016-12-31T23:59:59.999Z"},
            FormCase{"time", {"1709157600"}, "2024-02-28T22:00:00Z"},
            FormCase{"timeStamp", {"1709157600000"}, "2024-02-28T22:00:00Z"},
            FormCase{"time", {"1709157600000000"}, "2024-02-28T22:00:00Z"},
@@ -151,6 +151,9 @@ TEST(TelemetryClock, ReadsTheFormsOfPrograms) {
            FormCase{"Date,Time,sec",
                     {"2024-02-28,22:00:10,0.250", "2024-02-28,22:00:20,0.500"},
                     "2024-02-28T22:00:10.25Z"},
+           FormCase{"year,doy,hhmm,sec", {"2024,59,2200,10"}, "2024-02-28T22:00:10Z"},
+           FormCase{"EPOCH_TIME", {"28-02-2024 22:00:10.250.000.000"}, "2024-02-28T22:00:10.25Z"},
+           FormCase{"time", {"28/02/24:22:00:10"}, "2024-02-28T22:00:10Z"},
            FormCase{"GPS Week,Seconds of Week", {"2303,338418"}, "2024-02-28T22:00:00Z"},
            FormCase{"time_cet", {"2024-02-28 23:00:00"}, "2024-02-28T22:00:00Z"},
            FormCase{"Zeit/MEZ", {"28.02.2024 23:00:00"}, "2024-02-28T22:00:00Z"},
@@ -220,12 +223,20 @@ TEST(TelemetryClock, BeginsDaysOfTheYearWithTheFirst) {
 
 TEST(TelemetryClock, IsInTheZoneThatALineAboveTheHeaderSays) {
   const auto time = [](const std::string& above, const TimeOptions& options = {}) {
-    return first_time("time,y", {"2024-07-01 00:00:00,1"}, options, above);
+    return first_time("time,y", {"2024-07-01 00:00:00,1", "2024-07-01 00:00:10,1"}, options, above);
   };
-  for (const char* above : {"Timezone,Europe/Berlin\n", "# Zeitzone: Europe/Berlin\n",
-                            "Device,EPS\nAll times are CEST (UTC+2),\n", "Time zone,+02:00\n"})
+  for (const char* above :
+       {"Timezone,Europe/Berlin\n", "# Zeitzone: Europe/Berlin\n",
+        "Device,EPS\nAll times are CEST (UTC+2),\n", "Time zone,+02:00\n", "Zone,CEST\n",
+        "Zone,CEST,\n", "GMT+2\n", "# UTC+02:00\n", "CEST,,\n", "(UTC+02:00)\n"})
     EXPECT_EQ(time(above), "2024-06-30T22:00:00Z") << above;
   for (const char* above : {"Exported at 2024-07-02 10:00 CEST,\n", "# Time zone: UTC\n"})
+    EXPECT_EQ(time(above), "2024-07-01T00:00:00Z") << above;
+  EXPECT_EQ(time("Time zone: (UTC+05:30)\n"), "2024-06-30T18:30:00Z");
+  for (const char* above : {"Zone,IST,\n", "# Zone: IST\n", "\"(UTC+01:00) Amsterdam, Berlin\"\n",
+                            "Time zone: (UTC+01:00) Berlin\n"})
+    EXPECT_THAT(time(above), AllOf(HasSubstr("by line 1"), HasSubstr("--time-zone"))) << above;
+  for (const char* above : {"# zone 3 heater\n", "Report of WEST\n"})
     EXPECT_EQ(time(above), "2024-07-01T00:00:00Z") << above;
   const std::string unknown = "# Time zone: W. Europe Standard Time\n";
   EXPECT_THAT(time(unknown), AllOf(HasSubstr("by line 1"), HasSubstr("--time-zone")));
@@ -314,8 +325,64 @@ TEST(TelemetryClock, CountsInTheUnitAndSinceTheTimeThatTheNameSays) {
   }
   EXPECT_EQ(first_time("sec_since_2000", {"762429600"}), "2024-02-28T10:00:00Z");
   EXPECT_EQ(first_time("seconds since 1970", {"1709157600"}), "2024-02-28T22:00:00Z");
-  for (const char* name : {"t_j2000_s", "Seconds since J2000"})
-    EXPECT_THAT(first_time(name, {"762429600"}), HasSubstr("--epoch, as 2000-01-01T")) << name;
+  for (const char* name : {"MJD2000", "time_mjd2000"})
+    EXPECT_EQ(first_time(name, {"8824.91666667"}), "2024-02-28T22:00:00Z") << name;
+}
+
+TEST(TelemetryClock, SaysAnEpochThatTakesLeapSecondsOut) {
+  const auto epoch_said = [](const std::string& text) {
+    const auto at = text.find("2000-01-01T11");
+    return at == std::string::npos ? text : text.substr(at, sizeof("2000-01-01T11:58:50.816Z") - 1);
+  };
+  for (const auto& [name, cell, epoch, time] :
+       {std::tuple("ET", "762000000.184", "2000-01-01T11:58:50.816Z", "2024-02-23T22:38:51Z"),
+        {"Ephemeris Time (s)", "762000000.184", "2000-01-01T11:58:50.816Z", "2024-02-23T22:38:51Z"},
+        {"t_j2000_s", "762000000.184", "2000-01-01T11:58:50.816Z", "2024-02-23T22:38:51Z"},
+        {"Seconds since J2000", "0", "2000-01-01T11:58:55.816Z", "2000-01-01T11:58:55.816Z"},
+        {"TDB seconds past J2000", "762000000.184", "2000-01-01T11:58:50.816Z",
+         "2024-02-23T22:38:51Z"},
+        {"seconds since 2000-01-01T12:00:00 TAI", "762000000", "2000-01-01T11:59:23Z",
+         "2024-02-23T22:39:23Z"}}) {
+    EXPECT_EQ(epoch_said(first_time(name, {cell})).substr(0, std::string(epoch).size()), epoch)
+        << name;
+    TimeOptions said;
+    said.epoch_ns = parse_time(epoch);
+    EXPECT_EQ(first_time(name, {cell}, said), time) << name;
+  }
+}
+
+TEST(TelemetryClock, ReadsDaysAndMillisecondsOfTheDaySinceAnEpoch) {
+  TimeOptions since;
+  since.epoch_ns = parse_time("1958-01-01T00:00:00Z");
+  for (const char* names : {"day,ms_of_day", "CDS_DAY,CDS_MS", "Days,Milliseconds of day"})
+    EXPECT_EQ(first_time(names, {"24164,79200500"}, since), "2024-02-28T22:00:00.5Z") << names;
+  EXPECT_EQ(first_time("days since 1958-01-01,msod", {"24164,79200500"}), "2024-02-28T22:00:00.5Z");
+  EXPECT_THAT(first_time("day,ms_of_day", {"24164,79200500"}), HasSubstr("--epoch"));
+  since.column = "a,b_ms";
+  EXPECT_EQ(first_time("a,b_ms", {"24164,79200500"}, since), "2024-02-28T22:00:00.5Z");
+}
+
+TEST(TelemetryClock, PutsALeapSecondBetweenTheSecondsAroundIt) {
+  std::vector<std::string> times;
+  for (const char* cell :
+       {"2016-12-31T23:59:59.9Z", "2016-12-31T23:59:60Z", "2016-12-31 23:59:60.5",
+        "2017-01-01T00:59:60+01:00", "2017-01-01T00:00:00Z", "2017-01-01T00:00:00.5Z"})
+    times.push_back(first_time("time", {cell}));
+  EXPECT_THAT(times, testing::ElementsAre("2016-12-31T23:59:59.9Z", "2016-12-31T23:59:59.999Z",
+                                          "2016-12-31T23:59:59.9995Z", "2016-12-31T23:59:59.999Z",
+                                          "2017-01-01T00:00:00Z", "2017-01-01T00:00:00.5Z"));
+  EXPECT_EQ(first_time("time", {"2016-12-30T23:59:60Z"}), "2016-12-31T00:00:00Z") << "rounded up";
+}
+
+TEST(TelemetryClock, AsksForTheYearOfDatesThatHaveNone) {
+  for (const char* cell : {"Nov 27 10:00:00", "Mar  4 09:26:53", "28.02. 22:00:00",
+                           "27 Nov 10:00:00", "28/02 22:00:00.5"}) {
+    const std::string asked = first_time("time", {cell});
+    const auto said = asked.rfind("as in '");
+    ASSERT_NE(said, std::string::npos) << asked;
+    EXPECT_THAT(first_time("time", {asked.substr(said + 7, asked.size() - said - 8)}),
+                testing::StartsWith("2024-"));
+  }
 }
 
 TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
@@ -326,7 +393,7 @@ TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {
   EXPECT_THAT(first_time("time_s", {"1709157600000"}), HasSubstr("--time-unit"));
   for (const char* name : {"Local time", "time [IST]", "Time (Pacific Time)", "Heure locale"})
     EXPECT_THAT(first_time(name, {"2024-02-28 23:00:00"}), HasSubstr("--time-zone")) << name;
-  EXPECT_THAT(first_time("time", {"Mar 14 09:26:53"}), HasSubstr("no column looks like"));
+  EXPECT_THAT(first_time("time", {"Mar 14 09:26:53"}), HasSubstr("has no year"));
   EXPECT_THAT(first_time("time,tz_offset_min", {"2024-02-28 23:00:00,60"}),
               HasSubstr("--time-zone"));
   EXPECT_THAT(first_time("tow_ms", {"338418.0"}),
