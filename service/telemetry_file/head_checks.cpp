@@ -1,12 +1,14 @@
 #include "service/telemetry_file/head_checks.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "service/support/text.hpp"
 #include "service/telemetry_file/clock_names.hpp"
 #include "service/telemetry_file/clock_words.hpp"
+#include "service/telemetry_file/date_text.hpp"
 #include "service/telemetry_file/number_text.hpp"
 
 namespace reident::telemetry_file {
@@ -16,28 +18,119 @@ using Problem = Clock::Problem;
 
 constexpr double most_repeated = 0.2;  // of the rows, with the time of the row before
 
+constexpr std::size_t enough_cells = 8;  // that show how all of a column are written
+
+/// How a number is written: digits before the mark, behind it, and of an exponent.
+struct Digits {
+  std::size_t whole = 0, decimals = 0, exponent = 0;
+  bool operator==(const Digits&) const = default;
+};
+
+Digits digits_of(std::string_view cell, char decimal) {
+  Digits digits;
+  std::size_t* count = &digits.whole;
+  for (const char c : cell)
+    if (c >= '0' && c <= '9')
+      ++*count;
+    else if (c == decimal)
+      count = &digits.decimals;
+    else if (c == 'e' || c == 'E')
+      count = &digits.exponent;
+  return digits;
+}
+
+/// Whether all rows of the head have a cell that is not blank, and the cell of which is so.
+template <typename Is>
+bool are_all(std::span<const std::string_view> cells, Is is) {
+  return std::all_of(cells.begin(), cells.end(), is);
+}
+
 }  // namespace
 
-std::optional<Problem> several_spacecraft(const HeadCells& head, const Clock& clock) {
+bool is_shorter_than_all(std::string_view cell, std::span<const std::string_view> column,
+                         char decimal) {
+  // The head of a small file holds the last row too.
+  if (!column.empty() && column.back() == cell) column = column.first(column.size() - 1);
+  if (column.size() < enough_cells) return false;
+  const auto number = read_number(cell, {decimal, '\0'});
+  if (!number)  // a time, or words
+    return are_all(column, [&](std::string_view other) {
+      return other.size() == column.front().size() && other.size() > cell.size();
+    });
+  const Digits own = digits_of(cell, decimal), usual = digits_of(column.front(), decimal);
+  if (usual.decimals > 0 || usual.exponent > 0)
+    return (own.decimals < usual.decimals || own.exponent < usual.exponent) &&
+           are_all(column, [&](std::string_view other) {
+             const Digits digits = digits_of(other, decimal);
+             return digits.decimals == usual.decimals && digits.exponent == usual.exponent;
+           });
+  constexpr double much_less = 5;  // a digit that is missing makes it ten times less
+  return own.whole < usual.whole && are_all(column, [&](std::string_view other) {
+           const auto value = plain_number(other);
+           return value && digits_of(other, decimal) == usual &&
+                  std::abs(*value) > much_less * std::abs(number->value);
+         });
+}
+
+std::vector<std::string> other_times(const std::vector<std::string>& names,
+                                     std::span<const std::vector<std::string_view>> columns,
+                                     std::span<const CellFormat> formats, const Clock& clock) {
+  std::vector<std::string> others;
+  const auto& own = columns[clock.columns().front()];
+  for (std::size_t c = 0; c < formats.size(); ++c) {
+    if (clock.uses(c) || formats[c].kind != CellFormat::Kind::text || columns[c].empty()) continue;
+    const auto date = read_date_text(columns[c].front(), DateOrder::day_first);
+    if (date && date->has_date && columns[c] != own) others.push_back(names[c]);
+  }
+  return others;
+}
+
+bool are_doubtful_names(const std::vector<std::string>& names, std::string_view encoding) {
+  if (encoding != "ISO-8859-1" && encoding != "WINDOWS-1252") return false;
+  std::size_t latin = 0, other = 0;
+  for (const std::string& name : names)
+    for (const char c : name) {
+      latin += (c | 0x20) >= 'a' && (c | 0x20) <= 'z' ? 1U : 0U;
+      other += (c & 0xC0) == 0xC0 ? 1U : 0U;  // begins a character beyond ASCII
+    }
+  return other > latin;
+}
+
+std::vector<SpacecraftColumn> spacecraft_columns(const HeadCells& head, const Clock& clock) {
+  std::vector<SpacecraftColumn> columns;
   for (std::size_t c = 0; c < head.columns.size(); ++c) {
     const auto& cells = head.columns[c];
     const bool holds_numbers = std::any_of(cells.begin(), cells.end(), [](std::string_view cell) {
       return plain_number(trimmed(cell)).has_value();
     });
     if (clock.uses(c) || !is_named_like_a_spacecraft(head.names[c], holds_numbers)) continue;
-    std::string_view first;
-    for (std::size_t row = 0; row < head.lines.size(); ++row) {
-      const std::string_view cell = trimmed(cells[row]);
-      if (cell.empty() || cell == first) continue;
-      if (!first.empty())
-        return Problem{
-            head.lines[row],
-            fmt::format(
-                "column '{}' names several spacecraft, {} and {}; divide the file into one for "
-                "each, or take all rows for one's with --force-times",
-                head.names[c], shown(first), shown(cell))};
-      first = cell;
+    SpacecraftColumn column{c, head.names[c], {}, 0};
+    const auto first = std::find_if(cells.begin(), cells.end(),
+                                    [](std::string_view cell) { return !trimmed(cell).empty(); });
+    if (first != cells.end()) {
+      column.spacecraft = trimmed(*first);
+      column.line = head.lines[static_cast<std::size_t>(first - cells.begin())];
     }
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+std::optional<std::string> names_another(const SpacecraftColumn& column,
+                                         std::span<const std::string_view> cells) {
+  const std::string_view cell = trimmed(cells[column.position]);
+  if (cell.empty() || cell == column.spacecraft || column.spacecraft.empty()) return std::nullopt;
+  return fmt::format(
+      "column '{}' names several spacecraft, {} and {}; divide the file into one for each, or "
+      "take all rows for one's with --force-times",
+      column.name, shown(column.spacecraft), shown(cell));
+}
+
+std::optional<Problem> several_spacecraft(const SpacecraftColumn& column, const HeadCells& head) {
+  std::vector<std::string_view> cells(column.position + 1);
+  for (std::size_t row = 0; row < head.lines.size(); ++row) {
+    cells[column.position] = head.columns[column.position][row];
+    if (auto another = names_another(column, cells)) return Problem{head.lines[row], *another};
   }
   return std::nullopt;
 }

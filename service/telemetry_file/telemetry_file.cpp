@@ -1,5 +1,3 @@
-#include "service/telemetry_file/telemetry_file.hpp"
-
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -7,58 +5,19 @@
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/telemetry_file/clock_words.hpp"
-#include "service/telemetry_file/date_text.hpp"
-#include "service/telemetry_file/head_checks.hpp"
+#include "service/telemetry_file/joined_blocks.hpp"
+#include "service/telemetry_file/telemetry_file_impl.hpp"
 
 namespace reident::telemetry_file {
 namespace {
 
 constexpr std::size_t head_bytes = std::size_t{1} << 20;
 constexpr std::size_t head_rows = 20'000;
+constexpr std::string_view another_header =
+    "another header stands here, as where files were joined, and its columns are others or in "
+    "another order; divide the file there";
 constexpr std::int64_t earliest_ns = 631'152'000'000'000'000;  // 1990
 }  // namespace
-
-struct TelemetryFile::Impl {
-  Impl(TextSource source, ReadingOptions chosen)
-      : options(std::move(chosen)), rows(std::move(source)) {}
-
-  ReadingOptions options;
-  RowReader rows;
-  Dialect dialect;
-  std::optional<MadeOf> made_of;
-  std::size_t rows_read = 0;
-  NumberStyle style;
-  std::vector<CellFormat> formats;
-  // The head, kept for finding the time.
-  std::string head_text;  // its cells, one after the other
-  std::vector<std::vector<std::string_view>> head_columns;
-  std::vector<std::uint64_t> head_lines;
-  std::optional<Clock> clock;
-  std::optional<Clock> clock_at_start;  // before any row
-  std::optional<ClockWatch> watch;
-  std::optional<ClockStep> step;
-  std::int64_t ahead_ns = 0;  // of a clock that goes on where it left off
-  std::int64_t time_ns = 0;
-  Error error;
-  Damage damage = Damage::none;
-
-  std::optional<Error> start();
-  /// The line of the file that a cell of a row comes from; `own` is that of the row in the text.
-  std::uint64_t line_of(std::size_t row, std::size_t column, std::uint64_t own) const;
-  std::uint64_t line_of(std::size_t row, std::uint64_t own) const;
-  std::optional<Error> find_cells();
-  Step fail(Damage what, Error why) {
-    damage = what;
-    error = std::move(why);
-    return Step::error;
-  }
-  std::vector<std::string> other_readings() const;
-  bool is_another_header() const;
-  Step fail_at_header();
-  void start_watch();
-  void follow(std::int64_t clock_ns);
-  Step read_time();
-};
 
 std::optional<Error> TelemetryFile::Impl::start() {
   const auto head = rows.head(head_bytes);
@@ -97,8 +56,9 @@ std::optional<Error> TelemetryFile::Impl::find_cells() {
     style = *options.cells.style;
   } else {
     auto found = find_style(head_columns, dialect.layout.separator);
-    if (const auto* problem = std::get_if<std::string>(&found))
-      return Error{rows.source().name() + ": " + *problem};
+    if (const auto* question = std::get_if<StyleQuestion>(&found))
+      return Error{fmt::format("{}:{}: {}", rows.source().name(), head_lines[question->row],
+                               question->text)};
     style = std::get<NumberStyle>(found);
   }
   for (std::size_t c = 0; c < head_columns.size(); ++c)
@@ -159,28 +119,6 @@ std::string TelemetryFile::unit(std::size_t column) const {
   return impl_->formats[column].unit;
 }
 
-std::variant<std::size_t, Error> TelemetryFile::find(std::string_view column) const {
-  const auto& names = columns();
-  const auto found = std::find(names.begin(), names.end(), column);
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  return Error{impl_->rows.source().name() + ": there is no column '" + std::string(column) +
-               "'; the columns are: " + joined(names)};
-}
-
-bool TelemetryFile::has_rows() const {
-  return !impl_->head_lines.empty();
-}
-
-std::string TelemetryFile::first_word(std::size_t column) const {
-  const auto& cells = impl_->head_columns[column];
-  const StateMap* const given = given_states(impl_->options.cells, columns()[column]);
-  for (std::size_t row = 0; row < cells.size(); ++row)
-    if (!trimmed(cells[row]).empty() && !(given && has_state(*given, trimmed(cells[row]))))
-      return fmt::format("{} in line {}", shown(cells[row]),
-                         impl_->line_of(row, column, impl_->head_lines[row]));
-  return "no cell";
-}
-
 std::optional<Error> TelemetryFile::find_time(bool is_series_after_series, bool of_one_spacecraft) {
   Impl& at = *impl_;
   if (is_series_after_series) {
@@ -206,8 +144,11 @@ std::optional<Error> TelemetryFile::find_time(bool is_series_after_series, bool 
         at.rows.source().name(), by)};
   at.clock_at_start = at.clock;
   if (!at.options.force_times) {
-    auto problem = of_one_spacecraft ? several_spacecraft(head, *at.clock) : std::nullopt;
-    if (!problem && !at.options.time.column) problem = clocks_of_their_own(head);
+    if (of_one_spacecraft) at.spacecraft = spacecraft_columns(head, *at.clock);
+    for (const SpacecraftColumn& column : at.spacecraft)
+      if (const auto several = several_spacecraft(column, head)) return refuse(*several);
+    std::optional<Clock::Problem> problem;
+    if (!at.options.time.column) problem = clocks_of_their_own(head);
     if (!problem && !is_series_after_series) problem = repeated_times(head, *at.clock);
     if (problem) return refuse(*problem);
   }
@@ -223,107 +164,27 @@ bool TelemetryFile::is_time(std::size_t column) const {
   return impl_->clock && impl_->clock->uses(column);
 }
 
-std::string TelemetryFile::found() const {
-  const Impl& at = *impl_;
-  if (at.made_of) return at.made_of->found;
-  std::string text = describe(at.dialect);
-  if (at.style.decimal == ',') text += ", decimal commas";
-  if (at.style.thousands != '\0') text += fmt::format(", thousands with '{}'", at.style.thousands);
-  text += ", " + at.rows.source().encoding();
-  if (at.clock)
-    text += ", time: " + (at.clock->description().empty() ? "none yet" : at.clock->description());
-  for (std::size_t c = 0; c < at.formats.size(); ++c) {
-    if (is_time(c)) continue;
-    const std::string format = describe(at.formats[c]);
-    if (!format.empty()) text += fmt::format("; {}: {}", at.dialect.columns[c], format);
-  }
-  return text;
-}
-
-bool TelemetryFile::has_samples_of_their_own() const {
-  return impl_->made_of.has_value();
-}
-
-std::vector<std::string> TelemetryFile::unnamed_columns() const {
-  std::vector<std::string> sentences;
-  for (std::size_t c = 0; c < columns().size(); ++c)
-    if (columns()[c].empty() && format(c).kind != CellFormat::Kind::empty && !is_time(c))
-      sentences.push_back(fmt::format(
-          "column {} has no name and is left out; --names gives each column one", c + 1));
-  return sentences;
-}
-
-/// Where times and names may be read otherwise: columns of other times beside the clock, names in a
-/// one-byte encoding that are no words of Latin letters.
-std::vector<std::string> TelemetryFile::Impl::other_readings() const {
-  std::vector<std::string> sentences, others;
-  for (std::size_t c = 0; clock && c < formats.size(); ++c) {
-    const auto& own = head_columns[clock->columns().front()];
-    if (clock->uses(c) || formats[c].kind != CellFormat::Kind::text || head_columns[c].empty())
-      continue;
-    const auto date = read_date_text(head_columns[c].front(), DateOrder::day_first);
-    if (date && date->has_date && head_columns[c] != own) others.push_back(dialect.columns[c]);
-  }
-  if (!others.empty())
-    sentences.push_back(fmt::format(
-        "{}: there are other times in {}; each value is taken at '{}' (--time names another "
-        "column)",
-        rows.source().name(), joined(others), dialect.columns[clock->columns().front()]));
-  std::size_t latin = 0, other = 0;
-  for (const std::string& column : dialect.columns)
-    for (const char c : column) {
-      latin += (c | 0x20) >= 'a' && (c | 0x20) <= 'z' ? 1U : 0U;
-      other += (c & 0xC0) == 0xC0 ? 1U : 0U;  // begins a character beyond ASCII
-    }
-  const std::string encoding = rows.source().encoding();
-  if (!options.encoding && other > latin &&
-      (encoding == "ISO-8859-1" || encoding == "WINDOWS-1252"))
-    sentences.push_back(
-        fmt::format("{}: the names were read in {}; where they are not such letters, --encoding "
-                    "names another, as GB18030, CP949 or CP1251",
-                    rows.source().name(), encoding));
-  return sentences;
-}
-
-std::vector<std::string> TelemetryFile::remarks() const {
-  const RowReader& rows = impl_->rows;
-  if (impl_->made_of) return impl_->made_of->remarks;
-  std::vector<std::string> remarks = impl_->other_readings();
-  if (rows.repeated_headers() > 0)
-    remarks.push_back(
-        fmt::format("{}:{}: the header stands here again, as where files were joined ({} in all)",
-                    rows.source().name(), rows.first_repeated_header(), rows.repeated_headers()));
-  if (impl_->watch && impl_->watch->hour_ahead_line() > 0)
-    remarks.push_back(fmt::format(
-        "{}:{}: the clock goes ahead an hour: telemetry is missing, or it is a local time at the "
-        "beginning of daylight saving; --time-zone names its zone",
-        rows.source().name(), impl_->watch->hour_ahead_line()));
-  if (rows.cut_line() > 0)
-    remarks.push_back(fmt::format("{}:{}: the last line was cut, or is no row, and is left out",
-                                  rows.source().name(), rows.cut_line()));
-  return remarks;
-}
-
 TelemetryFile::Step TelemetryFile::next() {
   Impl& at = *impl_;
   at.damage = Damage::none;
   const Step step = at.rows.next();
   ++at.rows_read;
+  if (auto other = at.of_another_file()) return at.fail(Damage::none, *std::move(other));
   if (step == Step::error) return at.fail(at.rows.damage(), at.rows.error());
+  if (step == Step::row && at.rows.is_unended() && at.is_cut()) return Step::end;
   if (step == Step::row && at.rows.has_nul_bytes())
     return at.fail(Damage::nul_bytes, at.rows.error_here({}));
   if (step == Step::end || at.clock) return step == Step::end ? step : at.read_time();
-  return at.is_another_header() ? at.fail_at_header() : step;
+  return at.is_another_header(at.rows.cells()) ? at.fail_at_header() : step;
 }
 
 /// Whether a row names columns in another order, as where another file was joined.
-bool TelemetryFile::Impl::is_another_header() const {
+bool TelemetryFile::Impl::is_another_header(std::span<const std::string_view> cells) const {
   const auto is_name = [&](std::string_view cell) {
     cell = trimmed(cell);
     return !cell.empty() &&
            std::find(dialect.columns.begin(), dialect.columns.end(), cell) != dialect.columns.end();
   };
-  const auto cells = rows.cells();
   const auto first = std::find_if(cells.begin(), cells.end(),
                                   [](std::string_view cell) { return !trimmed(cell).empty(); });
   if (dialect.header_line == 0 || first == cells.end() || !is_name(*first)) return false;
@@ -335,9 +196,36 @@ bool TelemetryFile::Impl::is_another_header() const {
 }
 
 TelemetryFile::Step TelemetryFile::Impl::fail_at_header() {
-  return fail(Damage::none,
-              rows.error_here("another header stands here, as where files were joined, and its "
-                              "columns are others or in another order; divide the file there"));
+  return fail(Damage::none, rows.error_here(another_header));
+}
+
+/// Whether the last row of a text without a line end is cut, by its last cell.
+bool TelemetryFile::Impl::is_cut() {
+  const std::string_view text = rows.text(), cell = rows.cells().back();
+  const bool ends_the_line = !cell.empty() && text.ends_with(cell);
+  if (!ends_the_line || !is_shorter_than_all(cell, head_columns.back(), style.decimal))
+    return false;
+  cut_number_line = rows.line();
+  return true;
+}
+
+std::optional<Error> TelemetryFile::Impl::of_another_file() const {
+  const bool of_lines = clock && clock->is_of_lines();
+  const auto here = [this](std::uint64_t line, std::string_view what) {
+    return Error{fmt::format("{}:{}: {}", rows.source().name(), line, what)};
+  };
+  std::vector<std::string_view> cells;
+  for (const NumberedLine& comment : rows.comments()) {
+    if (const auto other = said_otherwise(comment.text, dialect.above, of_lines))
+      return here(comment.number, *other);
+    std::string text(trimmed(std::string_view(comment.text).substr(dialect.layout.comment.size())));
+    if (!split_cells(text, dialect.layout.separator, cells) &&
+        cells.size() == dialect.columns.size() && is_another_header(cells))
+      return here(comment.number, another_header);
+  }
+  if (rows.damage() == Damage::none) return std::nullopt;
+  const auto other = said_otherwise(rows.text(), dialect.above, of_lines);
+  return other ? std::optional(here(rows.line(), *other)) : std::nullopt;
 }
 
 void TelemetryFile::Impl::start_watch() {
@@ -357,12 +245,14 @@ void TelemetryFile::Impl::follow(std::int64_t clock_ns) {
 TelemetryFile::Step TelemetryFile::Impl::read_time() {
   const std::size_t column = clock->columns().front();
   const auto time = clock->read(rows.cells());
-  if (!time && is_another_header()) return fail_at_header();
+  if (!time && is_another_header(rows.cells())) return fail_at_header();
   const auto here = [&](std::string_view what) {
     return rows.error_here(fmt::format("{} in column '{}' {}", shown(rows.cells()[column]),
                                        dialect.columns[column], what));
   };
   if (!time) {
+    if (const auto other = said_otherwise(rows.text(), dialect.above, clock->is_of_lines()))
+      return fail(Damage::none, rows.error_here(*other));
     return fail(
         Damage::time,
         here(clock->description().empty()
@@ -372,6 +262,9 @@ TelemetryFile::Step TelemetryFile::Impl::read_time() {
                        "); mend it, or leave such rows out with --skip-bad-lines" +
                        comment_advice(rows.cells().front())));
   }
+  for (const SpacecraftColumn& of : spacecraft)
+    if (const auto other = names_another(of, rows.cells()))
+      return fail(Damage::none, rows.error_here(*other));
   time_ns = *time;
   const bool is_possible =
       clock->is_absolute() && time_ns >= earliest_ns && time_ns <= options.latest_ns;
@@ -424,13 +317,6 @@ const Error& TelemetryFile::error() const {
 Damage TelemetryFile::damage() const {
   return impl_->damage;
 }
-Error TelemetryFile::error_here(std::string_view what) const {
-  return Error{fmt::format("{}:{}: {}", impl_->rows.source().name(), line(), what)};
-}
-Error TelemetryFile::cell_error(std::size_t column, std::string_view what) const {
-  return Error{fmt::format("{}:{}: {} in column '{}' {}", impl_->rows.source().name(), line(column),
-                           shown(cells()[column]), columns()[column], what)};
-}
 std::uint64_t TelemetryFile::bytes_read() const {
   return impl_->rows.bytes_read();
 }
@@ -459,30 +345,6 @@ std::optional<Error> TelemetryFile::go_on_at(std::uint64_t position, std::uint64
     }
   }
   return at.rows.start(at.dialect.layout, position, line);
-}
-
-void LeftOut::add(Damage damage, const Error& error) {
-  for (Kind& kind : kinds_)
-    if (kind.damage == damage) {
-      ++kind.count;
-      return;
-    }
-  kinds_.push_back({damage, 1, error.message});
-}
-
-std::uint64_t LeftOut::count() const {
-  std::uint64_t count = 0;
-  for (const Kind& kind : kinds_) count += kind.count;
-  return count;
-}
-
-std::vector<std::string> LeftOut::sentences() const {
-  std::vector<std::string> sentences;
-  for (const Kind& kind : kinds_)
-    sentences.push_back(fmt::format("{} {} left out for {}, the first: {}", kind.count,
-                                    kind.count == 1 ? "row" : "rows", name(kind.damage),
-                                    kind.first));
-  return sentences;
 }
 
 }  // namespace reident::telemetry_file

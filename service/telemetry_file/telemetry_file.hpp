@@ -26,6 +26,7 @@ struct ReadingOptions {
   DialectOptions dialect;
   CellOptions cells;
   TimeOptions time;
+  std::optional<std::string> spacecraft;  // what the file says otherwise is told
   bool force_times = false;        // times are taken as they are, whatever speaks against them
   bool any_epoch = false;          // nobody has to know since when times count
   bool clock_may_go_back = false;  // a clock that looks set back, restarted or wrapped is no error
@@ -84,8 +85,8 @@ class TelemetryFile {
   /// What was found, on one line: "semicolons, decimal commas, header in line 3, time: day of
   /// year".
   std::string found() const;
-  /// What next() passed over: headers again, a cut last line, a clock that goes ahead an hour; one
-  /// sentence each.
+  /// What next() passed over, and what the file says of its spacecraft: headers again, a cut last
+  /// line, a clock that goes ahead an hour; one sentence each.
   std::vector<std::string> remarks() const;
 
   using Step = RowReader::Step;

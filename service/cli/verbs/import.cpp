@@ -44,6 +44,7 @@ std::optional<Refusal> complete(Arguments& arguments) {
   auto reading = telemetry_file::reading_options(arguments.reading, utc_now());
   if (const auto* error = std::get_if<csv::Error>(&reading)) return Refusal{error->message};
   arguments.import.reading = std::get<telemetry_file::ReadingOptions>(std::move(reading));
+  arguments.import.reading.spacecraft = arguments.import.spacecraft;
   arguments.import.skip_bad_lines = arguments.reading.skip_bad_lines;
   return std::nullopt;
 }

@@ -123,6 +123,7 @@ int replay_main(int argc, char** argv) {
   app.get_option("--spacecraft")->required();
   return run_program(app, argc, argv, [&] {
     read_arguments(reading, replay);
+    replay.reading.spacecraft = publisher.spacecraft;
     if (reading.dry_run) return show(replay);
     ReplayPlan plan = make_plan(replay);
     const std::string found = json_of(plan);

@@ -3,6 +3,7 @@
 #include <random>
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -214,6 +215,102 @@ TEST(TelemetryRowErrors, OfAMissingColumnNameTheOnesThatExist) {
   EXPECT_EQ(std::get<Error>(found).message,
             "t.csv: there is no column 'bus_u'; the columns are: unix_s, bus u");
   EXPECT_EQ(std::get<std::size_t>(std::get<TelemetryFile>(opened).find("bus u")), 1U);
+}
+
+/// The rows that are read up to the end, or up to an error, which follows.
+std::vector<std::string> times_and_end(const std::string& text,
+                                       const ReadingOptions& options = {}) {
+  auto opened = TelemetryFile::of_text(text, "t.csv", options);
+  auto& file = std::get<TelemetryFile>(opened);
+  if (const auto error = file.find_time()) return {error->message};
+  std::vector<std::string> all;
+  auto step = file.next();
+  for (; step == TelemetryFile::Step::row; step = file.next())
+    all.push_back(time_text(file.time_ns()));
+  if (step == TelemetryFile::Step::error) all.push_back(file.error().message);
+  for (std::string& remark : file.remarks()) all.push_back(std::move(remark));
+  return all;
+}
+
+/// Eight rows of a day.
+std::string day_rows(const std::string& day) {
+  std::string text;
+  for (const char* hour : {"10", "11", "12", "13", "14", "15", "16", "17"})
+    text += day + " " + hour + ":00:00,1,2\n";
+  return text;
+}
+
+TEST(TelemetryJoinedFiles, AreRefusedWhereTheSecondIsOfAnotherClockOrder) {
+  const std::string first = day_rows("2024-02-28"), second = day_rows("2024-02-29");
+  struct Case {
+    std::string above, between;
+    int line;
+  };
+  for (const auto& [above, between, line] :
+       {Case{"# Timezone: Europe/Berlin\ntime,u,v\n", "# Timezone: UTC\ntime,u,v\n", 11},
+        Case{"time,u,v\n", "# Timezone: Asia/Tokyo\ntime,u,v\n", 10},
+        Case{"Timezone,CET,\ntime,u,v\n", "Timezone,UTC,\ntime,u,v\n", 11},
+        Case{"Timezone,CET\ntime,u,v\n", "Timezone,UTC\ntime,u,v\n", 11},
+        Case{"# Spacecraft: SAT-1\ntime,u,v\n", "# Spacecraft: SAT-2\ntime,u,v\n", 11},
+        Case{"# TIME_SYSTEM = UTC\n# time,u,v\n", "# TIME_SYSTEM = TAI\n# time,u,v\n", 11},
+        Case{"# time,u,v\n", "# time,v,u\n", 10}, Case{"# time,u\n", "# time,v\n", 10}}) {
+    std::string text = above + first + between + second;
+    if (above == "# time,u\n")
+      for (auto at = text.find(",2\n"); at != std::string::npos; at = text.find(",2\n"))
+        text.erase(at, 2);
+    const auto read = times_and_end(text);
+    ASSERT_GE(read.size(), 9U) << text;
+    EXPECT_THAT(read[8], StartsWith(fmt::format("t.csv:{}: ", line))) << text;
+  }
+  const std::string again = "# Timezone: UTC\n# Spacecraft: SAT-1\n# time,u,v\n";
+  EXPECT_EQ(times_and_end(again + first + again + second).size(), 16U);
+  ReadingOptions zone;
+  zone.time.zone = "UTC";
+  EXPECT_EQ(times_and_end("time,u,v\n" + first + "# Timezone: CET\n" + second, zone).size(), 16U)
+      << "a zone that is given";
+}
+
+TEST(TelemetryRowReader, LeavesOutALastRowWhoseLastNumberIsCut) {
+  struct Case {
+    const char* usual;
+    const char* last;
+    bool is_cut;
+  };
+  for (const auto& [usual, last, is_cut] :
+       {Case{"28.417", "28.4", true}, Case{"28.417", "2", true}, Case{"28.417", "28.418", false},
+        Case{"2.5e-03", "2.5e-0", true}, Case{"2.5e-03", "2.5", true}, Case{"28041", "280", true},
+        Case{"101", "99", false}, Case{"ON", "ON", false}, Case{"\"28.417\"", "\"28.4\"", false},
+        Case{"28,417", "28,4", true}}) {
+    const std::string separator = std::string(usual).find(',') == std::string::npos ? "," : ";";
+    std::string text = "time" + separator + "u\n";
+    for (int row = 0; row < 10; ++row)
+      text += fmt::format("2024-02-28T22:00:{:02}Z{}{}\n", row, separator, usual);
+    text += "2024-02-28T22:00:10Z" + separator + last;
+    const auto cut = times_and_end(text);
+    EXPECT_EQ(cut.size(), 11U) << last;
+    EXPECT_THAT(cut.back(), is_cut ? HasSubstr("t.csv:12: ") : HasSubstr("22:00:10")) << last;
+    EXPECT_THAT(times_and_end(text + "\n").back(), HasSubstr("22:00:10")) << last;
+  }
+  EXPECT_THAT(times_and_end("time,u\n2024-02-28T22:00:00Z,1.50\n2024-02-28T22:00:01Z,2").back(),
+              HasSubstr("22:00:01"))
+      << "too few rows to say";
+}
+
+TEST(TelemetryRowReader, NamesRowsOfAnotherSpacecraft) {
+  std::string text = "time,spacecraft,u\n";
+  for (int row = 0; row < 40'000; ++row)
+    text += fmt::format("{},{},1.5\n", 1'700'000'000 + row, row < 30'000 ? "SAT-1" : "SAT-2");
+  const auto read = times_and_end(text);
+  ASSERT_EQ(read.size(), 30'001U);
+  EXPECT_THAT(read.back(), AllOf(StartsWith("t.csv:30002: "), HasSubstr("--force-times")));
+  ReadingOptions options;
+  for (const auto& [given, remarks] : {std::pair("SAT-1", 0U), {"Sat 1", 0U}, {"SAT-7", 2U}}) {
+    options.spacecraft = given;
+    EXPECT_EQ(times_and_end("# Satellite: SAT-1\ntime,spacecraft,u\n1700000000,SAT-1,2\n", options)
+                  .size(),
+              1U + remarks)
+        << given;
+  }
 }
 
 TEST(TelemetryRowReader, KnowsTheLineOfEachRowAndHowFarItIs) {

@@ -189,6 +189,9 @@ TEST_F(ImportTest, MistakesAreNamedWithFileLineColumnAndRemedy) {
              "invalid"},
         Case{"parameter,time,value\n,1700000000,1\n", ":2: '' in column 'parameter' names no"},
         Case{"parameter,time,value\nV,1700000000,high\n", ":2: 'high' in column 'value' is no"},
+        Case{"parameter,time,value,Units\nV,1700000000,1,V\nV,1700000001,1000,mV\n",
+             ":3: parameter 'V' is in mV here and in V in line 2"},
+        Case{"t,st\n1700000000,12\n1700000001,1C\n", "write 0x in front"},
         Case{"t,u_v,u_mv\n1700000000,1,2\n", "would both be parameter 'u'"}}) {
     const std::string error = error_of(options(text, "bad.csv"));
     EXPECT_THAT(error, StartsWith((folder / "bad.csv").string())) << text;
