@@ -113,9 +113,28 @@ StateMap states_of(const std::set<std::string>& words, const StateMap* given) {
 }
 
 struct Counts {
-  std::size_t all = 0, point = 0, comma = 0, point_or = 0, comma_or = 0, bare = 0, short_bare = 0;
-  std::string_view first_point, first_comma, first_ambiguous;
+  std::size_t point = 0, comma = 0, point_or = 0, comma_or = 0, bare = 0, short_bare = 0;
+  struct First {
+    std::string_view cell;
+    std::size_t row = 0;
+  };
+  First first_point, first_comma, first_ambiguous;
 };
+
+/// 28.02.2024, as in Germany, where the decimal mark is a comma.
+bool is_date_with_points(std::string_view cell) {
+  cell = trimmed(cell);
+  const auto is_digit = [&](std::size_t at) { return cell[at] >= '0' && cell[at] <= '9'; };
+  return cell.size() >= 10 && cell[2] == '.' && cell[5] == '.' && is_digit(0) && is_digit(6) &&
+         is_digit(8);
+}
+
+StyleQuestion marks_differ(const Counts::First& one, const Counts::First& other) {
+  return {std::min(one.row, other.row),
+          fmt::format("'{}' and '{}' have different decimal marks; say which is right: --decimal "
+                      "point --thousands comma, or --decimal comma --thousands point",
+                      one.cell, other.cell)};
+}
 
 }  // namespace
 
@@ -155,20 +174,23 @@ std::string states_text(const StateMap& states) {
   return text;
 }
 
-std::variant<NumberStyle, std::string> find_style(
+std::variant<NumberStyle, StyleQuestion> find_style(
     std::span<const std::vector<std::string_view>> columns, char separator) {
   Counts all;
   char apart = '\0';
   std::optional<NumberStyle> certain;
-  std::size_t whole_columns = 0;  // of cells that all could be either
-  std::size_t mixed_columns =
-      0;  // of such cells and others without a mark, of three digits at most
+  bool has_date_with_points = false, has_mixed_points = false;
+  bool has_mixed_column =
+      false;  // of such cells and others without a mark, of three digits at most
   for (const auto& cells : columns) {
     Counts here;
-    for (const std::string_view cell : cells) {
+    for (std::size_t row = 0; row < cells.size(); ++row) {
+      const std::string_view cell = cells[row];
       const auto evidence = marks_in(cell);
-      if (!evidence) continue;
-      ++here.all;
+      if (!evidence) {
+        has_date_with_points = has_date_with_points || is_date_with_points(cell);
+        continue;
+      }
       if (evidence->blank_group != '\0') apart = evidence->blank_group;
       switch (evidence->mark) {
         case Mark::none:
@@ -176,48 +198,55 @@ std::variant<NumberStyle, std::string> find_style(
           if (trimmed(cell).size() <= 4) ++here.short_bare;  // with a sign
           break;
         case Mark::point:
-          if (all.point++ == 0) all.first_point = cell;
+          if (all.point++ == 0) all.first_point = {cell, row};
           break;
         case Mark::comma:
-          if (all.comma++ == 0) all.first_comma = cell;
+          if (all.comma++ == 0) all.first_comma = {cell, row};
           break;
         case Mark::point_or_thousands:
-          ++all.point_or;
+          ++here.point_or;
+          if (all.point_or++ == 0 && all.point == 0) all.first_point = {cell, row};
           break;
         case Mark::comma_or_thousands:
-          if (all.comma_or++ == 0) all.first_ambiguous = cell;
+          if (all.comma_or++ == 0) all.first_ambiguous = {cell, row};
           ++here.comma_or;
           break;
         case Mark::both:
           if (certain && *certain != evidence->style)
-            return fmt::format(
-                "'{}' and others write numbers in two ways; say with --decimal point "
-                "or --decimal comma which is right",
-                cell);
+            return StyleQuestion{
+                row, fmt::format("'{}' and others write numbers in two ways; say with --decimal "
+                                 "point or --decimal comma which is right",
+                                 cell)};
           certain = evidence->style;
           break;
       }
     }
-    if (here.all >= 5 && here.comma_or == here.all) ++whole_columns;
-    if (here.comma_or > 0 && here.bare > 0 && here.bare == here.short_bare) ++mixed_columns;
+    if (here.point_or > 0 && here.bare > 1 && here.bare == here.short_bare) has_mixed_points = true;
+    if (here.comma_or > 0 && here.bare > 0 && here.bare == here.short_bare) has_mixed_column = true;
   }
   if (certain && (certain->decimal == '.' ? all.comma == 0 : all.point == 0)) return *certain;
-  if (all.point > 0 && all.comma > 0)
-    return fmt::format(
-        "'{}' and '{}' have different decimal marks; say with --decimal point or "
-        "--decimal comma which is right",
-        all.first_point, all.first_comma);
+  if (all.point > 0 && all.comma > 0) return marks_differ(all.first_point, all.first_comma);
   if (all.comma > 0) return NumberStyle{',', all.point_or > 0 ? '.' : apart};
+  // 6.000 beside 28.02.2024, or beside 998: a program that writes so may write thousands so too.
+  const bool may_be_thousands = has_mixed_points || (has_date_with_points && separator == ';');
+  if (all.comma_or == 0 && all.point == 0 && all.point_or > 2 && may_be_thousands)
+    return StyleQuestion{
+        all.first_point.row,
+        fmt::format("'{}' may be a decimal point or thousands; say --decimal point "
+                    "or --thousands point",
+                    all.first_point.cell)};
   if (all.comma_or == 0) return NumberStyle{'.', apart};
-  if (all.point > 0 || all.point_or > 0) return NumberStyle{'.', ','};
+  if (all.point > 0 || (all.point_or > 0 && separator == ',')) return NumberStyle{'.', ','};
+  // 28.417 and 1,100: each mark may be either.
+  if (all.point_or > 0) return marks_differ(all.first_point, all.first_ambiguous);
   // Every comma stands before three digits: decimals would be cut off nowhere but in whole numbers.
-  if (mixed_columns > 0) return NumberStyle{'.', ','};
-  // Thousands of all cells would be never below 1,000.
-  if (separator != ',' || whole_columns >= 2) return NumberStyle{',', '\0'};
-  return fmt::format(
-      "'{}' may be a decimal comma or thousands; say --decimal comma or --thousands "
-      "comma",
-      all.first_ambiguous);
+  if (has_mixed_column) return NumberStyle{'.', ','};
+  // A comma that separates cells too is as likely a mark of thousands, in whatever column.
+  if (separator != ',') return NumberStyle{',', '\0'};
+  return StyleQuestion{all.first_ambiguous.row,
+                       fmt::format("'{}' may be a decimal comma or thousands; say --decimal comma "
+                                   "or --thousands comma",
+                                   all.first_ambiguous.cell)};
 }
 
 CellFormat find_format(std::span<const std::string_view> cells, const std::string& column,

@@ -62,9 +62,15 @@ struct CellFormat {
 const StateMap* given_states(const CellOptions& options, const std::string& column);
 bool has_state(const StateMap& states, std::string_view word);
 
+/// What has to be said where two styles are possible, and the row of the cell that shows it.
+struct StyleQuestion {
+  std::size_t row = 0;
+  std::string text;
+};
+
 /// Finds the style in which the numbers of a table are written from its cells, column by column;
-/// `separator` is that of the file. An error text that shows a cell where two styles are possible.
-std::variant<NumberStyle, std::string> find_style(
+/// `separator` is that of the file.
+std::variant<NumberStyle, StyleQuestion> find_style(
     std::span<const std::vector<std::string_view>> columns, char separator);
 
 /// Finds the format of one column from its cells.

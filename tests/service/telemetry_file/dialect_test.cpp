@@ -10,6 +10,7 @@
 namespace reident::telemetry_file::dialect_test {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -323,6 +324,18 @@ TEST(TelemetryDialect, OfOneSampleARowIsKnownByTheNamesAndWords) {
   EXPECT_FALSE(layout("time,u,v\n2024-02-28,1.5,2.5\n"));
 }
 
+TEST(TelemetryUnits, OfOneParameterAreOne) {
+  UnitsOfParameters units;
+  EXPECT_FALSE(units.check("u", "V", 2));
+  EXPECT_FALSE(units.check("i", "A", 3));
+  EXPECT_FALSE(units.check("u", "", 4)) << "a blank unit says nothing";
+  EXPECT_FALSE(units.check("u", "V", 5));
+  EXPECT_THAT(units.check("u", "mV", 6).value(), AllOf(HasSubstr("mV"), HasSubstr("V in line 2")));
+  EXPECT_FALSE(units.check("u", "V", 7));
+  const auto layout = find_long_layout({"Zeit", "Parameter", "Wert", "Einheit"});
+  EXPECT_EQ(layout.value().unit, 3U);
+}
+
 struct Style {
   std::vector<std::string_view> cells;
   char separator;
@@ -345,7 +358,13 @@ TEST(TelemetryNumbers, HaveTheStyleThatTheyShow) {
            Style{{"1,501", "998", "0", "2,007", "12"}, ',', ".,"},
            Style{{"28. Februar 2024", "6,007", "1,724"}, ';', ", "},
            Style{{"1,501", "1,502"}, ',', "--thousands"},
+           Style{{"1,501", "1,502", "1,503", "1,504", "1,505"}, ',', "--thousands"},
            Style{{"1,5", "1.25"}, ';', "--decimal"},
+           Style{{"1,100", "28.417"}, ';', "--decimal"},
+           Style{{"28.02.2024 22:00", "6.000", "6.052", "6.101"}, ';', "--thousands"},
+           Style{{"998", "12", "1.501", "1.502", "1.503"}, ',', "--thousands"},
+           Style{{"28.02.2024 22:00", "0.998", "6.052", "6.101"}, ';', ". "},
+           Style{{"1,100", "28.417"}, ',', ".,"},
        }) {
     const std::vector<std::vector<std::string_view>> columns = {c.cells};
     const auto found = find_style(columns, c.separator);
@@ -355,7 +374,7 @@ TEST(TelemetryNumbers, HaveTheStyleThatTheyShow) {
                                                                            : style->thousands};
       EXPECT_EQ(marks, c.expected) << c.cells[0];
     } else {
-      EXPECT_THAT(std::get<std::string>(found), HasSubstr(c.expected)) << c.cells[0];
+      EXPECT_THAT(std::get<StyleQuestion>(found).text, HasSubstr(c.expected)) << c.cells[0];
     }
   }
 }
