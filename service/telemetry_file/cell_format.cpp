@@ -72,6 +72,12 @@ bool is_missing(std::string_view cell, const std::vector<std::string>& missing) 
   });
 }
 
+/// What instruments write for a value that they could not measure, by SCPI: overflow and none.
+bool is_no_measurement(double value) {
+  constexpr double overflow = 9.9e37, none = 9.91e37;
+  return std::abs(value) >= overflow && (std::abs(value) == overflow || std::abs(value) == none);
+}
+
 /// What programs write for no value in a column of numbers.
 bool means_no_value(std::string_view word) {
   constexpr std::array<std::string_view, 10> words = {"NA",   "N/A",  "<NA>", "#N/A", "NULL",
@@ -227,7 +233,7 @@ std::variant<NumberStyle, StyleQuestion> find_style(
   if (certain && (certain->decimal == '.' ? all.comma == 0 : all.point == 0)) return *certain;
   if (all.point > 0 && all.comma > 0) return marks_differ(all.first_point, all.first_comma);
   if (all.comma > 0) return NumberStyle{',', all.point_or > 0 ? '.' : apart};
-  // 6.000 beside 28.02.2024, or beside 998: a program that writes so may write thousands so too.
+  // 6.000 next to 28.02.2024, or to 998: a program that writes so may write thousands so too.
   const bool may_be_thousands = has_mixed_points || (has_date_with_points && separator == ';');
   if (all.comma_or == 0 && all.point == 0 && all.point_or > 2 && may_be_thousands)
     return StyleQuestion{
@@ -264,7 +270,7 @@ CellFormat find_format(std::span<const std::string_view> cells, const std::strin
     ++filled;
     const auto number = read_number(cell, style);
     const bool is_state = coded_state(cell).has_value();
-    if (!number && means_no_value(cell)) format.no_value = cell;
+    if (number ? is_no_measurement(number->value) : means_no_value(cell)) format.no_value = cell;
     if (!number || is_state) {
       if (words.size() < most_states) words.insert(std::string(cell));
       continue;
@@ -315,7 +321,8 @@ Cell read_cell(std::string_view text, const CellFormat& format) {
     return {Cell::Kind::bad, 0, false};
   }
   if (format.spelling == 0 && format.style.decimal == '.') {
-    if (const auto value = plain_number(text)) return {Cell::Kind::number, *value, false};
+    if (const auto value = plain_number(text))
+      return {is_no_measurement(*value) ? Cell::Kind::missing : Cell::Kind::number, *value, false};
     const std::string_view word = trimmed(text);
     if (!format.no_value.empty() && means_no_value(word)) return {Cell::Kind::missing, 0, false};
     return {word.empty() ? Cell::Kind::blank : Cell::Kind::bad, 0, false};
@@ -326,6 +333,7 @@ Cell read_cell(std::string_view text, const CellFormat& format) {
   const auto number = read_number(text, format.style);
   if (!number || (number->spelling & ~(format.spelling | grouped | decimal_comma)) != 0)
     return {Cell::Kind::bad, 0, false};
+  if (is_no_measurement(number->value)) return {Cell::Kind::missing, 0, false};
   const bool is_flagged = !number->suffix.empty() && number->suffix != format.unit;
   if (is_flagged && !is_flag(number->suffix)) return {Cell::Kind::bad, 0, false};
   return {Cell::Kind::number, number->value, is_flagged};

@@ -383,6 +383,17 @@ CellFormat format_of(const std::vector<std::string_view>& cells) {
   return find_format(cells, "x", {}, {});
 }
 
+TEST(TelemetryCells, ThatAnInstrumentCouldNotMeasureAreNoValues) {
+  for (const char* cell : {"9.91E+37", "+9.90000000E+37", "-9.9e37"}) {
+    const CellFormat format = format_of({"1.5", "2.5", cell});
+    EXPECT_EQ(read_cell(cell, format).kind, Cell::Kind::missing) << cell;
+    EXPECT_EQ(format.no_value, cell);
+    EXPECT_EQ(read_cell(cell, format_of({"1.5"})).kind, Cell::Kind::missing) << "behind the head";
+    EXPECT_EQ(read_cell(cell, format_of({"1.5 V"})).kind, Cell::Kind::missing) << "beside units";
+  }
+  EXPECT_EQ(read_cell("9.8e37", format_of({"1.5"})).kind, Cell::Kind::number);
+}
+
 TEST(TelemetryCells, AreReadWhereAColumnAgrees) {
   struct Case {
     std::vector<std::string_view> cells;
