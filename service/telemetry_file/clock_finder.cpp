@@ -289,6 +289,7 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
     if (dated > 0 && offsets == 0) {
       if (auto problem = decide_scale(c)) return problem;
     }
+    if (offsets > 0 && offsets < texts && !options_.zone) return some_lack_offsets(c);
     const auto text = read_date_text(first_text, clock_.order_);
     if (text) clock_.description_ = describe_text(first_text, clock_.order_, *text);
     return std::nullopt;
@@ -310,6 +311,29 @@ std::optional<Problem> ClockFinder::decide_one(std::size_t c) {
                        "or say what it is with --time-format, --time-unit or --epoch"};
   }
   return decide_number(c, values, decimals);
+}
+
+/// Dates with an offset and others without one.
+Problem ClockFinder::some_lack_offsets(std::size_t c) const {
+  const auto& cells = head_.columns[c];
+  const auto first = std::find_if(cells.begin(), cells.end(), [this](std::string_view cell) {
+    const auto text = read_date_text(cell, clock_.order_);
+    return text && !text->offset_ns;
+  });
+  return Problem{head_.lines[static_cast<std::size_t>(first - cells.begin())],
+                 fmt::format("{} in column '{}' has no offset, and others have one; say with "
+                             "--time-zone of which zone it is, as UTC or Europe/Berlin",
+                             shown(*first), head_.names[c])};
+}
+
+/// Whether the numbers, as seconds, are of rows that are weeks apart: they count something shorter.
+bool ClockFinder::are_weeks_apart(const std::vector<double>& values) const {
+  constexpr std::size_t enough = 5;
+  constexpr double week_s = 7 * seconds_a_day;
+  return values.size() >= enough &&
+         std::adjacent_find(values.begin(), values.end(), [](double one, double other) {
+           return std::abs(other - one) < week_s;
+         }) == values.end();
 }
 
 bool ClockFinder::in_window(const std::vector<double>& values, TimeFormat format,
@@ -428,6 +452,13 @@ std::optional<Problem> ClockFinder::decide_number(std::size_t c, const std::vect
     }
     take(fits ? TimeFormat::unix : TimeFormat::elapsed, unit, decimals, value, " by the name");
     return std::nullopt;
+  }
+  if (by_size == second_ns && are_weeks_apart(values) && hint.format != TimeFormat::unix) {
+    const auto [cell, line] = first_cell(c);
+    return Problem{line, fmt::format("{} and others in column '{}' would be weeks apart as seconds "
+                                     "since 1970; say with --time-unit what they count, as us, and "
+                                     "with --epoch since when",
+                                     shown(cell), head_.names[c])};
   }
   if (by_size) {
     take(TimeFormat::unix, *by_size, decimals, value,

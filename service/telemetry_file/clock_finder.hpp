@@ -68,6 +68,8 @@ class ClockFinder {
   double span(std::size_t c, DateOrder order) const;
   std::optional<Clock::Problem> decide_order(std::size_t c);
   std::optional<Clock::Problem> decide_one(std::size_t c);
+  Clock::Problem some_lack_offsets(std::size_t c) const;
+  bool are_weeks_apart(const std::vector<double>& values) const;
   bool in_window(const std::vector<double>& values, TimeFormat format, std::int64_t unit_ns) const;
   std::optional<std::int64_t> unit_by_size(const std::vector<double>& values) const;
   bool is_absolute_number(const std::vector<double>& values) const;

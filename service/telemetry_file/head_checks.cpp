@@ -1,6 +1,7 @@
 #include "service/telemetry_file/head_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "service/telemetry_file/clock_words.hpp"
 #include "service/telemetry_file/date_text.hpp"
 #include "service/telemetry_file/number_text.hpp"
+#include "service/telemetry_file/time_units.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -18,7 +20,7 @@ using Problem = Clock::Problem;
 
 constexpr double most_repeated = 0.2;  // of the rows, with the time of the row before
 
-constexpr std::size_t enough_cells = 8;  // that show how all of a column are written
+constexpr std::size_t enough_cells = 5;  // that show how all of a column are written
 
 /// How a number is written: digits before the mark, behind it, and of an exponent.
 struct Digits {
@@ -151,6 +153,43 @@ std::optional<Problem> clocks_of_their_own(const HeadCells& head) {
               "into one for each pair of columns, or name one for all with --time",
               names[0], names[c])};
   return std::nullopt;
+}
+
+std::optional<Problem> unpadded_parts(const HeadCells& head, const Clock& clock) {
+  const std::size_t column = clock.columns().back();
+  Clock reading = clock;
+  std::vector<std::string_view> cells(head.columns.size());
+  std::optional<std::int64_t> before, before_padded;
+  std::size_t back = 0, first = 0;
+  constexpr double latest_ns = 9e18;  // within 64 bits, with a second more
+  for (std::size_t row = 0; row < head.lines.size(); ++row) {
+    const std::string_view cell = trimmed(head.columns[column][row]);
+    const auto colon = cell.rfind(':');
+    if (colon == std::string_view::npos) return std::nullopt;
+    const std::string_view second = cell.substr(colon);
+    const auto mark = std::min(second.find_first_of(".,"), second.size() - 1);
+    const std::string_view part =
+        second.substr(mark + 1, second.find_first_not_of("0123456789", mark + 1) - mark - 1);
+    if (second[mark] == ':') return std::nullopt;  // no part of a second
+    constexpr std::size_t digits_of_ms = 3;
+    if (part.empty() || part.size() > digits_of_ms) return std::nullopt;
+    for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = head.columns[c][row];
+    const auto time = reading.read(cells);
+    if (!time || std::abs(static_cast<double>(*time)) > latest_ns) return std::nullopt;
+    constexpr std::array<std::int64_t, 4> scale = {0, 100, 10, 1};
+    const auto number = static_cast<std::int64_t>(plain_number(part).value_or(0));
+    const std::int64_t padded = *time + number * (1 - scale[part.size()]) * (second_ns / 1000);
+    if (before_padded && padded < *before_padded) return std::nullopt;
+    if (before && *time < *before && back++ == 0) first = row;
+    before = time;
+    before_padded = padded;
+  }
+  if (back < 2) return std::nullopt;
+  return Problem{head.lines[first],
+                 fmt::format("{} in column '{}' is before the row above, unless its part of a "
+                             "second is milliseconds without their zeros; write three digits, as "
+                             ".005, or take the times as they are with --force-times",
+                             shown(head.columns[column][first]), head.names[column])};
 }
 
 std::optional<Problem> repeated_times(const HeadCells& head, const Clock& clock) {

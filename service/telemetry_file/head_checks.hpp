@@ -41,6 +41,10 @@ bool are_doubtful_names(const std::vector<std::string>& names, std::string_view 
 /// Columns that stand in pairs, each value behind its own time, have other times than the first.
 std::optional<Clock::Problem> clocks_of_their_own(const HeadCells& head);
 
+/// Parts of a second as 22:00:00.5 and .15 may be milliseconds without their zeros: what is wrong
+/// where the clock goes back unless they are.
+std::optional<Clock::Problem> unpadded_parts(const HeadCells& head, const Clock& clock);
+
 /// A row with the time of the row before and another value contradicts it. Many do where the time
 /// is cut off, or is read from a part of it, or where each row is a sample of another parameter.
 std::optional<Clock::Problem> repeated_times(const HeadCells& head, const Clock& clock);

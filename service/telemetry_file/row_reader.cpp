@@ -12,7 +12,8 @@ namespace reident::telemetry_file {
 namespace {
 
 constexpr std::size_t max_row_bytes = std::size_t{16} << 20;
-constexpr std::size_t most_comments = 100;  // between two rows that are looked at
+constexpr std::size_t most_comments = 100;   // between two rows that are looked at
+constexpr std::size_t comment_bytes = 1024;  // of each
 constexpr std::string_view open_quote =
     "a quoted cell that starts in this row is not closed; add the \"";
 
@@ -268,7 +269,8 @@ RowReader::Step RowReader::find_row_end(std::size_t& row_end, bool& is_cut) {
 bool RowReader::is_passed_over(std::string_view text) {
   if (text.empty() || is_ruled(trimmed(text))) return true;
   if (!layout_.comment.empty() && text.starts_with(layout_.comment)) {
-    if (comments_.size() < most_comments) comments_.push_back({next_line_, std::string(text)});
+    if (comments_.size() < most_comments)
+      comments_.push_back({next_line_, std::string(text.substr(0, comment_bytes))});
     return true;
   }
   if (layout_.header.empty() || text != layout_.header) return false;

@@ -5,6 +5,7 @@
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/telemetry_file/clock_words.hpp"
+#include "service/telemetry_file/head_lines.hpp"
 #include "service/telemetry_file/joined_blocks.hpp"
 #include "service/telemetry_file/telemetry_file_impl.hpp"
 
@@ -14,8 +15,8 @@ namespace {
 constexpr std::size_t head_bytes = std::size_t{1} << 20;
 constexpr std::size_t head_rows = 20'000;
 constexpr std::string_view another_header =
-    "another header stands here, as where files were joined, and its columns are others or in "
-    "another order; divide the file there";
+    "another header stands here, as where files were joined, and its columns or units are others "
+    "or in another order; divide the file there";
 constexpr std::int64_t earliest_ns = 631'152'000'000'000'000;  // 1990
 }  // namespace
 
@@ -150,6 +151,7 @@ std::optional<Error> TelemetryFile::find_time(bool is_series_after_series, bool 
     std::optional<Clock::Problem> problem;
     if (!at.options.time.column) problem = clocks_of_their_own(head);
     if (!problem && !is_series_after_series) problem = repeated_times(head, *at.clock);
+    if (!problem && !at.clock->is_newest_first()) problem = unpadded_parts(head, *at.clock);
     if (problem) return refuse(*problem);
   }
   at.start_watch();
@@ -195,18 +197,41 @@ bool TelemetryFile::Impl::is_another_header(std::span<const std::string_view> ce
   return !is_same && 2 * names >= static_cast<std::ptrdiff_t>(cells.size());
 }
 
+/// Whether a row names the column of the time and others than the header, or has other units than
+/// the row of units.
+bool TelemetryFile::Impl::has_other_units() const {
+  const auto cells = rows.cells();
+  const std::size_t column = clock->columns().front();
+  if (dialect.header_line != 0 && trimmed(cells[column]) == dialect.columns[column])
+    return !std::equal(cells.begin(), cells.end(), dialect.columns.begin(), dialect.columns.end(),
+                       [](std::string_view a, const auto& b) { return trimmed(a) == b; });
+  bool differ = false;
+  for (std::size_t c = 0; c < cells.size() && !dialect.units.empty(); ++c) {
+    const std::string_view cell = trimmed(cells[c]);
+    if (!cell.empty() && !is_unit_word(cell)) return false;
+    std::string_view bare = cell;
+    if (bare.size() > 2 && (bare.front() == '[' || bare.front() == '('))
+      bare = bare.substr(1, bare.size() - 2);
+    differ = differ || (!bare.empty() && bare != dialect.units[c]);
+  }
+  return differ;
+}
+
 TelemetryFile::Step TelemetryFile::Impl::fail_at_header() {
   return fail(Damage::none, rows.error_here(another_header));
 }
 
-/// Whether the last row of a text without a line end is cut, by its last cell.
+/// Whether the last row of a text without a line end is cut, by its last cell. Few rows above it
+/// leave that open: where zeros at the end of decimals are not written, the last may lack some.
 bool TelemetryFile::Impl::is_cut() {
   const std::string_view text = rows.text(), cell = rows.cells().back();
   const bool ends_the_line = !cell.empty() && text.ends_with(cell);
   if (!ends_the_line || !is_shorter_than_all(cell, head_columns.back(), style.decimal))
     return false;
+  constexpr std::size_t enough_rows = 30;
   cut_number_line = rows.line();
-  return true;
+  is_cut_left_out = head_columns.back().size() > enough_rows;
+  return is_cut_left_out;
 }
 
 std::optional<Error> TelemetryFile::Impl::of_another_file() const {
@@ -245,7 +270,7 @@ void TelemetryFile::Impl::follow(std::int64_t clock_ns) {
 TelemetryFile::Step TelemetryFile::Impl::read_time() {
   const std::size_t column = clock->columns().front();
   const auto time = clock->read(rows.cells());
-  if (!time && is_another_header(rows.cells())) return fail_at_header();
+  if (!time && (is_another_header(rows.cells()) || has_other_units())) return fail_at_header();
   const auto here = [&](std::string_view what) {
     return rows.error_here(fmt::format("{} in column '{}' {}", shown(rows.cells()[column]),
                                        dialect.columns[column], what));

@@ -28,6 +28,7 @@ struct TelemetryFile::Impl {
   std::optional<ClockStep> step;
   std::int64_t ahead_ns = 0;  // of a clock that goes on where it left off
   std::int64_t time_ns = 0;
+  bool is_cut_left_out = false;
   std::uint64_t cut_number_line = 0;  // of the last row, where its last cell is cut; 0: it is not
   std::vector<SpacecraftColumn> spacecraft;
   Error error;
@@ -46,6 +47,7 @@ struct TelemetryFile::Impl {
   std::vector<std::string> other_readings() const;
   std::vector<std::string> other_spacecraft() const;
   bool is_another_header(std::span<const std::string_view> cells) const;
+  bool has_other_units() const;
   Step fail_at_header();
   bool is_cut();
   /// What the row, or a comment above it, says of all rows below it that was not so before.

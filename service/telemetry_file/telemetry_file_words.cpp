@@ -123,9 +123,11 @@ std::vector<std::string> TelemetryFile::remarks() const {
         rows.source().name(), impl_->watch->hour_ahead_line()));
   if (impl_->cut_number_line > 0)
     remarks.push_back(fmt::format(
-        "{}:{}: the file ends within a line here, whose last cell is shorter than all above it: "
-        "the line is taken for cut, and left out; where it is whole, end it with a line end",
-        rows.source().name(), impl_->cut_number_line));
+        "{}:{}: the file ends within a line here, whose last cell is shorter than all above it; {}",
+        rows.source().name(), impl_->cut_number_line,
+        impl_->is_cut_left_out
+            ? "the line is taken for cut, and left out (where it is whole, end it with a line end)"
+            : "if it is cut, delete the line"));
   if (rows.cut_line() > 0)
     remarks.push_back(fmt::format("{}:{}: the last line was cut, or is no row, and is left out",
                                   rows.source().name(), rows.cut_line()));

@@ -2,31 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "service/support/time_text.hpp"
-#include "service/telemetry_file/telemetry_file.hpp"
+#include "tests/service/telemetry_file/first_time.hpp"
 
 namespace reident::telemetry_file::clock_test {
 namespace {
 
+using test::first_time;
+using test::in_2026;
 using testing::HasSubstr;
-
-constexpr std::int64_t in_2026 = 1'780'000'000'000'000'000;
-
-/// The time of the first row below a header with the column `name`, or the error; above it stand
-/// the lines of `above`.
-std::string first_time(const std::string& names, const std::vector<std::string>& cells,
-                       const TimeOptions& time = {}, const std::string& above = {}) {
-  ReadingOptions options;
-  options.time = time;
-  options.latest_ns = in_2026;
-  std::string text = above + names + ",x\n";
-  for (const std::string& cell : cells) text += cell + ",1.5\n";
-  auto opened = TelemetryFile::of_text(text, "t.csv", options);
-  if (const auto* error = std::get_if<Error>(&opened)) return error->message;
-  auto& file = std::get<TelemetryFile>(opened);
-  if (const auto error = file.find_time()) return error->message;
-  return file.next() == TelemetryFile::Step::row ? time_text(file.time_ns()) : file.error().message;
-}
 
 TEST(TelemetryClock, ARowWithoutAYearHasNoTime) {
   for (const std::string rest : {",1", ",9", ",059"})
@@ -247,24 +230,6 @@ TEST(TelemetryClock, IsInTheZoneThatALineAboveTheHeaderSays) {
   }
 }
 
-TEST(TelemetryClock, TakesLeapSecondsOutOfDatesWhereItIsTold) {
-  const std::vector<std::string> cells = {"2024-02-28T22:00:18"};
-  EXPECT_THAT(first_time("gps_time", cells), HasSubstr("--time-format gps"));
-  EXPECT_THAT(first_time("time_TAI", cells), HasSubstr("--time-format iso"));
-  EXPECT_THAT(first_time("gps_date,time", {"2024-02-28,22:00:18"}), HasSubstr("--time-format gps"));
-  EXPECT_THAT(first_time("time,y", {cells[0] + ",1"}, {}, "# TIME_SYSTEM = TAI\n"),
-              HasSubstr("by line 1"));
-  EXPECT_THAT(first_time("tai_seconds_since_2000", {"762429600"}), HasSubstr("TAI"));
-  EXPECT_EQ(first_time("GPS seconds since 1980-01-06", {"1393192818"}), "2024-02-28T22:00:00Z");
-  EXPECT_EQ(first_time("gps_time", {"2024-02-28T22:00:18Z"}), "2024-02-28T22:00:18Z");
-  TimeOptions format;
-  format.format = TimeFormat::gps;
-  EXPECT_EQ(first_time("gps_time", cells, format), "2024-02-28T22:00:00Z");
-  EXPECT_EQ(first_time("gps_date,time", {"2024-02-28,22:00:18"}, format), "2024-02-28T22:00:00Z");
-  format.format = TimeFormat::text;
-  EXPECT_EQ(first_time("gps_time", cells, format), "2024-02-28T22:00:18Z");
-}
-
 TEST(TelemetryClock, AsksWhereRowsAreOfSeveralClocksOrSpacecraft) {
   EXPECT_THAT(first_time("time_a,a,time_b", {"2024-02-28T22:00:00Z,1,2024-02-28T22:00:03Z",
                                              "2024-02-28T22:00:10Z,1,2024-02-28T22:00:13Z"}),
@@ -327,62 +292,6 @@ TEST(TelemetryClock, CountsInTheUnitAndSinceTheTimeThatTheNameSays) {
   EXPECT_EQ(first_time("seconds since 1970", {"1709157600"}), "2024-02-28T22:00:00Z");
   for (const char* name : {"MJD2000", "time_mjd2000"})
     EXPECT_EQ(first_time(name, {"8824.91666667"}), "2024-02-28T22:00:00Z") << name;
-}
-
-TEST(TelemetryClock, SaysAnEpochThatTakesLeapSecondsOut) {
-  const auto epoch_said = [](const std::string& text) {
-    const auto at = text.find("2000-01-01T11");
-    return at == std::string::npos ? text : text.substr(at, sizeof("2000-01-01T11:58:50.816Z") - 1);
-  };
-  for (const auto& [name, cell, epoch, time] :
-       {std::tuple("ET", "762000000.184", "2000-01-01T11:58:50.816Z", "2024-02-23T22:38:51Z"),
-        {"Ephemeris Time (s)", "762000000.184", "2000-01-01T11:58:50.816Z", "2024-02-23T22:38:51Z"},
-        {"t_j2000_s", "762000000.184", "2000-01-01T11:58:50.816Z", "2024-02-23T22:38:51Z"},
-        {"Seconds since J2000", "0", "2000-01-01T11:58:55.816Z", "2000-01-01T11:58:55.816Z"},
-        {"TDB seconds past J2000", "762000000.184", "2000-01-01T11:58:50.816Z",
-         "2024-02-23T22:38:51Z"},
-        {"seconds since 2000-01-01T12:00:00 TAI", "762000000", "2000-01-01T11:59:23Z",
-         "2024-02-23T22:39:23Z"}}) {
-    EXPECT_EQ(epoch_said(first_time(name, {cell})).substr(0, std::string(epoch).size()), epoch)
-        << name;
-    TimeOptions said;
-    said.epoch_ns = parse_time(epoch);
-    EXPECT_EQ(first_time(name, {cell}, said), time) << name;
-  }
-}
-
-TEST(TelemetryClock, ReadsDaysAndMillisecondsOfTheDaySinceAnEpoch) {
-  TimeOptions since;
-  since.epoch_ns = parse_time("1958-01-01T00:00:00Z");
-  for (const char* names : {"day,ms_of_day", "CDS_DAY,CDS_MS", "Days,Milliseconds of day"})
-    EXPECT_EQ(first_time(names, {"24164,79200500"}, since), "2024-02-28T22:00:00.5Z") << names;
-  EXPECT_EQ(first_time("days since 1958-01-01,msod", {"24164,79200500"}), "2024-02-28T22:00:00.5Z");
-  EXPECT_THAT(first_time("day,ms_of_day", {"24164,79200500"}), HasSubstr("--epoch"));
-  since.column = "a,b_ms";
-  EXPECT_EQ(first_time("a,b_ms", {"24164,79200500"}, since), "2024-02-28T22:00:00.5Z");
-}
-
-TEST(TelemetryClock, PutsALeapSecondBetweenTheSecondsAroundIt) {
-  std::vector<std::string> times;
-  for (const char* cell :
-       {"2016-12-31T23:59:59.9Z", "2016-12-31T23:59:60Z", "2016-12-31 23:59:60.5",
-        "2017-01-01T00:59:60+01:00", "2017-01-01T00:00:00Z", "2017-01-01T00:00:00.5Z"})
-    times.push_back(first_time("time", {cell}));
-  EXPECT_THAT(times, testing::ElementsAre("2016-12-31T23:59:59.9Z", "2016-12-31T23:59:59.999Z",
-                                          "2016-12-31T23:59:59.9995Z", "2016-12-31T23:59:59.999Z",
-                                          "2017-01-01T00:00:00Z", "2017-01-01T00:00:00.5Z"));
-  EXPECT_EQ(first_time("time", {"2016-12-30T23:59:60Z"}), "2016-12-31T00:00:00Z") << "rounded up";
-}
-
-TEST(TelemetryClock, AsksForTheYearOfDatesThatHaveNone) {
-  for (const char* cell : {"Nov 27 10:00:00", "Mar  4 09:26:53", "28.02. 22:00:00",
-                           "27 Nov 10:00:00", "28/02 22:00:00.5"}) {
-    const std::string asked = first_time("time", {cell});
-    const auto said = asked.rfind("as in '");
-    ASSERT_NE(said, std::string::npos) << asked;
-    EXPECT_THAT(first_time("time", {asked.substr(said + 7, asked.size() - said - 8)}),
-                testing::StartsWith("2024-"));
-  }
 }
 
 TEST(TelemetryClock, AsksWhereItMayBeTwoThings) {

@@ -66,6 +66,10 @@ RC_GTEST_PROP(Dress, OfAnyKindGivesTheRecordBitForBit, ()) {
   for (std::size_t row = 0; row < rows.time_ns.size(); ++row) {
     const auto step = file.next();
     if (step == TelemetryFile::Step::error) RC_FAIL(file.error().message);
+    if (step == TelemetryFile::Step::end && !dress.last_line_end) {  // its last number looks cut
+      RC_ASSERT(row + 1 == rows.time_ns.size() && !file.remarks().empty());
+      return;
+    }
     RC_ASSERT(step == TelemetryFile::Step::row);
     RC_ASSERT(file.time_ns() == rows.time_ns[row]);
     RC_ASSERT(file.cell(std::get<std::size_t>(u)).value == rows.u[row]);

@@ -253,6 +253,8 @@ TEST(TelemetryJoinedFiles, AreRefusedWhereTheSecondIsOfAnotherClockOrder) {
         Case{"Timezone,CET\ntime,u,v\n", "Timezone,UTC\ntime,u,v\n", 11},
         Case{"# Spacecraft: SAT-1\ntime,u,v\n", "# Spacecraft: SAT-2\ntime,u,v\n", 11},
         Case{"# TIME_SYSTEM = UTC\n# time,u,v\n", "# TIME_SYSTEM = TAI\n# time,u,v\n", 11},
+        Case{"time,u (A),v (V)\n", "time,u (mA),v (mV)\n", 10},
+        Case{"time,u,v\n,A,V\n", "time,u,v\n,mA,mV\n", 12},
         Case{"# time,u,v\n", "# time,v,u\n", 10}, Case{"# time,u\n", "# time,v\n", 10}}) {
     std::string text = above + first + between + second;
     if (above == "# time,u\n")
@@ -283,17 +285,19 @@ TEST(TelemetryRowReader, LeavesOutALastRowWhoseLastNumberIsCut) {
         Case{"28,417", "28,4", true}}) {
     const std::string separator = std::string(usual).find(',') == std::string::npos ? "," : ";";
     std::string text = "time" + separator + "u\n";
-    for (int row = 0; row < 10; ++row)
+    for (int row = 0; row < 40; ++row)
       text += fmt::format("2024-02-28T22:00:{:02}Z{}{}\n", row, separator, usual);
-    text += "2024-02-28T22:00:10Z" + separator + last;
+    text += "2024-02-28T22:00:40Z" + separator + last;
     const auto cut = times_and_end(text);
-    EXPECT_EQ(cut.size(), 11U) << last;
-    EXPECT_THAT(cut.back(), is_cut ? HasSubstr("t.csv:12: ") : HasSubstr("22:00:10")) << last;
-    EXPECT_THAT(times_and_end(text + "\n").back(), HasSubstr("22:00:10")) << last;
+    EXPECT_EQ(cut.size(), 41U) << last;
+    EXPECT_THAT(cut.back(), is_cut ? HasSubstr("t.csv:42: ") : HasSubstr("22:00:40")) << last;
+    EXPECT_THAT(times_and_end(text + "\n").back(), HasSubstr("22:00:40")) << last;
   }
-  EXPECT_THAT(times_and_end("time,u\n2024-02-28T22:00:00Z,1.50\n2024-02-28T22:00:01Z,2").back(),
-              HasSubstr("22:00:01"))
-      << "too few rows to say";
+  std::string few = "time,u\n";
+  for (int row = 0; row < 9; ++row) few += fmt::format("2024-02-28T22:00:0{}Z,1.50\n", row);
+  const auto kept = times_and_end(few + "2024-02-28T22:00:09Z,2");
+  ASSERT_EQ(kept.size(), 11U) << "few rows leave it open";
+  EXPECT_THAT(kept.back(), StartsWith("t.csv:11: "));
 }
 
 TEST(TelemetryRowReader, NamesRowsOfAnotherSpacecraft) {
