@@ -223,14 +223,15 @@ std::variant<ReadingOptions, Error> reading_options(const ReadingArguments& argu
 
 std::variant<std::vector<std::string>, Error> dry_run(std::variant<TelemetryFile, Error> opened,
                                                       const std::filesystem::path& path,
-                                                      bool needs_time) {
+                                                      bool needs_time, bool of_one_spacecraft) {
   if (auto* error = std::get_if<Error>(&opened)) return std::move(*error);
   auto& file = std::get<TelemetryFile>(opened);
   if (!file.has_rows())
     return Error{path.string() + ": the header is not followed by a row; there is nothing to show"};
   const bool is_of_samples = !file.has_samples_of_their_own() && find_long_layout(file);
   if (needs_time)
-    if (auto error = file.find_time(is_of_samples)) return *std::move(error);
+    if (auto error = file.find_time(is_of_samples, !is_of_samples || of_one_spacecraft))
+      return *std::move(error);
   std::vector<std::string> lines = {path.string() + ": " + file.found()};
   for (int row = 0; row < rows_shown; ++row) {
     const auto step = file.next();

@@ -31,9 +31,10 @@ std::variant<ReadingOptions, Error> reading_options(const ReadingArguments& argu
 
 /// Returns the first rows of a file as they are understood, one text a line, as --dry-run shows
 /// them: the time and each column with its value. An error where the file or its time cannot be
-/// read.
+/// read, and where rows with one sample each are to be `of_one_spacecraft` and are not.
 std::variant<std::vector<std::string>, Error> dry_run(std::variant<TelemetryFile, Error> opened,
                                                       const std::filesystem::path& path,
-                                                      bool needs_time);
+                                                      bool needs_time,
+                                                      bool of_one_spacecraft = true);
 
 }  // namespace reident::telemetry_file

@@ -93,8 +93,9 @@ void print_text(const ImportReport& report, double seconds) {
 }
 
 int show(const ImportOptions& options) {
-  const auto shown = telemetry_file::dry_run(
-      telemetry_file::TelemetryFile::open(options.file, options.reading), options.file, true);
+  const auto shown =
+      telemetry_file::dry_run(telemetry_file::TelemetryFile::open(options.file, options.reading),
+                              options.file, true, options.spacecraft.has_value());
   if (const auto* error = std::get_if<csv::Error>(&shown)) return refuse({error->message});
   for (const std::string& line : std::get<std::vector<std::string>>(shown))
     fmt::print("{}\n", line);

@@ -336,5 +336,19 @@ TEST_F(TelemetryFiles, AreShownWithoutStoringAnything) {
   EXPECT_FALSE(std::filesystem::exists(folder() / "a.db"));
 }
 
+TEST_F(TelemetryFiles, OfSeveralSpacecraftAreShownWhereTheyAreTaken) {
+  write(
+      "long.csv",
+      "time,spacecraft,parameter,value\n2024-02-28T22:00:00Z,A,u,1\n2024-02-28T22:00:00Z,B,u,2\n");
+  const std::vector<std::string> import = {"import", "long.csv", "--db", "a.db"};
+  for (const bool is_one : {false, true}) {
+    std::vector<std::string> shown = import;
+    shown.push_back("--dry-run");
+    if (is_one) shown.insert(shown.end(), {"--spacecraft", "A"});
+    EXPECT_EQ(reident(shown).status, is_one ? 2 : 0);
+  }
+  EXPECT_EQ(reident(import).status, 0);
+}
+
 }  // namespace
 }  // namespace reident::cli::telemetry_files_test
