@@ -45,6 +45,7 @@ struct Finding {
   double uncovered_share = 0;        // of the champion's blocks, in regimes that it has not met
   double mean_without_offset = 0;    // without what a sensor's offset explains
   double wealth_without_offset = 0;  // log of the wealth, likewise
+  double explained_by_offset = 0;    // of what it errs less, by a sensor of derived inputs at most
   double mrse_percent = 0;           // on the compared blocks
   double fit_percent = 0;            // the worst output's
   double champion_mrse_percent = 0;

@@ -151,6 +151,8 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
     const double mean = scores.scores.mean();
     may_be = may_be || !(wealth > finding.log_threshold && mean > margin_of(standard.limits)) ||
              (effect > 0 && without.explained > most);
+    if (effect > 0)
+      finding.explained_by_offset = std::max(finding.explained_by_offset, without.explained);
     if (effect > 0 && wealth >= finding.wealth_without_offset) continue;
     finding.mean_without_offset = mean;
     finding.wealth_without_offset = wealth;

@@ -33,6 +33,7 @@ ordered_json to_json(const Finding& finding) {
           {"uncovered_share", finding.uncovered_share},
           {"mean_without_offset", finding.mean_without_offset},
           {"log_wealth_without_offset", finding.wealth_without_offset},
+          {"explained_by_offset", finding.explained_by_offset},
           {"mrse_percent", finding.mrse_percent},
           {"fit_percent", finding.fit_percent},
           {"champion_mrse_percent", finding.champion_mrse_percent},

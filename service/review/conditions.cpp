@@ -33,11 +33,21 @@ Place place_of(std::string_view obstacle) {
   return found == places.end() ? none : found->second;
 }
 
+std::string offset(const Finding& finding) {
+  std::string found =
+      fmt::format("{:.2f}, {:.3f}", finding.wealth_without_offset, finding.mean_without_offset);
+  if (finding.explained_by_offset > 0)
+    found += fmt::format("; it may explain {:.0f} % (at most {:.0f})",
+                         100 * finding.explained_by_offset, 100 * most);
+  return found;
+}
+
 }  // namespace
 
 std::vector<Condition> conditions_of(const Finding& finding, std::string_view obstacle,
                                      const EquipmentConfig& limits) {
   const double rest = 1 - limits.margin_percent / 100;
+  const double least_score = (1 - rest * rest) / (1 + rest * rest);
   std::vector<Condition> conditions = {
       {"R4",
        fmt::format("MRSE at most {:g} %, fit above 0 %", limits.max_mrse_percent),
@@ -48,8 +58,8 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        fmt::format("{:.2f} on {} blocks", finding.log_wealth, finding.blocks),
        {}},
       {"R1",
-       fmt::format("mean score above {:.3f} ({:g} % less error)",
-                   (1 - rest * rest) / (1 + rest * rest), limits.margin_percent),
+       fmt::format("mean score above {:.3f} ({:g} % less error)", least_score,
+                   limits.margin_percent),
        fmt::format("{:.3f}; MRSE {:.3g} % against {:.3g} %", finding.mean_score,
                    finding.mrse_percent, finding.champion_mrse_percent),
        {}},
@@ -60,9 +70,9 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        {}},
       {"R2", "worse in no regime, with confidence", "", {}},
       {"R3",
-       fmt::format("without the champion's offset, above {:.2f} too", finding.log_threshold),
-       limits.bias == BiasPolicy::approve ? "not asked for: bias = \"approve\""
-                                          : fmt::format("{:.2f}", finding.wealth_without_offset),
+       fmt::format("without the champion's offset, above {:.2f} and {:.3f} too",
+                   finding.log_threshold, least_score),
+       limits.bias == BiasPolicy::approve ? "not asked for: bias = \"approve\"" : offset(finding),
        {}},
       {"R5", "policy: interval, hold, approval", "", {}}};
   const Place place = place_of(obstacle);

@@ -213,6 +213,7 @@ Records sensor_of_a_derived_input(double explained, double moved) {
 
 TEST(League, VersionThatIsBetterByASensorsEffectAloneWaits) {
   EXPECT_EQ(sensor_of_a_derived_input(0.25, 1).obstacle(), Code::bias_unverified);
+  EXPECT_GT(sensor_of_a_derived_input(0.25, 1).findings().at(0).explained_by_offset, most);
   EXPECT_EQ(sensor_of_a_derived_input(0.05, 1).obstacle(), std::nullopt)
       << "it explains the least part";
 }
