@@ -34,8 +34,7 @@ std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view uni
 std::string unknown_zone_of(std::string_view name, std::string_view unit);
 
 /// What a line above the header says about the clock of all dates, as "Timezone;Europe/Berlin",
-/// "GMT+2" and
-/// "All times are CET"; local where it says a zone that is not known here.
+/// "GMT+2" and "All times are CET"; local where it says a zone that is not known here.
 std::optional<ZoneHint> zone_hint_of_line(std::string_view line);
 
 /// 2000-01-01T12:00:00 [ns since 1970], which is J2000 in TT and TDB.

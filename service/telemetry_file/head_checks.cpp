@@ -41,12 +41,6 @@ Digits digits_of(std::string_view cell, char decimal) {
   return digits;
 }
 
-/// Whether all rows of the head have a cell that is not blank, and the cell of which is so.
-template <typename Is>
-bool are_all(std::span<const std::string_view> cells, Is is) {
-  return std::all_of(cells.begin(), cells.end(), is);
-}
-
 }  // namespace
 
 bool is_shorter_than_all(std::string_view cell, std::span<const std::string_view> column,
@@ -56,18 +50,18 @@ bool is_shorter_than_all(std::string_view cell, std::span<const std::string_view
   if (column.size() < enough_cells) return false;
   const auto number = read_number(cell, {decimal, '\0'});
   if (!number)  // a time, or words
-    return are_all(column, [&](std::string_view other) {
+    return std::ranges::all_of(column, [&](std::string_view other) {
       return other.size() == column.front().size() && other.size() > cell.size();
     });
   const Digits own = digits_of(cell, decimal), usual = digits_of(column.front(), decimal);
   if (usual.decimals > 0 || usual.exponent > 0)
     return (own.decimals < usual.decimals || own.exponent < usual.exponent) &&
-           are_all(column, [&](std::string_view other) {
+           std::ranges::all_of(column, [&](std::string_view other) {
              const Digits digits = digits_of(other, decimal);
              return digits.decimals == usual.decimals && digits.exponent == usual.exponent;
            });
   constexpr double much_less = 5;  // a digit that is missing makes it ten times less
-  return own.whole < usual.whole && are_all(column, [&](std::string_view other) {
+  return own.whole < usual.whole && std::ranges::all_of(column, [&](std::string_view other) {
            const auto value = plain_number(other);
            return value && digits_of(other, decimal) == usual &&
                   std::abs(*value) > much_less * std::abs(number->value);

@@ -18,6 +18,7 @@ constexpr std::string_view another_header =
     "another header stands here, as where files were joined, and its columns or units are others "
     "or in another order; divide the file there";
 constexpr std::int64_t earliest_ns = 631'152'000'000'000'000;  // 1990
+
 }  // namespace
 
 std::optional<Error> TelemetryFile::Impl::start() {
@@ -173,7 +174,7 @@ TelemetryFile::Step TelemetryFile::next() {
   ++at.rows_read;
   if (auto other = at.of_another_file()) return at.fail(Damage::none, *std::move(other));
   if (step == Step::error) return at.fail(at.rows.damage(), at.rows.error());
-  if (step == Step::row && at.rows.is_unended() && at.is_cut()) return Step::end;
+  if (step == Step::row && at.rows.is_unended() && at.leaves_out_cut_row()) return Step::end;
   if (step == Step::row && at.rows.has_nul_bytes())
     return at.fail(Damage::nul_bytes, at.rows.error_here({}));
   if (step == Step::end || at.clock) return step == Step::end ? step : at.read_time();
@@ -221,9 +222,9 @@ TelemetryFile::Step TelemetryFile::Impl::fail_at_header() {
   return fail(Damage::none, rows.error_here(another_header));
 }
 
-/// Whether the last row of a text without a line end is cut, by its last cell. Few rows above it
-/// leave that open: where zeros at the end of decimals are not written, the last may lack some.
-bool TelemetryFile::Impl::is_cut() {
+/// Notes whether the last row of a text without a line end is cut, by its last cell. Few rows above
+/// it leave that open: where zeros at the end of decimals are not written, the last may lack some.
+bool TelemetryFile::Impl::leaves_out_cut_row() {
   const std::string_view text = rows.text(), cell = rows.cells().back();
   const bool ends_the_line = !cell.empty() && text.ends_with(cell);
   if (!ends_the_line || !is_shorter_than_all(cell, head_columns.back(), style.decimal))

@@ -49,7 +49,7 @@ struct TelemetryFile::Impl {
   bool is_another_header(std::span<const std::string_view> cells) const;
   bool has_other_units() const;
   Step fail_at_header();
-  bool is_cut();
+  bool leaves_out_cut_row();
   /// What the row, or a comment above it, says of all rows below it that was not so before.
   std::optional<Error> of_another_file() const;
   void start_watch();

@@ -5,6 +5,7 @@
 #include "service/support/text.hpp"
 #include "service/telemetry_file/clock_words.hpp"
 #include "service/telemetry_file/joined_blocks.hpp"
+#include "service/telemetry_file/name_words.hpp"
 #include "service/telemetry_file/telemetry_file_impl.hpp"
 
 namespace reident::telemetry_file {
@@ -12,11 +13,7 @@ namespace {
 
 std::string letters_and_digits(std::string_view name) {
   std::string plain;
-  for (const char c : name)
-    if (c >= 'A' && c <= 'Z')
-      plain += static_cast<char>(c | 0x20);
-    else if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || (c & 0x80) != 0)
-      plain += c;
+  for (const std::string& word : words_of(name)) plain += word;
   return plain;
 }
 

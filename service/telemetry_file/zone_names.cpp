@@ -55,6 +55,33 @@ std::optional<ZoneHint> zone_of_windows_counters(std::string_view name) {
                   false};
 }
 
+/// Whether a line names a zone as Windows does, "(UTC+01:00) Berlin", which has daylight saving
+/// that the offset leaves out.
+bool is_zone_of_windows(std::string_view line) {
+  for (const std::string_view begin : {"(UTC+", "(UTC-", "(GMT+", "(GMT-"})
+    if (const auto open = line.find(begin); open != std::string_view::npos) {
+      const std::string_view rest = line.substr(std::min(line.find(')', open), line.size()));
+      const auto first = rest.find_first_not_of(") ");
+      return first != std::string_view::npos && ((rest[first] | 0x20) >= 'a') &&
+             ((rest[first] | 0x20) <= 'z');
+    }
+  return false;
+}
+
+/// The zone that a line is and nothing else, as "GMT+2".
+std::optional<ZoneHint> zone_alone(std::string_view line) {
+  constexpr std::string_view around = "#%/!\"',;: \t";
+  const auto first = line.find_first_not_of(around);
+  if (first == std::string_view::npos) return std::nullopt;
+  line = line.substr(first, line.find_last_not_of(around) + 1 - first);
+  if (line.starts_with("(UTC") || line.starts_with("(GMT"))
+    line = line.substr(1, std::min(line.find(')'), line.size()) - 1);
+  constexpr std::string_view other_words = " MET WET WEST ART ";  // directions, states of a test
+  const bool is_word = other_words.find(" " + std::string(line) + " ") == std::string_view::npos;
+  if (!is_word || line.find_first_of(" \t,;") != std::string_view::npos) return std::nullopt;
+  return zone_in(line);
+}
+
 }  // namespace
 
 std::optional<ZoneHint> zone_hint_of(std::string_view name, std::string_view unit) {
@@ -89,37 +116,6 @@ std::string unknown_zone_of(std::string_view name, std::string_view unit) {
   }
   return {};
 }
-
-namespace {
-
-/// Whether a line names a zone as Windows does, "(UTC+01:00) Berlin", which has daylight saving
-/// that the offset leaves out.
-bool is_zone_of_windows(std::string_view line) {
-  for (const std::string_view begin : {"(UTC+", "(UTC-", "(GMT+", "(GMT-"})
-    if (const auto open = line.find(begin); open != std::string_view::npos) {
-      const std::string_view rest = line.substr(std::min(line.find(')', open), line.size()));
-      const auto first = rest.find_first_not_of(") ");
-      return first != std::string_view::npos && ((rest[first] | 0x20) >= 'a') &&
-             ((rest[first] | 0x20) <= 'z');
-    }
-  return false;
-}
-
-/// The zone that a line is and nothing else, as "GMT+2".
-std::optional<ZoneHint> zone_alone(std::string_view line) {
-  constexpr std::string_view around = "#%/!\"',;: \t";
-  const auto first = line.find_first_not_of(around);
-  if (first == std::string_view::npos) return std::nullopt;
-  line = line.substr(first, line.find_last_not_of(around) + 1 - first);
-  if (line.starts_with("(UTC") || line.starts_with("(GMT"))
-    line = line.substr(1, std::min(line.find(')'), line.size()) - 1);
-  constexpr std::string_view other_words = " MET WET WEST ART ";  // directions, states of a test
-  const bool is_word = other_words.find(" " + std::string(line) + " ") == std::string_view::npos;
-  if (!is_word || line.find_first_of(" \t,;") != std::string_view::npos) return std::nullopt;
-  return zone_in(line);
-}
-
-}  // namespace
 
 bool is_zone_key(std::string_view name) {
   const auto words = words_of(name);
