@@ -111,7 +111,7 @@ std::optional<Finding> successor(const std::vector<Finding>& findings) {
 }
 
 Finding weakest(const std::vector<Finding>& findings) {
-  return *std::ranges::min_element(findings, {}, &Finding::log_wealth);
+  return *std::ranges::min_element(findings, {}, &Finding::mean_score);
 }
 
 std::vector<ComparedBlock> Judge::compared_blocks(const League& league, const Member& challenger) {

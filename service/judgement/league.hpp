@@ -56,7 +56,8 @@ struct Finding {
 /// The challenger that is to become champion; absent where none is.
 std::optional<Finding> successor(const std::vector<Finding>& findings);
 
-/// The challenger whose record says the most against it, which leaves a full league. Requires a
+/// The challenger with the least mean score, which leaves a full league: evidence grows with the
+/// length of a record too, and those that came first would keep out all that come later. Requires a
 /// challenger.
 Finding weakest(const std::vector<Finding>& findings);
 

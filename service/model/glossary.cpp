@@ -84,10 +84,9 @@ struct Glossary {
       {"insufficient_excitation", "too little excitation",
        "The inputs moved too little, or too alike, to tell the dynamics.",
        "Wait for operation that moves them, or a longer window."},
-      {"league_full", "others have more evidence",
-       "More versions challenged the champion than are kept, and this one had the least evidence "
-       "for "
-       "it.",
+      {"league_full", "others score better",
+       "More versions challenged the champion than are kept, and this one had the least mean "
+       "score.",
        ""},
       {"low_coverage", "too much telemetry is missing",
        "Too few ticks of the window have every parameter valid.",

@@ -263,6 +263,14 @@ TEST(League, SuccessorIsTheOneWithTheBestRecordOfLate) {
   EXPECT_EQ(weakest(records.findings()).version, 4);
 }
 
+TEST(League, ALongRecordKeepsNoPlaceFromABetterVersion) {
+  Records records(160);
+  records.champion(white(0.04)).challenger(white(0.02), 40).challenger(white(0.004), 150);
+  const auto findings = records.findings();
+  EXPECT_GT(findings[0].log_wealth, findings[1].log_wealth);
+  EXPECT_EQ(weakest(findings).version, 2);
+}
+
 TEST(League, NothingIsDecidedOnBlocksOfWhichLittleIsBelieved) {
   Records records(160);
   records.champion(white(0.04)).challenger(white(0.01), 40);
