@@ -237,6 +237,29 @@ class Steps:
         assert self.machine.query("PRAGMA user_version", "second") > 0
         self.machine("systemctl", "stop", "reidentd@second")
 
+    def fleet_starts(self):
+        (self.etc / "fleet.toml").write_text(
+            '[fleet]\nconfiguration = "reident.toml"\nmemory_max = "1G"\n'
+            '[[spacecraft]]\nname = "SAT-1"\n[[spacecraft]]\nname = "SAT-2"\n')
+        self.machine("reident", "fleet", "init", "/etc/reident/fleet.toml")
+        self.machine("systemctl", "daemon-reload")
+        units = ["reidentd@SAT-1", "reidentd@SAT-2"]
+        self.machine("systemctl", "start", *units)
+        for unit in units:
+            assert self.machine.state(unit) == "active"
+            limit = self.machine("systemctl", "show", "-P", "MemoryMax", unit).stdout.strip()
+            assert limit == str(1 << 30), limit
+        status = self.machine("reident", "fleet", "status", check=False).stdout
+        assert "SAT-1" in status and "SAT-2" in status, status
+        configuration = self.etc / "SAT-1.toml"
+        text = configuration.read_text()
+        configuration.write_text(text + "\nnonsense = 1\n")
+        assert self.machine("systemctl", "restart", units[0], check=False).returncode != 0
+        assert re.search(r"SAT-1.toml:\d+: .*nonsense", self.machine.log(units[0]))
+        assert self.machine.state(units[1]) == "active", "what one does touches no other"
+        configuration.write_text(text)
+        self.machine("systemctl", "stop", *units)
+
     def upgraded(self):
         statements = (ROOT / "tests/storage/database/schema_3.hpp").read_text()
         self.add_instance("old", lambda database: database.executescript(
@@ -284,8 +307,8 @@ class Steps:
 
 STEPS = [Steps.installed, Steps.started, Steps.page_answers, Steps.journal_has_fields, Steps.killed,
          Steps.hung, Steps.mistake_is_named, Steps.reloaded, Steps.instance_has_a_folder,
-         Steps.upgraded, Steps.old_database_is_migrated, Steps.newer_database_is_refused,
-         Steps.downgrade_is_refused, Steps.purged]
+         Steps.fleet_starts, Steps.upgraded, Steps.old_database_is_migrated,
+         Steps.newer_database_is_refused, Steps.downgrade_is_refused, Steps.purged]
 
 
 def life(packages, folder):
