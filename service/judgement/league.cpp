@@ -111,7 +111,10 @@ std::optional<Finding> successor(const std::vector<Finding>& findings) {
 }
 
 Finding weakest(const std::vector<Finding>& findings) {
-  return *std::ranges::min_element(findings, {}, &Finding::mean_score);
+  // Nothing but the last tells first versions apart where the simulator's own model sent nothing.
+  return *std::ranges::min_element(findings, {}, [](const Finding& finding) {
+    return std::pair(finding.mean_score, finding.recent_score);
+  });
 }
 
 std::vector<ComparedBlock> Judge::compared_blocks(const League& league, const Member& challenger) {

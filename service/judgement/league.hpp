@@ -50,7 +50,7 @@ struct Finding {
   double fit_percent = 0;            // the worst output's
   double champion_mrse_percent = 0;
   double baseline_mrse_percent = 0;  // of the simulator's own model; 0: it sent nothing
-  double recent_score = 0;           // over the last two cycles
+  double recent_score = 0;           // over the last two cycles; a first version's: -MRSE [%]
 };
 
 /// The challenger that is to become champion; absent where none is.

@@ -208,7 +208,7 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
   finding.mrse_percent = own.mrse_percent();
   finding.fit_percent = own.fit_percent();
   finding.baseline_mrse_percent = simulator.other.mrse_percent();
-  finding.recent_score = finding.mean_score = -finding.mrse_percent;
+  finding.recent_score = -finding.mrse_percent;
   const ScoreSeries scores = series(simulator.scores.values(), 0);
   if (scores.scores.size() > 0) {
     finding.dependence = dependence(scores);
