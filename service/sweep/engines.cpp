@@ -110,7 +110,7 @@ std::vector<std::string> submit_to_slurm(const Plan& plan) {
     const TaskStates now = states(plan, kind);
     if (now.left.empty()) continue;
     std::string command = "sbatch --parsable --array=" + array_of(now.left);
-    if (!jobs.empty()) command += " --kill-on-invalid-dep=yes --dependency=afterok:" + jobs.back();
+    if (!jobs.empty()) command += " --dependency=afterany:" + jobs.back();
     jobs.push_back(output_of(command + " " + quoted(write_script(plan, kind).string())));
   }
   return jobs;

@@ -14,8 +14,9 @@ namespace reident::sweep {
 std::string array_of(const std::vector<std::size_t>& numbers);
 
 /// Submits the tasks without a result to Slurm as two job arrays, the second of which begins when
-/// the first has succeeded. sbatch takes further options from its environment (SBATCH_PARTITION and
-/// others). Returns the ids of the jobs. Throws std::runtime_error where sbatch fails.
+/// the first has ended: a spacecraft whose candidates failed keeps no other. sbatch takes further
+/// options from its environment (SBATCH_PARTITION and others). Returns the ids of the jobs. Throws
+/// std::runtime_error where sbatch fails.
 std::vector<std::string> submit_to_slurm(const Plan& plan);
 
 /// Returns a Kubernetes manifest of two indexed Jobs of the image; the second one is suspended.

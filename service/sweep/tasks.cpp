@@ -80,8 +80,10 @@ class FoundWindows {
  public:
   FoundWindows(const Plan& plan, std::size_t spacecraft) : plan_(plan) {
     for (std::size_t i = 0; i < plan.candidates.size(); ++i)
-      if (const CandidateTask& task = plan.candidates[i]; task.spacecraft == spacecraft)
+      if (const CandidateTask& task = plan.candidates[i]; task.spacecraft == spacecraft) {
+        if (!fs::exists(plan.file_of_candidates(i))) refuse_without(i);
         tasks_[{task.equipment, task.range.end}] = i;
+      }
   }
 
   std::optional<FoundWindow> find(const RefreshRequest& request) {
@@ -98,14 +100,16 @@ class FoundWindows {
  private:
   static constexpr std::size_t most_loaded = 8;
 
+  [[noreturn]] static void refuse_without(std::size_t task) {
+    throw std::runtime_error(fmt::format(
+        "the result of candidates task {} is not there, or is damaged: run that task again", task));
+  }
+
   std::shared_ptr<const ordered_json> result_of_task(std::size_t task) {
     const MutexLock lock(mutex_);
     if (const auto known = loaded_.find(task); known != loaded_.end()) return known->second;
     auto result = result_of(plan_, {TaskKind::candidates, task});
-    if (!result)
-      throw std::runtime_error(fmt::format(
-          "the result of candidates task {} is not there, or is damaged: run that task again",
-          task));
+    if (!result) refuse_without(task);
     if (loaded_.size() >= most_loaded) loaded_.erase(loaded_.begin());
     return loaded_[task] = std::make_shared<const ordered_json>(*std::move(result));
   }

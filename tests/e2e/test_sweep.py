@@ -98,17 +98,21 @@ class Sweep(EndToEnd):
         status, text = self.reident("sweep", self.folder / name, *self.question(), "--task", 0)
         self.assertEqual(status, 0, text)
 
-    @unittest.skipIf(slurm.missing(), slurm.missing())
-    def test_a_slurm_array_gives_the_bits_of_one_machine(self):
-        expected = self.in_one_process()
+    def submit(self, name, *arguments):
+        """Returns the cluster that has the tasks now."""
         cluster = slurm.Cluster(self.folder / "slurm")
         self.addCleanup(cluster.end)
         done = subprocess.run(
-            [BIN / "reident", "sweep", self.folder / "array", *self.question(), "--copy",
-             "--slurm", "--json"], env=cluster.environment, capture_output=True, text=True,
-            timeout=60, check=False)
+            [BIN / "reident", "sweep", self.folder / name, *arguments, "--slurm", "--json"],
+            env=cluster.environment, capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(len(done.stdout.splitlines()), 2, "two arrays")
+        return cluster
+
+    @unittest.skipIf(slurm.missing(), slurm.missing())
+    def test_a_slurm_array_gives_the_bits_of_one_machine(self):
+        expected = self.in_one_process()
+        cluster = self.submit("array", *self.question(), "--copy")
         cluster.wait(lambda: len(cluster.running()) == 2, "both nodes work")
         for task in cluster.running():
             cluster.command("scontrol", "requeue", task)
@@ -118,6 +122,17 @@ class Sweep(EndToEnd):
         self.assertEqual(status, 0, text + "".join(
             log.read_text() for log in (self.folder / "array/logs").iterdir()))
         self.assertEqual(self.digests("array"), expected)
+
+    @unittest.skipIf(slurm.missing(), slurm.missing())
+    def test_tasks_that_fail_in_a_slurm_array_keep_no_other_spacecraft(self):
+        self.sweep_plan_only("array")
+        (self.folder / "SAT-2.db").rename(self.folder / "away.db")
+        cluster = self.submit("array")
+        cluster.wait(cluster.idle, "all jobs have ended", 180)
+        state = json.loads(self.reident("sweep", self.folder / "array", "--status", "--json")[1])
+        self.assertEqual(state["judgement"]["done"], 1)
+        self.assertEqual([one["task"] for one in state["judgement"]["failures"]], [1])
+        self.assertIn("candidates task", state["judgement"]["failures"][0]["reason"])
 
 
 if __name__ == "__main__":
