@@ -104,6 +104,10 @@ std::variant<std::string, std::vector<ConfigMistake>> changed_config(
       mistakes.push_back({0, fmt::format("the change {} is not KEY=VALUE or EQUIPMENT.KEY=VALUE, "
                                          "such as window=800min",
                                          text)});
+    else if (change->key == "name")
+      mistakes.push_back({0, fmt::format("the change {}: a name tells what is compared with what, "
+                                         "and stays",
+                                         text)});
     else if (apply(*change, document.table) == 0)
       mistakes.push_back(
           {0, fmt::format("the change {}: there is no equipment {}", text, change->equipment)});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -34,6 +35,21 @@ ordered_json percent(const Sums& sums) {
   return sums.rows > 0 && std::isfinite(mrse) ? ordered_json(mrse) : ordered_json();
 }
 
+/// Of cycles, by their begin: the logarithm of the champion's error over the least one.
+using Regrets = std::map<Time, double>;
+
+/// Of those that `others` has too. Null without one.
+ordered_json geometric_mean(const Regrets& regrets, const Regrets& others) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const auto& [begin, regret] : regrets) {
+    if (!others.contains(begin)) continue;
+    sum += regret;
+    ++count;
+  }
+  return count == 0 ? ordered_json() : ordered_json(std::exp(sum / static_cast<double>(count)));
+}
+
 /// The versions of one registry that simulators would have run, one after the other.
 class ServedVersions {
  public:
@@ -42,11 +58,17 @@ class ServedVersions {
         equipment_(equipment),
         tenures_(history::tenures(history::StoredHistory(database), equipment)) {}
 
-  /// The error of the version of then; absent where there is none, or it cannot be run.
-  std::optional<BlockScore> run(const BlockSamples& samples, const WindowRequest& request) {
+  /// 0 where there is none.
+  std::int64_t version_at(Time time) const {
     std::int64_t version = 0;
     for (const Tenure& one : tenures_)
-      if (one.from <= samples.block.range.begin) version = one.version;
+      if (one.from <= time) version = one.version;
+    return version;
+  }
+
+  /// The error of the version of then; absent where there is none, or it cannot be run.
+  std::optional<BlockScore> run(const BlockSamples& samples, const WindowRequest& request) {
+    const std::int64_t version = version_at(samples.block.range.begin);
     if (version != version_) take(version, request);
     if (!model_) return std::nullopt;
     BlockScore score = score_block(*model_, version_, samples, state_);
@@ -57,15 +79,20 @@ class ServedVersions {
     return score;
   }
 
-  ordered_json json(TimeRange range) const {
+  /// Of cycles of this length in the range, behind run().
+  Regrets regrets(TimeRange range, Duration cycle) const;
+
+  ordered_json json(TimeRange range, const Regrets& regrets) const {
     ordered_json publications = ordered_json::array();
-    for (const Tenure& one : tenures_)
-      if (range.begin <= one.from && one.from <= range.end)
-        publications.push_back({{"since_ns", one.from}, {"version", one.version}});
+    for (std::size_t i = 0; i < tenures_.size(); ++i) {
+      const bool ended = i + 1 < tenures_.size() && tenures_[i + 1].from <= range.begin;
+      if (!ended && tenures_[i].from <= range.end)
+        publications.push_back({{"since_ns", tenures_[i].from}, {"version", tenures_[i].version}});
+    }
     return {{"publications", publications},
             {"blocks", blocks_},
             {"mrse_percent", percent(sums_)},
-            {"regret", regret(range)}};
+            {"regret", geometric_mean(regrets, regrets)}};
   }
 
   const std::string& note() const { return note_; }
@@ -82,14 +109,14 @@ class ServedVersions {
       return;
     }
     EquipmentModel model = equipment_model_from_json(stored->model_json);
-    if (request_of(model) == request)
+    if (request_of(model) == request) {
       model_ = std::move(model);
-    else
+      comparable_.insert(version);
+    } else {
       note_ = fmt::format("version {} looks at other telemetry than the changed configuration",
                           version);
+    }
   }
-
-  ordered_json regret(TimeRange range) const;
 
   const storage::Registry registry_;
   const EquipmentName equipment_;
@@ -99,49 +126,51 @@ class ServedVersions {
   storage::RunState state_;
   Sums sums_;
   std::size_t blocks_ = 0;
+  std::set<std::int64_t> comparable_;  // of the telemetry of the changed configuration
   std::string note_;
 };
 
-/// Errors of the versions over the blocks of one cycle, by version.
-using CycleErrors = std::map<std::int64_t, Sums>;
-
-ordered_json ServedVersions::regret(TimeRange range) const {
+Regrets ServedVersions::regrets(TimeRange range, Duration cycle) const {
+  struct Cycle {
+    Time first = 0;  // begin of its first block
+    double rows = 0;
+    std::map<std::int64_t, Sums> errors;  // by version
+  };
+  std::map<Time, Cycle> cycles;
+  std::map<Time, Block> blocks;
+  const auto cycle_of = [&](const Block& block) -> Cycle& {
+    return cycles[floor_divide(block.range.begin, cycle) * cycle];
+  };
   const auto& [spacecraft, equipment] = equipment_;
-  const std::vector<Block> blocks = registry_.blocks(spacecraft, equipment, range.begin);
-  std::map<Time, std::size_t> cycle_of;  // by the begin of the block
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-    cycle_of[blocks[i].range.begin] = i / blocks_of_cycle;
-  std::vector<CycleErrors> cycles((blocks.size() + blocks_of_cycle - 1) / blocks_of_cycle);
-  std::vector<double> rows(cycles.size(), 0);
-  for (const Block& block : blocks)
-    if (counts(block)) rows[cycle_of[block.range.begin]] += static_cast<double>(block.rows);
+  for (const Block& block : registry_.blocks(spacecraft, equipment, range.begin)) {
+    if (block.range.end > range.end || !counts(block)) continue;
+    blocks[block.range.begin] = block;
+    Cycle& one = cycle_of(block);
+    if (one.rows == 0) one.first = block.range.begin;
+    one.rows += static_cast<double>(block.rows);
+  }
   for (const storage::VersionSummary& version : registry_.summaries(spacecraft, equipment))
     for (const BlockScore& score :
          registry_.scores(spacecraft, equipment, version.number, range.begin)) {
-      const auto cycle = cycle_of.find(score.begin);
-      if (cycle == cycle_of.end() || score.rows == 0) continue;
-      const Block& block = *std::ranges::lower_bound(
-          blocks, score.begin, {}, [](const Block& one) { return one.range.begin; });
-      if (!counts(block)) continue;
-      cycles[cycle->second][version.number].add(block, squares_of(score, score).one);
+      const auto block = blocks.find(score.begin);
+      if (block == blocks.end() || score.rows == 0) continue;
+      cycle_of(block->second)
+          .errors[version.number]
+          .add(block->second, squares_of(score, score).one);
     }
-  double sum = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < cycles.size(); ++i) {
-    std::int64_t champion = 0;
-    for (const Tenure& one : tenures_)
-      if (one.from <= blocks[i * blocks_of_cycle].range.begin) champion = one.version;
-    const auto own = cycles[i].find(champion);
-    if (own == cycles[i].end() || own->second.rows < rows[i]) continue;
+  Regrets regrets;
+  for (const auto& [begin, one] : cycles) {
+    const std::int64_t champion = version_at(one.first);
+    const auto own = one.errors.find(champion);
+    if (own == one.errors.end() || own->second.rows < one.rows || !comparable_.contains(champion))
+      continue;
     double least = own->second.mrse_percent();
-    for (const auto& [version, errors] : cycles[i])
-      if (errors.rows >= rows[i]) least = std::min(least, errors.mrse_percent());
-    const double ratio = own->second.mrse_percent() / least;
-    if (!std::isfinite(ratio)) continue;
-    sum += std::log(ratio);
-    ++count;
+    for (const auto& [version, errors] : one.errors)
+      if (errors.rows >= one.rows) least = std::min(least, errors.mrse_percent());
+    const double regret = std::log(own->second.mrse_percent() / least);
+    if (std::isfinite(regret)) regrets[begin] = regret;
   }
-  return count == 0 ? ordered_json() : ordered_json(std::exp(sum / static_cast<double>(count)));
+  return regrets;
 }
 
 /// What came of the windows of a sweep, the most frequent first.
@@ -184,15 +213,24 @@ ordered_json compare_equipment(storage::Database& sweep, storage::Database& actu
     was_common.add(samples.block, other->square);
     ++common;
   }
+  std::string note = was.note();
+  if (const std::int64_t version = was.version_at(range.begin); version != 0)
+    note += fmt::format("{}version {} ran before; what would have been begins without it",
+                        note.empty() ? "" : "; ", version);
+  const Duration cycle = length * static_cast<Duration>(blocks_of_cycle);
+  const Regrets would_regrets = would.regrets(range, cycle);
+  const Regrets was_regrets = was.regrets(range, cycle);
   return {{"equipment", name.equipment},
-          {"would", would.json(range)},
-          {"was", was.json(range)},
+          {"would", would.json(range, would_regrets)},
+          {"was", was.json(range, was_regrets)},
           {"common",
            {{"blocks", common},
             {"would_mrse_percent", percent(would_common)},
-            {"was_mrse_percent", percent(was_common)}}},
+            {"was_mrse_percent", percent(was_common)},
+            {"would_regret", geometric_mean(would_regrets, was_regrets)},
+            {"was_regret", geometric_mean(was_regrets, would_regrets)}}},
           {"outcomes", outcomes_of(sweep, name)},
-          {"note", was.note()}};
+          {"note", note}};
 }
 
 }  // namespace

@@ -15,13 +15,15 @@ namespace reident::sweep {
 /// of the spacecraft. An entry an equipment:
 ///
 ///   equipment
-///   would, was   each of: publications [{since_ns, version}], version 0 where none ran any more;
-///                blocks, how many of the range a version ran on; mrse_percent, null without one;
-///                regret (below), null where it is not known
+///   would, was   each of: publications [{since_ns, version}], version 0 where none ran any more,
+///                the first one of before where the range begins later; blocks, how many of the
+///                range a version ran on; mrse_percent, null without one; regret (below), null
+///                where it is not known
 ///   common       blocks, would_mrse_percent, was_mrse_percent: on blocks that both have a version
-///                for. Null where there is none
+///                for; would_regret, was_regret: over cycles that both know. Null where there is
+///                none
 ///   outcomes     what came of the windows of the sweep, in words: "40 not_excited, 2 challenger"
-///   note         why versions that really ran could not be run on this telemetry; empty else
+///   note         what keeps the two from being compared as they are; empty else
 ///
 /// Errors are of free runs without interruption, as in a simulator, on blocks that count. Regret is
 /// the geometric mean, over the cycles, of the champion's error over the least one of all versions

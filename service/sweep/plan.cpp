@@ -104,7 +104,7 @@ std::vector<CandidateTask> cut(const std::vector<Windows>& equipment) {
   return tasks;
 }
 
-void plan_tasks(Plan& plan, storage::TimeRange wanted) {
+void plan_tasks(Plan& plan, const Question& question) {
   std::vector<Windows> equipment;
   std::set<std::string> names;
   for (std::size_t i = 0; i < plan.configurations.size(); ++i) {
@@ -114,10 +114,17 @@ void plan_tasks(Plan& plan, storage::TimeRange wanted) {
     for (const SpacecraftConfig& one : config.spacecraft) {
       if (!names.insert(one.name).second)
         refuse(fmt::format("two configurations have the spacecraft {}; leave one out", one.name));
-      const storage::TimeRange range = range_of(archive, one.name, wanted);
-      for (const EquipmentConfig& of_one : one.equipment)
-        equipment.push_back(
-            {plan.spacecraft.size(), of_one.name, window_ends(archive, one.name, of_one, range)});
+      const storage::TimeRange range = range_of(archive, one.name, question.range);
+      for (const EquipmentConfig& of_one : one.equipment) {
+        try {
+          equipment.push_back(
+              {plan.spacecraft.size(), of_one.name, window_ends(archive, one.name, of_one, range)});
+        } catch (const storage::Error& error) {
+          throw storage::Error(error.kind(),
+                               fmt::format("{}; or leave {} out of {}", error.what(), of_one.name,
+                                           question.configurations[i].string()));
+        }
+      }
       plan.spacecraft.push_back({one.name, i, range});
     }
   }
@@ -203,13 +210,18 @@ Plan make_plan(const Question& question, const fs::path& folder,
     put_configuration(question, plan.folder, i, go_on);
     plan.configurations.push_back(loaded(configuration_file(plan.folder, i)));
   }
-  plan_tasks(plan, question.range);
+  plan_tasks(plan, question);
   write_task_file(plan_file(folder), to_json(plan, question));
   return read_plan(folder);
 }
 
 Plan read_plan(const fs::path& folder) {
   const auto json = read_task_file(plan_file(folder));
+  if (!json && fs::exists(plan_file(folder)))
+    refuse(
+        fmt::format("{} is damaged: remove it and give the question again; the results that are "
+                    "there count where the plan is the same",
+                    plan_file(folder).string()));
   if (!json)
     refuse(fmt::format("{} holds no sweep: begin one with --config FILE", folder.string()));
   Plan plan;

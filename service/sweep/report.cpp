@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "service/sweep/task_file.hpp"
+#include "service/sweep/tasks.hpp"
 
 namespace reident::sweep {
 namespace {
@@ -34,17 +34,18 @@ std::optional<ordered_json> report_of(const Plan& plan) {
   std::size_t windows = 0, equipment = 0, better = 0, worse = 0;
   GeometricMean ratios, would_regret, was_regret;
   for (std::size_t i = 0; i < plan.spacecraft.size(); ++i) {
-    auto judged = read_task_file(plan.file_of_judgement(i));
-    if (!judged || judged->value("plan", "") != plan.digest) return std::nullopt;
+    auto judged = result_of(plan, {TaskKind::judgement, i});
+    if (!judged) return std::nullopt;
     windows += judged->at("windows").get<std::size_t>();
     for (const ordered_json& one : judged->at("equipment")) {
       ++equipment;
-      if (const auto& regret = one.at("would").at("regret"); regret.is_number())
-        would_regret.add(regret);
-      if (const auto& regret = one.at("was").at("regret"); regret.is_number())
-        was_regret.add(regret);
-      const ordered_json& would = one.at("common").at("would_mrse_percent");
-      const ordered_json& was = one.at("common").at("was_mrse_percent");
+      const ordered_json& common = one.at("common");
+      if (common.at("would_regret").is_number()) {
+        would_regret.add(common.at("would_regret"));
+        was_regret.add(common.at("was_regret"));
+      }
+      const ordered_json& would = common.at("would_mrse_percent");
+      const ordered_json& was = common.at("was_mrse_percent");
       if (!would.is_number() || !was.is_number()) continue;
       const double ratio = would.get<double>() / was.get<double>();
       if (!std::isfinite(ratio) || ratio == 0) continue;
@@ -52,7 +53,7 @@ std::optional<ordered_json> report_of(const Plan& plan) {
       if (ratio < 1 - same_within) ++better;
       if (ratio > 1 + same_within) ++worse;
     }
-    judged->erase("plan");
+    for (const char* of_the_file : {"plan", "registry_bytes"}) judged->erase(of_the_file);
     (*judged)["registry"] = plan.registry_of(i).string();
     report["spacecraft"].push_back(*std::move(judged));
   }

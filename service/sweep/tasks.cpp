@@ -33,11 +33,11 @@ fs::path failure_file(const Plan& plan, TaskId task) {
   return plan.folder / "failed" / fmt::format("{}-{}.json", name(task.kind), task.number);
 }
 
-/// The result, where it is one of this plan.
-std::optional<ordered_json> result_of(const Plan& plan, TaskId task) {
-  auto result = read_task_file(result_file(plan, task));
-  if (!result || result->value("plan", "") != plan.digest) return std::nullopt;
-  return result;
+/// Whether the registry is there as it was when the judgement ended.
+bool is_whole(const fs::path& registry, const ordered_json& result) {
+  std::error_code failed;
+  const std::uintmax_t bytes = fs::file_size(registry, failed);
+  return !failed && bytes == result.value("registry_bytes", std::uintmax_t{0});
 }
 
 const EquipmentConfig& equipment_of(const Plan& plan, const CandidateTask& task) {
@@ -164,14 +164,42 @@ std::optional<ordered_json> judge_spacecraft(const Plan& plan, std::size_t numbe
     result["registry_sha256"] = registry_digest(registry);
     result["equipment"] = compare(registry, config, spacecraft.name, spacecraft.range);
   }
+  result["registry_bytes"] = fs::file_size(file);
   fs::rename(file, plan.registry_of(number));
   return result;
+}
+
+/// Folders of judgements that were killed, and of twins that are not needed any more.
+void clear_up_behind(const Plan& plan, TaskId judgement) {
+  const fs::path registry = plan.registry_of(judgement.number);
+  const std::string prefix = registry.filename().string() + ".";
+  std::error_code ignored;
+  for (fs::directory_iterator entry(registry.parent_path(), ignored), end; entry != end;
+       entry.increment(ignored))
+    if (entry->is_directory(ignored) && entry->path().filename().string().starts_with(prefix))
+      fs::remove_all(entry->path(), ignored);
+}
+
+void keep_reason(const Plan& plan, TaskId task, const std::string& reason) {
+  try {
+    write_task_file(failure_file(plan, task), {{"reason", reason}, {"host", host_name()}});
+  } catch (const std::runtime_error&) {
+    // Where nothing can be written, whoever runs the task is told all the same.
+  }
 }
 
 }  // namespace
 
 std::string_view name(TaskKind kind) {
   return kind == TaskKind::candidates ? "candidates" : "judgement";
+}
+
+std::optional<ordered_json> result_of(const Plan& plan, TaskId task) {
+  auto result = read_task_file(result_file(plan, task));
+  if (!result || result->value("plan", "") != plan.digest) return std::nullopt;
+  if (task.kind == TaskKind::judgement && !is_whole(plan.registry_of(task.number), *result))
+    return std::nullopt;
+  return result;
 }
 
 bool run_task(const Plan& plan, TaskId task, WorkerPool& workers,
@@ -194,11 +222,13 @@ bool run_task(const Plan& plan, TaskId task, WorkerPool& workers,
     if (!result) return false;
     write_task_file(result_file(plan, task), *result);
   } catch (const std::exception& error) {
-    write_task_file(failure_file(plan, task), {{"reason", error.what()}, {"host", host_name()}});
+    if (result_of(plan, task)) return true;  // of a twin, which has cleared up behind itself
+    keep_reason(plan, task, error.what());
     throw;
   }
   std::error_code ignored;
   fs::remove(failure_file(plan, task), ignored);
+  if (task.kind == TaskKind::judgement) clear_up_behind(plan, task);
   return true;
 }
 

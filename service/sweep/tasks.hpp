@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "service/support/parallel.hpp"
 #include "service/sweep/plan.hpp"
 
@@ -27,11 +29,14 @@ struct TaskId {
 
 /// Does the task, unless its result is there. `stop` is asked after each window. Returns false
 /// where it was stopped, and then nothing is left of it. Where it fails, the reason is kept in the
-/// folder and thrown: storage::Error, or std::runtime_error, also for a judgement whose candidates
-/// are not there. Throws std::invalid_argument for a number that there is not, and where another
-/// version of the program made the plan.
+/// folder, where that can be written, and thrown: storage::Error, or std::runtime_error, also for a
+/// judgement whose candidates are not there. Throws std::invalid_argument for a number that there
+/// is not, and where another version of the program made the plan.
 bool run_task(const Plan& plan, TaskId task, WorkerPool& workers,
               const std::function<bool()>& stop);
+
+/// The result of the task; absent where it is not there whole, or is another plan's.
+std::optional<nlohmann::ordered_json> result_of(const Plan& plan, TaskId task);
 
 /// How far the tasks of one kind are.
 struct TaskStates {

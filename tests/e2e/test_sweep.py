@@ -93,6 +93,15 @@ class Sweep(EndToEnd):
         moved.rename(archive)
         self.assertEqual(self.digests("broken"), self.in_one_process())
 
+    def test_a_folder_that_cannot_be_written_is_named(self):
+        self.sweep_plan_only("sealed")
+        failed = self.folder / "sealed" / "candidates"
+        failed.rename(self.folder / "away")
+        failed.write_text("a file")
+        status, text = self.reident("sweep", self.folder / "sealed")
+        self.assertEqual(status, 1, text)
+        self.assertIn("sealed/candidates", text)
+
     def sweep_plan_only(self, name):
         """Plans, and does nothing but the first task."""
         status, text = self.reident("sweep", self.folder / name, *self.question(), "--task", 0)

@@ -27,6 +27,12 @@ double ratio(const ordered_json& equipment) {
   return would.get<double>() / was.get<double>();
 }
 
+/// On the cycles that both know; a side's own where there is none.
+std::string regret_of(const ordered_json& equipment, const std::string& side) {
+  const ordered_json& common = equipment.at("common").at(side + "_regret");
+  return number(common.is_number() ? common : equipment.at(side).at("regret"));
+}
+
 std::string versions_of(const ordered_json& side) {
   std::size_t versions = 0;
   for (const ordered_json& one : side.at("publications"))
@@ -66,8 +72,8 @@ std::string sweep_table(const ordered_json& report, std::size_t rows, std::size_
       lines.push_back({std::abs(std::log(ratio(one))),
                        {name_of(spacecraft, one), versions_of(was), versions_of(would),
                         first_of(was), first_of(would), number(common.at("was_mrse_percent")),
-                        number(common.at("would_mrse_percent")), number(was.at("regret")),
-                        number(would.at("regret")), note_of(one)}});
+                        number(common.at("would_mrse_percent")), regret_of(one, "was"),
+                        regret_of(one, "would"), note_of(one)}});
     }
   std::ranges::stable_sort(lines, std::ranges::greater(), &Line::change);
   constexpr auto right = Table::Align::right;

@@ -99,11 +99,13 @@ int print_report(const Plan& plan, const Arguments& arguments) {
   return exit_done;
 }
 
-/// Does the tasks, on all cores. One that fails does not keep the others.
-void run_here(const Plan& plan, TaskKind kind, const std::vector<std::size_t>& tasks,
-              WorkerPool& workers, const StopSignal& stop) {
+/// Does the tasks, on all cores. One that fails does not keep the others. Returns why the first of
+/// them failed.
+std::string run_here(const Plan& plan, TaskKind kind, const std::vector<std::size_t>& tasks,
+                     WorkerPool& workers, const StopSignal& stop) {
   Mutex mutex;
   std::size_t ended = 0;
+  std::string reason;
   Progress bar;
   workers.for_each(tasks.size(), [&](std::size_t i) {
     if (stop.token().stop_requested()) return;
@@ -111,24 +113,28 @@ void run_here(const Plan& plan, TaskKind kind, const std::vector<std::size_t>& t
       run_task(plan, {kind, tasks[i]}, workers, [&] { return stop.token().stop_requested(); });
     } catch (const std::invalid_argument&) {
       throw;
-    } catch (const std::exception&) {
-      // The folder has the reason, and the states show it.
+    } catch (const std::exception& error) {
+      const MutexLock lock(mutex);
+      if (reason.empty()) reason = error.what();
     }
     const MutexLock lock(mutex);
     bar.update(static_cast<double>(++ended) / static_cast<double>(tasks.size()),
                fmt::format("{} {}/{}", name(kind), ended, tasks.size()));
   });
   bar.clear();
+  return reason;
 }
 
 int run_here(const Plan& plan, const Arguments& arguments, const StopSignal& stop) {
   WorkerPool workers(usable_cores());
-  run_here(plan, TaskKind::candidates, sweep::states(plan, TaskKind::candidates).left, workers,
-           stop);
+  std::string reason = run_here(plan, TaskKind::candidates,
+                                sweep::states(plan, TaskKind::candidates).left, workers, stop);
   std::vector<std::size_t> judgements = sweep::states(plan, TaskKind::judgement).left;
   for (const std::size_t task : sweep::states(plan, TaskKind::candidates).left)
     std::erase(judgements, plan.candidates[task].spacecraft);
-  run_here(plan, TaskKind::judgement, judgements, workers, stop);
+  const std::string other = run_here(plan, TaskKind::judgement, judgements, workers, stop);
+  if (reason.empty()) reason = other;
+  if (!reason.empty()) print_error("reident: a task failed: {}", reason);
   if (stop.token().stop_requested())
     print_error("reident: stopped; reident sweep {} goes on where it ended", plan.folder.string());
   return print_report(plan, arguments);

@@ -158,6 +158,27 @@ TEST_F(Sweep, ComparesWithWhatReallyWas) {
   EXPECT_EQ(report.at("error_ratio"), 1.0);
   EXPECT_EQ(plant.at("note"), "");
 
+  sweep::Question part = question();
+  part.range = {day + 40 * minute, day + 70 * minute};
+  const Plan later = make_plan(part, folder("later"), [] { return true; });
+  run_all(later);
+  const ordered_json from = report_of(later)->at("spacecraft")[0].at("equipment")[0];
+  EXPECT_EQ(from.at("was").at("publications")[0].at("version"),
+            plant.at("was").at("publications")[0].at("version"))
+      << "it ran already";
+  EXPECT_THAT(from.at("note").get<std::string>(), testing::HasSubstr("begins without"));
+  sweep::Question until = question();
+  until.range.end = day + 60 * minute;
+  const Plan shorter = make_plan(until, folder("shorter"), [] { return true; });
+  run_all(shorter);
+  const ordered_json half = report_of(shorter)->at("spacecraft")[0].at("equipment")[0];
+  EXPECT_EQ(half.at("would"), half.at("was")) << "of the same time";
+  const Plan other = plan("other", {"inputs=[\"u\"]"});
+  run_all(other);
+  const ordered_json signals = *report_of(other);
+  EXPECT_TRUE(signals.at("was_regret").is_null()) << "of other telemetry";
+  EXPECT_EQ(signals.at("would_regret"), signals.at("was_regret"));
+
   const Plan strict = plan("strict", {"PLANT.max_mrse=0.0001"});
   run_all(strict);
   const ordered_json none = report_of(strict)->at("spacecraft")[0].at("equipment")[0];
@@ -189,6 +210,13 @@ TEST_F(Sweep, DoesWorkOnceAndDamagedWorkAgain) {
   EXPECT_EQ(sweep::read_task_file(file)->at("windows")[0]["found"]["model"].dump(), result);
 
   fs::remove(tasks.file_of_judgement(0));
+  fs::create_directory(tasks.registry_of(0).string() + ".of-one-that-was-killed");
+  EXPECT_TRUE(run_task(tasks, {TaskKind::judgement, 0}, workers, never));
+  EXPECT_EQ(report_of(tasks)->dump(), judged);
+  EXPECT_FALSE(fs::exists(tasks.registry_of(0).string() + ".of-one-that-was-killed"));
+  fs::resize_file(tasks.registry_of(0), 100);
+  EXPECT_EQ(states(tasks, TaskKind::judgement).left, std::vector<std::size_t>{0});
+  EXPECT_FALSE(report_of(tasks));
   EXPECT_TRUE(run_task(tasks, {TaskKind::judgement, 0}, workers, never));
   EXPECT_EQ(report_of(tasks)->dump(), judged);
   EXPECT_FALSE(run_task(plan("stopped"), {TaskKind::candidates, 0}, workers, [] { return true; }));
@@ -202,9 +230,19 @@ TEST_F(Sweep, KeepsToItsQuestion) {
   EXPECT_EQ(sweep::read_plan(folder("tasks")).digest, first.digest);
   EXPECT_THROW(plan("tasks", {"window=13min"}), std::invalid_argument);
   EXPECT_THROW(plan("other", {"windw=13min"}), std::invalid_argument);
+  EXPECT_THROW(plan("other", {"PLANT.name=Y"}), std::invalid_argument);
   EXPECT_THROW(plan("other", {"NOBODY.window=13min"}), std::invalid_argument);
   EXPECT_THROW(sweep::read_plan(folder("nowhere")), std::invalid_argument);
   EXPECT_THROW(plan("reident.toml"), std::invalid_argument) << "a file";
+  std::ofstream(folder("tasks") / "plan.json", std::ios::app) << "x";
+  try {
+    sweep::read_plan(folder("tasks"));
+    FAIL() << "a damaged plan was read";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("damaged"));
+  }
+  fs::remove(folder("tasks") / "plan.json");
+  EXPECT_EQ(plan("tasks", {"window=12min"}).digest, first.digest) << "results count";
   ordered_json older = *sweep::read_task_file(folder("tasks") / "plan.json");
   older["program_version"] = "0.0.1";
   sweep::write_task_file(folder("tasks") / "plan.json", older);
