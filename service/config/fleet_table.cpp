@@ -1,10 +1,11 @@
 #include "service/config/fleet_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
-#include <initializer_list>
 #include <set>
+#include <span>
 #include <system_error>
 
 #include <arpa/inet.h>
@@ -31,34 +32,75 @@ std::string with_name(std::string text, const std::string& name) {
   return text;
 }
 
+/// What systemd takes for the end of a whole name: it would start another instance.
+constexpr std::array<std::string_view, 11> kinds_of_unit{
+    ".service", ".socket", ".device", ".mount", ".automount", ".swap",
+    ".target",  ".path",   ".timer",  ".slice", ".scope"};
+
 bool is_unit_name(const std::string& name) {
   const auto allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
   };
-  return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), allowed);
+  const auto is_end = [&name](std::string_view kind) { return name.ends_with(kind); };
+  return !name.empty() && name.front() != '.' && std::ranges::all_of(name, allowed) &&
+         std::ranges::none_of(kinds_of_unit, is_end);
 }
 
-/// Reads a number with one of these units. What systemd does not take it ignores, with a warning
-/// that nobody sees: no limit would hold.
+constexpr std::string_view no_limit = "infinity";
+
+struct LimitUnit {
+  std::string_view name;
+  double size;
+  double most;  // of what systemd takes, in units
+};
+
+constexpr double most_bytes = 1LL << 62;
+constexpr std::array memory_units{
+    LimitUnit{"", 1, most_bytes},
+    LimitUnit{"B", 1, most_bytes},
+    LimitUnit{"K", 1LL << 10, most_bytes},
+    LimitUnit{"M", 1LL << 20, most_bytes},
+    LimitUnit{"G", 1LL << 30, most_bytes},
+    LimitUnit{"T", 1LL << 40, most_bytes},
+    LimitUnit{"%", 1, 100},
+};
+constexpr std::array quota_units{LimitUnit{"%", 1, 100 * 1024}};
+
+/// Reads a number with one of these units, or that there is no limit. What systemd does not take it
+/// ignores, with a warning that nobody sees: no limit would hold.
 std::optional<std::string> read_limit(TableReader& reader, std::string_view key,
-                                      std::initializer_list<std::string_view> units,
-                                      std::string_view example) {
+                                      std::span<const LimitUnit> units, std::string_view example) {
   auto text = reader.text(key);
-  if (!text) return text;
-  const std::size_t digits = std::min(text->find_first_not_of("0123456789."), text->size());
-  const auto unit = std::string_view(*text).substr(digits);
-  if (digits == 0 || std::find(units.begin(), units.end(), unit) == units.end())
-    reader.mistake(key, fmt::format("{} \"{}\" is no limit of systemd; use one such as \"{}\"", key,
-                                    *text, example));
+  if (!text || *text == no_limit) return text;
+  double number = 0;
+  const auto [end, error] =
+      std::from_chars(text->data(), text->data() + text->size(), number, std::chars_format::fixed);
+  const std::string_view name(end, text->data() + text->size());
+  const auto unit = std::ranges::find(units, name, &LimitUnit::name);
+  const std::string_view digits(text->data(), end);
+  const std::size_t point = digits.find('.');
+  const bool is_too_fine = point != std::string_view::npos && digits.size() - point > 3;
+  if (error != std::errc() || unit == units.end() || number <= 0 || is_too_fine ||
+      number * unit->size > unit->most || number * unit->size < 0.01)
+    reader.mistake(key, fmt::format("{} \"{}\" is no limit of systemd; use one such as \"{}\", or "
+                                    "\"{}\" for none",
+                                    key, *text, example, no_limit));
   return text;
 }
 
 std::optional<std::string> read_memory_max(TableReader& reader) {
-  return read_limit(reader, "memory_max", {"", "B", "K", "M", "G", "T", "%"}, "1G");
+  return read_limit(reader, "memory_max", memory_units, "1G");
 }
 
 std::optional<std::string> read_cpu_quota(TableReader& reader) {
-  return read_limit(reader, "cpu_quota", {"%"}, "50%");
+  return read_limit(reader, "cpu_quota", quota_units, "50%");
+}
+
+/// The one of the table where it has one; absent where there is none.
+std::optional<std::string> limit_of(const std::optional<std::string>& own,
+                                    const std::optional<std::string>& by_default) {
+  const auto& limit = own ? own : by_default;
+  return limit == no_limit ? std::nullopt : limit;
 }
 
 /// The middleware takes an interface by its address, not by a name.
@@ -175,9 +217,11 @@ void read_instance(const toml::table& table, ConfigDocument& document,
   if (!name) return;
   instance.name = instance.spacecraft = *name;
   if (!is_unit_name(*name))
-    reader.mistake("name", fmt::format("{} has to have letters, digits, - _ and . alone: it is "
-                                       "part of a unit's name and of a file's",
-                                       *name));
+    reader.mistake("name",
+                   fmt::format("{} has to have letters, digits, - _ and . alone, and no end "
+                               "such as .service: it is part of a unit's name and of a "
+                               "file's",
+                               *name));
   const auto source = configuration ? configuration : defaults.configuration;
   if (!source)
     reader.mistake("configuration",
@@ -194,8 +238,8 @@ void read_instance(const toml::table& table, ConfigDocument& document,
                    fmt::format("data {} has to be a path without blanks, quotes, \\, % and $: "
                                "units hold it",
                                instance.data.string()));
-  instance.memory_max = memory_max ? memory_max : defaults.memory_max;
-  instance.cpu_quota = cpu_quota ? cpu_quota : defaults.cpu_quota;
+  instance.memory_max = limit_of(memory_max, defaults.memory_max);
+  instance.cpu_quota = limit_of(cpu_quota, defaults.cpu_quota);
   refuse_shared(instance, reader, taken);
   instance.strength = second.empty() ? 0 : 2;
   fleet.instances.push_back(instance);

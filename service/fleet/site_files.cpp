@@ -163,6 +163,9 @@ fs::path drop_in_path(const std::string& name) {
 fs::path middleware_path(const std::string& name) {
   return configurations / "cyclonedds" / (name + ".xml");
 }
+fs::path clients_path(const std::string& name) {
+  return configurations / "cyclonedds" / (name + "-clients.xml");
+}
 
 /// Empty where there is none.
 std::string text_of(const fs::path& file) {
@@ -216,8 +219,19 @@ SiteChange change_of(const std::map<fs::path, std::string>& files, const fs::pat
       break;
     }
   }
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(root / configurations / "cyclonedds", none)) {
+    const fs::path path = configurations / "cyclonedds" / entry.path().filename();
+    const auto is_its = [&path](const std::string& name) {
+      return path == middleware_path(name) || path == clients_path(name);
+    };
+    if (!files.contains(path) && is_of_table(entry.path()) &&
+        std::ranges::none_of(change.gone, is_its))
+      change.stale.push_back(path);
+  }
   std::ranges::sort(change.changed);
   std::ranges::sort(change.gone);
+  std::ranges::sort(change.stale);
   return change;
 }
 
@@ -226,7 +240,8 @@ bool is_of_table(const fs::path& file) {
   return text.find(mark) != std::string::npos || text == "[]\n";
 }
 
-void write_site_files(const std::map<fs::path, std::string>& files, const fs::path& root) {
+void write_site_files(const std::map<fs::path, std::string>& files, const SiteChange& change,
+                      const fs::path& root) {
   for (const auto& [path, text] : files)
     if (fs::exists(root / path) && !is_of_table(root / path))
       throw std::invalid_argument(fmt::format(
@@ -238,6 +253,7 @@ void write_site_files(const std::map<fs::path, std::string>& files, const fs::pa
     output.write(text);
     output.finish();
   }
+  for (const fs::path& path : change.stale) fs::remove(root / path);
 }
 
 }  // namespace reident::fleet

@@ -33,6 +33,9 @@ std::map<std::filesystem::path, std::string> site_files(const Fleet& fleet,
 struct SiteChange {
   std::vector<std::string> changed;  // their services have to be restarted where they run
   std::vector<std::string> gone;     // made by an earlier table: what is below root stays there
+  /// The middleware's files of an earlier table, but for those of who is gone. Clients would go on
+  /// asking where they say.
+  std::vector<std::filesystem::path> stale;
 };
 SiteChange change_of(const std::map<std::filesystem::path, std::string>& files,
                      const std::filesystem::path& root);
@@ -40,9 +43,10 @@ SiteChange change_of(const std::map<std::filesystem::path, std::string>& files,
 /// Whether site_files() gave the text of this file.
 bool is_of_table(const std::filesystem::path& file);
 
-/// Writes the files below `root`. Throws std::invalid_argument, and writes nothing, where a file is
-/// there that is not of a table; std::runtime_error where one cannot be written.
+/// Writes the files below `root`, and removes those that are stale. Throws std::invalid_argument,
+/// and writes nothing, where a file is there that is not of a table; std::runtime_error where one
+/// cannot be written or removed.
 void write_site_files(const std::map<std::filesystem::path, std::string>& files,
-                      const std::filesystem::path& root);
+                      const SiteChange& change, const std::filesystem::path& root);
 
 }  // namespace reident::fleet

@@ -71,7 +71,7 @@ int init(const Arguments& arguments) {
     return exit_done;
   }
   const fleet::SiteChange change = fleet::change_of(files, arguments.root);
-  fleet::write_site_files(files, arguments.root);
+  fleet::write_site_files(files, change, arguments.root);
   std::vector<std::string> names;
   std::set<std::string> hosts;
   for (const FleetInstance& one : table.instances) {
@@ -85,9 +85,12 @@ int init(const Arguments& arguments) {
                 change.gone);
   for (const std::string& name : change.gone)
     fmt::print(
-        "  then remove {0}/etc/reident/{1}.toml and {0}/etc/systemd/system/"
-        "reidentd@{1}.service.d; telemetry and models stay in the database\n",
+        "  then remove {0}/etc/reident/{1}.toml, {0}/etc/systemd/system/reidentd@{1}.service.d, "
+        "and {1}.xml and {1}-clients.xml of {0}/etc/reident/cyclonedds where they are; telemetry "
+        "and models stay in the database\n",
         arguments.root == "/" ? "" : arguments.root, name);
+  for (const auto& path : change.stale)
+    fmt::print("removed, since the table has it no more: {}\n", (arguments.root / path).string());
   if (arguments.host.empty() && hosts.size() > 1)
     fmt::print(
         "the table has services of {} machines: on each, --host ADDRESS makes its own "

@@ -93,6 +93,7 @@ TEST_F(FleetTable, NamesEachMistakeWithItsLine) {
        "1 GB"},
       {"[fleet]\nconfiguration = \"x\"\ncpu_quota = \"half\"\n[[spacecraft]]\nname = \"A\"\n", 3,
        "half"},
+      {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A.service\"\n", 4, ".service"},
       {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\ndata = \"/my data\"\n", 5,
        "blanks"},
       {"[fleet]\nconfiguration = \"x\"\n[[spacecraft]]\nname = \"A\"\npage = \"h:1\"\n"
@@ -128,6 +129,34 @@ TEST_F(FleetTable, RefusesAPageThatIsNoHostAndPort) {
                 .instances[0]
                 .page,
             "[::1]:8480");
+}
+
+TEST_F(FleetTable, TakesTheLimitsThatSystemdTakes) {
+  const auto table = [](const std::string& key, const std::string& limit) {
+    return "[fleet]\nconfiguration = \"x\"\n" + key + " = \"3" + (key == "cpu_quota" ? "%" : "G") +
+           "\"\n[[spacecraft]]\nname = \"A\"\n" + key + " = \"" + limit + "\"\n";
+  };
+  const std::pair<const char*, const char*> good[] = {
+      {"memory_max", "512M"}, {"memory_max", "1.5G"}, {"memory_max", "1000000"},
+      {"memory_max", "60%"},  {"cpu_quota", "12.5%"}, {"cpu_quota", "400%"},
+  };
+  for (const auto& [key, limit] : good) {
+    const FleetInstance one = fleet(table(key, limit)).instances[0];
+    EXPECT_EQ(std::string_view(key) == "cpu_quota" ? one.cpu_quota : one.memory_max, limit);
+  }
+  for (const char* key : {"memory_max", "cpu_quota"}) {
+    const FleetInstance one = fleet(table(key, "infinity")).instances[0];
+    EXPECT_FALSE(one.memory_max || one.cpu_quota) << "not that of [fleet] either";
+  }
+  const std::pair<const char*, const char*> wrong[] = {
+      {"memory_max", "0"},    {"memory_max", "0G"},  {"memory_max", "99999999999G"},
+      {"memory_max", "101%"}, {"memory_max", "G"},   {"memory_max", "1.2.3G"},
+      {"memory_max", "-1G"},  {"cpu_quota", "0%"},   {"cpu_quota", "0.001%"},
+      {"cpu_quota", "2"},     {"cpu_quota", "1e2%"},
+  };
+  for (const auto& [key, limit] : wrong)
+    EXPECT_THAT(mistake(table(key, limit)).message, HasSubstr("no limit of systemd"))
+        << key << ' ' << limit;
 }
 
 TEST_F(FleetTable, SaysThatAFolderIsNone) {

@@ -53,6 +53,11 @@ margin = 16.4
     return fleet;
   }
 
+  void write(const Fleet& fleet) const {
+    const auto files = fleet::site_files(fleet);
+    fleet::write_site_files(files, fleet::change_of(files, folder_.path()), folder_.path());
+  }
+
   std::string text_of(const fs::path& file) const {
     std::ifstream stream(folder_ / file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -65,7 +70,7 @@ TEST_F(FleetTest, WritesWhatTheServicesRead) {
   Fleet fleet = site({"SAT-1", "SAT-2"});
   fleet.instances[1].memory_max = "2G";
   fleet.instances[1].page = "127.0.0.1:8481";
-  fleet::write_site_files(fleet::site_files(fleet), folder_.path());
+  write(fleet);
   const auto loaded = load_config(folder_ / "etc/reident/SAT-2.toml");
   ASSERT_TRUE(std::holds_alternative<Config>(loaded));
   const auto& config = std::get<Config>(loaded);
@@ -89,12 +94,11 @@ TEST_F(FleetTest, WritesWhatTheServicesRead) {
 }
 
 TEST_F(FleetTest, ReplacesItsOwnFilesAlone) {
-  fleet::write_site_files(fleet::site_files(site({"SAT-1"})), folder_.path());
-  fleet::write_site_files(fleet::site_files(site({"SAT-1", "SAT-2"})), folder_.path());
+  write(site({"SAT-1"}));
+  write(site({"SAT-1", "SAT-2"}));
   EXPECT_TRUE(fs::exists(folder_ / "etc/reident/SAT-2.toml"));
   std::ofstream(folder_ / "etc/reident/SAT-1.toml") << "# by hand\n";
-  EXPECT_THROW(fleet::write_site_files(fleet::site_files(site({"SAT-0", "SAT-1"})), folder_.path()),
-               std::invalid_argument);
+  EXPECT_THROW(write(site({"SAT-0", "SAT-1"})), std::invalid_argument);
   EXPECT_EQ(text_of("etc/reident/SAT-1.toml"), "# by hand\n");
   EXPECT_FALSE(fs::exists(folder_ / "etc/reident/SAT-0.toml")) << "nothing was written";
 }
@@ -105,7 +109,7 @@ TEST_F(FleetTest, SaysWhatChangesAndWhatTheTableHasLost) {
   };
   Fleet fleet = site({"SAT-1", "SAT-2", "SAT-3"});
   EXPECT_THAT(change(fleet).changed, IsEmpty()) << "none runs yet";
-  fleet::write_site_files(fleet::site_files(fleet), folder_.path());
+  write(fleet);
   std::ofstream(folder_ / "etc/reident/by-hand.toml") << "# by hand\n";
   EXPECT_THAT(change(fleet).changed, IsEmpty());
   EXPECT_THAT(change(fleet).gone, IsEmpty());
@@ -116,6 +120,18 @@ TEST_F(FleetTest, SaysWhatChangesAndWhatTheTableHasLost) {
   fleet.network = FleetNetwork{"127.0.0.1", 1};
   for (FleetInstance& one : fleet.instances) one.host = "127.0.0.1";
   EXPECT_THAT(change(fleet).changed, ElementsAre("SAT-2", "SAT-3"));
+  write(fleet);
+  const fs::path middleware = "etc/reident/cyclonedds";
+  std::ofstream(folder_ / middleware / "by-hand.xml") << "<CycloneDDS/>\n";
+  fleet.network.reset();
+  for (FleetInstance& one : fleet.instances) one.host.clear();
+  fleet.instances.pop_back();
+  EXPECT_THAT(change(fleet).gone, ElementsAre("SAT-1", "SAT-3"));
+  write(fleet);
+  EXPECT_FALSE(fs::exists(folder_ / middleware / "SAT-2-clients.xml")) << "nobody is there now";
+  EXPECT_FALSE(fs::exists(folder_ / middleware / "clients.xml"));
+  EXPECT_TRUE(fs::exists(folder_ / middleware / "SAT-3.xml")) << "its service may run";
+  EXPECT_TRUE(fs::exists(folder_ / middleware / "by-hand.xml"));
 }
 
 TEST_F(FleetTest, WritesTheServicesOfOneMachine) {
@@ -251,7 +267,7 @@ TEST_F(FleetTest, TakesThePortsOfSeveralDomainsForManyServices) {
 }
 
 TEST_F(FleetTest, ShowsTheWorstFirst) {
-  fleet::write_site_files(fleet::site_files(site({"A", "B", "C"})), folder_.path());
+  write(site({"A", "B", "C"}));
   for (const char* name : {"A", "B"}) fs::create_directory(folder_ / name);
   const auto open = [&](const char* name) {
     return storage::Database(folder_ / name / "reident.db", storage::Database::Mode::read_write);
@@ -283,7 +299,7 @@ TEST_F(FleetTest, ShowsTheWorstFirst) {
 }
 
 TEST_F(FleetTest, TellsASitesInstancesFromWhatTheyWereMadeOf) {
-  fleet::write_site_files(fleet::site_files(site({"A"})), folder_.path());
+  write(site({"A"}));
   const fs::path folder = folder_ / "etc/reident";
   std::ofstream(folder / "fleet.toml") << "[fleet]\nconfiguration = \"reident.toml\"\n"
                                           "[[spacecraft]]\nname = \"A\"\n";
