@@ -77,7 +77,8 @@ void ChunkStore::take(const ChunkRow& row, SampleColumns& samples) {
   if (row.place.shard != 0 && error->kind == ChunkError::Kind::damaged)
     throw bytes_.unreadable(
         row.place.shard,
-        damage(connection_, {row.series, row.first, row.last, row.samples}, *error).what());
+        damage(connection_, {row.series, row.first, row.last, row.samples, row.place.shard}, *error)
+            .what());
   set_aside(connection_, {row.series, row.first, row.last, row.samples}, bytes, *error);
   remove(row);
 }

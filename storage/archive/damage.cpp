@@ -17,9 +17,12 @@ Error damage(sqlite::Connection& connection, const SampleRange& where, const Chu
   if (error.kind == ChunkError::Kind::newer)
     return {Error::Kind::newer_schema,
             what + " cannot be read: their chunk " + error.message + "; use a newer reident"};
-  return {Error::Kind::corrupt, what + " cannot be read: their chunk " + error.message +
-                                    "; 'reident verify' lists what else is damaged, a backup or "
-                                    "'reident import' brings them back"};
+  // What is imported waits for the shard, which is never written to.
+  return {Error::Kind::corrupt,
+          what + " cannot be read: their chunk " + error.message +
+              "; 'reident verify' lists what else is damaged, " +
+              (where.shard == 0 ? "a backup or 'reident import' brings them back"
+                                : "a backup of the shard brings them back")};
 }
 
 void set_aside(sqlite::Connection& connection, const SampleRange& where,

@@ -15,6 +15,7 @@ struct SampleRange {
   Time first = 0;
   Time last = 0;
   std::size_t samples = 0;
+  std::int64_t shard = 0;  // 0: in the database itself
 };
 
 /// What a reader throws: the parameter, the time, what is wrong and the remedy.

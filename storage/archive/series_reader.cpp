@@ -171,7 +171,8 @@ bool SeriesReader::read(const ChunkOutline& chunk, WantedColumns wanted, SampleC
   const std::span<const std::uint8_t> bytes = bytes_.read({chunk.shard, chunk.data});
   if (bytes.empty() || identity_of(bytes) != chunk.identity) return false;
   if (const auto error = decoder_.decode(bytes, samples.target(wanted)))
-    throw damage(connection_, {chunk.series, chunk.first, chunk.last, chunk.samples}, *error);
+    throw damage(connection_, {chunk.series, chunk.first, chunk.last, chunk.samples, chunk.shard},
+                 *error);
   return true;
 }
 

@@ -139,7 +139,8 @@ void Counter::count_chunk(const Piece& chunk) {
 std::vector<Time> Counter::times_of(const Piece& chunk) {
   std::vector<Time> times;
   if (const auto error = decoder_.decode(bytes_.read(*chunk.place), {.time = &times}))
-    throw damage(*impl_.connection, {series_.id, chunk.first, chunk.last, chunk.samples}, *error);
+    throw damage(*impl_.connection,
+                 {series_.id, chunk.first, chunk.last, chunk.samples, chunk.place->shard}, *error);
   return times;
 }
 

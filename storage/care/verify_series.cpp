@@ -14,6 +14,8 @@ namespace {
 constexpr const char* restore_samples =
     "restore these samples from a backup, or import them again with 'reident import'; what is "
     "damaged is set aside when it is next written to";
+constexpr const char* restore_shard =
+    "put the shard back from a backup; samples of this time that are imported wait until then";
 constexpr const char* counts_are_wrong =
     "the samples themselves are sound; report it with the file, a backup from before has right "
     "counts";
@@ -200,12 +202,12 @@ bool SeriesVerifier::is_known(const Row& row, std::int64_t key, std::uint64_t di
 
 void SeriesVerifier::look_at_chunk(const Row& row, ChunkPlace place) {
   const std::uint64_t found_before = report_.found;
+  const char* remedy = place.shard == 0 ? restore_samples : restore_shard;
   const std::span<const std::uint8_t> bytes = bytes_.read(place);
   if (bytes.empty()) {
     seen_.undecodable = true;
     add("chunk", row.first, row.last,
-        "its data (row " + std::to_string(place.data) + " of chunk_data) are missing",
-        restore_samples);
+        "its data (row " + std::to_string(place.data) + " of chunk_data) are missing", remedy);
     return;
   }
   const auto summary = read_summary(bytes);
@@ -233,7 +235,7 @@ void SeriesVerifier::look_at_chunk(const Row& row, ChunkPlace place) {
   seen_.undecodable = true;
   add("chunk", row.first, row.last,
       std::to_string(row.samples) + " samples cannot be read: their chunk " + error->message,
-      error->kind == ChunkError::Kind::newer ? "use a newer reident" : restore_samples);
+      error->kind == ChunkError::Kind::newer ? "use a newer reident" : remedy);
 }
 
 void SeriesVerifier::compare_with_summary(const Row& row, const ChunkSummary& summary) {

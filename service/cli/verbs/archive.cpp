@@ -53,7 +53,10 @@ void print(const Arguments& arguments, const std::filesystem::path& database, st
     fmt::print("{}.shards/{}: {} samples, {}\n", database.string(), shard.file, shard.samples,
                size_text(shard.bytes));
   if (report.chunks == 0)
-    fmt::print("nothing to split: no telemetry of before {} is in the database itself\n", before);
+    fmt::print(
+        "nothing to split: what is of before {} is in shards already, but for what the database "
+        "has in one piece with {}\n",
+        before, before);
 }
 
 int split(const Arguments& arguments) {
@@ -108,7 +111,8 @@ std::function<int()> declare(CLI::App& command) {
   parts->add_flag("--json", arguments->json, "one JSON object with what was moved");
   parts->group("Commands");
   command.footer(
-      "The files are in FILE.shards and never change. The archive is read as one with them: move "
+      "The files are in FILE.shards and never change. A piece of telemetry that crosses a new year "
+      "goes with the later one. The archive is read as one with them: move "
       "and copy both together, or use 'reident backup'.\n"
       "Example:\n"
       "  reident archive split reident.db --before 2026");
