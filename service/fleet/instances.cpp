@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -60,6 +61,31 @@ std::optional<Instance> read_instance(const fs::path& file) {
 
 }  // namespace
 
+std::size_t Instance::with_champion() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(rows, [](const auto& row) { return row.champion > 0; }));
+}
+
+std::optional<storage::Time> Instance::oldest_telemetry() const {
+  std::optional<storage::Time> oldest;
+  for (const history::OverviewRow& row : rows)
+    if (row.telemetry && (!oldest || *row.telemetry < *oldest)) oldest = row.telemetry;
+  return oldest;
+}
+
+std::string Instance::note() const {
+  if (!is_of_site) return "never started, and in no table of the site";
+  if (!problem.empty()) return problem;
+  const std::string stopped =
+      has_service.value_or(true) ? ""
+                                 : fmt::format("stopped: journalctl -u reidentd@{} says why", name);
+  for (const storage::Alarm& alarm : alarms)
+    if (alarm.acknowledged_by.empty())
+      return fmt::format("{}{}{}: {}", stopped, stopped.empty() ? "" : "; ", alarm.code,
+                         alarm.text);
+  return stopped;
+}
+
 std::size_t Instance::unseen_alarms() const {
   return static_cast<std::size_t>(std::ranges::count_if(
       alarms, [](const storage::Alarm& alarm) { return alarm.acknowledged_by.empty(); }));
@@ -88,10 +114,12 @@ std::vector<Instance> read_instances(const fs::path& folder, WorkerPool& workers
   std::vector<std::optional<Instance>> read(files.size());
   workers.for_each(files.size(), [&](std::size_t i) { read[i] = read_instance(files[i]); });
   const bool is_of_tables = std::ranges::any_of(files, is_of_table);
+  const std::map<std::string, std::string> pages = pages_in(folder);
   std::vector<Instance> instances;
   for (std::optional<Instance>& one : read) {
     if (!one) continue;
     if (!is_of_tables) one->is_of_site = true;
+    if (const auto page = pages.find(one->name); page != pages.end()) one->page = page->second;
     instances.push_back(*std::move(one));
   }
   if (instances.empty())

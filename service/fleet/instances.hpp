@@ -20,7 +20,13 @@ struct Instance {
   std::optional<bool> has_service{};
   std::vector<history::OverviewRow> rows;  // also of equipment that no window was tried of
   std::vector<storage::Alarm> alarms;
+  std::string page;  // HOST:PORT of its operators' page, as the table has it; empty where none is
 
+  std::size_t with_champion() const;  // equipment
+  /// The generation time that the equipment farthest behind has reached.
+  std::optional<storage::Time> oldest_telemetry() const;
+  /// What is worst, in words; empty where all is well.
+  std::string note() const;
   std::size_t unseen_alarms() const;
   std::size_t waiting() const;  // versions that wait for an operator
   /// Whether somebody has to act: any of the above, or no service. Never where it is not of the

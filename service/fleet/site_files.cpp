@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 
 const fs::path configurations = "etc/reident", units = "etc/systemd/system";
 
+constexpr const char* targets_name = "targets.json";
+
 constexpr std::string_view mark = "made by reident fleet init: change the table, and make it again";
 
 std::string configuration_of(const FleetInstance& instance, std::uint32_t domain) {
@@ -197,7 +199,7 @@ std::map<fs::path, std::string> site_files(const Fleet& fleet, const std::string
         fmt::format("no spacecraft of the table has the host {}: use one that [fleet.network] or a "
                     "[[spacecraft]] names",
                     host));
-  files[configurations / "targets.json"] = targets_of(fleet);
+  files[configurations / targets_name] = targets_of(fleet);
   return files;
 }
 
@@ -233,6 +235,22 @@ SiteChange change_of(const std::map<fs::path, std::string>& files, const fs::pat
   std::ranges::sort(change.gone);
   std::ranges::sort(change.stale);
   return change;
+}
+
+std::map<std::string, std::string> pages_in(const fs::path& folder) {
+  std::map<std::string, std::string> pages;
+  const fs::path file = folder / targets_name;
+  if (!is_of_table(file)) return pages;
+  const auto targets = nlohmann::json::parse(text_of(file), nullptr, false);
+  if (!targets.is_array()) return pages;
+  for (const auto& one : targets) {
+    const auto spacecraft = nlohmann::json::json_pointer("/labels/spacecraft");
+    const auto address = nlohmann::json::json_pointer("/targets/0");
+    if (one.contains(spacecraft) && one.contains(address) && one[spacecraft].is_string() &&
+        one[address].is_string())
+      pages[one[spacecraft]] = one[address];
+  }
+  return pages;
 }
 
 bool is_of_table(const fs::path& file) {

@@ -40,6 +40,10 @@ struct SiteChange {
 SiteChange change_of(const std::map<std::filesystem::path, std::string>& files,
                      const std::filesystem::path& root);
 
+/// HOST:PORT of the operators' pages, by spacecraft, that the targets in the folder of the
+/// configurations name; none where these are not of a table.
+std::map<std::string, std::string> pages_in(const std::filesystem::path& configurations);
+
 /// Whether site_files() gave the text of this file.
 bool is_of_table(const std::filesystem::path& file);
 

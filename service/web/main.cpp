@@ -28,7 +28,7 @@ constexpr unsigned query_threads = 2;
 constexpr std::size_t query_queue = 32;
 
 struct Arguments {
-  std::string config, accounts, audit, security;
+  std::string config, accounts, audit, security, fleet;
   bool hash_password = false;
   web::ServerOptions server;
 };
@@ -41,13 +41,14 @@ int serve(const Config& config, const Arguments& arguments, web::Accounts accoun
   web::LiveState live(endpoint, config.database);
   web::Access access(std::move(accounts));
   web::Audit audit(arguments.audit);
+  web::FleetView fleet(arguments.fleet);
   // Both end behind the threads of the pool and of the desk, which answer through them.
   std::optional<web::HttpServer> server;
   std::optional<web::Site> site;
   {
     web::QueryPool pool(config.database, query_threads, query_queue);
     web::OrderDesk orders(endpoint, addressee(config));
-    site.emplace(web::Site::Parts{config, live, pool, access, orders, audit,
+    site.emplace(web::Site::Parts{config, live, pool, access, orders, audit, fleet,
                                   [&server] { return server->counts(); }});
     server.emplace(
         arguments.server,
@@ -85,6 +86,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.name("reident-web");
   app.add_option("-c,--config", arguments.config,
                  "the service's configuration: its database, DDS domain, partition and name");
+  app.add_option("--fleet", arguments.fleet,
+                 "folder of the configurations of a site, such as /etc/reident: the page also "
+                 "shows how all of its spacecraft are")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--address", options.address,
                  "IP address to listen on; one that is not loopback needs --certificate")
       ->capture_default_str();

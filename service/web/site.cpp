@@ -31,10 +31,10 @@ constexpr std::array routes{
     Route{"/api/v1/gaps", gaps_view},           Route{"/api/v1/excluded", excluded_view},
     Route{"/api/v1/commands", commands_view}};
 
-constexpr std::array<std::string_view, 11> others = {
+constexpr std::array<std::string_view, 12> others = {
     "/page.js",         "/page.css",      "/api/v1/overview", "/api/v1/service",
     "/api/v1/session",  "/api/v1/orders", "/api/v1/changes",  "/api/v1/stream",
-    "/api/v1/refusals", "/api/v1/login",  "/api/v1/logout"};
+    "/api/v1/refusals", "/api/v1/login",  "/api/v1/logout",   "/api/v1/fleet"};
 
 std::uint64_t revision_in(std::string_view text) {
   std::uint64_t revision = 0;
@@ -91,6 +91,9 @@ void Site::get(HttpRequest&& request, const Respond& respond) {
           return json_response(overview_view(stored, parts_.config, configured_services()));
         },
         request.accepts_gzip, respond);
+  if (request.path == "/api/v1/fleet")
+    return parts_.pool.ask([this](const Stored&) { return json_response(parts_.fleet.view()); },
+                           request.accepts_gzip, respond);
   if (request.path == "/api/v1/session") return respond(session(request));
   if (request.path == "/api/v1/refusals") return respond(json_response(parts_.audit.last()));
   if (request.path == "/api/v1/stream")
@@ -209,7 +212,8 @@ HttpResponse Site::session(const HttpRequest& request) const {
                         {"role", account ? Json(name(account->role)) : Json()},
                         {"spacecraft", account ? Json(account->spacecraft) : Json::array()},
                         {"token", parts_.access.token(request)},
-                        {"has_passwords", parts_.access.has_passwords()}});
+                        {"has_passwords", parts_.access.has_passwords()},
+                        {"has_fleet", parts_.fleet.is_there()}});
 }
 
 void Site::metrics(bool compressed, const Respond& respond) {

@@ -7,6 +7,7 @@
 #include "service/config/config.hpp"
 #include "service/web/access.hpp"
 #include "service/web/audit.hpp"
+#include "service/web/fleet_view.hpp"
 #include "service/web/http.hpp"
 #include "service/web/live_state.hpp"
 #include "service/web/metrics.hpp"
@@ -25,6 +26,7 @@ class Site {
     Access& access;
     OrderDesk& orders;
     Audit& audit;
+    FleetView& fleet;
     std::function<ServerCounts()> counts;
   };
   explicit Site(Parts parts) : parts_(std::move(parts)) {}

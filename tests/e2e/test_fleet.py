@@ -2,7 +2,9 @@
 
 import json
 import os
+import re
 import unittest
+import urllib.request
 
 import pair
 import plant
@@ -26,7 +28,8 @@ partition = "{self.partition}/{{}}"
 data = "{self.folder}/data/{{}}"
 [fleet.network]
 host = "127.0.0.1"
-''' + "".join(f'[[spacecraft]]\nname = "{name}"\n' for name in self.names))
+''' + "".join(f'[[spacecraft]]\nname = "{name}"\n' for name in self.names) +
+                         'page = "127.0.0.1:8480"\n')  # of the last one
         status, text = self.reident("fleet", "init", table, "--root", self.folder)
         self.assertEqual(status, 0, text)
         self.configurations = self.folder / "etc/reident"
@@ -85,6 +88,26 @@ host = "127.0.0.1"
         self.assertEqual(code, 1)
         self.assertEqual({one["spacecraft"] for one in overview["equipment"]}, set(self.names))
         self.assertIn("no_service", [one["code"] for one in overview["alarms"]])
+
+    def test_a_page_shows_all_of_them(self):
+        services = {name: self.serve(name) for name in self.names[-2:]}
+        wait_until(lambda: sum(one["service"] for one in self.status()[1]) == 2, "two run")
+        web = self.start("reident-web", "--config",
+                         self.configurations / f"{self.names[-1]}.toml", "--port", 0, "--fleet",
+                         self.configurations, middleware=self.middleware(f"{self.names[-1]}-clients"))
+        wait_until(lambda: "url=" in web.text() or not web.running(), "the page is served")
+        url = re.search(r"url=(\S*/)", web.text())[1]
+
+        def rows():
+            with urllib.request.urlopen(url + "api/v1/fleet") as answer:
+                return {one["instance"]: one for one in json.load(answer)["instances"]}
+
+        self.assertEqual({name for name, one in rows().items() if one["service"]}, set(services))
+        self.assertEqual({name: one["page"] for name, one in rows().items() if one["page"]},
+                         {self.names[-1]: "127.0.0.1:8480"})
+        services[self.names[-2]].kill()
+        wait_until(lambda: not rows()[self.names[-2]]["service"], "a service that ended is seen")
+        self.assertIn("stopped", rows()[self.names[-2]]["note"])
 
     def acknowledged(self, name):
         status, text = self.reident("overview", "--json", "--config",

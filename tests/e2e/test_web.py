@@ -110,8 +110,20 @@ class WebCase(EndToEnd):
                       f'password = "{hashed.stdout.strip()}"']
         accounts = self.folder / "accounts.toml"
         accounts.write_text("\n".join(lines))
-        self.options = ["--accounts", accounts, "--audit", self.folder / "audit.jsonl"]
+        self.options = ["--accounts", accounts, "--audit", self.folder / "audit.jsonl", "--fleet",
+                        self.site()]
         return self.start_web(*self.options)
+
+    def site(self):
+        """The folder of a site: this service, and thirty that were never started."""
+        site = self.folder / "site"
+        site.mkdir()
+        text = (self.folder / "reident.toml").read_text()
+        (site / "SAT.toml").write_text(text.replace('"reident.db"', f'"{self.folder}/reident.db"'))
+        for number in range(30):
+            (site / f"SAT-{number}.toml").write_text(
+                text.replace('"reident.db"', f'"{site}/{number}.db"'))
+        return site
 
     def post(self, path, body, cookie="", token="", origin=None):
         status, headers, answer = self.request(
@@ -134,7 +146,7 @@ class WebCase(EndToEnd):
 class Web(WebCase):
     def test_every_answer_is_as_the_document_for_programs_says(self):
         self.flown()
-        self.start_web()
+        self.start_web("--fleet", self.site())
         document = self.get("/openapi.json")
         version = str(self.champion())
         values = {"spacecraft": "SAT", "equipment": "PLANT", "parameter": "out", "version": version}
@@ -158,6 +170,24 @@ class Web(WebCase):
                 ("events", {"kind": "x"}, 400)):
             answer = self.api(view, status, **parameters)
             self.conforms(document, {"$ref": "#/components/schemas/Error"}, answer, view)
+
+    def test_a_site_is_shown_the_worst_first(self):
+        self.flown()
+        self.start_web()
+        self.assertFalse(self.api("session")["has_fleet"])
+        self.assertIn("--fleet", self.api("fleet", 404)["error"]["message"])
+        self.start_web("--fleet", self.site(), name="of-the-site")
+        self.assertTrue(self.api("session")["has_fleet"])
+        *others, best = self.api("fleet")["instances"]
+        self.assertEqual((best["instance"], best["service"], best["with_champion"], best["act"]),
+                         ("SAT", True, 1, False))
+        self.assertEqual(len(others), 30)
+        for one in others:
+            self.assertTrue(one["act"])
+            self.assertIn("is not there", one["note"])
+        (self.folder / "empty").mkdir()
+        self.start_web("--fleet", self.folder / "empty", name="of-nothing")
+        self.assertIn("no configuration", self.api("fleet", 404)["error"]["message"])
 
     def test_it_shows_what_the_service_decided(self):
         self.flown()

@@ -105,33 +105,6 @@ int init(const Arguments& arguments) {
   return exit_done;
 }
 
-std::size_t with_champion(const Instance& instance) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(instance.rows, [](const auto& row) { return row.champion > 0; }));
-}
-
-/// The generation time that the equipment farthest behind has reached.
-std::optional<storage::Time> oldest_telemetry(const Instance& instance) {
-  std::optional<storage::Time> oldest;
-  for (const history::OverviewRow& row : instance.rows)
-    if (row.telemetry && (!oldest || *row.telemetry < *oldest)) oldest = row.telemetry;
-  return oldest;
-}
-
-std::string note_of(const Instance& instance) {
-  if (!instance.is_of_site) return "never started, and in no table of the site";
-  if (!instance.problem.empty()) return instance.problem;
-  const std::string stopped =
-      instance.has_service.value_or(true)
-          ? ""
-          : fmt::format("stopped: journalctl -u reidentd@{} says why", instance.name);
-  for (const storage::Alarm& alarm : instance.alarms)
-    if (alarm.acknowledged_by.empty())
-      return fmt::format("{}{}{}: {}", stopped, stopped.empty() ? "" : "; ", alarm.code,
-                         alarm.text);
-  return stopped;
-}
-
 std::string service_of(const Instance& instance) {
   if (!instance.has_service) return "?";
   return *instance.has_service ? "runs" : "none";
@@ -149,11 +122,12 @@ std::string table_text(const std::vector<Instance>& instances, std::size_t shown
   const storage::Time now = utc_now();
   for (std::size_t i = 0; i < shown; ++i) {
     const Instance& one = instances[i];
-    const auto telemetry = oldest_telemetry(one);
-    table.add({one.name, service_of(one), fmt::format("{}/{}", with_champion(one), one.rows.size()),
-               fmt::format("{}", one.waiting()), fmt::format("{}", one.unseen_alarms()),
-               telemetry ? rough_duration_text(now - *telemetry) : "-", note_of(one)},
-              shows_colours() && one.needs_action() ? Table::Look::urgent : Table::Look::plain);
+    const auto telemetry = one.oldest_telemetry();
+    table.add(
+        {one.name, service_of(one), fmt::format("{}/{}", one.with_champion(), one.rows.size()),
+         fmt::format("{}", one.waiting()), fmt::format("{}", one.unseen_alarms()),
+         telemetry ? rough_duration_text(now - *telemetry) : "-", one.note()},
+        shows_colours() && one.needs_action() ? Table::Look::urgent : Table::Look::plain);
   }
   return table.text(terminal_width());
 }
@@ -189,7 +163,7 @@ void print_table(const std::vector<Instance>& instances, bool all) {
 void print_json(const std::vector<Instance>& instances) {
   ordered_json list = ordered_json::array();
   for (const Instance& one : instances) {
-    const auto telemetry = oldest_telemetry(one);
+    const auto telemetry = one.oldest_telemetry();
     ordered_json alarms = ordered_json::array();
     for (const storage::Alarm& alarm : one.alarms) alarms.push_back(alarm_json(alarm));
     list.push_back({{"instance", one.name},
@@ -198,8 +172,9 @@ void print_json(const std::vector<Instance>& instances) {
                     {"problem", text_json(one.problem)},
                     {"service", one.has_service ? ordered_json(*one.has_service) : ordered_json()},
                     {"equipment", one.rows.size()},
-                    {"with_champion", with_champion(one)},
+                    {"with_champion", one.with_champion()},
                     {"waiting", one.waiting()},
+                    {"page", text_json(one.page)},
                     {"telemetry", telemetry ? ordered_json(time_text(*telemetry)) : ordered_json()},
                     {"alarms", alarms}});
   }

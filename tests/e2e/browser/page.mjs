@@ -47,6 +47,7 @@ const addresses = {
   "equipment-table": `#/equipment?${named}&show=table`,
   version: `#/version?${named}&version=${line.champion ?? line.waiting[0]}`,
   events: "#/events", runs: "#/runs", telemetry: "#/telemetry?find=" + outputs[0].name, handover: "#/handover", service: "#/service",
+  fleet: "#/fleet",
 };
 
 async function everyView(theme, width) {

@@ -7,11 +7,12 @@ import { durationText, timeText, toggleZone } from "./format";
 import { Who } from "./decide";
 import { begin, clockError, useChanges } from "./live";
 import { useZone } from "./parts";
-import { learn } from "./session";
+import { learn, useSession } from "./session";
 import { go, link, usePlace, type Place } from "./url";
 import { CompletenessView } from "./views/completeness";
 import { EquipmentView } from "./views/equipment";
 import { EventsView } from "./views/events";
+import { FleetView } from "./views/fleet";
 import { HandoverView } from "./views/handover";
 import { Overview } from "./views/overview";
 import { ServiceView } from "./views/service";
@@ -20,11 +21,11 @@ import { VersionView } from "./views/version";
 import { WaitingView } from "./views/waiting";
 
 const views: [string, string][] = [
-  ["overview", "Overview"], ["waiting", "Waiting"], ["events", "Events"], ["runs", "Simulators"], ["telemetry", "Telemetry"], ["handover", "Handover"], ["service", "Service"],
+  ["overview", "Overview"], ["waiting", "Waiting"], ["events", "Events"], ["runs", "Simulators"], ["telemetry", "Telemetry"], ["handover", "Handover"], ["service", "Service"], ["fleet", "Fleet"],
 ];
 
 const keys: [string, string][] = [
-  ["j, k", "next, previous row"], ["Enter", "open the row"], ["g then o, w, e, r, t, h, s", "overview, waiting, events, simulators, telemetry, handover, service"],
+  ["j, k", "next, previous row"], ["Enter", "open the row"], ["g then o, w, e, r, t, h, s, f", "overview, waiting, events, simulators, telemetry, handover, service, fleet"],
   ["+, −", "closer, farther in time"], ["←, →", "earlier, later"], ["[, ]", "previous, next decision"], ["0", "the usual range"],
   ["t", "plot or table"], ["u", "UTC or the zone of this computer"], ["d", "light, dark, high contrast"], ["?", "these keys"], ["Esc", "close"],
 ];
@@ -50,6 +51,7 @@ function View({ view, parameters }: Place) {
     case "telemetry": return <CompletenessView parameters={parameters} />;
     case "handover": return <HandoverView parameters={parameters} />;
     case "service": return <ServiceView />;
+    case "fleet": return <FleetView />;
     default: return <p class="error" role="alert">There is no view {view}. <a href="#/overview">Overview</a></p>;
   }
 }
@@ -139,6 +141,7 @@ function Help({ close }: { close: () => void }) {
 function Page() {
   const place = usePlace();
   const zone = useZone();
+  const { has_fleet } = useSession();
   const [help, setHelp] = useState(false);
   const awaiting = useRef(false);  // a second key after g
   useEffect(() => {
@@ -176,7 +179,7 @@ function Page() {
       <header>
         <a class="brand" href="#/overview">reident</a>
         <nav aria-label="views">
-          {views.map(([name, title]) => <a href={link(name)} aria-current={place.view === name ? "page" : undefined}>{title}</a>)}
+          {views.filter(([name]) => name !== "fleet" || has_fleet).map(([name, title]) => <a href={link(name)} aria-current={place.view === name ? "page" : undefined}>{title}</a>)}
         </nav>
         <Pulse />
         <span class="tools">

@@ -8,11 +8,12 @@ export interface Session {
   spacecraft: string[];  // none: every one
   token: string;
   has_passwords: boolean;
+  has_fleet: boolean;
 }
 
 export type Role = "operator" | "approver";
 
-const nobody: Session = { user: null, role: null, spacecraft: [], token: "", has_passwords: false };
+const nobody: Session = { user: null, role: null, spacecraft: [], token: "", has_passwords: false, has_fleet: false };
 let current = nobody;
 const listeners = new Set<() => void>();
 
