@@ -56,9 +56,9 @@
 #                                         real systemd, networks that are cut, a pair of services whose
 #                                         leader is killed or hangs, what seven kinds of intruders see
 #                                         and reach, and what security costs; and a soak: telemetry
-#                                         at 300 times real time while services, disks, clocks and
-#                                         networks fail at random. Needs root; says what it leaves
-#                                         out. The last line is one JSON object
+#                                         at 300 times real time (--speed N) while services, disks,
+#                                         clocks and networks fail at random. Needs root; says what
+#                                         it leaves out. The last line is one JSON object
 #   tests/bench/run.sh fuzz [TARGET...] [--runs N] [--seconds N]
 #                                         libFuzzer's targets of tests/fuzz, 10 million inputs each
 #                                         or for an hour. The last line is one JSON object

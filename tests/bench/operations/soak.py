@@ -334,7 +334,8 @@ class Soak(PairOfServices):
         figures = self.registry_figures(operator)
         grown = [life for life in self.lives if life.grew()]
         self.figures = {
-            "soak_minutes": ARGUMENTS.minutes, "soak_seed": ARGUMENTS.seed,
+            "soak_minutes": ARGUMENTS.minutes, "soak_speed": ARGUMENTS.speed,
+            "soak_seed": ARGUMENTS.seed,
             "soak_days_of_telemetry": round(frames / 86400, 2), "soak_samples": cells,
             "soak_samples_missing": 0, "soak_failures": dict(sorted(self.failures.items())),
             **{f"soak_{name}": value for name, value in figures.items()},
