@@ -24,11 +24,10 @@ std::variant<std::filesystem::path, Refusal> database_path(const DatabaseOptions
 }
 
 void add_file_argument(CLI::App& command, DatabaseOptions& options, const std::string& what) {
-  CLI::Option* file = command.add_option("file,--database,--db", options.database, what);
-  command
-      .add_option("--config", options.config,
-                  fmt::format("configuration that names the database ({})", default_config_file))
-      ->excludes(file);
+  command.add_option("file,--database,--db", options.database, what);
+  command.add_option(
+      "--config", options.config,
+      fmt::format("configuration that names the database ({})", default_config_file));
 }
 
 void add_database_options(CLI::App& command, DatabaseOptions& options) {

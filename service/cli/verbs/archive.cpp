@@ -104,6 +104,7 @@ std::function<int()> declare(CLI::App& command) {
   CLI::App* parts =
       command.add_subcommand("split", "Move the telemetry of closed years into files of their own");
   add_file_argument(*parts, arguments->database, "database, which no service may hold");
+  parts->get_option("--config")->excludes("--database");
   parts
       ->add_option("--before", arguments->before,
                    "first year that stays in the database; else that of the newest telemetry")
