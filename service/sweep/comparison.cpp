@@ -35,10 +35,10 @@ ordered_json percent(const Sums& sums) {
   return sums.rows > 0 && std::isfinite(mrse) ? ordered_json(mrse) : ordered_json();
 }
 
-/// Of cycles, by their begin: the logarithm of the champion's error over the least one.
+/// Logarithms of the champion's error over the least one, by the begin of the cycle.
 using Regrets = std::map<Time, double>;
 
-/// Of those that `others` has too. Null without one.
+/// Mean over the cycles that `others` has too, as a ratio; null without one.
 ordered_json geometric_mean(const Regrets& regrets, const Regrets& others) {
   double sum = 0;
   std::size_t count = 0;
@@ -79,7 +79,7 @@ class ServedVersions {
     return score;
   }
 
-  /// Of cycles of this length in the range, behind run().
+  /// Cycles are of this length and in the range. Call it behind run(), which tells what compares.
   Regrets regrets(TimeRange range, Duration cycle) const;
 
   ordered_json json(TimeRange range, const Regrets& regrets) const {

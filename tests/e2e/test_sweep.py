@@ -95,9 +95,9 @@ class Sweep(EndToEnd):
 
     def test_a_folder_that_cannot_be_written_is_named(self):
         self.sweep_plan_only("sealed")
-        failed = self.folder / "sealed" / "candidates"
-        failed.rename(self.folder / "away")
-        failed.write_text("a file")
+        candidates = self.folder / "sealed" / "candidates"
+        candidates.rename(self.folder / "away")
+        candidates.write_text("a file")
         status, text = self.reident("sweep", self.folder / "sealed")
         self.assertEqual(status, 1, text)
         self.assertIn("sealed/candidates", text)

@@ -64,6 +64,26 @@ export function useAnswer<T>(path: string | null, parameters: Record<string, str
   return answer;
 }
 
+/** The answer to a question that is asked again every few seconds. */
+export function usePolled<T>(path: string, seconds: number): Answer<T> {
+  const [answer, set] = useState<Answer<T>>({ data: null, error: "", loading: true });
+  useEffect(() => {
+    const abort = new AbortController();
+    const look = () => ask<T>(path, {}, abort.signal)
+      .then((data) => set({ data, error: "", loading: false }))
+      .catch((error) => {
+        if (!abort.signal.aborted) set((before) => ({ ...before, error: String(error.message ?? error), loading: false }));
+      });
+    look();
+    const timer = setInterval(look, 1000 * seconds);
+    return () => {
+      clearInterval(timer);
+      abort.abort();
+    };
+  }, [path, seconds]);
+  return answer;
+}
+
 export const isDecision = (change: Change) => change.event === "registry";
 export const isAbout = (spacecraft?: string, equipment?: string) => (change: Change) =>
   change.event === "registry" && change.data.spacecraft === spacecraft && change.data.equipment === equipment;

@@ -1,6 +1,6 @@
 // How all spacecraft of the site are, the worst first.
-import { useEffect, useState } from "preact/hooks";
-import { ask, type Answer } from "../api";
+import { useState } from "preact/hooks";
+import { usePolled } from "../api";
 import { timeText, unknown } from "../format";
 import { Loaded, useZone } from "../parts";
 import { Table } from "../table";
@@ -25,25 +25,6 @@ interface FleetAnswer {
 const refresh = 5;  // [s]
 const rowsOfScreen = 16;  // their notes may take two lines
 
-function useFleet(): Answer<FleetAnswer> {
-  const [answer, set] = useState<Answer<FleetAnswer>>({ data: null, error: "", loading: true });
-  useEffect(() => {
-    const abort = new AbortController();
-    const look = () => ask<FleetAnswer>("fleet", {}, abort.signal)
-      .then((data) => set({ data, error: "", loading: false }))
-      .catch((reason) => {
-        if (!abort.signal.aborted) set((before) => ({ ...before, error: String(reason.message ?? reason), loading: false }));
-      });
-    look();
-    const timer = setInterval(look, 1000 * refresh);
-    return () => {
-      clearInterval(timer);
-      abort.abort();
-    };
-  }, []);
-  return answer;
-}
-
 /** Where the database cannot be read nothing is known. */
 const known = (row: Instance, text: string) => (row.equipment === 0 ? unknown : text);
 
@@ -56,7 +37,7 @@ function summary(instances: Instance[]): string {
 
 export function FleetView() {
   const zone = useZone();
-  const answer = useFleet();
+  const answer = usePolled<FleetAnswer>("fleet", refresh);
   const [all, setAll] = useState(false);
   return (
     <Loaded answer={answer}>

@@ -1,6 +1,5 @@
 // The services of the partition, the database, and this page's own server.
-import { useEffect, useState } from "preact/hooks";
-import { ask, type Service, type ServiceAnswer } from "../api";
+import { usePolled, type Service, type ServiceAnswer } from "../api";
 import { bytesText, count, durationText, timeText } from "../format";
 import { Facts, useZone } from "../parts";
 
@@ -48,14 +47,7 @@ function One({ service, zone }: { service: Service; zone: string }) {
 
 export function ServiceView() {
   const zone = useZone();
-  const [answer, set] = useState<ServiceAnswer | null>(null);
-  const [error, setError] = useState("");
-  useEffect(() => {
-    const look = () => ask<ServiceAnswer>("service", {}).then((data) => { set(data); setError(""); }, (reason) => setError(String(reason.message ?? reason)));
-    look();
-    const timer = setInterval(look, 2000);
-    return () => clearInterval(timer);
-  }, []);
+  const { data: answer, error } = usePolled<ServiceAnswer>("service", 2);
   if (error) return <p class="error" role="alert">{error}</p>;
   if (!answer) return <p class="empty" aria-busy="true">Asking …</p>;
   const { configured, database, page } = answer;
