@@ -336,12 +336,16 @@ std::optional<storage::CommandOutcome> Daemon::carry_out(const storage::Command&
                                             config_.service_name, leader)};
   };
   if (!leads()) return does_not_lead();
+  bool hands_over = false;  // not for a copy of a command: leadership was given away by then
   const CommandContext context{
       equipment_of(config_),
       [this](const storage::EquipmentName& equipment, const std::string& cause) {
         return feed_.ask(equipment.spacecraft, equipment.equipment, cause);
       },
-      [this](const storage::Command& one) { return hand_over(one); }};
+      [&](const storage::Command& one) {
+        hands_over = true;
+        return hand_over(one);
+      }};
   storage::CommandOutcome outcome;
   try {
     writer_
@@ -358,7 +362,7 @@ std::optional<storage::CommandOutcome> Daemon::carry_out(const storage::Command&
   // One that the other service may not have is sent again, and answered by whoever leads then.
   if (pair_ && !pair_->share(reader)) return std::nullopt;
   if (!outcome.ok) return outcome;
-  if (command.action == "switch_over") pair_->hand_over();
+  if (hands_over) pair_->hand_over();
   for (const storage::EquipmentName& equipment : reader.equipment())
     if (equipment.equipment == command.equipment) publisher_.publish_champion(reader, equipment);
   return outcome;

@@ -8,6 +8,7 @@ import json
 import os
 import shutil
 import signal
+import socket
 import sqlite3
 import subprocess
 import tempfile
@@ -31,6 +32,22 @@ def wait_until(condition, what, deadline_s=DEADLINE_S):
         if time.monotonic() > end:
             raise AssertionError(f"after {deadline_s:g} s still not: {what}")
         time.sleep(0.02)  # poll
+
+
+def claim_domain(domains):
+    """One of these that no other test on this machine has, until the socket is closed or its process
+    ends: (domain, socket)."""
+    def claimed():
+        for domain in domains:
+            claim = socket.socket(socket.AF_UNIX)
+            try:
+                claim.bind(f"\0reident-test-domain-{domain}")
+                return domain, claim
+            except OSError:
+                claim.close()
+        return None
+
+    return wait_until(claimed, "a domain of its own is free", 2 * DEADLINE_S)
 
 
 class Process:
@@ -80,9 +97,16 @@ class Process:
 
 
 class EndToEnd(unittest.TestCase):
+    # Where set, a test shares its domain, and so its ports, with no other one.
+    own_domains = None
+
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="reident-e2e-"))
-        self.domain = 31 + os.getpid() % 170  # those before: test_many_simulators.py, test_fleet.py
+        if self.own_domains:
+            self.domain, claim = claim_domain(self.own_domains)
+            self.addCleanup(claim.close)
+        else:
+            self.domain = 31 + os.getpid() % 170
         self.partition = f"test-{os.getpid()}-{self._testMethodName}"[:60]
         self.processes = []
         self.addCleanup(self._end)

@@ -1,7 +1,6 @@
 """A hundred simulators on one machine: they find the service, and not each other."""
 
 import json
-import os
 import unittest
 
 import plant
@@ -12,10 +11,10 @@ PORTS = 104  # of simulators of a domain (service/dds/domain.cpp)
 
 
 class ManySimulators(EndToEnd):
+    own_domains = range(1, 11)  # all ports are taken
+
     def setUp(self):
         super().setUp()
-        # Of no other test, since all ports are taken: a domain each for these two.
-        self.domain = 1 + 2 * (os.getpid() % 5) + ("late" in self.id())
         self.configure([plant.equipment(name=name) for name in EQUIPMENT])
 
     def start_simulators(self, count):

@@ -115,6 +115,12 @@ class Pair(PairOfServices, test_web.WebCase):
         self.assert_same_rows()
         self.assertEqual(self.ask(1, "SELECT action, actor, ok FROM command"),
                          [("switch_over", "Ana", 1)])
+        [(requester, request)] = self.ask(2, "SELECT requester, request FROM command")
+        copy = self.start("repeat_command", *self.endpoint()[1::2], "reident-2", "switch_over",
+                          requester, request, "Ana", "new disk")
+        self.assertEqual(copy.wait(), 0, copy.text())
+        self.assertIn("reident-1 gives leadership", copy.text(), "a copy gets the first reply")
+        self.assertTrue(self.leads(2, follower=1), "and does nothing")
         status, text = self.reident("simulators", "--json", *self.endpoint())
         self.assertEqual(json.loads(text)["services"], 1, "one of a pair publishes")
         # One that stands by says who leads.
