@@ -79,6 +79,14 @@ class Sides:
                                     env={**os.environ, "CYCLONEDDS_URI": XML})
 
 
+def wait_until(condition, what):
+    deadline = time.monotonic() + 60
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"after a minute still not: {what}")
+        time.sleep(0.1)  # poll
+
+
 def stored(database, what):
     with sqlite3.connect(f"file:{database}?mode=ro", uri=True, timeout=10) as connection:
         return connection.execute(what).fetchone()[0] or 0
@@ -93,6 +101,8 @@ def measure(sides, programs, cut, source_options, frames, disturb):
             f'[archive]\ndatabase = "reident.db"\n{dds}{EQUIPMENT}')
         service = sides.start(1, folder / "service.log", programs / "daemon/reidentd", "--config",
                               folder / "reident.toml")
+        wait_until(lambda: "service: started" in (folder / "service.log").read_text()
+                   or service.poll() is not None, "the service started")
         source = sides.start(0, folder / "source.log", programs / "satcs/satcs-reference",
                              "--duration", f"{frames}s", "--json", *source_options)
         try:
@@ -115,11 +125,7 @@ def measure(sides, programs, cut, source_options, frames, disturb):
 
 def cut_for_a_minute(sides):
     def disturb(database):
-        deadline = time.monotonic() + 60
-        while not database.exists() or not stored(database, "SELECT sum(samples) FROM series"):
-            if time.monotonic() > deadline:
-                raise AssertionError("no telemetry came")
-            time.sleep(0.1)  # poll
+        wait_until(lambda: stored(database, "SELECT sum(samples) FROM series"), "telemetry comes")
         time.sleep(BEFORE_S)
         sides.drop("")
         time.sleep(CUT_S)
