@@ -170,7 +170,7 @@ REIDENT_INLINE void state_space_steps(const double* M, Index n, Index m, Index p
   for (Index j = 0; j < n + m; ++j)
     __builtin_memcpy(columns[j], M + j * (n + p), static_cast<std::size_t>(n + p) * sizeof(double));
   double next[4 * Quads] = {};
-  __builtin_memcpy(next, state, static_cast<std::size_t>(n) * sizeof(double));
+  if (n > 0) __builtin_memcpy(next, state, static_cast<std::size_t>(n) * sizeof(double));
   for (Index k = 0; k < count; ++k, v += m, y += p) {
     Four even[Quads] = {}, odd[Quads] = {};
     for (Index j = 0; j < m; ++j)
@@ -182,7 +182,7 @@ REIDENT_INLINE void state_space_steps(const double* M, Index n, Index m, Index p
     for (std::size_t q = 0; q < Quads; ++q) store(next + 4 * q, even[q] + odd[q]);
     copy_few(next + n, p, y);
   }
-  __builtin_memcpy(state, next, static_cast<std::size_t>(n) * sizeof(double));
+  if (n > 0) __builtin_memcpy(state, next, static_cast<std::size_t>(n) * sizeof(double));
 }
 
 /// Does what state_space_steps() does for any size.
