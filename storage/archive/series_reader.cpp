@@ -40,12 +40,13 @@ SampleRange range_of(std::int64_t series, const sqlite::Query& row) {
 }
 
 // In [first, last], at the rate of this chunk: so that vectors are made once, not grown by copying.
+// What a damaged chunk says may be anything.
 std::size_t samples_expected(const SampleRange& chunk, Time first, Time last) {
   constexpr double most = 1 << 22;
   const double rate = static_cast<double>(chunk.samples) /
                       (static_cast<double>(chunk.last) - static_cast<double>(chunk.first) + 1);
   const double expected = rate * (static_cast<double>(last) - static_cast<double>(first));
-  return static_cast<std::size_t>(std::min(expected * 1.01 + 16, most));
+  return expected > 0 ? static_cast<std::size_t>(std::min(expected * 1.01 + 16, most)) : 0;
 }
 
 }  // namespace

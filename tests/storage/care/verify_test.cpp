@@ -191,6 +191,15 @@ TEST_F(Verify, FindsEachContradiction) {
   }
 }
 
+TEST_F(Verify, AFirstChunkThatEndsBeforeItBeginsEndsNoRead) {
+  rows(path,
+       "UPDATE chunk SET last_time = first_time - 5 WHERE series = 1 AND first_time = 64000000000");
+  Database database(path, Mode::read_only);
+  const Archive archive(database);
+  const Series held = archive.read("CB4", Origin::real, 1, {64 * second_ns - 5, 86400 * second_ns});
+  EXPECT_GT(held.time.size(), 600U) << "all but those before";
+}
+
 TEST_F(Verify, FindsWhatContradictsTheSamplesOfASeries) {
   const Damage damages[] = {
       {"UPDATE series SET samples = samples + 1 WHERE id = 1",
