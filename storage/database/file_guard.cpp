@@ -1,6 +1,7 @@
 #include "storage/database/file_guard.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <optional>
 #include <string_view>
@@ -24,17 +25,18 @@ struct Extent {
   std::uint64_t pages = 0;
 };
 
-/// Absent where there is no whole header of an SQLite file.
+/// Absent where no file of SQLite begins so.
 std::optional<Extent> extent_of(const sqlite::Connection& connection) {
   std::array<unsigned char, 32> header{};
   const std::size_t there = connection.read_raw(header);
   const std::size_t compared = std::min(there, magic.size());
   if (there == 0 || std::memcmp(header.data(), magic.data(), compared) != 0) return std::nullopt;
   if (there < header.size()) return Extent{.page_size = 512, .pages = 1};  // the least there is
-  const std::uint64_t page_size = header[16] * 256U + header[17];
-  std::uint64_t pages = 0;
+  std::uint64_t page_size = header[16] * 256U + header[17], pages = 0;
+  if (page_size == 1) page_size = 65536;
+  if (page_size < 512 || !std::has_single_bit(page_size)) return std::nullopt;
   for (std::size_t i = 28; i < 32; ++i) pages = pages * 256 + header[i];
-  return Extent{page_size == 1 ? 65536 : page_size, pages};
+  return Extent{page_size, pages};
 }
 
 std::string in_words(std::int64_t size, const Extent& extent) {

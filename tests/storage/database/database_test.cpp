@@ -81,6 +81,10 @@ TEST(Database, RefusesWhatItCannotUse) {
   for (std::size_t i = 0; i < garbage.size(); ++i) garbage[i] = static_cast<char>(i * i * 7 + 13);
   write_file(folder / "garbage", garbage);
   write_file(folder / "text", "time,V_BUS\n0,28.1\n");
+  { const Database made(folder / "made.db", Mode::read_write); }
+  std::string no_page_size = read_file(folder / "made.db");
+  no_page_size.replace(16, 2, 2, '\0');
+  write_file(folder / "no_page_size", no_page_size);
   rows(folder / "foreign.db", "CREATE TABLE theirs (x); INSERT INTO theirs VALUES (1)");
   rows(folder / "foreign2.db", "CREATE TABLE theirs (x); PRAGMA application_id = 77");
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
@@ -93,6 +97,7 @@ TEST(Database, RefusesWhatItCannotUse) {
       {"no/such/a.db", "its folder does not exist"},
       {"garbage", "is not a database"},
       {"text", "is not a database"},
+      {"no_page_size", "is not a database"},
       {"foreign.db", "was not made by reident"},
       {"foreign2.db", "was not made by reident"},
       {"pipe", "is not a regular file"},
