@@ -170,6 +170,7 @@ REIDENT_INLINE void state_space_steps(const double* M, Index n, Index m, Index p
   for (Index j = 0; j < n + m; ++j)
     __builtin_memcpy(columns[j], M + j * (n + p), static_cast<std::size_t>(n + p) * sizeof(double));
   double next[4 * Quads] = {};
+  // Without states their pointer may be null, which a copy of no bytes does not take either.
   if (n > 0) __builtin_memcpy(next, state, static_cast<std::size_t>(n) * sizeof(double));
   for (Index k = 0; k < count; ++k, v += m, y += p) {
     Four even[Quads] = {}, odd[Quads] = {};

@@ -106,7 +106,7 @@ class EndToEnd(unittest.TestCase):
             self.domain, claim = claim_domain(self.own_domains)
             self.addCleanup(claim.close)
         else:
-            self.domain = 31 + os.getpid() % 170
+            self.domain = 31 + os.getpid() % 170  # behind all own_domains
         self.partition = f"test-{os.getpid()}-{self._testMethodName}"[:60]
         self.processes = []
         self.addCleanup(self._end)

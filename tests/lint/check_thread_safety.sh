@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
 # Compiles, without output, every source that can see an annotated mutex with clang's analysis; those
-# of a folder together, as the build does.
-#   check_thread_safety.sh CLANG++ EXPORTS SOURCES
+# of a folder together.
+#   check_thread_safety.sh CLANG++ SOURCES
 set -euo pipefail
 compile=("$1" -std=c++20 -fsyntax-only -Wno-everything -Wthread-safety -Werror=thread-safety
-         -isystem /usr/include/eigen3 -I "$3")
-for component in "$2"/*/; do compile+=(-I "$component"); done
-cd "$3"
+         -isystem /usr/include/eigen3 -I "$2")
+cd "$2"
 # reader_impl.hpp needs types that the build generates.
 headers=$(grep -rl 'support/mutex[.]hpp' --include='*.hpp' service | grep -v dds/reader_impl |
           xargs -n 1 basename | paste -sd'|')

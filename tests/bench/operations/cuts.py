@@ -18,6 +18,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from packages import wait_until
+
 TOOLS = ["ip", "nft"]
 RATE, CUT_S, BEFORE_S, AFTER_S = 100, 60, 10, 25
 XML = ('<CycloneDDS><Domain Id="any"><General><Interfaces><NetworkInterface name="veth"/></Interfaces>'
@@ -77,14 +79,6 @@ class Sides:
             return subprocess.Popen(["ip", "netns", "exec", self.names[side], *map(str, words)],
                                     stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
                                     env={**os.environ, "CYCLONEDDS_URI": XML})
-
-
-def wait_until(condition, what):
-    deadline = time.monotonic() + 60
-    while not condition():
-        if time.monotonic() > deadline:
-            raise AssertionError(f"after a minute still not: {what}")
-        time.sleep(0.1)  # poll
 
 
 def stored(database, what):
