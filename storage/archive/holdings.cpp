@@ -90,7 +90,11 @@ bool SeriesBatches::next(SampleColumns& batch) {
           "SELECT first_time FROM chunk WHERE series = ? AND first_time > ? ORDER BY first_time "
           "LIMIT 1 OFFSET ?",
           series_, range_.begin, chunks_ - 1);
-      if (row.step()) end = std::min(end, row.integer(0));
+      if (row.step()) {
+        if (row.integer(0) <= range_.begin)
+          database_->impl().connection->fail_out_of_order("chunk");
+        end = std::min(end, row.integer(0));
+      }
     }
     batch = archive_access(*database_).reader().read(series_, {range_.begin, end}, wanted_);
     at_end_ = end == range_.end;

@@ -81,7 +81,7 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
     from = std::max(batches.integer(0), batches.integer(2));
     to = batches.integer(1);
   }
-  if (to - from > schema::most_batches)
+  if (schema::are_too_many_batches(from, to))
     throw Error(
         Error::Kind::corrupt,
         "database " + connection_.path() + " has recent samples of batches " +

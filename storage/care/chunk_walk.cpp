@@ -90,6 +90,7 @@ void ChunkWalk::find_next(Place& place) {
           "WHERE series = ? AND chunk.first_time >= ? ORDER BY chunk.first_time LIMIT 1",
           place.series, *place.from);
       if (!row.step()) return;
+      if (row.integer(0) < *place.from) connection_.fail_out_of_order("chunk");
       place.next = Step{{place.series,
                          row.integer(0),
                          row.integer(1),

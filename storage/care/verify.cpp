@@ -57,8 +57,10 @@ void verify_data_rows(Connection& connection, const DataReferences& references,
       rows = 0;
       sqlite::Query row = connection.query(
           "SELECT id FROM chunk_data WHERE id > ? ORDER BY id LIMIT ?", last, rows_of_snapshot);
-      for (; row.step(); ++rows)
+      for (; row.step(); ++rows) {
+        if (row.integer(0) <= last) connection.fail_out_of_order("chunk_data");
         if (last = row.integer(0); !references.has(last)) doubtful.insert(last);
+      }
     }
   }
   if (doubtful.empty()) return;

@@ -132,6 +132,7 @@ void SeriesVerifier::read_recent(std::int64_t series) {
   sqlite::Query row = connection_.query(
       "SELECT first_time, last_time, samples, data FROM recent WHERE batch = ? AND series = ?");
   for (std::int64_t batch = moved_; next.bind(batch).step() && !next.is_null(0);) {
+    if (next.integer(0) <= batch) connection_.fail_out_of_order("recent");
     batch = next.integer(0);
     if (!row.bind(batch, series).step()) continue;
     const Time first = row.integer(0), last = row.integer(1);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -11,9 +12,14 @@ namespace reident::storage::schema {
 inline constexpr std::int64_t application_id = 0x72656964;  // "reid"
 inline constexpr std::int64_t version = 10;                 // kept in SQLite's user_version
 
-/// The batches of the table `recent` are numbered within so many. Far above what any configuration
-/// lets wait: a number beyond it is a damaged one, and nobody counts up to it.
-inline constexpr std::int64_t most_batches = 1 << 24;
+/// Whether `first` to `last` cannot be the batches of the table `recent`, for far more than any
+/// configuration lets wait: a damaged number is one of them, and nobody counts up to it.
+constexpr bool are_too_many_batches(std::int64_t first, std::int64_t last) {
+  constexpr std::uint64_t most = 1 << 24;
+  if (last < first) return false;
+  return last == std::numeric_limits<std::int64_t>::max() ||
+         static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first) > most;
+}
 
 /// A table whose rows the services of a pair share, and the columns that name a row in the journal.
 struct JournalledTable {

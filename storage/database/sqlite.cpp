@@ -225,6 +225,13 @@ sqlite3_stmt* Connection::prepared(std::string_view sql) {
   return kept.get();
 }
 
+void Connection::fail_out_of_order(std::string_view table) const {
+  throw Error(Error::Kind::corrupt, "database " + path() + " has rows of the table " +
+                                        std::string(table) +
+                                        " out of order: restore a backup, or see what 'reident "
+                                        "verify' says");
+}
+
 sqlite3_file* Connection::file() const {
   sqlite3_file* file = nullptr;
   sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_FILE_POINTER, &file);

@@ -121,6 +121,9 @@ class Connection {
   std::uint64_t rollbacks() const { return *rollbacks_; }
   bool in_transaction() const { return sqlite3_get_autocommit(handle_.get()) == 0; }
   sqlite3* handle() { return handle_.get(); }
+  /// Throws Error corrupt: a statement that goes through `table` by its keys was not given a later
+  /// one, as by a key that is no integer, and would never end.
+  [[noreturn]] void fail_out_of_order(std::string_view table) const;
 
   /// The first bytes of the file as they are on the disk, past cache and log; the number of those
   /// that there are. Through SQLite's own handle of the file: closing any other one would take

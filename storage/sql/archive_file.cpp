@@ -186,7 +186,7 @@ const std::vector<ArchiveFile::Fragment>& ArchiveFile::fragments(const SeriesNam
   const std::int64_t last = batches.integer(1);
   if (last <= series.moved) return place->second;
   const std::int64_t begin = std::max(batches.integer(0), series.moved + 1);
-  if (last - begin > schema::most_batches) {
+  if (schema::are_too_many_batches(begin, last)) {
     const std::string file = archive_name(connection_);
     throw QueryError(SQLITE_CORRUPT_VTAB, "telemetry: " + file + " has recent samples of batches " +
                                               std::to_string(begin) + " to " +

@@ -1,5 +1,10 @@
 // A database with any damage is opened for reading and read, or refused with a reason; whatever it
-// holds, nothing but storage's error ends a read. The bytes are places and new bytes of a good one.
+// holds, nothing but storage's error ends a read. The bytes are places and new bytes of a good one,
+// after one that says whether they are on its pages of the schema. TMPDIR is best in memory.
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -8,10 +13,12 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "storage/archive/archive.hpp"
 #include "storage/care/verify.hpp"
+#include "storage/database/connection.hpp"
 #include "storage/registry/registry.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -107,22 +114,65 @@ void read(Database& database) {
   look([&] { verify(database, {}, [](const VerifyProgress&) { return true; }); });
 }
 
+/// A good file, which is changed for each input and put back. It stays open where its schema is as
+/// it was: opening takes many times as long as all reading.
+class ChangedFile {
+ public:
+  ChangedFile() : good_(good_file(path_)), database_(open()) {
+    const std::string_view content(good_.data(), good_.size());
+    for (std::size_t page = 0; page < good_.size(); page += page_bytes) {
+      const bool of_schema =
+          page == 0 || content.substr(page, page_bytes).find("CREATE ") != content.npos;
+      (of_schema ? schema_pages_ : other_pages_).push_back(page);
+    }
+  }
+
+  void read_changed(std::span<const std::uint8_t> changes, bool in_schema) {
+    const std::vector<std::size_t>& pages = in_schema ? schema_pages_ : other_pages_;
+    std::vector<std::size_t> changed;
+    for (; changes.size() >= 4; changes = changes.subspan(4)) {
+      const std::size_t in_page = (changes[0] + 256U * changes[1]) % page_bytes;
+      changed.push_back(pages[changes[2] % pages.size()] + in_page);
+      write(changed.back(), static_cast<char>(changes[3]));
+    }
+    if (in_schema) {
+      look([&] {
+        Database again = open();
+        read(again);
+      });
+    } else {
+      read(database_);
+      database_.impl().archive.reset();
+      sqlite3_db_release_memory(connection(database_).handle());
+    }
+    for (const std::size_t place : changed) write(place, good_[place]);
+  }
+
+ private:
+  static constexpr std::size_t page_bytes = 4096;
+
+  Database open() const { return {path_, Database::Mode::read_only}; }
+  void write(std::size_t place, char byte) {
+    require(::pwrite(file_, &byte, 1, static_cast<off_t>(place)) == 1);
+  }
+
+  reident::test::TemporaryFolder folder_;
+  fs::path path_ = folder_ / "changed.db";
+  std::vector<char> good_;
+  int file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  Database database_;
+  std::vector<std::size_t> schema_pages_, other_pages_;
+};
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  static const reident::test::TemporaryFolder folder;
-  static const std::vector<char> good = good_file(folder / "good.db");
-  std::vector<char> changed = good;
-  std::span<const std::uint8_t> data(bytes, size);
-  for (; data.size() >= 4; data = data.subspan(4))
-    changed[(data[0] + 256U * data[1] + 65536U * data[2]) % changed.size()] =
-        static_cast<char>(data[3]);
-  const fs::path path = folder / "changed.db";
-  std::ofstream(path, std::ios::binary)
-      .write(changed.data(), static_cast<std::streamsize>(changed.size()));
-  look([&] {
-    Database database(path, Database::Mode::read_only);
-    read(database);
-  });
+  static ChangedFile file;
+  if (size > 0) file.read_changed({bytes + 1, size - 1}, bytes[0] % 64 == 63);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  require(sqlite3_config(SQLITE_CONFIG_SINGLETHREAD) == SQLITE_OK);
   return 0;
 }

@@ -2,14 +2,21 @@
 // then be read, or are refused with a reason and change nothing. The first byte says what is done
 // with them, and whether the rest are the bytes, or places and new bytes of good ones. TMPDIR is
 // best in memory.
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "storage/database/connection.hpp"
 #include "storage/registry/journal.hpp"
 #include "storage/registry/registry.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -64,30 +71,34 @@ Bytes good_rows(const fs::path& path) {
   return registry.journal().part(0, std::numeric_limits<std::size_t>::max()).rows;
 }
 
-/// A service's registry, which is empty again for each input.
+/// A service's registry, which is empty again for each input. It stays open: opening takes many times
+/// as long as all that is done with it.
 class Follower {
  public:
   Follower() {
-    { const Database empty(path_, writing, Durability::kill); }
-    fs::copy_file(path_, empty_);
-    good_ = good_rows(folder_ / "leader.db");
-    open();
+    { const Database made(path_, writing, Durability::kill); }
+    std::ifstream file(path_, std::ios::binary);
+    empty_.assign(std::istreambuf_iterator<char>(file), {});
+    database_.emplace(path_, writing, Durability::kill);
   }
   const Bytes& good() const { return good_; }
   Database& database() { return *database_; }
 
   void empty() {
-    database_.reset();
-    fs::copy_file(empty_, path_, fs::copy_options::overwrite_existing);
-    open();
+    sqlite3* const handle = connection(*database_).handle();
+    require(sqlite3_wal_checkpoint_v2(handle, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr,
+                                      nullptr) == SQLITE_OK);
+    require(::pwrite(file_, empty_.data(), empty_.size(), 0) ==
+            static_cast<ssize_t>(empty_.size()));
+    sqlite3_db_release_memory(handle);
   }
 
  private:
-  void open() { database_.emplace(path_, writing, Durability::kill); }
-
   reident::test::TemporaryFolder folder_;
-  fs::path path_ = folder_ / "follower.db", empty_ = folder_ / "empty.db";
-  Bytes good_;
+  fs::path path_ = folder_ / "follower.db";
+  Bytes good_ = good_rows(folder_ / "leader.db");
+  std::vector<char> empty_;
+  int file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   std::optional<Database> database_;
 };
 
@@ -146,5 +157,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   taken([&] { read(database); });
   if (!keeps) taken([&] { journal.overrule(0, 9); });
   follower.empty();
+  return 0;
+}
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  require(sqlite3_config(SQLITE_CONFIG_SINGLETHREAD) == SQLITE_OK);
   return 0;
 }

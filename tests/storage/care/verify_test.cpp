@@ -4,6 +4,8 @@
 #include <limits>
 #include <random>
 
+#include "storage/archive/holdings.hpp"
+#include "storage/care/retention.hpp"
 #include "tests/storage/fixture.hpp"
 
 namespace reident::storage::test::verify_test {
@@ -14,7 +16,9 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 using Mode = Database::Mode;
 
 constexpr Time second = 1'000'000'000;
@@ -198,6 +202,34 @@ TEST_F(Verify, AFirstChunkThatEndsBeforeItBeginsEndsNoRead) {
   const Archive archive(database);
   const Series held = archive.read("CB4", Origin::real, 1, {64 * second_ns - 5, 86400 * second_ns});
   EXPECT_GT(held.time.size(), 600U) << "all but those before";
+}
+
+TEST_F(Verify, EndsWhereAKeyIsNoInteger) {
+  const std::string whole = read_file(path);
+  EXPECT_THAT(after("UPDATE recent SET batch = 'x' || batch"),
+              Contains(HasSubstr("rows of the table recent out of order")));
+  write_file(path, whole);
+  EXPECT_THAT(after("UPDATE chunk SET first_time = 'x' || first_time"), Not(IsEmpty()));
+  Database database(path, Mode::read_only);
+  EXPECT_THAT(error_of([&] { plan_retention(database, {.max_bytes = 1}, {}, 0); }),
+              StartsWith("corrupt: "));
+  SampleColumns samples;
+  SeriesBatches batches(database, 1, {-86400 * second, 86400 * second}, 2, {});
+  EXPECT_THAT(error_of([&] {
+                while (batches.next(samples)) continue;
+              }),
+              StartsWith("corrupt: "));
+}
+
+TEST_F(Verify, BatchesThatCannotBeAreNotCountedUpTo) {
+  rows(path,
+       "UPDATE series SET moved = -9223372036854775807;"
+       "UPDATE recent SET batch = 9223372036854775800 WHERE batch = (SELECT min(batch) FROM recent);"
+       "UPDATE recent SET batch = batch - 9223372036854775800 WHERE batch < 9223372036854775800");
+  Database database(path, Mode::read_only);
+  const Archive archive(database);
+  EXPECT_THAT(error_of([&] { archive.read("CB4", Origin::real, 1, {0, 86400 * second_ns}); }),
+              StartsWith("corrupt: "));
 }
 
 TEST_F(Verify, FindsWhatContradictsTheSamplesOfASeries) {
