@@ -84,24 +84,33 @@ std::string without_blanks(std::string text) {
   return text;
 }
 
-using Objects = std::map<std::pair<std::string, std::string>, std::string>;
+using Object = std::pair<std::string, std::string>;  // kind and name
 
-/// What each table, index, view and trigger is, by kind and name.
-Objects objects_of(Connection& connection) {
-  Objects objects;
+/// The text of each table, index, view and trigger.
+std::map<Object, std::string> texts_of(Connection& connection) {
+  std::map<Object, std::string> texts;
   sqlite::Query row = connection.query(
       "SELECT type, name, coalesce(sql, '') FROM sqlite_master WHERE name NOT LIKE 'sqlite_%'");
-  while (row.step())
-    objects[{row.text(0), row.text(1)}] =
-        row.text(0) == "table" ? columns_of(connection, row.text(1)) : without_blanks(row.text(2));
-  return objects;
+  while (row.step()) texts[{row.text(0), row.text(1)}] = row.text(2);
+  return texts;
 }
 
-const Objects& expected_objects() {
-  static const Objects expected = [] {
+std::string meaning_of(Connection& connection, const Object& object, const std::string& text) {
+  return object.first == "table" ? columns_of(connection, object.second) : without_blanks(text);
+}
+
+struct Definition {
+  std::string text, meaning;
+};
+
+const std::map<Object, Definition>& expected_objects() {
+  static const std::map<Object, Definition> expected = [] {
     Connection model(":memory:", ":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY);
     model.execute(schema::creation());
-    return objects_of(model);
+    std::map<Object, Definition> definitions;
+    for (const auto& [object, text] : texts_of(model))
+      definitions[object] = {text, meaning_of(model, object, text)};
+    return definitions;
   }();
   return expected;
 }
@@ -242,8 +251,8 @@ bool verify_pages(Connection& connection, bool quick, VerifyReport& report,
 
 void verify_schema(Connection& connection, VerifyReport& report) {
   const sqlite::ReadTransaction snapshot(connection);
-  const Objects& expected = expected_objects();
-  const Objects found = objects_of(connection);
+  const std::map<Object, Definition>& expected = expected_objects();
+  const std::map<Object, std::string> found = texts_of(connection);
   const auto add = [&](const auto& object, const char* what) {
     report.add({.check = "schema",
                 .what = "the " + object.first + " " + object.second + " " + what,
@@ -254,7 +263,8 @@ void verify_schema(Connection& connection, VerifyReport& report) {
     const auto at = found.find(object);
     if (at == found.end())
       add(object, "is missing");
-    else if (at->second != definition)
+    else if (at->second != definition.text &&
+             meaning_of(connection, object, at->second) != definition.meaning)
       add(object, "is not the one that this program makes");
   }
   for (const auto& [object, definition] : found)

@@ -2,19 +2,19 @@
 // then be read, or are refused with a reason and change nothing. The first byte says what is done
 // with them, and whether the rest are the bytes, or places and new bytes of good ones. TMPDIR is
 // best in memory.
-#include <fcntl.h>
-#include <sqlite3.h>
-#include <unistd.h>
-
 #include <cstdint>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
+#include <unistd.h>
 #include <vector>
+
+#include <sqlite3.h>
 
 #include "storage/database/connection.hpp"
 #include "storage/registry/journal.hpp"
@@ -71,8 +71,8 @@ Bytes good_rows(const fs::path& path) {
   return registry.journal().part(0, std::numeric_limits<std::size_t>::max()).rows;
 }
 
-/// A service's registry, which is empty again for each input. It stays open: opening takes many times
-/// as long as all that is done with it.
+/// A service's registry, which is empty again for each input. It stays open: opening takes many
+/// times as long as all that is done with it.
 class Follower {
  public:
   Follower() {
