@@ -22,17 +22,18 @@ void describe_steps(Channel& channel) {
   Index longest = 0;
   const double* values = channel.values.data();
   for (const Segment& segment : *channel.segments) {
-    Index repeated = 1;
+    Index changed = segment.begin;  // the row at which the value last did
     for (Index row = segment.begin + 1; row < segment.end; ++row) {
       const double step = std::abs(values[row] - values[row - 1]);
       steps[count] = step;
       greatest = std::max(greatest, step);
-      longest = std::max(longest, repeated);
-      const Index repeats = values[row] == values[row - 1] ? 1 : 0;
-      count += static_cast<std::size_t>(1 - repeats);
-      repeated = repeats * repeated + 1;
+      // Without branches, which nobody foresees.
+      const Index changes = values[row] == values[row - 1] ? 0 : 1;
+      count += static_cast<std::size_t>(changes);
+      changed += (row - changed) * changes;
+      longest = std::max(longest, row - changed + 1);
     }
-    longest = std::max(longest, repeated);
+    if (segment.size() > 0) longest = std::max<Index>(longest, 1);
   }
   channel.steps = static_cast<Index>(count);
   channel.greatest_step = greatest;

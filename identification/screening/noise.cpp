@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "identification/numerics/cpu_clones.hpp"
 #include "identification/screening/order_statistics.hpp"
 
 namespace reident::identification {
@@ -32,29 +33,55 @@ std::vector<Block> blocks_of(const Record& record) {
   return blocks;
 }
 
-double roughness(const Vector& values, Index begin) {
+REIDENT_INLINE Four lesser(Four a, Four b) {
+  return a < b ? a : b;
+}
+
+REIDENT_INLINE Four greater(Four a, Four b) {
+  return a > b ? a : b;
+}
+
+/// Four blocks side by side, which begin at `rows[0]` to `rows[3]`: how much a row lies off the
+/// middle of its neighbours, as the mean without the rows at which that is most.
+REIDENT_CLONES void roughness_of_four(const double* const* rows, double* result) {
   constexpr Index count = noise_block - 2;
-  Eigen::Array<double, count, 1> bends;
-  const auto rows = values.array();
-  bends = (rows.segment<count>(begin + 1) -
-           (rows.segment<count>(begin) + rows.segment<count>(begin + 2)) / 2)
-              .abs();
-  std::array<double, trimmed_rows> largest{};  // ascending
-  for (const double bend : bends) {
-    if (bend <= largest.front()) continue;
-    std::size_t place = 0;
-    for (; place + 1 < largest.size() && largest[place + 1] < bend; ++place)
-      largest[place] = largest[place + 1];
-    largest[place] = bend;
+  std::array<Four, count> bends;
+  std::array<Four, trimmed_rows> largest{};  // ascending
+  for (Index i = 0; i < count; ++i) {
+    const auto at = [&](Index row) __attribute__((always_inline)) {
+      return Four{rows[0][row], rows[1][row], rows[2][row], rows[3][row]};
+    };
+    const Four off = at(i + 1) - (at(i) + at(i + 2)) / 2.0;
+    Four bend = greater(off, -off);
+    bends[static_cast<std::size_t>(i)] = bend;
+    bend = greater(bend, largest[0]);
+    for (std::size_t place = 0; place + 1 < trimmed_rows; ++place) {
+      largest[place] = lesser(bend, largest[place + 1]);
+      bend = greater(bend, largest[place + 1]);
+    }
+    largest.back() = bend;
   }
-  double sum = 0;
-  Index kept = 0;
-  for (const double bend : bends) {
-    sum += bend < largest.front() ? bend : 0;
-    kept += bend < largest.front() ? 1 : 0;
+  const Four one = Four{} + 1.0, least = largest[0];
+  Four sum{}, kept{};
+  for (const Four& bend : bends) {
+    sum += bend < least ? bend : Four{};
+    kept += bend < least ? one : Four{};
   }
-  constexpr Index most_kept = count - Index(trimmed_rows);
-  return (sum + largest.front() * double(most_kept - kept)) / double(most_kept);
+  const Four most_kept = one * double(count - Index(trimmed_rows));
+  store(result, (sum + least * (most_kept - kept)) / most_kept);
+}
+
+std::vector<double> roughness(const Vector& values, const std::vector<Block>& blocks) {
+  constexpr std::size_t lanes = 4;
+  std::vector<double> found(blocks.size() + lanes - 1);
+  for (std::size_t first = 0; first < blocks.size(); first += lanes) {
+    std::array<const double*, lanes> rows;
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      rows[lane] = values.data() + blocks[std::min(first + lane, blocks.size() - 1)].begin;
+    roughness_of_four(rows.data(), found.data() + first);
+  }
+  found.resize(blocks.size());
+  return found;
 }
 
 /// The roughness of each block of each channel over the usual one; empty where the channel is not
@@ -66,7 +93,7 @@ std::vector<std::vector<double>> rough_ratios(const std::vector<Channel>& channe
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const Channel& channel = channels[c];
     if (!channel.is_analog || !(channel.range() > 0)) continue;
-    for (const Block& block : blocks) ratios[c].push_back(roughness(channel.values, block.begin));
+    ratios[c] = roughness(channel.values, blocks);
     const Vector& values = channel.values;
     const double deviation = std::sqrt((values.array() - values.mean()).square().mean());
     const double usual =

@@ -92,10 +92,10 @@ BlockSamples BlockReader::read(const storage::Archive& archive, storage::Time be
   try {
     const storage::TimeRange checked{begin - checked_before(length_), begin + length_};
     const auto wanted = ticks_of({begin - length_, begin + length_}, period);
-    loaded = telemetry_.load(archive, checked, {derived_sensors_, wanted});
+    loaded = telemetry_.load(archive, checked, WantedPart{wanted, derived_sensors_});
     auto* data = std::get_if<WindowData>(&loaded);
     if (!data) return samples;
-    samples.record = rows_at(data->record, wanted);
+    samples.record = std::move(data->record);
     samples.bias_effects = std::move(data->bias_effects);
     samples.first_row = first_row_at(samples.record, ticks_of(samples.block.range, period).begin);
     const Index rows = samples.record.rows() - samples.first_row;

@@ -71,9 +71,9 @@ void WindowCache::make_holes(const TickSet& holes, TickRange ticks) {
   holes_ = identification::united(std::move(all));
 }
 
-std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Archive& archive,
-                                                             storage::TimeRange window,
-                                                             const WantedBiases& biases) {
+std::variant<WindowData, UnknownParameter> WindowCache::load(
+    const storage::Archive& archive, storage::TimeRange window,
+    const std::optional<WantedPart>& wanted) {
   const CachingReader reader(archive);
   auto described = describe_window(reader, request_);
   if (const auto* unknown = std::get_if<UnknownParameter>(&described)) return *unknown;
@@ -100,10 +100,14 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(const storage::Arch
   data.plausibility = checks_.look(reader, data, samples, ticks);
   make_holes(inside(data.plausibility.holes, ticks), ticks);
   InputExpressions expressions(request_.inputs, request_.derived);
-  Record read = expressions.evaluate(biases.sensors.empty() ? std::move(samples) : samples);
-  for (const std::string& sensor : biases.sensors)
-    data.bias_effects.push_back(
-        without(bias_effect(request_, samples, sensor, biases.ticks), data.plausibility.holes));
+  if (wanted) {
+    window = {wanted->ticks.begin * request_.period, wanted->ticks.end * request_.period};
+    for (const std::string& sensor : wanted->sensors)
+      data.bias_effects.push_back(
+          without(bias_effect(request_, samples, sensor, wanted->ticks), data.plausibility.holes));
+    samples = rows_at(samples, wanted->ticks);
+  }
+  Record read = expressions.evaluate(std::move(samples));
   data.read_coverage = coverage_of(read, window, request_.period);
   data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);

@@ -7,7 +7,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "identification/samples/record.hpp"
 #include "identification/samples/tick_ranges.hpp"
@@ -19,10 +22,11 @@
 
 namespace reident {
 
-/// What WindowData::bias_effects is wanted of: sensors of derived inputs, and ticks.
-struct WantedBiases {
-  std::vector<std::string> sensors{};
-  identification::TickRange ticks{};
+/// A part of a window whose whole is checked alone, and the sensors of derived inputs of which
+/// WindowData::bias_effects is wanted.
+struct WantedPart {
+  identification::TickRange ticks;
+  std::vector<std::string> sensors;
 };
 
 /// For one equipment and one thread at a time. An exception leaves it usable: what was not read is
@@ -35,11 +39,12 @@ class WindowCache {
 
   const WindowRequest& request() const { return request_; }
 
-  /// Returns load_window() without what the checks exclude. What lies before the window is
-  /// forgotten: windows that go forward are the cheap ones. Throws storage::Error.
+  /// Returns load_window() without what the checks exclude; rows and coverage of the part alone
+  /// where one is `wanted`. What lies before the window is forgotten: windows that go forward are
+  /// the cheap ones. Throws storage::Error.
   std::variant<WindowData, UnknownParameter> load(const storage::Archive& archive,
                                                   storage::TimeRange window,
-                                                  const WantedBiases& biases = {});
+                                                  const std::optional<WantedPart>& wanted = {});
 
   /// Forgets the ticks that samples in `range` serve, since samples were stored there after the
   /// window was loaded.

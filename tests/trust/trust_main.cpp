@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "service/support/allocator.hpp"
 #include "service/support/log.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/trust/picture.hpp"
@@ -204,6 +205,7 @@ void add_options(CLI::App& app, Options& options) {
 
 int main(int argc, char** argv) {
   CLI::App app("The trust suite: life and faults through the real service", "reident_trust");
+  keep_freed_memory();
   Options options;
   add_options(app, options);
   CLI11_PARSE(app, argc, argv);
