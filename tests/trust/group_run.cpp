@@ -175,15 +175,7 @@ class Grader {
         changes_(true_changes(group.events)) {}
 
   ScenarioOutcome score(const Scenario& scenario, const Made& made) {
-    ScenarioOutcome outcome{scenario.number,
-                            group_.seed,
-                            group_.life,
-                            scenario.fault,
-                            {group_.start, group_.start + group_.duration},
-                            {},
-                            group_.events,
-                            scenario.faults};
-    outcome.family = group_.family;
+    ScenarioOutcome outcome = planned(group_, scenario);
     for (const EquipmentConfig& equipment : spacecraft_.equipment)
       outcome.equipment.push_back(score(scenario, made, equipment));
     return outcome;
@@ -239,6 +231,18 @@ class Grader {
 };
 
 }  // namespace
+
+ScenarioOutcome planned(const LifeGroup& group, const Scenario& scenario) {
+  return {.number = scenario.number,
+          .seed = group.seed,
+          .life = group.life,
+          .fault = scenario.fault,
+          .extent = {group.start, group.start + group.duration},
+          .equipment = {},
+          .events = group.events,
+          .faults = scenario.faults,
+          .family = group.family};
+}
 
 std::vector<ScenarioOutcome> run_group(const LifeGroup& group, const Config& config,
                                        const std::filesystem::path& folder, Databases databases) {

@@ -36,6 +36,9 @@ struct ScenarioOutcome {
   satcs::Family family = satcs::Family::power;
 };
 
+/// The outcome of a scenario of the group before any equipment has one.
+ScenarioOutcome planned(const LifeGroup& group, const Scenario& scenario);
+
 /// What becomes of the databases of the scenarios once these are scored.
 enum class Databases { removed, kept };
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -19,6 +20,7 @@
 #include "service/support/allocator.hpp"
 #include "service/support/log.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/trust/outcome_folder.hpp"
 #include "tests/trust/picture.hpp"
 #include "tests/trust/power.hpp"
 #include "tests/trust/recipe.hpp"
@@ -42,6 +44,7 @@ struct Options {
   std::string dds;                    // a file
   std::string databases;              // a folder
   std::string keep;                   // a folder
+  std::string outcomes;               // a folder
   std::optional<std::uint64_t> draw;  // absent: a fresh one
   unsigned jobs = 2;
   int sequences = 200;
@@ -102,10 +105,37 @@ void print_recipes(const std::vector<LifeGroup>& groups) {
     }
 }
 
+std::vector<ScenarioOutcome> run(const LifeGroup& group, const Config& config,
+                                 const std::filesystem::path& folder, const Options& options) {
+  if (!options.databases.empty()) return score_databases(group, config, options.databases);
+  return options.keep.empty() ? run_group(group, config, folder)
+                              : run_group(group, config, options.keep, Databases::kept);
+}
+
+/// Runs what the folder does not have yet, and keeps it there.
+std::vector<ScenarioOutcome> run_the_rest(LifeGroup group, const OutcomeFolder& kept,
+                                          const auto& run_one) {
+  std::vector<ScenarioOutcome> outcomes;
+  std::erase_if(group.scenarios, [&](const Scenario& scenario) {
+    auto found = kept.find(group, scenario);
+    if (found) outcomes.push_back(*std::move(found));
+    return found.has_value();
+  });
+  if (!group.scenarios.empty())
+    for (ScenarioOutcome& outcome : run_one(group)) {
+      kept.keep(outcome);
+      outcomes.push_back(std::move(outcome));
+    }
+  std::ranges::sort(outcomes, {}, &ScenarioOutcome::number);
+  return outcomes;
+}
+
 /// Groups side by side on `jobs` threads; the outcomes in the order of the scenarios' numbers.
 std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Configs& configs,
                                  const Options& options) {
   const test::TemporaryFolder folder;
+  std::optional<OutcomeFolder> kept;
+  if (!options.outcomes.empty()) kept.emplace(options.outcomes, *options.draw);
   std::vector<std::vector<ScenarioOutcome>> outcomes(groups.size());
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
@@ -113,12 +143,10 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
   const auto work = [&] {
     try {
       for (std::size_t i = next++; i < groups.size(); i = next++) {
-        const Config& config = configs.at(groups[i].family);
-        outcomes[i] = options.databases.empty()
-                          ? (options.keep.empty()
-                                 ? run_group(groups[i], config, folder.path())
-                                 : run_group(groups[i], config, options.keep, Databases::kept))
-                          : score_databases(groups[i], config, options.databases);
+        const auto run_one = [&](const LifeGroup& group) {
+          return run(group, configs.at(group.family), folder.path(), options);
+        };
+        outcomes[i] = kept ? run_the_rest(groups[i], *kept, run_one) : run_one(groups[i]);
         const std::lock_guard lock(mutex);
         for (const ScenarioOutcome& outcome : outcomes[i]) fmt::print(stderr, "{}", story(outcome));
       }
@@ -198,6 +226,9 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--keep", options.keep,
                  "leave the database of each scenario in this folder, NUMBER/reident.db, for "
                  "reident history, show and why");
+  app.add_option("--outcomes", options.outcomes,
+                 "keep what became of each scenario in this folder, and do not run again what it "
+                 "has: a run that was interrupted goes on");
   app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
 }
 

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "service/config/config.hpp"
 #include "service/model/model_version.hpp"
 #include "service/windows/window_data.hpp"
@@ -15,6 +17,7 @@ namespace reident::trust {
 /// by addition.
 class ErrorCurve {
  public:
+  ErrorCurve() = default;
   ErrorCurve(storage::Time origin, Duration block, std::size_t outputs);
 
   /// Errors (N x p) of the output `y` (N x p) at `first`, `first` + period, ...
@@ -33,13 +36,17 @@ class ErrorCurve {
   struct Sums {
     double squared_errors = 0;
     double squares = 0;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Sums, squared_errors, squares)
   };
   Sums& at(std::int64_t block, std::size_t output);
 
-  storage::Time origin_;
-  Duration block_;
-  std::size_t outputs_;
+  storage::Time origin_ = 0;
+  Duration block_ = 1;
+  std::size_t outputs_ = 1;
   std::vector<Sums> sums_;  // of block b and output q at b * outputs_ + q
+
+ public:
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(ErrorCurve, origin_, block_, outputs_, sums_)
 };
 
 /// Extremes of a range of a signal.

@@ -222,13 +222,16 @@ TEST_F(Verify, EndsWhereAKeyIsNoInteger) {
 }
 
 TEST_F(Verify, BatchesThatCannotBeAreNotCountedUpTo) {
-  rows(path,
-       "UPDATE series SET moved = -9223372036854775807;"
-       "UPDATE recent SET batch = 9223372036854775800 WHERE batch = (SELECT min(batch) FROM recent);"
-       "UPDATE recent SET batch = batch - 9223372036854775800 WHERE batch < 9223372036854775800");
+  rows(
+      path,
+      "UPDATE series SET moved = -9223372036854775807;"
+      "UPDATE recent SET batch = 9223372036854775800 WHERE batch = (SELECT min(batch) FROM recent);"
+      "UPDATE recent SET batch = batch - 9223372036854775800 WHERE batch < 9223372036854775800");
   Database database(path, Mode::read_only);
   const Archive archive(database);
-  EXPECT_THAT(error_of([&] { archive.read("CB4", Origin::real, 1, {0, 86400 * second_ns}); }),
+  EXPECT_THAT(error_of([&] {
+                archive.read("CB4", Origin::real, 1, {0, 86400 * second_ns});
+              }),
               StartsWith("corrupt: "));
 }
 
