@@ -13,11 +13,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Times the greatest magnitude of the others: where they have another sign, and for any value. An
 // equipment that switches on may well draw a hundred times the noise of its current before.
 constexpr double far = 10, absurd = 1e4;
-constexpr Index least_fills = 2;
 // A value of any kind that is scattered over the rows, such as 0: its plateaus, their share of all,
 // and the share of them at which another channel may jump by chance.
 constexpr Index least_scattered = 3;
 constexpr double most_scattered = 0.25, jumps_together = 0.5;
+// Of longer plateaus than twice the usual ones: their rows, their share of all rows, and the
+// deviations by which another channel turns at them, as at what the equipment does.
+constexpr double longest_scattered = 30, most_scattered_rows = 0.1, turned_deviations = 4;
 
 bool is_of_nines(double magnitude) {
   for (double nines = 99; nines < 1e16; nines = 10 * nines + 9)
@@ -34,12 +36,14 @@ bool is_end_of_integers(double value) {
   return false;
 }
 
-/// Whether `value` may stand for none beside others from `low` to `high`.
-bool stands_for_none(double value, double low, double high) {
+/// Whether `value`, of so many samples, may stand for none beside others from `low` to `high`.
+bool stands_for_none(double value, Index count, double low, double high) {
   const double greatest = std::max(std::abs(low), std::abs(high));
   const double gap = value < low ? low - value : value - high;
   const bool other_sign = value < 0 ? low >= 0 : high <= 0;
-  if (greatest > 0 && std::abs(value) >= (other_sign ? far : absurd) * greatest) return true;
+  const bool is_repeated = count > 1;
+  const double least = other_sign && is_repeated ? far : absurd;
+  if (greatest > 0 && std::abs(value) >= least * greatest) return true;
   return gap > high - low && gap > 0 && high > low &&
          (is_of_nines(std::abs(value)) || is_end_of_integers(value));
 }
@@ -55,6 +59,41 @@ bool another_jumps(const std::vector<Channel>& channels, std::size_t self,
                       std::min<Index>(at.end + 1, values.size())) > channels[c].least_jump;
     });
     if (double(jumps) > jumps_together * double(plateaus.size())) return true;
+  }
+  return false;
+}
+
+/// Whether another channel turns at plateaus: what it does from before one to behind it, less what
+/// it did over as many rows before, is not what it does elsewhere.
+bool another_turns(const std::vector<Channel>& channels, std::size_t self,
+                   const std::vector<Plateau>& plateaus) {
+  const auto rows = static_cast<Index>(median_size(plateaus)) + 1;
+  const Index all = channels[self].values.size();
+  std::vector<bool> is_away(static_cast<std::size_t>(all));
+  for (const Plateau& one : plateaus)
+    std::fill(is_away.begin() + one.begin, is_away.begin() + one.end, true);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (c == self || !(channels[c].range() > 0)) continue;
+    const Vector& values = channels[c].values;
+    const auto turn_at = [&](Index row, Index later) {
+      return values(row + later) - 2 * values(row) + values(row - later);
+    };
+    double sum = 0, squares = 0;
+    Index count = 0, elsewhere = 0;
+    for (const Plateau& one : plateaus) {
+      const Index row = one.begin - 1, later = one.size() + 1;
+      if (row < later || row + later >= all) continue;
+      sum += turn_at(row, later);
+      ++count;
+    }
+    for (Index row = rows; row + rows < all; ++row) {
+      if (is_away[static_cast<std::size_t>(row + 1)]) continue;
+      squares += std::pow(turn_at(row, rows), 2);
+      ++elsewhere;
+    }
+    if (count == 0 || elsewhere == 0) continue;
+    const double usual = std::sqrt(squares / double(elsewhere));
+    if (std::abs(sum) > turned_deviations * usual * std::sqrt(double(count))) return true;
   }
   return false;
 }
@@ -76,7 +115,13 @@ std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::
       (plateau.value == value ? fills : others).push_back(plateau);
     const double share = double(fills.size()) / double(fills.size() + others.size());
     if (std::ssize(fills) < least_scattered || share > most_scattered ||
-        median_size(fills) > 2 * median_size(others) || another_jumps(channels, self, fills))
+        another_jumps(channels, self, fills))
+      continue;
+    if (median_size(fills) > 2 * median_size(others) &&
+        (median_size(fills) > longest_scattered ||
+         double(is_low ? ends.at_low : ends.at_high) >
+             most_scattered_rows * double(channel.values.size()) ||
+         another_turns(channels, self, fills)))
       continue;
     return fills;
   }
@@ -89,11 +134,10 @@ std::vector<double> fill_values(const Vector& values) {
   while (true) {
     const Ends ends = ends_of(span_of(values), above, below);
     if (!(ends.low < ends.high)) return found;
-    if (ends.at_low >= least_fills && stands_for_none(ends.low, ends.next_to_low, ends.high)) {
+    if (stands_for_none(ends.low, ends.at_low, ends.next_to_low, ends.high)) {
       found.push_back(ends.low);
       above = ends.low;
-    } else if (ends.at_high >= least_fills &&
-               stands_for_none(ends.high, ends.low, ends.next_to_high)) {
+    } else if (stands_for_none(ends.high, ends.at_high, ends.low, ends.next_to_high)) {
       found.push_back(ends.high);
       below = ends.high;
     } else {

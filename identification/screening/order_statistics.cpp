@@ -127,8 +127,8 @@ Ends ends_of(std::span<const double> values, double above, double below) {
   ends.at_low = static_cast<std::ptrdiff_t>(count_of(data, size, ends.low));
   ends.at_high = static_cast<std::ptrdiff_t>(count_of(data, size, ends.high));
   double other;
-  if (ends.at_low > 1) limits(data, size, ends.low, below, ends.next_to_low, other);
-  if (ends.at_high > 1) limits(data, size, above, ends.high, other, ends.next_to_high);
+  limits(data, size, ends.low, below, ends.next_to_low, other);
+  limits(data, size, above, ends.high, other, ends.next_to_high);
   return ends;
 }
 

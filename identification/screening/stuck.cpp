@@ -18,6 +18,7 @@ constexpr double end_share = 0.02;
 /// What another channel moves meanwhile, as a share of its range; or as usual over as many rows.
 constexpr double moving_share = 0.1;
 constexpr Index windows = 50;
+constexpr double restless_share = 0.9;
 
 /// What the channel moves over so many rows, in the quieter quarter of the record.
 double quiet_movement(const Channel& channel, Index rows) {
@@ -40,6 +41,14 @@ bool another_moves(const std::vector<Channel>& channels, std::size_t self, const
     if (moved > 0 && moved >= quiet_movement(channels[c], rows)) return true;
   }
   return false;
+}
+
+/// Whether the channel has a new value in nearly every row outside of these plateaus, as noise
+/// gives it: then it does not rest for want of a cause.
+bool never_rests(const Channel& channel, const std::vector<Plateau>& plateaus) {
+  Index rest = channel.values.size();
+  for (const Plateau& one : plateaus) rest -= one.size();
+  return double(channel.steps) >= restless_share * double(rest);
 }
 
 bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& plateau) {
@@ -100,10 +109,13 @@ std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::s
   const Channel& channel = channels[self];
   if (channel.longest_repeat < least_stuck_rows) return {};
   const std::vector<Plateau> plateaus = channel.plateaus();
+  const std::vector<Plateau> longest = unusually_long(channel, plateaus);
+  const bool never_rested = never_rests(channel, longest);
   std::vector<Plateau> stuck;
-  for (const Plateau& plateau : unusually_long(channel, plateaus))
+  for (const Plateau& plateau : longest)
     if (!rests_at_end_of_range(channel, plateaus, plateau) &&
-        !is_repeated_elsewhere(plateaus, plateau) && another_moves(channels, self, plateau))
+        !is_repeated_elsewhere(plateaus, plateau) &&
+        (never_rested || another_moves(channels, self, plateau)))
       stuck.push_back(plateau);
   std::sort(stuck.begin(), stuck.end(),
             [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });

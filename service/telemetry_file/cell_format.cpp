@@ -78,13 +78,6 @@ bool is_no_measurement(double value) {
   return std::abs(value) >= overflow && (std::abs(value) == overflow || std::abs(value) == none);
 }
 
-/// What programs write for no value in a column of numbers.
-bool means_no_value(std::string_view word) {
-  constexpr std::array<std::string_view, 10> words = {"NA",   "N/A",  "<NA>", "#N/A", "NULL",
-                                                      "null", "None", "\\N",  "NaT",  "missing"};
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 /// "1 (ON)" and "ON (1)": the word and its number.
 std::optional<std::pair<std::string, double>> coded_state(std::string_view cell) {
   if (cell.empty() || (cell.back() != ')' && cell.back() != ']')) return std::nullopt;
@@ -143,6 +136,12 @@ StyleQuestion marks_differ(const Counts::First& one, const Counts::First& other)
 }
 
 }  // namespace
+
+bool means_no_value(std::string_view word) {
+  constexpr std::array<std::string_view, 10> words = {"NA",   "N/A",  "<NA>", "#N/A", "NULL",
+                                                      "null", "None", "\\N",  "NaT",  "missing"};
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 bool has_state(const StateMap& states, std::string_view word) {
   return std::any_of(states.begin(), states.end(),

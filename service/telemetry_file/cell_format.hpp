@@ -20,6 +20,9 @@ using StateMap = std::vector<std::pair<std::string, double>>;
 std::optional<StateMap> parse_states(std::string_view text);
 std::string states_text(const StateMap& states);
 
+/// Whether programs write the word for no value in a column of numbers, as "NA".
+bool means_no_value(std::string_view word);
+
 /// What is given of the cells of all columns.
 struct CellOptions {
   std::optional<NumberStyle> style;

@@ -1,11 +1,14 @@
 #include "service/telemetry_file/header_finder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
 #include "service/support/text.hpp"
+#include "service/telemetry_file/cell_format.hpp"
 #include "service/telemetry_file/clock_names.hpp"
+#include "service/telemetry_file/number_text.hpp"
 
 namespace reident::telemetry_file {
 namespace {
@@ -39,6 +42,15 @@ bool is_row(const HeadLine& line, const std::vector<bool>& values) {
   return false;
 }
 
+/// Whether a line has cells and nothing in them: a row without values.
+bool is_without_values(const HeadLine& line) {
+  return std::ranges::all_of(line.cells, [](const std::string& cell) {
+    const std::string_view word = trimmed(cell);
+    const auto number = plain_number(word);
+    return word.empty() || (number && std::isnan(*number)) || means_no_value(word);
+  });
+}
+
 /// Where a name stands in the column that all rows begin with, numbers are names of parameters.
 bool names_parameters(const HeadLine& line, const std::vector<bool>& values) {
   const auto first = std::find(values.begin(), values.end(), true);
@@ -65,7 +77,7 @@ class Head {
   }
   /// A line of names, units or descriptions.
   bool is_text(std::size_t i, bool is_first) const {
-    if (!has_cells(i)) return false;
+    if (!has_cells(i) || is_without_values(lines_[i])) return false;
     if (std::find(values_.begin(), values_.end(), true) == values_.end()) return is_first;
     if (!is_row(lines_[i], values_)) return true;
     return is_first && names_parameters(lines_[i], values_);
