@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <tuple>
+#include <utility>
 
 #include "identification/statistics/betting.hpp"
 #include "service/judgement/league_rule.hpp"
@@ -110,10 +112,16 @@ std::optional<Finding> successor(const std::vector<Finding>& findings) {
   return best;
 }
 
+bool is_proved(const Finding& finding) {
+  return !finding.obstacle || finding.obstacle->code == Code::bias_unverified ||
+         finding.obstacle->code == Code::too_soon;
+}
+
 Finding weakest(const std::vector<Finding>& findings) {
+  const bool proved_stay = 2 * std::ranges::count_if(findings, is_proved) < std::ssize(findings);
   // Nothing but the last tells first versions apart where the simulator's own model sent nothing.
-  return *std::ranges::min_element(findings, {}, [](const Finding& finding) {
-    return std::pair(finding.mean_score, finding.recent_score);
+  return *std::ranges::min_element(findings, {}, [&](const Finding& finding) {
+    return std::tuple(proved_stay && is_proved(finding), finding.mean_score, finding.recent_score);
   });
 }
 

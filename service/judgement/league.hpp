@@ -56,9 +56,13 @@ struct Finding {
 /// The challenger that is to become champion; absent where none is.
 std::optional<Finding> successor(const std::vector<Finding>& findings);
 
+/// Whether R1 and R2 hold, so that it may become champion, or wait for an operator or for time.
+bool is_proved(const Finding& finding);
+
 /// The challenger with the least mean score, which leaves a full league: evidence grows with the
-/// length of a record too, and those that came first would keep out all that come later. Requires a
-/// challenger.
+/// length of a record too, and those that came first would keep out all that come later. Those that
+/// are proved stay where they are less than half: an operator finds the best of what waited for
+/// him. Requires a challenger.
 Finding weakest(const std::vector<Finding>& findings);
 
 /// A block on which a challenger and the champion were compared.

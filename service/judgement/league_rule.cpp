@@ -80,7 +80,8 @@ SensorPast past_of(const League& league, std::size_t effect, Time since) {
   return {effect, phases, scores};
 }
 
-/// Share of the champion's blocks from `since` on that are in regimes which the member has not met.
+/// Share of the champion's blocks from `since` on that are in regimes which the member has not met:
+/// of which no whole cycle lies within its window or behind.
 double uncovered_share(const League& league, const std::vector<int>& regimes, const Member& member,
                        Time since) {
   std::map<int, std::pair<double, bool>> by_regime;  // champion's blocks; met by the member
@@ -88,9 +89,9 @@ double uncovered_share(const League& league, const std::vector<int>& regimes, co
   for (std::size_t i = 0; i < league.blocks.size(); ++i) {
     if (regimes[i] < 0) continue;
     auto& [served, met] = by_regime[regimes[i]];
-    const Time begin = league.blocks[i].range.begin;
-    if (begin >= since && find(*league.champion, begin)) ++served, ++all;
-    met = met || begin >= member.window.begin;
+    const storage::TimeRange& range = league.blocks[i].range;
+    if (range.begin >= since && find(*league.champion, range.begin)) ++served, ++all;
+    met = met || range.end - blocks_of_cycle * (range.end - range.begin) >= member.window.begin;
   }
   double uncovered = 0;
   for (const auto& [regime, of] : by_regime)
@@ -266,6 +267,8 @@ Finding judge_against_champion(Standard& standard, const Member& member,
                                           finding.champion_mrse_percent, finding.blocks);
     finding.lower_score = lower_mean(scores, finding.dependence, finding.log_threshold);
     if (auto reason = unproved_somewhere(standard, member, compared, finding)) return reason;
+    // A few blocks with great errors make the bet no poorer, yet the errors as a whole are larger.
+    if (!(finding.mrse_percent < finding.champion_mrse_percent)) return not_better();
     if (auto reason = may_be_bias(standard, member, compared, finding)) return reason;
     return too_soon(standard, member);
   }();

@@ -249,7 +249,7 @@ void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
   if (std::ssize(waiting) > equipment_.members) {
     const Finding last = weakest(waiting);
     std::vector<Reason> reasons{because<ReasonCode::league_full>(equipment_.members)};
-    if (last.obstacle) reasons.push_back(*last.obstacle);
+    if (last.obstacle && !is_proved(last)) reasons.push_back(*last.obstacle);
     decide(registry, writer, last, DecisionKind::reject, reasons, now);
   }
   look_after_champion(registry, writer, hold.has_value(), now);

@@ -251,6 +251,42 @@ TEST(League, VersionsAreTheLeastIntervalApart) {
   EXPECT_EQ(records.obstacle(), std::nullopt);
 }
 
+TEST(League, ARegimeThatEndedWhereTheWindowBeginsIsNotMet) {
+  Records records(160);
+  for (int i = 20; i < 72; ++i) {
+    records.league().blocks[static_cast<std::size_t>(i)].input_low = {-5};
+    records.league().blocks[static_cast<std::size_t>(i)].input_high = {5};
+  }
+  // The window begins at block 72: cycles with these ranges that end in it begin before it.
+  records.champion(varying(0.02)).challenger(varying(0.01), 80);
+  EXPECT_EQ(records.obstacle(), Code::not_covered);
+}
+
+TEST(League, VersionWithTheGreaterErrorsOnAWholeIsNotBetter) {
+  // It errs less on nine of ten blocks, and far more on the tenth.
+  const auto errors = [](double usual, double rare) {
+    return [=](int block) { return Error{0, block % 10 == 0 ? rare : usual}; };
+  };
+  Records records(400);
+  records.champion(errors(0.002, 0.02)).challenger(errors(0.0005, 0.05), 40);
+  const Finding found = records.findings().at(0);
+  EXPECT_GT(found.log_wealth, found.log_threshold);
+  EXPECT_EQ(records.obstacle(), Code::not_better);
+}
+
+TEST(League, AFullLeagueKeepsHalfItsPlacesForVersionsThatWaitForAnOperator) {
+  // Two that only an offset of the champion lets look better, and three that are not proved yet.
+  Records records(160);
+  records.unbound().champion([](int) { return Error{0.2, 0.001}; });
+  records.challenger(white(0.001), 40).challenger(white(0.0009), 44);
+  for (const int from : {154, 155, 156}) records.challenger(white(0.0001), from);
+  const auto findings = records.findings();
+  ASSERT_EQ(findings[0].obstacle->code, Code::bias_unverified);
+  ASSERT_FALSE(is_proved(findings[4]));
+  EXPECT_LT(findings[0].mean_score, findings[4].mean_score);
+  EXPECT_GE(weakest(findings).version, 4);
+}
+
 TEST(League, SuccessorIsTheOneWithTheBestRecordOfLate) {
   Records records(160);
   records.champion(white(0.04))
