@@ -13,6 +13,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// |ln| of an eigenvalue times the rows: less than a period of an oscillation looks like a drift.
 constexpr double slow_phase = 6.283;
+constexpr const char* of_a_controller =
+    "; where a controller keeps it there, take the controller's reference as the input";
 
 /// The only recipe there is, where the options leave no choice or the rows do not allow one.
 std::optional<Recipe> given_recipe(const HankelSupply& supply, Index fitted_rows,
@@ -80,12 +82,15 @@ std::optional<Verdict> useless(RecipeChoice& choice, double constant, bool may_e
   if (unstable && !may_enforce_stability)
     return Verdict{
         VerdictCode::unstable,
-        "every model asked for is unstable; choose a window in which the equipment stays "
-        "in its range, or let A be made stable"};
+        std::string("every model asked for is unstable; choose a window in which the equipment "
+                    "stays in its range, or let A be made stable") +
+            of_a_controller};
   if (unstable)
     return Verdict{VerdictCode::unstable,
-                   "every model asked for is unstable, and made stable errs more than half as much "
-                   "as the mean; choose a window in which the equipment stays in its range"};
+                   std::string("every model asked for is unstable, and made stable errs more than "
+                               "half as much as the mean; choose a window in which the equipment "
+                               "stays in its range") +
+                       of_a_controller};
   return Verdict{VerdictCode::no_better_than_mean,
                  "on rows held out the best model errs by " + four_digits(ranked.front().error) +
                      " standard deviations and the mean by " + four_digits(constant) +

@@ -24,6 +24,7 @@ constexpr std::size_t examples = 3;
 constexpr std::size_t few = 3;         // cells that are no numbers, whatever the rows
 constexpr double few_share = 0.01;     // of the rows
 constexpr double end_of_values = 0.2;  // of the values in their order
+constexpr std::size_t late_rows = 16;  // a row that came late belongs between as many
 
 /// Cells of one column that are neither numbers nor missing.
 struct BadCells {
@@ -124,6 +125,18 @@ class Parts {
     std::size_t part;
     std::optional<std::int64_t> last_ns = {};
     std::int64_t ahead_ns = 0;
+    std::vector<std::int64_t> times_ns = {};  // of the last rows
+
+    /// Whether a row of this time came late: it belongs between the last rows.
+    bool misses(std::int64_t time_ns) const {
+      return !times_ns.empty() && time_ns > std::ranges::min(times_ns) &&
+             !std::ranges::count(times_ns, time_ns);
+    }
+    void note(std::int64_t time_ns) {
+      last_ns = time_ns;
+      if (times_ns.size() == late_rows) times_ns.erase(times_ns.begin());
+      times_ns.push_back(time_ns);
+    }
   };
 
   std::int64_t next(Clock& clock, const TelemetryFile& file, std::vector<std::string>& warnings) {
@@ -131,7 +144,8 @@ class Parts {
     const auto& step = file.clock_step();
     // A step from one part to another is none of a clock.
     if (clock.last_ns && time <= *clock.last_ns && step) {
-      const bool is_sorted = step->kind == ClockStep::Kind::out_of_order && is_absolute_;
+      const bool is_sorted =
+          step->kind == ClockStep::Kind::out_of_order && (is_absolute_ || clock.misses(time));
       if (step->missing_ns != 0)
         clock.ahead_ns += step->missing_ns;
       else if (!is_sorted)
@@ -145,7 +159,7 @@ class Parts {
                                                     : "the rows behind it are a new segment"))
                 .message);
     }
-    clock.last_ns = time;
+    clock.note(time);
     return time + clock.ahead_ns;
   }
 

@@ -81,21 +81,36 @@ double resolution_of(Vector values) {
 }
 
 /// A model may explain the rows that it was chosen on and not the ones behind them. Rows in which
-/// an output does not move by more than a digit say nothing of that.
+/// an output does not move by more than a digit, or than it errs where it was identified, say
+/// nothing of that.
 void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome) {
+  constexpr double as_before = 1.2;  // times the error on the identification rows
+  const auto rows_of = [&](Index q, RowRange range) {
+    return data.record.y.col(q).segment(range.begin, range.size());
+  };
+  const auto error_of = [&](Index q, RowRange range, double mrse_percent) {
+    return mrse_percent / 100 *
+           std::sqrt(rows_of(q, range).squaredNorm() / static_cast<double>(range.size()));
+  };
   for (Index q = 0; q < data.record.y.cols(); ++q) {
     const std::string& output = outcome.outputs[static_cast<std::size_t>(q)];
-    const auto rows = data.record.y.col(q).segment(data.validate.begin, data.validate.size());
+    const auto rows = rows_of(q, data.validate);
+    const double error = error_of(q, data.validate, outcome.diagnostics.free_run.mrse_percent(q));
+    const double before = error_of(q, data.identify, outcome.identify.mrse_percent(q));
     const double resolution = resolution_of(data.record.y.col(q));
     const double rounding = 1e-9 * std::abs(rows(0));
     if (rows.maxCoeff() - rows.minCoeff() <= resolution + rounding)
       outcome.warnings.push_back(fmt::format(
           "the validation rows of {} are constant: they say nothing about the fit. The error there "
           "is {:.3g}, and {} is resolved to {:.3g}; choose rows in which it moves with --validate",
-          output,
-          outcome.diagnostics.free_run.mrse_percent(q) / 100 *
-              std::sqrt(rows.squaredNorm() / static_cast<double>(rows.size())),
-          output, resolution));
+          output, error, output, resolution));
+    else if (outcome.diagnostics.free_run.fit_percent(q) < 0 && error <= as_before * before)
+      outcome.warnings.push_back(fmt::format(
+          "on the validation rows {} moves by no more than the model errs everywhere: they say "
+          "nothing about the fit. The error there is {:.3g}, and on the identification rows "
+          "{:.3g}; "
+          "choose rows in which it moves with --validate",
+          output, error, before));
     else if (outcome.diagnostics.free_run.fit_percent(q) < 0)
       outcome.warnings.push_back(fmt::format(
           "on the validation rows the model is worse than the mean of {}: do not use it as it is",

@@ -171,6 +171,66 @@ TEST(Screening, FindsAnyFarValueThatIsScatteredOverTheRows) {
     }
 }
 
+TEST(Screening, FindsAFarValueThatStandsInLongerStretches) {
+  for (const Index rows : {3, 10, 30}) {
+    Telemetry telemetry;
+    TickSet filled;
+    for (Index t = 1'000; t < 30'000; t += 40 * rows) {
+      telemetry.channel(Telemetry::battery).segment(t, std::min(rows, 30'000 - t)).setConstant(0);
+      filled.push_back({t, std::min<Index>(t + rows, 30'000)});
+    }
+    EXPECT_EQ(ticks_of(telemetry.faults(), SensorFaultKind::fill, Telemetry::battery), filled)
+        << rows;
+  }
+}
+
+TEST(Screening, AnInputThatIsOffForAMomentWhileAnOutputTurnsHoldsNoFillValue) {
+  // A slow output, which a step of the input turns and does not make jump.
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise;
+  Matrix u(20'000, 1), y(20'000, 1);
+  double state = 0;
+  for (Index t = 0; t < 20'000; ++t) {
+    u(t, 0) = t % 400 < 20 ? 0 : 5 + 0.1 * noise(random);
+    y(t, 0) = state + 0.01 * noise(random);
+    state += (u(t, 0) - state) / 500;
+  }
+  EXPECT_TRUE(sensor_faults(contiguous_record(1, u, y), {true, true}).empty());
+}
+
+TEST(Screening, FindsOneImpossibleValueInAnInputOfTwoLevels) {
+  for (const double value : {9999.0, -999.0, 1e30}) {
+    std::mt19937 random(8);
+    std::normal_distribution<double> noise;
+    Matrix u(1'200, 1), y(1'200, 1);
+    double state = 0;
+    for (Index t = 0; t < 1'200; ++t) {
+      u(t, 0) = random() % 2 == 0 ? 27 : 29;
+      y(t, 0) = state + 0.01 * noise(random);
+      state = 0.8 * state + u(t, 0);
+    }
+    u(180, 0) = value;
+    EXPECT_EQ(
+        ticks_of(sensor_faults(contiguous_record(1, u, y), {true, true}), SensorFaultKind::fill, 0),
+        (TickSet{{180, 181}}))
+        << value;
+  }
+}
+
+TEST(Screening, FindsRowsThatWereHeldInAllChannelsWhereNoiseNeverRests) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise;
+  Matrix u(1'000, 1), y(1'000, 1);
+  for (Index t = 0; t < 1'000; ++t) {
+    u(t, 0) = t > 0 ? 0.9 * u(t - 1, 0) + noise(random) : 0;
+    y(t, 0) = t > 0 ? 0.5 * y(t - 1, 0) + u(t - 1, 0) + 0.1 * noise(random) : 0;
+  }
+  for (Index t = 301; t < 340; ++t) u.row(t) = u.row(300), y.row(t) = y.row(300);
+  const auto faults = sensor_faults(contiguous_record(1, u, y), {true, true});
+  for (const Index c : {0, 1})
+    EXPECT_EQ(ticks_of(faults, SensorFaultKind::stuck, c), (TickSet{{300, 340}})) << c;
+}
+
 TEST(Screening, WhatIsOffWhereAnotherSensorJumpsOrForLongIsNoFillValue) {
   Telemetry together, long_off;
   for (Index t = 0; t < 30'000; ++t) {

@@ -1,10 +1,12 @@
 #include "identification/search/identify.hpp"
 
 #include <cmath>
+#include <random>
 
 #include <Eigen/Dense>
 #include <gmock/gmock.h>
 
+#include "identification/samples/tick_ranges.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "identification/simulation/scores.hpp"
 #include "tests/support/naive_n4sid.hpp"
@@ -197,6 +199,20 @@ TEST(Identify, GapsCostRowsAndNotAccuracy) {
   record.segments = {{0, 1000, 0}, {1000, 2900, 1100}};
   const Identified found = expect_model(record, record.all());
   EXPECT_LT(test::markov_distance(found.model, truth), 1e-5);
+}
+
+TEST(Identify, HolesAllOverTheRowsLeaveOrdersToChooseFrom) {
+  test::Noise noise(23);
+  const StateSpaceModel truth = test::random_system(noise, 2, 1, 1, 0.9);
+  Record record = test::excited(truth, noise, 6000, 0.01);
+  std::mt19937 random(4);
+  std::vector<TickRange> holes;
+  for (Index row = 0; row < record.rows(); ++row)
+    if (random() % 4 == 0) holes.push_back({row, row + 1});
+  record = without(record, united(std::move(holes)));
+  const Identified found = expect_model(record, record.all());
+  EXPECT_EQ(found.model.order(), 2);
+  EXPECT_LT(test::markov_distance(found.model, truth), 0.02);
 }
 
 TEST(Identify, TheOrderOfSegmentsDoesNotMatterForAGivenChoice) {

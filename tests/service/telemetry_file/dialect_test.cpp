@@ -271,6 +271,16 @@ TEST(TelemetryDialect, HasItsHeaderBelowMetadataAndTitlesThatLookLikeRows) {
   EXPECT_EQ(dialect.first_line, 11U);
 }
 
+TEST(TelemetryDialect, KeepsItsHeaderAboveARowWithoutAnyValue) {
+  for (const char* nothing : {",", "NaN,NaN", "NA,", " , null"}) {
+    const std::string text =
+        fmt::format("u,v\n0.1,1.5\n0.2,1.25\n{}\n0.3,1.75\n0.25,1\n0.5,1.5\n", nothing);
+    const auto dialect = std::get<Dialect>(dialect_of(text, {}));
+    EXPECT_THAT(dialect.columns, ElementsAre("u", "v")) << nothing;
+    EXPECT_EQ(dialect.first_line, 2U) << nothing;
+  }
+}
+
 TEST(TelemetryDialect, JoinsADateAndAClockWithACommaBetweenThem) {
   const std::string text = "time,u\n28.2.2024, 22:00:00,6.1\n28.2.2024, 22:00:10,6.2\n";
   auto file = std::get<TelemetryFile>(TelemetryFile::of_text(text, "t.csv", {}));
