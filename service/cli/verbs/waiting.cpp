@@ -29,17 +29,37 @@ storage::EquipmentName name_of(const WaitingRow& row) {
 }
 
 std::string numbers_text(const std::vector<std::int64_t>& numbers) {
+  constexpr std::size_t shown = 3;
   std::vector<std::string> texts;
-  for (const std::int64_t number : numbers) texts.push_back(std::to_string(number));
-  return texts.empty() ? "-" : joined(texts);
+  for (const std::int64_t number : numbers)
+    if (texts.size() < shown) texts.push_back(std::to_string(number));
+  if (texts.empty()) return "-";
+  const std::size_t more = numbers.size() - texts.size();
+  return joined(texts) + (more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// A figure of the comparison that a version waits with; "-" where it has none.
+std::string figure(const WaitingRow& row, const char* key) {
+  const auto evidence = ordered_json::parse(row.decision.evidence_json, nullptr, false);
+  const auto found = evidence.is_object() ? evidence.find(key) : evidence.end();
+  return found != evidence.end() && found->is_number() && found->get<double>() > 0
+             ? fmt::format("{:.3g}", found->get<double>())
+             : "-";
 }
 
 void print_table(const std::vector<WaitingRow>& rows) {
-  Table table({{"version"}, {"since", Table::Align::right}, {"supersedes"}, {"why it waits"}});
+  constexpr auto right = Table::Align::right;
+  Table table({{"version"},
+               {"since", right},
+               {"error %", right},
+               {"champion's %", right},
+               {"supersedes"},
+               {"why it waits"}});
   const storage::Time now = utc_now();
   for (const WaitingRow& row : rows)
     table.add({fmt::format("{}@{}", full_name(name_of(row)), row.decision.version),
-               rough_duration_text(now - row.decision.time), numbers_text(row.supersedes),
+               rough_duration_text(now - row.decision.time), figure(row, "mrse_percent"),
+               figure(row, "champion_mrse_percent"), numbers_text(row.supersedes),
                row.decision.reason});
   fmt::print("{}", table.text(terminal_width()));
   fmt::print("'reident why VERSION' shows its record, 'reident approve' and 'reject' answer it.\n");
@@ -93,6 +113,8 @@ std::function<int()> declare(CLI::App& command) {
   add_access_options(command, arguments->access);
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
+      "The errors are those of the version and of the champion on the blocks that both were scored "
+      "on when it came to wait.\n"
       "Versions that wait for telemetry are not listed: 'reident history' has them. To approve a "
       "version rejects those that it supersedes: earlier ones of its equipment that wait too.\n"
       "Example:\n"
