@@ -80,18 +80,17 @@ SensorPast past_of(const League& league, std::size_t effect, Time since) {
   return {effect, phases, scores};
 }
 
-/// Share of all blocks that are in regimes which the member has not met: of which no whole cycle
-/// lies within its window or behind. The equipment is operated as before when it has changed, and
-/// whoever is champion.
-double uncovered_share(const League& league, const std::vector<int>& regimes,
-                       const Member& member) {
-  std::map<int, std::pair<double, bool>> by_regime;  // blocks; met by the member
+/// Share of the champion's blocks from `since` on that are in regimes which the member has not met:
+/// of which no whole cycle lies within its window or behind.
+double uncovered_share(const League& league, const std::vector<int>& regimes, const Member& member,
+                       Time since) {
+  std::map<int, std::pair<double, bool>> by_regime;  // champion's blocks; met by the member
   double all = 0;
   for (std::size_t i = 0; i < league.blocks.size(); ++i) {
     if (regimes[i] < 0) continue;
     auto& [served, met] = by_regime[regimes[i]];
     const storage::TimeRange& range = league.blocks[i].range;
-    ++served, ++all;
+    if (range.begin >= since && find(*league.champion, range.begin)) ++served, ++all;
     met = met || range.end - blocks_of_cycle * (range.end - range.begin) >= member.window.begin;
   }
   double uncovered = 0;
@@ -126,7 +125,7 @@ std::optional<Reason> unproved_somewhere(Standard& standard, const Member& membe
                                          const Comparison& compared, Finding& finding) {
   const std::int64_t champion = standard.league.champion->version;
   const std::vector<int>& regimes = standard.regimes_of_blocks();
-  finding.uncovered_share = uncovered_share(standard.league, regimes, member);
+  finding.uncovered_share = uncovered_share(standard.league, regimes, member, standard.since);
   if (finding.lower_score * (1 - finding.uncovered_share) < largest_score * finding.uncovered_share)
     return because<Code::not_covered>(champion, 100 * finding.uncovered_share);
   if (worse_in_a_regime(compared, regimes, standard.assumed, standard.limits))
