@@ -4,6 +4,7 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "service/windows/ticks.hpp"
@@ -72,6 +73,7 @@ class IdentifyRows : public test::CliTest {
     request.period_s = 10;
     request.hold_ns = dress.hold_s * second;
     request.screening = false;
+    request.reading.clock_may_go_back = true;
     auto read = read_data(request);
     if (const auto* refusal = std::get_if<Refusal>(&read))
       throw std::runtime_error(refusal->message);
@@ -154,6 +156,21 @@ TEST_F(IdentifyRows, AreThoseOfTheServiceInEachDress) {
     EXPECT_EQ(here.u, there.u) << dress.name;
     EXPECT_EQ(here.y, there.y) << dress.name;
   }
+}
+
+TEST_F(IdentifyRows, ThatCameLateAreInTheirPlace) {
+  std::vector<std::string> lines;
+  const auto table = telemetry();
+  for (std::size_t i = 0; i < table.size(); ++i)
+    lines.push_back(fmt::format("{},{},{}\n", 10 * i, table[i].u, table[i].y));
+  write("ordered.csv", fmt::format("t,u,y\n{}", fmt::join(lines, "")));
+  std::swap(lines[40], lines[41]);
+  std::swap(lines[60], lines[63]);
+  write("late.csv", fmt::format("t,u,y\n{}", fmt::join(lines, "")));
+  const IdentifyData ordered = of_file({}, "ordered.csv", "t"), late = of_file({}, "late.csv", "t");
+  EXPECT_EQ(late.record.segments, ordered.record.segments);
+  EXPECT_EQ(late.record.u, ordered.record.u);
+  EXPECT_EQ(late.record.y, ordered.record.y);
 }
 
 }  // namespace

@@ -126,7 +126,8 @@ TEST_F(WindowCaches, SayWhatABiasDoesAtTheEndOfWhatAnInputIsDefinedFor) {
   kept = window_cache_of("SAT", equipment);
   archive.append(telemetry(day, 1000));  // u is -1, 0 and 1 in turn
   const storage::TimeRange window{day, day + 1000 * second};
-  const auto result = kept.load(archive, window, WantedPart{ticks_of(window, kept.request().period), {"u"}});
+  const auto result =
+      kept.load(archive, window, WantedPart{ticks_of(window, kept.request().period), {"u"}});
   const WindowData& data = std::get<WindowData>(result);
   const double bias = 0.1 * std::sqrt(2.0 / 3);
   for (identification::Index row = 0; row < data.record.rows(); ++row) {
