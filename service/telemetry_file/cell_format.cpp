@@ -16,6 +16,7 @@ namespace {
 constexpr double agreement = 0.9;  // of a column's cells, for a spelling that is not plain
 constexpr std::size_t most_states = 32;
 constexpr std::size_t words_shown = 5;
+constexpr std::size_t cells_of_decimals = 50;
 
 std::string upper(std::string_view text) {
   std::string result(text);
@@ -187,8 +188,11 @@ std::variant<NumberStyle, StyleQuestion> find_style(
   bool has_date_with_points = false, has_mixed_points = false;
   bool has_mixed_column =
       false;  // of such cells and others without a mark, of three digits at most
+  std::size_t columns_of_commas = 0, bare = 0;
   for (const auto& cells : columns) {
     Counts here;
+    std::string_view first_bare;
+    bool bare_differ = false;  // a single value, as -999, may stand for none
     for (std::size_t row = 0; row < cells.size(); ++row) {
       const std::string_view cell = cells[row];
       const auto evidence = marks_in(cell);
@@ -199,7 +203,8 @@ std::variant<NumberStyle, StyleQuestion> find_style(
       if (evidence->blank_group != '\0') apart = evidence->blank_group;
       switch (evidence->mark) {
         case Mark::none:
-          ++here.bare;
+          if (here.bare++ == 0) first_bare = cell;
+          bare_differ = bare_differ || cell != first_bare;
           if (trimmed(cell).size() <= 4) ++here.short_bare;  // with a sign
           break;
         case Mark::point:
@@ -226,7 +231,9 @@ std::variant<NumberStyle, StyleQuestion> find_style(
           break;
       }
     }
-    if (here.point_or > 0 && here.bare > 1 && here.bare == here.short_bare) has_mixed_points = true;
+    columns_of_commas += here.comma_or > 0 ? 1 : 0;
+    bare += here.bare;
+    if (here.point_or > 0 && bare_differ && here.bare == here.short_bare) has_mixed_points = true;
     if (here.comma_or > 0 && here.bare > 0 && here.bare == here.short_bare) has_mixed_column = true;
   }
   if (certain && (certain->decimal == '.' ? all.comma == 0 : all.point == 0)) return *certain;
@@ -248,6 +255,9 @@ std::variant<NumberStyle, StyleQuestion> find_style(
   if (has_mixed_column) return NumberStyle{'.', ','};
   // A comma that separates cells too is as likely a mark of thousands, in whatever column.
   if (separator != ',') return NumberStyle{',', '\0'};
+  // Of so many cells of several columns some thousands would be below 1000, or above a million.
+  if (columns_of_commas > 1 && all.comma_or >= cells_of_decimals && bare == 0)
+    return NumberStyle{',', '\0'};
   return StyleQuestion{all.first_ambiguous.row,
                        fmt::format("'{}' may be a decimal comma or thousands; say --decimal comma "
                                    "or --thousands comma",

@@ -77,7 +77,7 @@ class Head {
   }
   /// A line of names, units or descriptions.
   bool is_text(std::size_t i, bool is_first) const {
-    if (!has_cells(i) || is_without_values(lines_[i])) return false;
+    if (!has_cells(i) || (!is_first && is_without_values(lines_[i]))) return false;
     if (std::find(values_.begin(), values_.end(), true) == values_.end()) return is_first;
     if (!is_row(lines_[i], values_)) return true;
     return is_first && names_parameters(lines_[i], values_);
