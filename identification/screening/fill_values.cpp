@@ -17,7 +17,7 @@ constexpr double far = 10, absurd = 1e4;
 // and the share of them at which another channel may jump by chance.
 constexpr Index least_scattered = 3;
 constexpr double most_scattered = 0.25, jumps_together = 0.5;
-// Of longer plateaus than twice the usual ones: their rows, their share of all rows, and the
+// Plateaus of more than twice the usual length: their rows, their share of all rows, and the
 // deviations by which another channel turns at them, as at what the equipment does.
 constexpr double longest_scattered = 30, most_scattered_rows = 0.1, turned_deviations = 4;
 
@@ -117,10 +117,10 @@ std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::
     if (std::ssize(fills) < least_scattered || share > most_scattered ||
         another_jumps(channels, self, fills))
       continue;
-    if (median_size(fills) > 2 * median_size(others) &&
-        (median_size(fills) > longest_scattered ||
-         double(is_low ? ends.at_low : ends.at_high) >
-             most_scattered_rows * double(channel.values.size()) ||
+    const double length = median_size(fills);
+    const auto rows = double(is_low ? ends.at_low : ends.at_high);
+    if (length > 2 * median_size(others) &&
+        (length > longest_scattered || rows > most_scattered_rows * double(channel.values.size()) ||
          another_turns(channels, self, fills)))
       continue;
     return fills;

@@ -8,16 +8,17 @@
 namespace reident::identification {
 
 /// Returns the values of a channel that are written where there is no sample: the least or the
-/// greatest value, exactly repeated in at least two rows, and far outside of all others. Far is
-/// more than the others' range away for a number of nines and the ends of integers of 8, 16 and 32
-/// bits, ten times the greatest magnitude of others that have another sign, and ten thousand times
-/// that of any.
+/// greatest value, far outside of all others. Far is more than the others' range away for a number
+/// of nines and the ends of integers of 8, 16 and 32 bits, and ten thousand times the greatest
+/// magnitude of others for any value; ten times that for one that is exactly repeated, where the
+/// others have another sign.
 std::vector<double> fill_values(const Vector& values);
 
 /// Returns the rows of one channel that hold a value which stands for none by where it stands: the
-/// least or the greatest one, exactly repeated in at least three short stretches that are at most a
+/// least or the greatest one, exactly repeated in at least three stretches that are at most a
 /// quarter of all, further outside of the others than these are apart, while no other channel
-/// jumps there as a rule.
+/// jumps there as a rule. Longer stretches than usual are few rows, and no other channel turns
+/// there.
 std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self);
 
 }  // namespace reident::identification

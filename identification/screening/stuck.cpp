@@ -18,6 +18,7 @@ constexpr double end_share = 0.02;
 /// What another channel moves meanwhile, as a share of its range; or as usual over as many rows.
 constexpr double moving_share = 0.1;
 constexpr Index windows = 50;
+/// The samples that differ from the one before, of a channel whose noise never lets it rest.
 constexpr double restless_share = 0.9;
 
 /// What the channel moves over so many rows, in the quieter quarter of the record.

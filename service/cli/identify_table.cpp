@@ -123,17 +123,14 @@ class Parts {
  private:
   struct Clock {
     std::size_t part;
-    std::optional<std::int64_t> last_ns = {};
     std::int64_t ahead_ns = 0;
     std::vector<std::int64_t> times_ns = {};  // of the last rows
 
     /// Whether a row of this time came late: it belongs between the last rows.
     bool misses(std::int64_t time_ns) const {
-      return !times_ns.empty() && time_ns > std::ranges::min(times_ns) &&
-             !std::ranges::count(times_ns, time_ns);
+      return time_ns > std::ranges::min(times_ns) && !std::ranges::count(times_ns, time_ns);
     }
     void note(std::int64_t time_ns) {
-      last_ns = time_ns;
       if (times_ns.size() == late_rows) times_ns.erase(times_ns.begin());
       times_ns.push_back(time_ns);
     }
@@ -143,7 +140,7 @@ class Parts {
     const std::int64_t time = file.time_ns();
     const auto& step = file.clock_step();
     // A step from one part to another is none of a clock.
-    if (clock.last_ns && time <= *clock.last_ns && step) {
+    if (!clock.times_ns.empty() && time <= clock.times_ns.back() && step) {
       const bool is_sorted =
           step->kind == ClockStep::Kind::out_of_order && (is_absolute_ || clock.misses(time));
       if (step->missing_ns != 0)

@@ -86,7 +86,7 @@ struct Glossary {
        "Wait for operation that moves them, or a longer window."},
       {"league_full", "others score better",
        "More versions challenged the champion than are kept, and this one had the least mean "
-       "score.",
+       "score of those that do not wait for an operator, or of all.",
        ""},
       {"low_coverage", "too much telemetry is missing",
        "Too few ticks of the window have every parameter valid.",

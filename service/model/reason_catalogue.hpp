@@ -192,7 +192,7 @@ struct Catalogue {
        "Waits for an operator's approval."},
 
       {league_full, "league_full", none,
-       "The league has {members:d} challengers with better scores."},
+       "The league has {members:d} challengers that score better or wait for an operator."},
 
       {champion_failed, "champion_failed", none,
        "Champion {champion:d} has MRSE {mrse_percent:.3f} % on {blocks:d} blocks, where "

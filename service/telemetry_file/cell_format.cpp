@@ -16,7 +16,7 @@ namespace {
 constexpr double agreement = 0.9;  // of a column's cells, for a spelling that is not plain
 constexpr std::size_t most_states = 32;
 constexpr std::size_t words_shown = 5;
-constexpr std::size_t cells_of_decimals = 50;
+constexpr std::size_t cells_of_decimals = 50;  // that have three digits behind a comma, and all do
 
 std::string upper(std::string_view text) {
   std::string result(text);
@@ -255,7 +255,7 @@ std::variant<NumberStyle, StyleQuestion> find_style(
   if (has_mixed_column) return NumberStyle{'.', ','};
   // A comma that separates cells too is as likely a mark of thousands, in whatever column.
   if (separator != ',') return NumberStyle{',', '\0'};
-  // Of so many cells of several columns some thousands would be below 1000, or above a million.
+  // In so many cells of several columns some thousands would be below 1000, or above a million.
   if (columns_of_commas > 1 && all.comma_or >= cells_of_decimals && bare == 0)
     return NumberStyle{',', '\0'};
   return StyleQuestion{all.first_ambiguous.row,

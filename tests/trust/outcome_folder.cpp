@@ -1,7 +1,6 @@
 #include "tests/trust/outcome_folder.hpp"
 
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>

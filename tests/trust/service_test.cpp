@@ -6,6 +6,8 @@
 
 #include "service/support/log.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/trust/outcome_folder.hpp"
+#include "tests/trust/picture.hpp"
 #include "tests/trust/report.hpp"
 #include "tests/trust/suite_config.hpp"
 
@@ -44,6 +46,18 @@ TEST(Trust, AFailedCellIsFollowed) {
   EXPECT_EQ(figures.changes, 1) << story(outcome);
   EXPECT_EQ(figures.recovered, 1) << story(outcome);
   EXPECT_GE(figures.versions, 2) << story(outcome);
+
+  // As a run that was interrupted finds it again.
+  const test::TemporaryFolder folder;
+  OutcomeFolder(folder.path(), 7).keep(outcome);
+  const OutcomeFolder kept(folder.path(), 7);
+  const auto found = kept.find(group, group.scenarios.front());
+  ASSERT_TRUE(found);
+  EXPECT_EQ(story(*found), story(outcome));
+  EXPECT_EQ(picture(*found), picture(outcome));
+  EXPECT_FALSE(kept.find(group, {2, "none", {}}));
+  EXPECT_THROW(OutcomeFolder(folder.path(), 8).find(group, group.scenarios.front()),
+               std::runtime_error);
 }
 
 TEST(Trust, ABiasedSensorIsNotFollowed) {

@@ -108,8 +108,7 @@ void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome)
       outcome.warnings.push_back(fmt::format(
           "on the validation rows {} moves by no more than the model errs everywhere: they say "
           "nothing about the fit. The error there is {:.3g}, and on the identification rows "
-          "{:.3g}; "
-          "choose rows in which it moves with --validate",
+          "{:.3g}; choose rows in which it moves with --validate",
           output, error, before));
     else if (outcome.diagnostics.free_run.fit_percent(q) < 0)
       outcome.warnings.push_back(fmt::format(

@@ -6,8 +6,10 @@
 #include "service/cli/history_access.hpp"
 #include "service/cli/output/stored_version.hpp"
 #include "service/cli/output/table.hpp"
+#include "service/cli/stored.hpp"
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
+#include "service/review/evidence.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
@@ -38,15 +40,6 @@ std::string numbers_text(const std::vector<std::int64_t>& numbers) {
   return joined(texts) + (more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-/// A figure of the comparison that a version waits with; "-" where it has none.
-std::string figure(const WaitingRow& row, const char* key) {
-  const auto evidence = ordered_json::parse(row.decision.evidence_json, nullptr, false);
-  const auto found = evidence.is_object() ? evidence.find(key) : evidence.end();
-  return found != evidence.end() && found->is_number() && found->get<double>() > 0
-             ? fmt::format("{:.3g}", found->get<double>())
-             : "-";
-}
-
 void print_table(const std::vector<WaitingRow>& rows) {
   constexpr auto right = Table::Align::right;
   Table table({{"version"},
@@ -56,11 +49,14 @@ void print_table(const std::vector<WaitingRow>& rows) {
                {"supersedes"},
                {"why it waits"}});
   const storage::Time now = utc_now();
-  for (const WaitingRow& row : rows)
-    table.add({fmt::format("{}@{}", full_name(name_of(row)), row.decision.version),
-               rough_duration_text(now - row.decision.time), figure(row, "mrse_percent"),
-               figure(row, "champion_mrse_percent"), numbers_text(row.supersedes),
-               row.decision.reason});
+  for (const WaitingRow& row : rows) {
+    const ordered_json evidence = evidence_of(row.decision);
+    table.add(
+        {fmt::format("{}@{}", full_name(name_of(row)), row.decision.version),
+         rough_duration_text(now - row.decision.time), evidence_number(evidence, "mrse_percent"),
+         evidence.contains("champion") ? evidence_number(evidence, "champion_mrse_percent") : "-",
+         numbers_text(row.supersedes), row.decision.reason});
+  }
   fmt::print("{}", table.text(terminal_width()));
   fmt::print("'reident why VERSION' shows its record, 'reident approve' and 'reject' answer it.\n");
 }

@@ -55,6 +55,11 @@ class Records {
     league_.admitted.push_back(league_.challengers.back().window);
     return *this;
   }
+  /// The input goes five times as far in these blocks.
+  void swings(std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      league_.blocks[i].input_low = {-5}, league_.blocks[i].input_high = {5};
+  }
   Records& unbound() {
     league_.unbound = {"y"};
     return *this;
@@ -150,10 +155,7 @@ TEST(League, VersionThatIsBetterByLessThanTheMarginWaits) {
 
 TEST(League, VersionThatHasNotMetAnOperatingRegimeOfTheChampionIsNotCovered) {
   Records records(160);
-  for (int i = 20; i < 60; ++i) {
-    records.league().blocks[static_cast<std::size_t>(i)].input_low = {-5};
-    records.league().blocks[static_cast<std::size_t>(i)].input_high = {5};
-  }
+  records.swings(20, 60);
   records.champion(varying(0.02)).challenger(varying(0.01), 80);
   EXPECT_EQ(records.obstacle(), Code::not_covered);
   EXPECT_NEAR(records.findings()[0].uncovered_share, 43.0 / 160, 1e-9)
@@ -163,11 +165,7 @@ TEST(League, VersionThatHasNotMetAnOperatingRegimeOfTheChampionIsNotCovered) {
 TEST(League, VersionThatIsSurelyWorseInARegimeStaysOut) {
   Records records(1000);
   const auto is_unusual = [](int block) { return block % 40 < 12; };
-  for (int i = 0; i < 1000; ++i)
-    if (is_unusual(i)) {
-      records.league().blocks[static_cast<std::size_t>(i)].input_low = {-5};
-      records.league().blocks[static_cast<std::size_t>(i)].input_high = {5};
-    }
+  for (std::size_t i = 0; i < 1000; i += 40) records.swings(i, i + 12);
   records.champion(white(0.04))
       .challenger(
           [&](int block) {
@@ -253,10 +251,7 @@ TEST(League, VersionsAreTheLeastIntervalApart) {
 
 TEST(League, ARegimeThatEndedWhereTheWindowBeginsIsNotMet) {
   Records records(160);
-  for (int i = 20; i < 72; ++i) {
-    records.league().blocks[static_cast<std::size_t>(i)].input_low = {-5};
-    records.league().blocks[static_cast<std::size_t>(i)].input_high = {5};
-  }
+  records.swings(20, 72);
   // The window begins at block 72: cycles with these ranges that end in it begin before it.
   records.champion(varying(0.02)).challenger(varying(0.01), 80);
   EXPECT_EQ(records.obstacle(), Code::not_covered);

@@ -87,7 +87,8 @@ const Example of_a_member[] = {
     {because<Code::waits_for_operator>(5.0, 40),
      "Better, with MRSE 5.000 % on 40 blocks that it was not fitted to. Waits for an operator's "
      "approval."},
-    {because<Code::league_full>(12), "The league has 12 challengers with better scores."},
+    {because<Code::league_full>(12),
+     "The league has 12 challengers that score better or wait for an operator."},
     {because<Code::champion_failed>(3, 25.0, 40, "a constant at the mean", 20.0),
      "Champion 3 has MRSE 25.000 % on 40 blocks, where a constant at the mean has less: 20.000 "
      "%."},
@@ -111,7 +112,8 @@ TEST(Reasons, FollowOneAnotherInTextAndJson) {
   const std::vector<Reason> reasons = {because<Code::league_full>(12),
                                        because<Code::within_margin>(3, 15.0, 5.0, 5.5, 40)};
   EXPECT_EQ(sentences(reasons),
-            "The league has 12 challengers with better scores. Better than champion 3 by "
+            "The league has 12 challengers that score better or wait for an operator. Better than "
+            "champion 3 by "
             "less than the margin of 15 %: MRSE 5.000 % and 5.500 % on 40 blocks.");
   EXPECT_EQ(to_json(reasons).dump(),
             R"([{"code":"league_full","members":12},)"
