@@ -249,7 +249,7 @@ class Web(WebCase):
         excluded = self.api("excluded", begin=begin, end=end)["excluded"]
         self.assertEqual({(one["check"], one["relation"], *one["parameters"], *one["equipment"])
                           for one in excluded}, {("relation", "pair", "out", "load", "PLANT"),
-                                             ("spike", "", "out", "PLANT")})
+                                             ("fill", "", "out", "PLANT")})
         self.assertEqual([one["lasts"] for one in excluded][0], True)
         self.assertEqual(self.api("excluded", begin=end + 10**6, end=end + 10**6 + 1)["excluded"], [])
 
