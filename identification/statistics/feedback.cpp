@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "identification/numerics/decompositions.hpp"
 #include "identification/statistics/quantiles.hpp"
@@ -13,43 +15,87 @@ namespace {
 constexpr double false_alarms = 5e-4;  // share of the records without feedback
 constexpr Index latest = 3;            // rows that most controllers look back at the most
 constexpr double least_share = 0.02;
+constexpr Index around_rhythm = 1;      // rows: a period need not be of whole ones
 constexpr double nothing_left = 1e-12;  // of an input's square: below it nothing is left to explain
 
-/// Columns: a one, then z[t-1], z[t-2], ... for each row t with so many rows before it.
-Matrix past_of(const Matrix& values, const std::vector<Segment>& segments, Index past,
-               Index count) {
-  Matrix result(count, 1 + values.cols() * past);
-  result.col(0).setOnes();
+/// What is known before a row: so many rows of the inputs and of what a model makes of them, and
+/// the rows of each input around the one that lies its rhythm ago. There may be no rhythms.
+struct Past {
+  Index rows;
+  std::vector<Index> rhythms{};
+
+  Index longest() const {
+    return rhythms.empty() ? rows
+                           : *std::max_element(rhythms.begin(), rhythms.end()) + around_rhythm;
+  }
+};
+
+/// Calls `use` with the place, from 0, and the number of each row that has its past.
+template <typename Use>
+Index for_each_row(const std::vector<Segment>& segments, const Past& past, const Use& use) {
   Index at = 0;
   for (const Segment& segment : segments)
-    for (Index t = segment.begin + past; t < segment.end; ++t, ++at)
-      for (Index i = 0; i < past; ++i)
-        result.row(at).segment(1 + i * values.cols(), values.cols()) = values.row(t - 1 - i);
-  return result;
+    for (Index t = segment.begin + past.longest(); t < segment.end; ++t) use(at++, t);
+  return at;
 }
 
-}  // namespace
-
-std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index past,
-                                  const Matrix& of_inputs) {
-  const Index m = record.u.cols(), p = record.y.cols();
-  assert(of_inputs.rows() == record.rows() && of_inputs.cols() == p);
-  const std::vector<Segment> segments = segments_within(record, rows);
+/// The lag beyond `past`, up to a third of the longest segment, at which the values are most like
+/// themselves; the first one of those that are about as good, as after two periods.
+Index rhythm_of(const Vector& values, const std::vector<Segment>& segments, Index past) {
+  constexpr double about_as_good = 0.02;
+  Index longest = 0;
+  double mean = 0;
   Index count = 0;
-  for (const Segment& segment : segments) count += std::max<Index>(0, segment.size() - past);
-  if (m == 0 || count < 3 * (m + p + 1) * past) return {};
-  Matrix own(record.rows(), m + p);
-  own << record.u, of_inputs;
-  const Index known = 1 + (m + p) * past, told = p * past;
+  for (const Segment& segment : segments) {
+    longest = std::max(longest, segment.size());
+    mean += values.segment(segment.begin, segment.size()).sum();
+    count += segment.size();
+  }
+  mean /= double(count);
+  std::vector<double> likeness;
+  for (Index lag = past + 1; lag <= std::max(longest / 3, past + 1); ++lag) {
+    double product = 0;
+    Index pairs = 0;
+    for (const Segment& segment : segments) {
+      const Index n = segment.size() - lag;
+      if (n <= 0) continue;
+      product += (values.segment(segment.begin + lag, n).array() - mean)
+                     .matrix()
+                     .dot((values.segment(segment.begin, n).array() - mean).matrix());
+      pairs += n;
+    }
+    likeness.push_back(pairs > 0 ? product / double(pairs) : 0);
+  }
+  const double best = *std::max_element(likeness.begin(), likeness.end());
+  const auto first = std::find_if(likeness.begin(), likeness.end(), [&](double one) {
+    return one >= best - about_as_good * std::abs(best);
+  });
+  return past + 1 + (first - likeness.begin());
+}
+
+/// What feedback_of() finds beside such a past; absent where the rows are too few.
+std::optional<std::vector<Feedback>> feedback_beside(const Record& record,
+                                                     const std::vector<Segment>& segments,
+                                                     const Past& past, const Matrix& of_inputs) {
+  const Index m = record.u.cols(), p = record.y.cols();
+  const Index of_rhythms = std::ssize(past.rhythms) * (2 * around_rhythm + 1);
+  const Index known = 1 + (m + p) * past.rows + of_rhythms, told = p * past.rows;
+  const Index count = for_each_row(segments, past, [](Index, Index) {});
+  if (m == 0 || count < 3 * (known + past.rows)) return std::nullopt;
   Matrix columns(count, known + told + m);
-  columns.leftCols(known) = past_of(own, segments, past, count);
-  for (Index q = 0; q < p; ++q)
-    columns.middleCols(known + q * past, past) =
-        past_of(record.y.col(q), segments, past, count).rightCols(past);
-  Index at = 0;
-  for (const Segment& segment : segments)
-    for (Index t = segment.begin + past; t < segment.end; ++t)
-      columns.row(at++).tail(m) = record.u.row(t);
+  for_each_row(segments, past, [&](Index at, Index t) {
+    auto row = columns.row(at);
+    row(0) = 1;
+    Index column = 1;
+    for (Index i = 1; i <= past.rows; ++i, column += m + p)
+      row.segment(column, m + p) << record.u.row(t - i), of_inputs.row(t - i);
+    for (std::size_t j = 0; j < past.rhythms.size(); ++j)
+      for (Index i = -around_rhythm; i <= around_rhythm; ++i)
+        row(column++) = record.u(t - past.rhythms[j] + i, static_cast<Index>(j));
+    for (Index q = 0; q < p; ++q)
+      for (Index i = 1; i <= past.rows; ++i) row(column++) = record.y(t - i, q);
+    row.tail(m) = record.u.row(t);
+  });
   const Matrix triangle = triangular_factor(columns);
   const Matrix left = triangle.bottomRightCorner(told + m, told + m);
   // For the latest rows of an output and for all, by Bartlett's factor, with which the logarithm of
@@ -63,21 +109,36 @@ std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index pas
 
   std::vector<Feedback> found;
   for (Index q = 0; q < p; ++q) {
-    Matrix beside(told + m, past + m);
-    beside << left.middleCols(q * past, past), left.rightCols(m);
+    Matrix beside(told + m, past.rows + m);
+    beside << left.middleCols(q * past.rows, past.rows), left.rightCols(m);
     const Matrix inputs = triangular_factor(beside).rightCols(m);
     for (Index i = 0; i < m; ++i) {
       const double all = left.rightCols(m).col(i).squaredNorm();
       if (!(all > nothing_left * triangle.rightCols(m).col(i).squaredNorm())) continue;
-      const Vector explained = inputs.col(i).head(past);
-      const Index few = std::min(latest, past);
+      const Vector explained = inputs.col(i).head(past.rows);
+      const Index few = std::min(latest, past.rows);
       const double share = explained.squaredNorm() / all;
-      if (share >= least_share &&
-          (is_explained(explained.head(few).squaredNorm() / all, few) || is_explained(share, past)))
+      if (share >= least_share && (is_explained(explained.head(few).squaredNorm() / all, few) ||
+                                   is_explained(share, past.rows)))
         found.push_back({i, q, share});
     }
   }
   return found;
+}
+
+}  // namespace
+
+std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index past,
+                                  const Matrix& of_inputs) {
+  assert(of_inputs.rows() == record.rows() && of_inputs.cols() == record.y.cols());
+  const std::vector<Segment> segments = segments_within(record, rows);
+  auto found =
+      feedback_beside(record, segments, {past}, of_inputs).value_or(std::vector<Feedback>());
+  if (found.empty()) return found;
+  Past with_rhythms{past};
+  for (Index i = 0; i < record.u.cols(); ++i)
+    with_rhythms.rhythms.push_back(rhythm_of(record.u.col(i), segments, past + around_rhythm));
+  return feedback_beside(record, segments, with_rhythms, of_inputs).value_or(std::move(found));
 }
 
 }  // namespace reident::identification

@@ -18,8 +18,9 @@ struct Feedback {
 /// Tests each input against each output on `rows` with so many rows of past, by the likelihood
 /// ratio of two regressions. Where no input follows any output, one is found with a probability of
 /// at most 1e-3. `of_inputs` (record's rows x p) is what a model makes of the inputs alone: what
-/// the output shows of inputs longer ago, such as a rhythm that they share, is no feedback. What
-/// the output explains must be at least 2 %. Empty where there are too few rows.
+/// the output shows of inputs longer ago, such as a rhythm that they share, is no feedback. Nor is
+/// what an input's own values a period ago tell. What the output explains must be at least 2 %.
+/// Empty where there are too few rows.
 std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index past,
                                   const Matrix& of_inputs);
 

@@ -167,6 +167,43 @@ TEST(ClosedLoop, AnOpenLoopHasNoFeedbackWhateverTheRhythmOfItsInput) {
   RecordProperty("invented", std::to_string(invented));
 }
 
+TEST(ClosedLoop, APeriodicInputIsNoFeedbackOfAModelThatMissesTheDeadTime) {
+  // Such as a heater's duty cycle. Of 150 records 42 were taken for closed loops.
+  int invented = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    test::Noise noise(seed);
+    const auto period = static_cast<Index>(30 + 60 * noise.uniform());
+    const auto dead = static_cast<Index>(20 + 30 * noise.uniform());
+    Matrix u(900, 1), y(900, 1);
+    double x = 0;
+    for (Index t = 0; t < 900; ++t) {
+      u(t) = t % period < period / 2;
+      y(t) = x + 0.01 * noise.normal();
+      x = 0.9 * x + 0.1 * (t < dead ? 0 : u(t - dead));
+    }
+    const Record record = contiguous_record(1, u, y);
+    invented += !feedback_of(record, record.all(), 12, Matrix::Zero(900, 1)).empty();
+  }
+  EXPECT_EQ(invented, 0);
+}
+
+TEST(ClosedLoop, FeedbackIsFoundBesideAPeriodicReference) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    test::Noise noise(seed);
+    Matrix u(900, 1), y(900, 1);
+    double x = 0;
+    for (Index t = 0; t < 900; ++t) {
+      y(t) = x + 0.05 * noise.normal();
+      u(t) = 0.5 * ((t % 50 < 25 ? 1 : -1) - (t > 0 ? y(t - 1) : 0));
+      x = 0.9 * x + 0.3 * u(t) + 0.05 * noise.normal();
+    }
+    const Record record = contiguous_record(1, u, y);
+    found += !feedback_of(record, record.all(), 12, Matrix::Zero(900, 1)).empty();
+  }
+  EXPECT_EQ(found, 20);
+}
+
 TEST(ClosedLoop, AStablePlantWithTheRightGainKeepsItsModelWithAWarning) {
   test::Noise noise(1);
   const Record record = recorded({0.8, 0.4, 0.3}, noise, 3000, 0.03);
