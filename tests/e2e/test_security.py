@@ -165,6 +165,7 @@ class SecuredLoop(Secured):
         self.site.renew("station")
         wait_until(lambda: "took up" in daemon.text() and "took up" in replay.text(), "new files")
         self.assertEqual(replay.wait(deadline_s=150), 0, replay.text())  # 60 s of telemetry
+        wait_until(lambda: self.stored() >= 3 * 1200, "the last frame is committed")
         self.assertEqual(self.stored(), 3 * 1200)
         status, text = self.configured("status", "--security", ana, "--timeout", DEADLINE_S)
         self.assertEqual(status, 0, text)
