@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "identification/numerics/decompositions.hpp"
+#include "identification/statistics/correlation.hpp"
 #include "identification/statistics/quantiles.hpp"
 
 namespace reident::identification {
@@ -41,30 +42,13 @@ Index for_each_row(const std::vector<Segment>& segments, const Past& past, const
 
 /// The lag beyond `past`, up to a third of the longest segment, at which the values are most like
 /// themselves; the first one of those that are about as good, as after two periods.
-Index rhythm_of(const Vector& values, const std::vector<Segment>& segments, Index past) {
+Index rhythm_of(Series values, Index past) {
   constexpr double about_as_good = 0.02;
-  Index longest = 0;
-  double mean = 0;
-  Index count = 0;
-  for (const Segment& segment : segments) {
-    longest = std::max(longest, segment.size());
-    mean += values.segment(segment.begin, segment.size()).sum();
-    count += segment.size();
-  }
-  mean /= double(count);
   std::vector<double> likeness;
-  for (Index lag = past + 1; lag <= std::max(longest / 3, past + 1); ++lag) {
-    double product = 0;
-    Index pairs = 0;
-    for (const Segment& segment : segments) {
-      const Index n = segment.size() - lag;
-      if (n <= 0) continue;
-      product += (values.segment(segment.begin + lag, n).array() - mean)
-                     .matrix()
-                     .dot((values.segment(segment.begin, n).array() - mean).matrix());
-      pairs += n;
-    }
-    likeness.push_back(pairs > 0 ? product / double(pairs) : 0);
+  for (Index lag = past + 1; lag <= std::max(values.longest_segment() / 3, past + 1); ++lag) {
+    const Index pairs = values.pairs(lag);
+    likeness.push_back(
+        pairs > 0 ? values.autocorrelation(lag) * double(values.rows()) / double(pairs) : 0);
   }
   const double best = *std::max_element(likeness.begin(), likeness.end());
   const auto first = std::find_if(likeness.begin(), likeness.end(), [&](double one) {
@@ -136,8 +120,12 @@ std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index pas
       feedback_beside(record, segments, {past}, of_inputs).value_or(std::vector<Feedback>());
   if (found.empty()) return found;
   Past with_rhythms{past};
+  std::vector<RowRange> ranges;
+  for (const Segment& segment : segments_from(record, rows))
+    ranges.push_back({segment.begin, segment.end});
   for (Index i = 0; i < record.u.cols(); ++i)
-    with_rhythms.rhythms.push_back(rhythm_of(record.u.col(i), segments, past + around_rhythm));
+    with_rhythms.rhythms.push_back(rhythm_of(
+        Series(record.u.col(i).segment(rows.begin, rows.size()), ranges), past + around_rhythm));
   return feedback_beside(record, segments, with_rhythms, of_inputs).value_or(std::move(found));
 }
 

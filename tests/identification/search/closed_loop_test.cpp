@@ -168,7 +168,7 @@ TEST(ClosedLoop, AnOpenLoopHasNoFeedbackWhateverTheRhythmOfItsInput) {
 }
 
 TEST(ClosedLoop, APeriodicInputIsNoFeedbackOfAModelThatMissesTheDeadTime) {
-  // Such as a heater's duty cycle. Of 150 records 42 were taken for closed loops.
+  // Such as a heater's duty cycle. Without its own values a period ago all of them would be.
   int invented = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     test::Noise noise(seed);
