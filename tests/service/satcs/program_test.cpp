@@ -238,8 +238,9 @@ TEST_F(Programs, SayWhenNobodyTookTheTelemetry) {
   write_rows(10);
   dds::Participant participant(endpoint_);
   dds::Reader<TelemetryFrame> full(participant, {.max_samples = 4});
-  // All ten frames fit what the writer may have in flight, but the reader takes four.
-  EXPECT_EQ(Child(replay("--speed max --json --wait-timeout 1s")).wait(), 3);
+  // All ten frames fit what the writer may have in flight, but the reader takes four. The reader
+  // has to be found within the time-out too.
+  EXPECT_EQ(Child(replay("--speed max --json --wait-timeout 10s")).wait(), 3);
   EXPECT_EQ(summary()["outcome"], "not_acknowledged");
   EXPECT_EQ(summary()["frames"], 10);
 }
