@@ -19,7 +19,7 @@ LeagueWatch::LeagueWatch(const Config& config, WindowFeed& feed)
 
 bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive,
                           const storage::Registry& registry, storage::Time reached,
-                          const LeagueContext& context) {
+                          const LeagueContext& context, const WindowFeed::Job* then) {
   Watched& watched = *watched_[equipment];
   const std::lock_guard lock(watched.mutex);
   const std::string& spacecraft = *watched.spacecraft;
@@ -71,7 +71,10 @@ bool LeagueWatch::advance(std::size_t equipment, const storage::Archive& archive
                   {"window_begin", time_text(window->begin)},
                   {"window_end", time_text(window->end)}});
     feed_.ask(spacecraft, name, "drift", *window);
-    if (window->end < reached) return false;
+    if (window->end >= reached) continue;
+    // At once, before those behind it: versions meet each other in the order of time.
+    if (then) feed_.ask(spacecraft, name, then->window.cause, then->window.window);
+    return false;
   }
   return true;
 }

@@ -33,11 +33,11 @@ class LeagueWatch {
 
   /// Advances the league of an equipment, by its place in the configuration, to `reached`; asks the
   /// feed for a window where a change is found. False where it is not advanced to `reached` because
-  /// such a window, which ends before, has to be tried first. `archive` and `registry` are of the
-  /// calling thread. Throws storage::Error.
+  /// such a window, which ends before, has to be tried first; it asks for the window `then`, if
+  /// any, too. `archive` and `registry` are of the calling thread. Throws storage::Error.
   bool advance(std::size_t equipment, const storage::Archive& archive,
                const storage::Registry& registry, storage::Time reached,
-               const LeagueContext& context);
+               const LeagueContext& context, const WindowFeed::Job* then = nullptr);
 
   /// Advances every league to where the feed's telemetry has settled and its windows were tried. An
   /// archive that cannot be read is logged, and read again the next time.

@@ -39,7 +39,7 @@ std::optional<RecordedAttempt> attempt_window(const WindowFeed::Job& job,
   const storage::Time end = job.window.window.end;
   // From here on the archive marks what still falls into the window.
   context.write([&](auto&, storage::Archive& stored) { stored.seal(*job.spacecraft, end); });
-  if (!context.leagues->advance(job.window.equipment, archive, registry, end, context))
+  if (!context.leagues->advance(job.window.equipment, archive, registry, end, context, &job))
     return std::nullopt;
   // Read before the champion and the hold are looked at.
   const storage::DecisionState state =
