@@ -3,16 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identification/numerics/decompositions.hpp"
-#include "identification/statistics/betting.hpp"
 #include "service/judgement/scores.hpp"
 
 namespace reident {
 namespace {
-
-using identification::Index;
-using identification::Matrix;
-using identification::Vector;
 
 /// Mean logarithm of the roots of `squares`, none below the noise.
 double mean_log_root(const std::vector<double>& squares, const std::vector<double>& noise) {
@@ -34,61 +28,18 @@ double share_above(const std::vector<double>& noise, const std::vector<double>& 
 
 }  // namespace
 
-void ChangeFinder::add(const storage::Block& block, const storage::BlockScore& score) {
-  const Entry entry{phase_of(block), mean_log_root(score.square, score.noise),
-                    mean_log_root(block.output_square, score.noise),
-                    share_above(score.noise, block.output_square)};
-  if (!std::isfinite(entry.log_error)) return;
-  if (!detector_) {
-    reference_.push_back(entry);
-    reference_weight_ += entry.weight;
-    if (reference_weight_ >= double{reference_blocks}) measure_reference();
-  } else if (detector_->add(scaled(entry), entry.weight)) {
-    last_ = Change{calm_until_.value_or(INT64_MIN), block.range.end};
-    reference_.clear();
-    reference_weight_ = 0;
-    detector_.reset();
+void ChangeFinder::add(const storage::Block& block, const storage::BlockScore& score, int regime) {
+  const double log_error = mean_log_root(score.square, score.noise);
+  if (!std::isfinite(log_error)) return;
+  Errors& errors = regimes_[regime];
+  if (!errors.growth.add({static_cast<identification::Index>(phase_of(block)), log_error,
+                          mean_log_root(block.output_square, score.noise),
+                          share_above(score.noise, block.output_square)})) {
+    if (errors.growth.is_calm()) errors.calm_until = block.range.end;
     return;
   }
-  if (!detector_ || detector_->statistic() == 0) calm_until_ = block.range.end;
-}
-
-/// One for each phase of the cycle, and the size.
-ChangeFinder::Terms ChangeFinder::terms_of(const Entry& entry) const {
-  Terms terms = Terms::Zero();
-  terms(static_cast<Index>(entry.phase)) = 1;
-  terms(blocks_of_cycle) = std::clamp(entry.log_size, least_size_, largest_size_) - mean_size_;
-  return terms;
-}
-
-void ChangeFinder::measure_reference() {
-  const auto n = std::ssize(reference_);
-  Vector errors(n), sizes(n), weights(n);
-  for (Index i = 0; i < n; ++i) {
-    const Entry& entry = reference_[static_cast<std::size_t>(i)];
-    errors(i) = entry.log_error;
-    sizes(i) = entry.log_size;
-    weights(i) = entry.weight;
-  }
-  mean_error_ = weights.dot(errors) / weights.sum();
-  mean_size_ = weights.dot(sizes) / weights.sum();
-  least_size_ = sizes.minCoeff();
-  largest_size_ = sizes.maxCoeff();
-  Matrix terms(n, Terms::SizeAtCompileTime);
-  for (Index i = 0; i < n; ++i)
-    terms.row(i) = terms_of(reference_[static_cast<std::size_t>(i)]).transpose();
-  const Vector roots = weights.cwiseSqrt();
-  const Vector errors_to_explain = roots.cwiseProduct((errors.array() - mean_error_).matrix());
-  coefficients_ = identification::solve_least_norm(roots.asDiagonal() * terms, errors_to_explain);
-  scale_ = 1;
-  Vector left(n);
-  for (Index i = 0; i < n; ++i) left(i) = scaled(reference_[static_cast<std::size_t>(i)]);
-  detector_.emplace(left, weights, Terms::SizeAtCompileTime);
-  scale_ = 1 / std::sqrt(identification::dependence({weights.cwiseProduct(left), 1, 1}));
-}
-
-double ChangeFinder::scaled(const Entry& entry) const {
-  return scale_ * (entry.log_error - mean_error_ - terms_of(entry).dot(coefficients_));
+  last_ = Change{errors.calm_until, block.range.end, last_ ? last_->since : INT64_MIN};
+  regimes_.clear();
 }
 
 }  // namespace reident

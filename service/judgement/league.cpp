@@ -7,12 +7,14 @@
 #include <utility>
 
 #include "identification/statistics/betting.hpp"
+#include "service/judgement/coverage.hpp"
 #include "service/judgement/league_rule.hpp"
 
 namespace reident {
 namespace {
 
 using identification::dependence;
+using identification::InputRanges;
 using identification::log_wealth;
 using identification::lower_mean;
 using identification::ScoreSeries;
@@ -41,12 +43,24 @@ void Judge::take_in(const League& league) {
     since_ = league.champion->window.begin;
   }
   const std::size_t seen = std::exchange(seen_, league.blocks.size());
-  for_each_score(
-      league, *league.champion, INT64_MIN, seen,
-      [&](std::size_t, const Block& block, const BlockScore& score) { change_.add(block, score); });
+  bool are_other_regimes = false;
+  while (regimes_.numbers().size() < league.blocks.size()) {
+    const Block& block = league.blocks[regimes_.numbers().size()];
+    const bool is_one = counts(block);
+    are_other_regimes =
+        regimes_.add(is_one ? InputRanges{block.input_low, block.input_high} : InputRanges()) ||
+        are_other_regimes;
+  }
+  if (are_other_regimes) change_ = {};
+  for_each_score(league, *league.champion, INT64_MIN, are_other_regimes ? 0 : seen,
+                 [&](std::size_t i, const Block& block, const BlockScore& score) {
+                   change_.add(block, score, regimes_.numbers()[i]);
+                 });
   std::size_t counted = seen;
-  if (const auto& change = change_.last(); change && change->since != since_) {
-    since_ = change->since;
+  const auto& change = change_.last();
+  if (const Time since = change ? change->since : league.champion->window.begin; since != since_) {
+    before_.clear();
+    since_ = since;
     comparisons_.clear();
     own_ = {};
     with_simulator_ = {};
@@ -72,8 +86,14 @@ const Comparison& Judge::comparison(const League& league, const Member& one, con
   return found;
 }
 
-/// Dependence of the scores of the two members with the longest records: what is assumed of
-/// versions whose records are short. 0 where there are no two.
+/// Whichever is later: the change in the champion's record, or that in an earlier one's.
+Time Judge::changed(const League& league) const {
+  const auto& change = change_.last();
+  return std::max(league.changed, change ? change->since : INT64_MIN);
+}
+
+/// Dependence of the scores of the two members with the longest records, or of those from before
+/// the last change: what is assumed of versions whose records are short. 0 where there are no two.
 double Judge::usual_dependence(const League& league) {
   std::vector<const Member*> members;
   for (const Member& member : league.challengers) members.push_back(&member);
@@ -81,7 +101,33 @@ double Judge::usual_dependence(const League& league) {
   if (members.size() < 2) return 0;
   std::ranges::partial_sort(members, members.begin() + 2, std::greater<>(),
                             [](const Member* member) { return member->scores.size(); });
-  return dependence(series(comparison(league, *members[0], *members[1]).scores.values(), 0));
+  return std::max(
+      dependence(series(comparison(league, *members[0], *members[1]).scores.values(), 0)),
+      dependence_before(league));
+}
+
+/// The largest dependence of the challengers' scores between the last change and the one before:
+/// errors wander as they did. 0 where no record is that long.
+double Judge::dependence_before(const League& league) {
+  const auto& change = change_.last();
+  if (!change) return 0;
+  double largest = 0;
+  for (const Member& member : league.challengers) {
+    const auto [known, is_new] = before_.try_emplace(member.version, 0);
+    if (is_new) {
+      Comparison compared;
+      for_each_score(league, member, change->before, 0,
+                     [&](std::size_t i, const Block& block, const BlockScore& of_member) {
+                       if (block.range.begin >= change->since) return;
+                       if (const auto* of_champion = find(*league.champion, block.range.begin))
+                         compared.add(i, block, of_member, *of_champion);
+                     });
+      if (compared.blocks.size() >= reference_blocks)
+        known->second = dependence(series(compared.scores.values(), 0));
+    }
+    largest = std::max(largest, known->second);
+  }
+  return largest;
 }
 
 std::vector<Finding> Judge::findings(const League& league) {
@@ -92,11 +138,19 @@ std::vector<Finding> Judge::findings(const League& league) {
     return findings;
   }
   take_in(league);
-  Standard standard{league, *limits_, since_, usual_dependence(league)};
+  const Standard standard{
+      league, *limits_, since_, changed(league), usual_dependence(league), regimes_.numbers()};
   for (const Member& member : league.challengers)
     findings.push_back(
         judge_against_champion(standard, member, comparison(league, member, *league.champion)));
   return findings;
+}
+
+std::vector<Time> Judge::earlier_blocks(const League& league, const Member& member) {
+  if (!league.champion) return {};
+  take_in(league);
+  return reident::earlier_blocks(
+      league, served_regimes(league, regimes_.numbers(), member, changed(league)), member);
 }
 
 std::optional<Change> Judge::change(const League& league) {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/statistics/operating_regimes.hpp"
 #include "service/config/config.hpp"
 #include "service/judgement/change.hpp"
 #include "service/judgement/scores.hpp"
@@ -25,7 +26,8 @@ namespace reident {
 struct League {
   std::vector<storage::Block> blocks;  // ascending; each that a score is of is there
   std::optional<Member> champion;
-  std::vector<Member> challengers;           // ascending by number
+  storage::Time changed = INT64_MIN;  // `since` of the last change before the champion was made
+  std::vector<Member> challengers;    // ascending by number
   std::vector<storage::TimeRange> admitted;  // windows of all that ever were challengers
   std::vector<std::string> unbound;          // parameters whose sensors no relation binds
   std::vector<std::string> derived_sensors;  // that BlockScore::bias_effects are of, in their order
@@ -35,22 +37,23 @@ struct League {
 /// R5 until one does not hold; figures of those behind it are 0.
 struct Finding {
   std::int64_t version = 0;
-  std::optional<Reason> obstacle;    // absent where all conditions hold
-  std::int64_t blocks = 0;           // compared
-  double dependence = 1;             // identification::dependence
-  double log_wealth = 0;             // of the bet that it is better
-  double log_threshold = 0;          // that it has to reach
-  double mean_score = 0;             // 1: it errs nothing beside the champion; -1: the reverse
-  double lower_score = 0;            // lower end of the confidence sequence
-  double uncovered_share = 0;        // of the champion's blocks, in regimes that it has not met
-  double mean_without_offset = 0;    // without what a sensor's offset explains
+  std::optional<Reason> obstacle;  // absent where all conditions hold
+  std::int64_t blocks = 0;         // compared
+  double dependence = 1;           // identification::dependence
+  double log_wealth = 0;           // of the bet that it is better
+  double log_threshold = 0;        // that it has to reach
+  double mean_score = 0;           // 1: it errs nothing beside the champion; -1: the reverse
+  double lower_score = 0;          // lower end of the confidence sequence
+  double uncovered_share = 0;      // of the blocks since `changed`, in regimes that it has not met
+  double mean_without_offset = 0;  // without what a sensor's offset explains
   double wealth_without_offset = 0;  // log of the wealth, likewise
   double explained_by_offset = 0;    // of what it errs less, by a sensor of derived inputs at most
   double mrse_percent = 0;           // on the compared blocks
   double fit_percent = 0;            // the worst output's
   double champion_mrse_percent = 0;
-  double baseline_mrse_percent = 0;  // of the simulator's own model; 0: it sent nothing
-  double recent_score = 0;           // over the last two cycles; a first version's: -MRSE [%]
+  double baseline_mrse_percent = 0;   // of the simulator's own model; 0: it sent nothing
+  storage::Time changed = INT64_MIN;  // `since` of the equipment's last change
+  double recent_score = 0;            // over the last two cycles; a first version's: -MRSE [%]
 };
 
 /// The challenger that is to become champion; absent where none is.
@@ -81,6 +84,9 @@ class Judge {
 
   /// One finding for each challenger, in their order.
   std::vector<Finding> findings(const League& league);
+  /// Begins of the blocks before the window of `member`, a new one, on which it has to run too:
+  /// cycles of the operating regimes that it has not met.
+  std::vector<storage::Time> earlier_blocks(const League& league, const Member& member);
   /// The last change in the champion's record; absent where there is none, or too little to compare
   /// with.
   std::optional<Change> change(const League& league);
@@ -98,14 +104,18 @@ class Judge {
 
   void take_in(const League& league);
   const Comparison& comparison(const League& league, const Member& one, const Member& other);
+  storage::Time changed(const League& league) const;
   double usual_dependence(const League& league);
+  double dependence_before(const League& league);
 
   const EquipmentConfig* limits_;
   std::optional<std::int64_t> champion_;  // that the rest is about
+  identification::OperatingRegimes regimes_{blocks_of_cycle};
   ChangeFinder change_;
-  storage::Time since_ = 0;  // records count from here on
-  std::size_t seen_ = 0;     // blocks that were looked at
-  Sums own_;                 // of the champion's record
+  storage::Time since_ = 0;                // records count from here on
+  std::size_t seen_ = 0;                   // blocks that were looked at
+  std::map<std::int64_t, double> before_;  // dependence_before() by version
+  Sums own_;                               // of the champion's record
   Comparison with_simulator_;
   std::map<Pair, Comparison> comparisons_;
 };

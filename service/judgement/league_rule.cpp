@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "service/judgement/coverage.hpp"
 #include "service/judgement/offset.hpp"
 
 namespace reident {
@@ -80,25 +81,6 @@ SensorPast past_of(const League& league, std::size_t effect, Time since) {
   return {effect, phases, scores};
 }
 
-/// Share of the champion's blocks from `since` on that are in regimes which the member has not met:
-/// of which no whole cycle lies within its window or behind.
-double uncovered_share(const League& league, const std::vector<int>& regimes, const Member& member,
-                       Time since) {
-  std::map<int, std::pair<double, bool>> by_regime;  // champion's blocks; met by the member
-  double all = 0;
-  for (std::size_t i = 0; i < league.blocks.size(); ++i) {
-    if (regimes[i] < 0) continue;
-    auto& [served, met] = by_regime[regimes[i]];
-    const storage::TimeRange& range = league.blocks[i].range;
-    if (range.begin >= since && find(*league.champion, range.begin)) ++served, ++all;
-    met = met || range.end - blocks_of_cycle * (range.end - range.begin) >= member.window.begin;
-  }
-  double uncovered = 0;
-  for (const auto& [regime, of] : by_regime)
-    if (!of.second) uncovered += of.first;
-  return all > 0 ? uncovered / all : 0;
-}
-
 bool worse_in_a_regime(const Comparison& compared, const std::vector<int>& regimes, double assumed,
                        const EquipmentConfig& limits) {
   std::map<int, std::vector<double>> losses;
@@ -121,15 +103,20 @@ std::optional<Reason> inadmissible(const Finding& finding, const EquipmentConfig
 }
 
 /// R2. Uncovered blocks count as if they were lost entirely.
-std::optional<Reason> unproved_somewhere(Standard& standard, const Member& member,
+std::optional<Reason> unproved_somewhere(const Standard& standard, const Member& member,
                                          const Comparison& compared, Finding& finding) {
   const std::int64_t champion = standard.league.champion->version;
-  const std::vector<int>& regimes = standard.regimes_of_blocks();
-  finding.uncovered_share = uncovered_share(standard.league, regimes, member, standard.since);
+  const auto served = served_regimes(standard.league, standard.regimes, member, standard.changed);
+  finding.uncovered_share = uncovered_share(served);
   if (finding.lower_score * (1 - finding.uncovered_share) < largest_score * finding.uncovered_share)
     return because<Code::not_covered>(champion, 100 * finding.uncovered_share);
-  if (worse_in_a_regime(compared, regimes, standard.assumed, standard.limits))
+  if (worse_in_a_regime(compared, standard.regimes, standard.assumed, standard.limits))
     return because<Code::worse_in_regime>(champion);
+  // A few blocks with great errors make the bet no poorer, and a regime from before the window is
+  // in no bet: yet the errors as a whole may be larger.
+  const ServedErrors errors = served_errors(standard.league, served, member);
+  if (!(errors.own < errors.champion))
+    return because<Code::worse_over_regimes>(champion, errors.own, errors.champion);
   return std::nullopt;
 }
 
@@ -234,13 +221,14 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
   return finding;
 }
 
-Finding judge_against_champion(Standard& standard, const Member& member,
+Finding judge_against_champion(const Standard& standard, const Member& member,
                                const Comparison& compared) {
   const EquipmentConfig& limits = standard.limits;
   const std::int64_t champion = standard.league.champion->version;
   Finding finding;
   finding.version = member.version;
   finding.blocks = std::ssize(compared.blocks);
+  finding.changed = standard.changed;
   finding.log_threshold = log_threshold(standard.league, member, standard.since, limits);
   const auto not_better = [&] {
     return because<Code::not_better>(champion, finding.mrse_percent, finding.champion_mrse_percent,
@@ -267,8 +255,6 @@ Finding judge_against_champion(Standard& standard, const Member& member,
                                           finding.champion_mrse_percent, finding.blocks);
     finding.lower_score = lower_mean(scores, finding.dependence, finding.log_threshold);
     if (auto reason = unproved_somewhere(standard, member, compared, finding)) return reason;
-    // A few blocks with great errors make the bet no poorer, yet the errors as a whole are larger.
-    if (!(finding.mrse_percent < finding.champion_mrse_percent)) return not_better();
     if (auto reason = may_be_bias(standard, member, compared, finding)) return reason;
     return too_soon(standard, member);
   }();

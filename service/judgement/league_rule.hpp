@@ -8,7 +8,6 @@
 #include "identification/statistics/betting.hpp"
 #include "service/config/config.hpp"
 #include "service/judgement/league.hpp"
-#include "service/judgement/regimes.hpp"
 #include "service/judgement/scores.hpp"
 
 namespace reident {
@@ -42,14 +41,10 @@ double log_threshold(const League& league, const Member& member, storage::Time s
 struct Standard {
   const League& league;
   const EquipmentConfig& limits;
-  storage::Time since;  // records count from here on
-  double assumed;       // dependence of scores
-  std::vector<int> regimes{};
-
-  const std::vector<int>& regimes_of_blocks() {
-    if (regimes.empty()) regimes = regimes_of(league.blocks);
-    return regimes;
-  }
+  storage::Time since;    // records count from here on
+  storage::Time changed;  // the equipment is as it is from here on
+  double assumed;         // dependence of scores
+  const std::vector<int>& regimes;
 };
 
 /// A first version has to be good on telemetry of a whole cycle, and the simulator's own model is
@@ -57,7 +52,7 @@ struct Standard {
 Finding judge_first(const League& league, const Member& member, const EquipmentConfig& limits);
 
 /// Requires a champion, which `compared` compares the member with.
-Finding judge_against_champion(Standard& standard, const Member& member,
+Finding judge_against_champion(const Standard& standard, const Member& member,
                                const Comparison& compared);
 
 }  // namespace reident

@@ -9,6 +9,15 @@ namespace reident {
 using storage::Block;
 using storage::BlockScore;
 
+Member member_of_scores(std::int64_t version, storage::TimeRange window,
+                        std::vector<BlockScore> scores) {
+  const auto record = std::ranges::lower_bound(scores, window.begin, {}, &BlockScore::begin);
+  Member member{version, window, {record, scores.end()}, {}};
+  scores.erase(record, scores.end());
+  member.earlier = std::move(scores);
+  return member;
+}
+
 std::size_t phase_of(const Block& block) {
   const storage::Time length = std::max<storage::Time>(1, block.range.end - block.range.begin);
   const storage::Time phase = block.range.begin / length % blocks_of_cycle;
@@ -19,9 +28,9 @@ bool counts(const Block& block) {
   return block.rows > 0 && block.believed >= most;
 }
 
-const BlockScore* find(const Member& member, storage::Time begin) {
-  const auto found = std::ranges::lower_bound(member.scores, begin, {}, &BlockScore::begin);
-  const bool is_there = found != member.scores.end() && found->begin == begin && found->rows > 0;
+const BlockScore* find(const std::vector<BlockScore>& scores, storage::Time begin) {
+  const auto found = std::ranges::lower_bound(scores, begin, {}, &BlockScore::begin);
+  const bool is_there = found != scores.end() && found->begin == begin && found->rows > 0;
   return is_there ? &*found : nullptr;
 }
 
@@ -55,11 +64,11 @@ double Scores::score(std::size_t q) const {
                     largest_score);
 }
 
-void Sums::add(const Block& block, const std::vector<double>& square) {
+void Sums::add(const Block& block, const std::vector<double>& square, double weight) {
   error.resize(square.size(), 0);
   y.resize(square.size(), 0);
   y_square.resize(square.size(), 0);
-  const auto weight = static_cast<double>(block.rows);
+  weight *= static_cast<double>(block.rows);
   for (std::size_t q = 0; q < square.size(); ++q) {
     error[q] += weight * square[q];
     y[q] += weight * block.output_mean[q];

@@ -14,8 +14,13 @@ namespace reident {
 struct Member {
   std::int64_t version = 0;
   storage::TimeRange window;
-  std::vector<storage::BlockScore> scores;  // ascending
+  std::vector<storage::BlockScore> scores;     // from its validation part on, ascending
+  std::vector<storage::BlockScore> earlier{};  // on blocks before its window, ascending
 };
+
+/// With the scores, ascending, that the registry has.
+Member member_of_scores(std::int64_t version, storage::TimeRange window,
+                        std::vector<storage::BlockScore> scores);
 
 /// Bound of a block's score.
 inline constexpr double largest_score = 1;
@@ -36,8 +41,12 @@ std::size_t phase_of(const storage::Block& block);
 /// Whether anything is concluded from the block.
 bool counts(const storage::Block& block);
 
-/// The member's score of the block that begins there; null without one, or without rows.
-const storage::BlockScore* find(const Member& member, storage::Time begin);
+/// The score of the block that begins there; null without one, or without rows.
+const storage::BlockScore* find(const std::vector<storage::BlockScore>& scores,
+                                storage::Time begin);
+inline const storage::BlockScore* find(const Member& member, storage::Time begin) {
+  return find(member.scores, begin);
+}
 
 /// Mean squared errors of two runs on a block, by output. What is below the noise of the sensors
 /// counts as noise.
@@ -68,7 +77,7 @@ struct Sums {
   std::vector<double> error, y, y_square;
   double rows = 0;
 
-  void add(const storage::Block& block, const std::vector<double>& square);
+  void add(const storage::Block& block, const std::vector<double>& square, double weight = 1);
   double mrse_percent() const;
   /// The worst output's.
   double fit_percent() const;

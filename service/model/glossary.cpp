@@ -132,7 +132,7 @@ struct Glossary {
        "On its own validation part the model errs no less than the champion. The champion stays.",
        ""},
       {"not_covered", "has not met all regimes",
-       "The champion has served operating regimes that the version has not met, and what it gains "
+       "There were operating regimes that the version has not met, and what it gains "
        "does "
        "not outweigh that.",
        "Telemetry of those regimes decides by itself; 'reident approve' decides now."},
@@ -201,6 +201,12 @@ struct Glossary {
       {"worse_in_regime", "worse in an operating regime",
        "The version is worse than the champion, with confidence, in an operating regime that "
        "this has served.",
+       ""},
+      {"worse_over_regimes", "no better over all regimes",
+       "Over the operating regimes since the last change of the equipment, each with its share of "
+       "the "
+       "time, the version errs no less than the champion. It was run on the last cycles of those "
+       "that lie before its window.",
        ""},
   };
 };

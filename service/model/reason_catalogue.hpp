@@ -70,6 +70,7 @@ enum class ReasonCode {
   within_margin,       // R1
   not_covered,         // R2
   worse_in_regime,     // R2
+  worse_over_regimes,  // R2
   bias_unverified,     // R3
   too_soon,            // R5
   held,                // R5
@@ -174,12 +175,16 @@ struct Catalogue {
        "Better than champion {champion:d} by less than the margin of {margin_percent:g} %: MRSE "
        "{mrse_percent:.3f} % and {champion_mrse_percent:.3f} % on {blocks:d} blocks."},
       {not_covered, "not_covered", none,
-       "Champion {champion:d} has served {uncovered_percent:.0f} % of its time in operating "
-       "regimes "
-       "that this version has not met."},
+       "Cannot replace champion {champion:d} yet: it has not met the operating regimes of "
+       "{uncovered_percent:.0f} % of the time since the last change of the equipment."},
       {worse_in_regime, "worse_in_regime", none,
        "Worse than champion {champion:d}, with confidence, in an operating regime that this one "
        "has served."},
+      {worse_over_regimes, "worse_over_regimes", none,
+       "Over the operating regimes since the last change of the equipment, each with its share of "
+       "the "
+       "time, it errs no less than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
+       "{champion_mrse_percent:.3f} %."},
       {bias_unverified, "bias_unverified", none,
        "Better than champion {champion:d} but for what a biased sensor of {sensors} would show "
        "too; no relation binds it. Waits for an operator's approval."},

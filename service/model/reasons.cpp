@@ -118,6 +118,13 @@ std::string last_code(const storage::Decision& decision) {
   return evidence["reasons"].back().value("code", "");
 }
 
+std::optional<storage::Time> changed_in(const storage::Decision& decision) {
+  const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
+  if (!evidence.is_object() || !evidence.contains("changed_ns")) return std::nullopt;
+  const auto& changed = evidence["changed_ns"];
+  return changed.is_number_integer() ? changed.get<storage::Time>() : INT64_MIN;
+}
+
 bool waits_for_operator(const storage::Decision& last) {
   if (last.kind != storage::DecisionKind::wait) return false;
   const std::string code = last_code(last);

@@ -119,6 +119,9 @@ std::string_view past(storage::DecisionKind kind);
 
 /// The code of the last reason of a decision; empty where it holds none.
 std::string last_code(const storage::Decision& decision);
+/// When the equipment had changed last, as the decision found it; INT64_MIN: never. Absent where
+/// the decision does not say, as an operator's.
+std::optional<storage::Time> changed_in(const storage::Decision& decision);
 
 /// Whether a version, about which this is the last decision, waits for an operator rather than for
 /// telemetry: for an approval or for the end of a hold.

@@ -37,7 +37,9 @@ ordered_json to_json(const Finding& finding) {
           {"mrse_percent", finding.mrse_percent},
           {"fit_percent", finding.fit_percent},
           {"champion_mrse_percent", finding.champion_mrse_percent},
-          {"baseline_mrse_percent", finding.baseline_mrse_percent}};
+          {"baseline_mrse_percent", finding.baseline_mrse_percent},
+          {"changed_ns",
+           finding.changed == INT64_MIN ? ordered_json() : ordered_json(finding.changed)}};
 }
 
 storage::NewDecision decision_of(DecisionKind kind, const std::vector<Reason>& reasons,
@@ -48,14 +50,15 @@ storage::NewDecision decision_of(DecisionKind kind, const std::vector<Reason>& r
 }
 
 /// Throws Error (corrupt) where a record is not of the model's size.
-void require_fitting(const Member& member, const identification::StateSpaceModel& model) {
-  for (const storage::BlockScore& score : member.scores)
+void require_fitting(std::int64_t version, const std::vector<storage::BlockScore>& scores,
+                     const identification::StateSpaceModel& model) {
+  for (const storage::BlockScore& score : scores)
     if ((score.rows > 0 && std::ssize(score.mean) != model.outputs()) ||
         (score.state.tick && std::ssize(score.state.x) != model.order()))
       throw storage::Error(storage::Error::Kind::corrupt,
                            fmt::format("the record of version {} is not of its model from {} on: "
                                        "restore a backup",
-                                       member.version, time_text(score.begin)));
+                                       version, time_text(score.begin)));
 }
 
 storage::TimeRange window_behind(const Change& change, const EquipmentConfig& equipment) {
@@ -88,7 +91,8 @@ LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipm
 
 void LeagueKeeper::forget(storage::TimeRange range) {
   reader_.forget(range);
-  std::erase_if(samples_, [&](const auto& kept) { return reader_.reads(kept.first, range); });
+  for (auto* samples : {&samples_, &earlier_samples_})
+    std::erase_if(*samples, [&](const auto& kept) { return reader_.reads(kept.first, range); });
 }
 
 void LeagueKeeper::read_members(const storage::Registry& registry) {
@@ -116,15 +120,18 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
     if (!version || mistake_in(*version)) return std::nullopt;
     EquipmentModel model = equipment_model_from_json(version->model_json);
     if (request_of(model) != reader_.request()) return std::nullopt;
-    Member member{number, version->window,
-                  registry.scores(spacecraft_, equipment_.name, number, INT64_MIN)};
-    require_fitting(member, model.dynamics);
+    std::vector<storage::BlockScore> scores =
+        registry.scores(spacecraft_, equipment_.name, number, INT64_MIN);
+    require_fitting(number, scores, model.dynamics);
+    Member member = member_of_scores(number, version->window, std::move(scores));
     models_.emplace(number, std::move(model));
     return member;
   };
   std::int64_t passed_over = 0;
   if (const auto made = registry.champion_decision(spacecraft_, equipment_.name)) {
     league_.champion = member_of(made->version);
+    if (league_.champion)
+      league_.changed = changed_in(*made).value_or(league_.champion->window.begin);
     if (made->actor == gate) {
       // The champion before may be the better one again, as when a change is undone.
       if (const auto before = registry.previous_champion(spacecraft_, equipment_.name))
@@ -162,6 +169,7 @@ void LeagueKeeper::catch_up(const storage::Archive& archive, Member& member, Tim
   storage::RunState state;
   Time begin;
   if (member.scores.empty()) {
+    if (member.earlier.empty()) run_earlier(archive, member, scores);
     begin = std::max(-floor_divide(-model.validated_on.begin, length) * length,
                      league_.blocks.empty() ? INT64_MIN : league_.blocks.front().range.begin);
     // The run begins a block earlier, on telemetry that the version was fitted to.
@@ -176,6 +184,29 @@ void LeagueKeeper::catch_up(const storage::Archive& archive, Member& member, Tim
     state = score.state;
     member.scores.push_back(score);
     scores.push_back(std::move(score));
+  }
+}
+
+void LeagueKeeper::run_earlier(const storage::Archive& archive, Member& member,
+                               std::vector<storage::BlockScore>& scores) {
+  const Duration length = reader_.length();
+  const EquipmentModel& model = models_.at(member.version);
+  // The next member needs about the same ones.
+  std::map<Time, BlockSamples> known = std::exchange(earlier_samples_, {});
+  const auto samples_at = [&](Time begin) -> const BlockSamples& {
+    if (auto node = known.extract(begin))
+      return earlier_samples_.insert(std::move(node)).position->second;
+    if (const auto found = earlier_samples_.find(begin); found != earlier_samples_.end())
+      return found->second;
+    return earlier_samples_.emplace(begin, reader_.read(archive, begin)).first->second;
+  };
+  for (const Time begin : judge_.earlier_blocks(league_, member)) {
+    const bool goes_on = !member.earlier.empty() && member.earlier.back().begin + length == begin;
+    const storage::RunState state =
+        goes_on ? member.earlier.back().state
+                : score_block(model, member.version, samples_at(begin - length), {}).state;
+    member.earlier.push_back(score_block(model, member.version, samples_at(begin), state));
+    scores.push_back(member.earlier.back());
   }
 }
 

@@ -66,6 +66,9 @@ class LeagueKeeper {
   /// Scores of the member on the blocks up to `end` that it has none of.
   void catch_up(const storage::Archive& archive, Member& member, storage::Time end,
                 std::vector<storage::BlockScore>& scores);
+  /// The run of a new member on telemetry before its window (Judge::earlier_blocks()).
+  void run_earlier(const storage::Archive& archive, Member& member,
+                   std::vector<storage::BlockScore>& scores);
   /// Decides what the records up to `now` say.
   void decide(const storage::Registry& registry, const LeagueWriter& writer, storage::Time now);
   bool decide(const storage::Registry& registry, const LeagueWriter& writer, const Finding& finding,
@@ -82,8 +85,9 @@ class LeagueKeeper {
   const std::string spacecraft_;
   const EquipmentConfig& equipment_;
   BlockReader reader_;
-  std::map<storage::Time, BlockSamples> samples_;   // of the newest blocks
-  std::optional<storage::DecisionState> standing_;  // that the members are of
+  std::map<storage::Time, BlockSamples> samples_;          // of the newest blocks
+  std::map<storage::Time, BlockSamples> earlier_samples_;  // that run_earlier() read last
+  std::optional<storage::DecisionState> standing_;         // that the members are of
   League league_;
   Judge judge_;
   std::map<std::int64_t, EquipmentModel> models_;  // of the members

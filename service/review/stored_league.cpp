@@ -33,7 +33,7 @@ EquipmentConfig limits_of(const ordered_json& evidence, std::vector<std::string>
 
 Member member_of(const history::HistoryReader& history, const EquipmentName& equipment,
                  std::int64_t version, storage::TimeRange window) {
-  return {version, window, history.scores(equipment, version)};
+  return member_of_scores(version, window, history.scores(equipment, version));
 }
 
 }  // namespace
@@ -48,8 +48,9 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
   const storage::Version& version = story.version;
   const EquipmentName equipment{version.spacecraft, version.equipment};
   std::optional<std::int64_t> rival = version.parent;
+  std::optional<storage::Decision> made;
   if (version.status == "waiting") {
-    const auto made = history.champion_decision(equipment);
+    made = history.champion_decision(equipment);
     rival = made ? std::optional(made->version) : std::nullopt;
   }
   if (!rival) return std::nullopt;
@@ -76,6 +77,8 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
   if (!record.league.champion || record.league.champion->scores.empty() ||
       record.member(version.number).scores.empty())
     return std::nullopt;
+  if (made)
+    record.league.changed = changed_in(*made).value_or(record.league.champion->window.begin);
   record.league.blocks = history.blocks(equipment);
   record.change = Judge(record.limits).change(record.league);
   return record;

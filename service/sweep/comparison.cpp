@@ -149,15 +149,18 @@ Regrets ServedVersions::regrets(TimeRange range, Duration cycle) const {
     if (one.rows == 0) one.first = block.range.begin;
     one.rows += static_cast<double>(block.rows);
   }
-  for (const storage::VersionSummary& version : registry_.summaries(spacecraft, equipment))
+  for (const storage::VersionSummary& version : registry_.summaries(spacecraft, equipment)) {
+    // Nobody had the version before its window ended, yet it may have run on earlier blocks.
+    const Time made = registry_.version(spacecraft, equipment, version.number)->window.begin;
     for (const BlockScore& score :
-         registry_.scores(spacecraft, equipment, version.number, range.begin)) {
+         registry_.scores(spacecraft, equipment, version.number, std::max(range.begin, made))) {
       const auto block = blocks.find(score.begin);
       if (block == blocks.end() || score.rows == 0) continue;
       cycle_of(block->second)
           .errors[version.number]
           .add(block->second, squares_of(score, score).one);
     }
+  }
   Regrets regrets;
   for (const auto& [begin, one] : cycles) {
     const std::int64_t champion = version_at(one.first);

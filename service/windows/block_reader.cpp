@@ -13,13 +13,11 @@ using identification::Index;
 using identification::Matrix;
 using identification::Record;
 
-/// Telemetry of so many cycles before a block shows what of it is not believed.
-constexpr int cycles_checked = 4;
 /// With more sensor faults found in a tick, others that are too small to be found spoil the scores.
 constexpr double most_faults = 1.0 / 400;
 
 Duration checked_before(Duration block) {
-  return cycles_checked * blocks_of_cycle * block;
+  return cycles_before * blocks_of_cycle * block;
 }
 
 /// Mean squared difference of the outputs at the ticks that both have.

@@ -21,6 +21,10 @@ std::vector<double> list(const identification::Vector& values);
 /// Blocks of an operating cycle.
 inline constexpr int blocks_of_cycle = 4;
 
+/// So many cycles show how things were: before a block what of it is not believed, before a window
+/// the operating regimes that it lacks.
+inline constexpr int cycles_before = 4;
+
 /// Length of a block: a quarter of the cycle, in whole sample periods.
 Duration block_length(const EquipmentConfig& equipment);
 

@@ -55,6 +55,11 @@ class Records {
     league_.admitted.push_back(league_.challengers.back().window);
     return *this;
   }
+  /// The run of the champion or a challenger on these blocks, which lie before its window.
+  void ran_before(Member& of, const Errors& errors, int from, int to) {
+    of.earlier = member(of.version, of.window, errors, from).scores;
+    of.earlier.resize(static_cast<std::size_t>(to - from));
+  }
   /// The input goes five times as far in these blocks.
   void swings(std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i)
@@ -175,6 +180,51 @@ TEST(League, VersionThatIsSurelyWorseInARegimeStaysOut) {
   EXPECT_EQ(records.obstacle(), Code::worse_in_regime);
 }
 
+TEST(League, NewVersionIsToRunOnTheLastCyclesOfARegimeFromBeforeItsWindow) {
+  Records records(100);
+  records.swings(20, 60);
+  records.champion(varying(0.02)).challenger(varying(0.01), 96, 4 * cycle);
+  const auto earlier = [&] {
+    return Judge(records.limits())
+        .earlier_blocks(records.league(), records.league().challengers[0]);
+  };
+  ASSERT_EQ(earlier().size(), cycles_before * blocks_of_cycle);
+  EXPECT_EQ(earlier().front(), (63 - 16) * length)
+      << "three blocks behind are of a cycle with them";
+  EXPECT_EQ(earlier().back(), 62 * length);
+  records.ran_before(records.league().challengers[0], varying(0.01), 47, 63);
+  EXPECT_TRUE(earlier().empty());
+}
+
+TEST(League, VersionIsCoveredThatRanOnARegimeFromBeforeItsWindow) {
+  // Half of the champion's time was in a regime in which it errs far less than the version would.
+  const auto champion = [](int block) { return Error{0, block < 80 ? 0.02 : 0.2}; };
+  for (const auto& [before, obstacle] : {std::pair(0.01, std::optional<Code>()),
+                                         {0.1, std::nullopt},
+                                         {0.5, Code::worse_over_regimes}}) {
+    Records records(160);
+    records.swings(0, 77);
+    records.champion(champion).challenger(varying(0.02), 90);
+    records.ran_before(records.league().challengers[0], varying(before), 64, 80);
+    EXPECT_EQ(records.obstacle(), obstacle) << before;
+  }
+}
+
+TEST(League, RegimesOfTheChampionBeforeCountUntilTheEquipmentChanges) {
+  // The champion's window begins behind a regime in which the version errs far more.
+  for (const auto& [changed, obstacle] :
+       {std::pair(Time{INT64_MIN}, std::optional(Code::worse_over_regimes)),
+        {62 * length, std::nullopt}}) {
+    Records records(160);
+    records.swings(0, 60);
+    records.champion(varying(0.04), 90).challenger(varying(0.02), 110);
+    records.ran_before(*records.league().champion, varying(0.02), 44, 60);
+    records.ran_before(records.league().challengers[0], varying(0.5), 44, 60);
+    records.league().changed = changed;
+    EXPECT_EQ(records.obstacle(), obstacle);
+  }
+}
+
 TEST(League, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
   Records records(200);
   records.champion([](int block) {
@@ -257,7 +307,7 @@ TEST(League, ARegimeThatEndedWhereTheWindowBeginsIsNotMet) {
   EXPECT_EQ(records.obstacle(), Code::not_covered);
 }
 
-TEST(League, VersionWithTheGreaterErrorsOnAWholeIsNotBetter) {
+TEST(League, VersionWithTheGreaterErrorsOnAWholeStaysOut) {
   // It errs less on nine of ten blocks, and far more on the tenth.
   const auto errors = [](double usual, double rare) {
     return [=](int block) { return Error{0, block % 10 == 0 ? rare : usual}; };
@@ -266,7 +316,7 @@ TEST(League, VersionWithTheGreaterErrorsOnAWholeIsNotBetter) {
   records.champion(errors(0.002, 0.02)).challenger(errors(0.0005, 0.05), 40);
   const Finding found = records.findings().at(0);
   EXPECT_GT(found.log_wealth, found.log_threshold);
-  EXPECT_EQ(records.obstacle(), Code::not_better);
+  EXPECT_EQ(records.obstacle(), Code::worse_over_regimes);
 }
 
 TEST(League, AFullLeagueKeepsHalfItsPlacesForVersionsThatWaitForAnOperator) {
@@ -335,6 +385,44 @@ TEST(League, AChampionWhoseErrorsVaryAsEverHasNotChanged) {
   EXPECT_FALSE(Judge(records.limits()).change(records.league()));
 }
 
+TEST(League, AnotherRegimeIsNoChange) {
+  // The champion errs five times as much while the input goes far, twice for twelve cycles.
+  Records records(400);
+  const auto is_far = [](int block) {
+    return (block >= 100 && block < 148) || (block >= 250 && block < 298);
+  };
+  records.swings(100, 148);
+  records.swings(250, 298);
+  const auto usual = varying(0.01);
+  records.champion([=](int block) {
+    return Error{0, usual(block).square * (is_far(block) ? 25 : 1)};
+  });
+  EXPECT_FALSE(Judge(records.limits()).change(records.league()));
+  records.champion([=](int block) {
+    return Error{0, usual(block).square * (is_far(block) || block > 350 ? 25 : 1)};
+  });
+  const auto change = Judge(records.limits()).change(records.league());
+  ASSERT_TRUE(change);
+  EXPECT_NEAR(static_cast<double>(change->since / length), 350, 2);
+}
+
+TEST(League, ScoresWanderBehindAChangeAsTheyDidBefore) {
+  // The two err more in turn, for ten cycles each; at the change the champion errs more for good.
+  const auto wandering = [](int sign) {
+    return [sign](int block) {
+      const double now = block < 320 ? 1 : 9;
+      return Error{0, now * 0.01 * std::exp(sign * 0.7 * std::sin(block / 6.0))};
+    };
+  };
+  Records records(345);
+  records.champion(wandering(1)).challenger(wandering(-1), 0).challenger(white(0.02), 330);
+  const auto dependence = records.findings().at(1).dependence;
+  EXPECT_GT(dependence, 6);
+  Records alone(345);
+  alone.champion(wandering(1)).challenger(white(0.02), 330);
+  EXPECT_LT(alone.findings().at(0).dependence, 0.7 * dependence);
+}
+
 TEST(League, AChampionFailsThatErrsMoreThanTheMeanOrTheSimulator) {
   Records good(80);
   EXPECT_FALSE(Judge(good.limits()).failure(good.champion(varying(0.3)).league()));
@@ -360,6 +448,8 @@ TEST(League, AChampionFailsWhoseGreatErrorsAreFew) {
 
 TEST(League, AJudgeThatIsAskedAtEachBlockFindsWhatOneFindsThatIsAskedOnce) {
   Records records(160);
+  records.swings(55, 63);
+  records.swings(100, 103);
   records.champion([](int block) {
            return Error{0.1, block < 90 ? 0.01 : 0.5};
          })
@@ -384,6 +474,8 @@ TEST(League, AJudgeThatIsAskedAtEachBlockFindsWhatOneFindsThatIsAskedOnce) {
       EXPECT_EQ(found[i].blocks, expected[i].blocks) << blocks;
       EXPECT_EQ(found[i].log_wealth, expected[i].log_wealth) << blocks;
       EXPECT_EQ(found[i].lower_score, expected[i].lower_score) << blocks;
+      EXPECT_EQ(found[i].dependence, expected[i].dependence) << blocks;
+      EXPECT_EQ(found[i].uncovered_share, expected[i].uncovered_share) << blocks;
       EXPECT_EQ(found[i].mrse_percent, expected[i].mrse_percent) << blocks;
     }
     EXPECT_EQ(judge.failure(grown).has_value(), Judge(records.limits()).failure(grown).has_value());

@@ -124,6 +124,49 @@ TEST_F(Keeper, GivesTheSameScoresAndDecisionsWhereverItWasRestarted) {
   EXPECT_EQ(run(true, "-again"), once);
 }
 
+TEST_F(Keeper, RunsANewVersionOnARegimeFromBeforeItsWindowToTheSameBits) {
+  archive.append(telemetry(day, 1500));
+  archive.append(operation(day + 25 * minute, 1501, {.u = 0.2, .v = 0.2, .since = day}));
+  const auto run = [&](bool restarting) {
+    storage::Database other(path().string() + (restarting ? "-again" : "-once"),
+                            storage::Database::Mode::read_write);
+    storage::Registry records(other);
+    LeagueKeeper league("SAT", equipment);
+    std::vector<storage::BlockScore> before;
+    LeagueWriter writer;
+    writer.scores = [&](const auto& block, const auto& scores) {
+      records.record_scores("SAT", "PLANT", block, scores);
+      for (const storage::BlockScore& score : scores)
+        if (records.version("SAT", "PLANT", score.version)->window.begin > score.begin)
+          before.push_back(score);
+    };
+    writer.decide = [&](const storage::DecisionState& state, const LeagueDecision& found) {
+      return records.decide_if(state, "SAT", "PLANT", found.version.number, found.decision, day)
+          .has_value();
+    };
+    for (storage::Time end = day + 10 * minute; end <= day + 50 * minute; end += 5 * minute) {
+      WindowCache nothing = window_cache_of("SAT", equipment);
+      const RefreshResult result =
+          refresh(archive, records, {"SAT", equipment, {end - 10 * minute, end}, "slide", ""},
+                  nothing, {}, [] { return false; });
+      if (result.candidate) records.record(result.attempt, result.version, *result.decision);
+      std::optional<LeagueKeeper> again;
+      if (restarting) again.emplace("SAT", equipment);
+      (again ? *again : league).advance(archive, records, end, writer);
+    }
+    return before;
+  };
+  const auto once = run(false), again = run(true);
+  ASSERT_FALSE(once.empty());
+  ASSERT_EQ(again.size(), once.size());
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    EXPECT_LT(once[i].begin, day + 25 * minute + 3 * minute / 4);
+    EXPECT_EQ(again[i].begin, once[i].begin);
+    EXPECT_EQ(again[i].square, once[i].square);
+    EXPECT_EQ(once[i].rows, 15);
+  }
+}
+
 TEST_F(Keeper, LeavesTheDecisionToAnOperatorWhereThePolicySaysSo) {
   equipment.approval = ApprovalPolicy::by_hand;
   restart();

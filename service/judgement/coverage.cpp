@@ -1,0 +1,81 @@
+#include "service/judgement/coverage.hpp"
+
+#include <algorithm>
+
+namespace reident {
+
+using storage::Block;
+using storage::BlockScore;
+using storage::Time;
+
+namespace {
+
+/// The member's score of the block, of its record or from before its window; null without one.
+const BlockScore* find_any(const Member& member, Time begin) {
+  if (const BlockScore* score = find(member.scores, begin)) return score;
+  return find(member.earlier, begin);
+}
+
+}  // namespace
+
+std::map<int, ServedRegime> served_regimes(const League& league, const std::vector<int>& regimes,
+                                           const Member& member, Time since) {
+  std::map<int, ServedRegime> served;
+  for (std::size_t i = 0; i < league.blocks.size(); ++i) {
+    if (regimes[i] < 0) continue;
+    ServedRegime& regime = served[regimes[i]];
+    const storage::TimeRange& range = league.blocks[i].range;
+    if (range.begin >= since) regime.blocks.push_back(i);
+    regime.is_met = regime.is_met || find(member.earlier, range.begin) ||
+                    range.end - blocks_of_cycle * (range.end - range.begin) >= member.window.begin;
+  }
+  return served;
+}
+
+double uncovered_share(const std::map<int, ServedRegime>& served) {
+  double all = 0, uncovered = 0;
+  for (const auto& [number, regime] : served) {
+    const auto blocks = static_cast<double>(regime.blocks.size());
+    all += blocks;
+    if (!regime.is_met) uncovered += blocks;
+  }
+  return all > 0 ? uncovered / all : 0;
+}
+
+std::vector<Time> earlier_blocks(const League& league, const std::map<int, ServedRegime>& served,
+                                 const Member& member) {
+  std::vector<Time> begins;
+  for (const auto& [number, regime] : served) {
+    if (regime.is_met) continue;
+    int left = cycles_before * blocks_of_cycle;
+    for (auto i = regime.blocks.rbegin(); i != regime.blocks.rend() && left > 0; ++i) {
+      const storage::TimeRange& range = league.blocks[*i].range;
+      if (range.end > member.window.begin) continue;
+      begins.push_back(range.begin);
+      --left;
+    }
+  }
+  std::ranges::sort(begins);
+  return begins;
+}
+
+ServedErrors served_errors(const League& league, const std::map<int, ServedRegime>& served,
+                           const Member& member) {
+  Sums own, champion;
+  for (const auto& [number, regime] : served) {
+    std::vector<std::size_t> both;
+    for (const std::size_t i : regime.blocks)
+      if (const Time begin = league.blocks[i].range.begin;
+          find_any(member, begin) && find_any(*league.champion, begin))
+        both.push_back(i);
+    const double weight = static_cast<double>(regime.blocks.size()) / double(both.size());
+    for (const std::size_t i : both) {
+      const Block& block = league.blocks[i];
+      own.add(block, find_any(member, block.range.begin)->square, weight);
+      champion.add(block, find_any(*league.champion, block.range.begin)->square, weight);
+    }
+  }
+  return {own.mrse_percent(), champion.mrse_percent()};
+}
+
+}  // namespace reident

@@ -1,0 +1,41 @@
+// The operating regimes of an equipment, and what a challenger's record says of them.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "service/judgement/league.hpp"
+
+namespace reident {
+
+struct ServedRegime {
+  std::vector<std::size_t>
+      blocks;  // since the last change of the equipment, as places in the league
+  /// A whole cycle of it lies in the member's window or behind, or the member ran on blocks of it
+  /// from before.
+  bool is_met = false;
+};
+
+/// By the number of the regime; `regimes` has those of the league's blocks. The equipment is as it
+/// is from `since` on.
+std::map<int, ServedRegime> served_regimes(const League& league, const std::vector<int>& regimes,
+                                           const Member& member, storage::Time since);
+
+/// Share of the blocks that are in regimes which the member has not met.
+double uncovered_share(const std::map<int, ServedRegime>& served);
+
+/// Begins of the blocks before the member's window, ascending, on which it has to run: the last
+/// `cycles_before` of each regime that it has not met.
+std::vector<storage::Time> earlier_blocks(const League& league,
+                                          const std::map<int, ServedRegime>& served,
+                                          const Member& member);
+
+/// Errors of the member and the champion over the regimes in which both ran, each with its share of
+/// the time [MRSE in percent]. Requires a champion.
+struct ServedErrors {
+  double own = 0, champion = 0;
+};
+ServedErrors served_errors(const League& league, const std::map<int, ServedRegime>& served,
+                           const Member& member);
+
+}  // namespace reident
