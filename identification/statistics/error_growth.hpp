@@ -21,7 +21,7 @@ struct BlockError {
 /// doubled, it is all of the record.
 class ErrorGrowth {
  public:
-  /// Of cycles of so many blocks.
+  /// A cycle has so many blocks.
   explicit ErrorGrowth(Index phases);
   /// Takes in the next block, whose logarithms are finite. Returns whether growth is found with it;
   /// nothing may be added then.

@@ -17,7 +17,7 @@ struct InputRanges {
 /// nearest regime that is near enough to the cycle that ends with it, or begins one.
 class OperatingRegimes {
  public:
-  /// Of cycles of so many blocks.
+  /// A cycle has so many blocks.
   explicit OperatingRegimes(std::size_t cycle) : cycle_(cycle) {}
 
   /// Takes in the next block; without ranges it does not count. Returns whether the blocks before

@@ -150,10 +150,10 @@ Regrets ServedVersions::regrets(TimeRange range, Duration cycle) const {
     one.rows += static_cast<double>(block.rows);
   }
   for (const storage::VersionSummary& version : registry_.summaries(spacecraft, equipment)) {
-    // Nobody had the version before its window ended, yet it may have run on earlier blocks.
-    const Time made = registry_.version(spacecraft, equipment, version.number)->window.begin;
+    // It may have run on blocks before its window, of which its record does not tell.
+    const Time window = registry_.version(spacecraft, equipment, version.number)->window.begin;
     for (const BlockScore& score :
-         registry_.scores(spacecraft, equipment, version.number, std::max(range.begin, made))) {
+         registry_.scores(spacecraft, equipment, version.number, std::max(range.begin, window))) {
       const auto block = blocks.find(score.begin);
       if (block == blocks.end() || score.rows == 0) continue;
       cycle_of(block->second)

@@ -19,7 +19,7 @@ class Equipment {
   Equipment(std::uint64_t seed, double works) : noise_(seed), works_(works) {}
 
   /// The next block; returns whether a change is found with it.
-  bool next(ChangeFinder& finder, double share, int regime = 0) {
+  bool next(ChangeFinder& finder, double share) {
     constexpr double sigma = 0.05;
     const bool at_work = noise_.uniform() < works_;
     const double output = at_work ? std::exp(1.5 + noise_.normal()) : 0;
@@ -32,7 +32,7 @@ class Equipment {
     score.noise = {sigma * sigma};
     at_ += length;
     const auto before = finder.last();
-    finder.add(block, score, regime);
+    finder.add(block, score, 0);
     return finder.last() && (!before || before->found != finder.last()->found);
   }
 

@@ -75,14 +75,12 @@ const Example of_a_member[] = {
      "blocks."},
     {because<Code::not_covered>(3, 24.6),
      "Cannot replace champion 3 yet: it has not met the operating regimes of 25 % of the time "
-     "since "
-     "the last change of the equipment."},
+     "since the last change of the equipment."},
     {because<Code::worse_in_regime>(3),
      "Worse than champion 3, with confidence, in an operating regime that this one has served."},
     {because<Code::worse_over_regimes>(3, 5.0, 4.5),
      "Over the operating regimes since the last change of the equipment, each with its share of "
-     "the "
-     "time, it errs no less than champion 3: MRSE 5.000 % and 4.500 %."},
+     "the time, it errs no less than champion 3: MRSE 5.000 % and 4.500 %."},
     {because<Code::bias_unverified>(3, "V_BUS, I_BUS"),
      "Better than champion 3 but for what a biased sensor of V_BUS, I_BUS would show too; no "
      "relation binds it. Waits for an operator's approval."},

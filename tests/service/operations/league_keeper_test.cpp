@@ -34,6 +34,19 @@ class Keeper : public DaemonTest {
   void windows(storage::Time from, storage::Time to) {
     for (storage::Time end = from; end <= to; end += equipment.slide) window(end);
   }
+  /// The windows of 50 minutes in another registry; each in a service of its own, if `restarting`.
+  void windows(storage::Registry& records, bool restarting, const LeagueWriter& writer) {
+    std::optional<LeagueKeeper> league(std::in_place, "SAT", equipment);
+    for (storage::Time end = day + 10 * minute; end <= day + 50 * minute; end += 5 * minute) {
+      WindowCache nothing = window_cache_of("SAT", equipment);
+      const RefreshResult result =
+          refresh(archive, records, {"SAT", equipment, {end - 10 * minute, end}, "slide", ""},
+                  nothing, {}, [] { return false; });
+      if (result.candidate) records.record(result.attempt, result.version, *result.decision);
+      if (restarting) league.emplace("SAT", equipment);
+      league->advance(archive, records, end, writer);
+    }
+  }
   std::optional<storage::TimeRange> advance(LeagueKeeper& league, storage::Time reached) {
     LeagueWriter writer;
     writer.scores = [this](const auto& block, const auto& scores) {
@@ -97,26 +110,16 @@ TEST_F(Keeper, GivesTheSameScoresAndDecisionsWhereverItWasRestarted) {
     storage::Database other(path().string() + name, storage::Database::Mode::read_write);
     storage::Registry records(other);
     std::string all;
-    LeagueKeeper league("SAT", equipment);
-    std::optional<LeagueKeeper> again;
-    for (storage::Time end = day + 10 * minute; end <= day + 50 * minute; end += 5 * minute) {
-      WindowCache nothing = window_cache_of("SAT", equipment);
-      const RefreshResult result =
-          refresh(archive, records, {"SAT", equipment, {end - 10 * minute, end}, "slide", ""},
-                  nothing, {}, [] { return false; });
-      if (result.candidate) records.record(result.attempt, result.version, *result.decision);
-      if (restarting) again.emplace("SAT", equipment);
-      LeagueWriter writer;
-      writer.scores = [&](const auto& block, const auto& scores) {
-        records.record_scores("SAT", "PLANT", block, scores);
-      };
-      writer.decide = [&](const storage::DecisionState& state, const LeagueDecision& found) {
-        all += found.decision.evidence_json + "\n";
-        return records.decide_if(state, "SAT", "PLANT", found.version.number, found.decision, day)
-            .has_value();
-      };
-      (again ? *again : league).advance(archive, records, end, writer);
-    }
+    LeagueWriter writer;
+    writer.scores = [&](const auto& block, const auto& scores) {
+      records.record_scores("SAT", "PLANT", block, scores);
+    };
+    writer.decide = [&](const storage::DecisionState& state, const LeagueDecision& found) {
+      all += found.decision.evidence_json + "\n";
+      return records.decide_if(state, "SAT", "PLANT", found.version.number, found.decision, day)
+          .has_value();
+    };
+    windows(records, restarting, writer);
     return all;
   };
   const std::string once = run(false, "-once");
@@ -131,7 +134,6 @@ TEST_F(Keeper, RunsANewVersionOnARegimeFromBeforeItsWindowToTheSameBits) {
     storage::Database other(path().string() + (restarting ? "-again" : "-once"),
                             storage::Database::Mode::read_write);
     storage::Registry records(other);
-    LeagueKeeper league("SAT", equipment);
     std::vector<storage::BlockScore> before;
     LeagueWriter writer;
     writer.scores = [&](const auto& block, const auto& scores) {
@@ -144,16 +146,7 @@ TEST_F(Keeper, RunsANewVersionOnARegimeFromBeforeItsWindowToTheSameBits) {
       return records.decide_if(state, "SAT", "PLANT", found.version.number, found.decision, day)
           .has_value();
     };
-    for (storage::Time end = day + 10 * minute; end <= day + 50 * minute; end += 5 * minute) {
-      WindowCache nothing = window_cache_of("SAT", equipment);
-      const RefreshResult result =
-          refresh(archive, records, {"SAT", equipment, {end - 10 * minute, end}, "slide", ""},
-                  nothing, {}, [] { return false; });
-      if (result.candidate) records.record(result.attempt, result.version, *result.decision);
-      std::optional<LeagueKeeper> again;
-      if (restarting) again.emplace("SAT", equipment);
-      (again ? *again : league).advance(archive, records, end, writer);
-    }
+    windows(records, restarting, writer);
     return before;
   };
   const auto once = run(false), again = run(true);
