@@ -34,6 +34,18 @@ double variance_of_means(const Vector& scores, Index length) {
   return squares / double(count) * double(n) / double(n - length);
 }
 
+/// Sum of ln(1 + factor (score - mean)), none below that of 0: by products, which cost a tenth of as
+/// many logarithms.
+double sum_of_logs(const Vector& scores, double mean, double factor) {
+  constexpr Index together = 16;  // each at least 1e-16 where it is not 0
+  double sum = 0;
+  for (Index i = 0; i < scores.size(); i += together) {
+    const auto some = scores.segment(i, std::min(together, scores.size() - i)).array();
+    sum += std::log((1 + factor * (some - mean)).max(0).prod());
+  }
+  return sum;
+}
+
 }  // namespace
 
 double dependence(const ScoreSeries& series) {
@@ -60,12 +72,8 @@ double dependence(const ScoreSeries& series) {
 double log_wealth(const ScoreSeries& series, double dependence, double mean) {
   assert(std::abs(mean) < series.bound);
   std::array<double, bets.size()> logs{};
-  for (std::size_t i = 0; i < bets.size(); ++i) {
-    double sum = 0;
-    for (const double score : series.scores)
-      sum += std::log1p(std::max(-1.0, bets[i] * (score - mean) / (series.bound + mean)));
-    logs[i] = sum / dependence;
-  }
+  for (std::size_t i = 0; i < bets.size(); ++i)
+    logs[i] = sum_of_logs(series.scores, mean, bets[i] / (series.bound + mean)) / dependence;
   const double largest = *std::max_element(logs.begin(), logs.end());
   if (!std::isfinite(largest)) return largest;
   double wealth = 0, all = 0;

@@ -30,17 +30,17 @@ bool InputRanges::widen(const InputRanges& other) {
 bool OperatingRegimes::add(InputRanges block) {
   blocks_.push_back(std::move(block));
   InputRanges cycle;
-  if (!blocks_.back().low.empty())
-    for (std::size_t i = blocks_.size(); i-- > 0 && blocks_.size() - i <= cycle_;)
-      cycle.widen(blocks_[i]);
-  cycles_.push_back(std::move(cycle));
+  for (std::size_t i = blocks_.size(); i-- > 0 && blocks_.size() - i <= cycle_;)
+    cycle.widen(blocks_[i]);
+  cycles_.push_back(cycle);
+  if (blocks_.size() <= cycle_) std::ranges::fill(cycles_, cycle);
   const bool are_others = all_.widen(blocks_.back());
   if (are_others) {
     first_.clear();
     numbers_.clear();
   }
   for (std::size_t i = numbers_.size(); i < cycles_.size(); ++i)
-    numbers_.push_back(cycles_[i].low.empty() ? -1 : number_of(cycles_[i]));
+    numbers_.push_back(blocks_[i].low.empty() ? -1 : number_of(cycles_[i]));
   return are_others;
 }
 

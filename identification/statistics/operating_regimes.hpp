@@ -14,7 +14,8 @@ struct InputRanges {
 };
 
 /// Cycles over which the inputs have about the same ranges are of one regime. A block is of the
-/// nearest regime that is near enough to the cycle that ends with it, or begins one.
+/// nearest regime that is near enough to the cycle that ends with it, or begins one. The first
+/// blocks, with which no cycle ends, are of the cycle that they are in.
 class OperatingRegimes {
  public:
   /// A cycle has so many blocks.
@@ -33,7 +34,7 @@ class OperatingRegimes {
 
   std::size_t cycle_;
   InputRanges all_;
-  std::vector<InputRanges> blocks_, cycles_;  // those of a block end with it
+  std::vector<InputRanges> blocks_, cycles_;  // of each block, and of the cycle that it is of
   std::vector<InputRanges> first_;            // cycle of each regime
   std::vector<int> numbers_;
 };

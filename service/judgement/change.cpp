@@ -6,6 +6,10 @@
 #include "service/judgement/scores.hpp"
 
 namespace reident {
+
+using storage::Block;
+using storage::BlockScore;
+
 namespace {
 
 /// Mean logarithm of the roots of `squares`, none below the noise.
@@ -26,20 +30,51 @@ double share_above(const std::vector<double>& noise, const std::vector<double>& 
   return sum / static_cast<double>(noise.size());
 }
 
+/// Whether the errors, as the mean over the outputs, exceed those of a constant at the mean of the
+/// outputs so far.
+bool fail(const Sums& errors, const Sums& so_far) {
+  double sum = 0;
+  for (std::size_t q = 0; q < errors.error.size(); ++q) {
+    const double mean = so_far.y[q] / so_far.rows;
+    sum += std::log(errors.error[q] / errors.rows / (so_far.y_square[q] / so_far.rows - mean * mean));
+  }
+  return sum > 0;
+}
+
 }  // namespace
 
-void ChangeFinder::add(const storage::Block& block, const storage::BlockScore& score, int regime) {
-  const double log_error = mean_log_root(score.square, score.noise);
-  if (!std::isfinite(log_error)) return;
-  Errors& errors = regimes_[regime];
-  if (!errors.growth.add({static_cast<identification::Index>(phase_of(block)), log_error,
-                          mean_log_root(block.output_square, score.noise),
-                          share_above(score.noise, block.output_square)})) {
-    if (errors.growth.is_calm()) errors.calm_until = block.range.end;
-    return;
+bool ChangeFinder::Errors::add(const Block& block, const BlockScore& score) {
+  ++blocks;
+  sums.add(block, score.square);
+  have_grown =
+      have_grown || growth.add({static_cast<identification::Index>(phase_of(block)),
+                                mean_log_root(score.square, score.noise),
+                                mean_log_root(block.output_square, score.noise),
+                                share_above(score.noise, block.output_square)});
+  if (!have_grown && growth.is_calm()) {
+    calm_until = block.range.end;
+    blocks = 0;
+    sums = {};
   }
-  last_ = Change{errors.calm_until, block.range.end, last_ ? last_->since : INT64_MIN};
+  return have_grown;
+}
+
+void ChangeFinder::begin_anew(storage::Time since, storage::Time found) {
+  last_ = Change{since, found, last_ ? last_->since : INT64_MIN};
   regimes_.clear();
+  all_ = {};
+  so_far_ = {};
+}
+
+void ChangeFinder::add(const Block& block, const BlockScore& score, int regime) {
+  if (!std::isfinite(mean_log_root(score.square, score.noise))) return;
+  so_far_.add(block, score.square);
+  Errors& of_regime = regimes_[regime];
+  const bool grow_in_regime = of_regime.add(block, score), grow = all_.add(block, score);
+  if (grow_in_regime) return begin_anew(of_regime.calm_until, block.range.end);
+  if (!grow || all_.blocks < blocks_of_cycle) return;
+  if (fail(all_.sums, so_far_)) return begin_anew(all_.calm_until, block.range.end);
+  all_ = {};
 }
 
 }  // namespace reident

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "identification/statistics/error_growth.hpp"
+#include "service/judgement/scores.hpp"
 #include "service/windows/block_reader.hpp"
 #include "storage/types/registry_rows.hpp"
 
@@ -18,21 +19,31 @@ struct Change {
 };
 
 /// Finds growth of a run's errors in one of the operating regimes: another regime may be harder for
-/// a model, and is no change of the equipment. A block whose outputs are as small as their sensors'
-/// noise says nothing.
+/// a model, and is no change of the equipment, unless the model fails there beside a constant at the
+/// outputs' mean so far. A block whose outputs are as small as their sensors' noise says nothing.
 class ChangeFinder {
  public:
-  /// Takes in the next block that counts, which is of `regime`. Behind a change each regime's
-  /// errors are judged anew.
+  /// Takes in the next block that counts, which is of `regime`. Behind a change the errors are
+  /// judged anew.
   void add(const storage::Block& block, const storage::BlockScore& score, int regime);
   const std::optional<Change>& last() const { return last_; }
 
  private:
   struct Errors {
     identification::ErrorGrowth growth{blocks_of_cycle};
+    bool have_grown = false;
     storage::Time calm_until = INT64_MIN;
+    int blocks = 0;  // since then
+    Sums sums;       // likewise
+
+    /// Whether growth is found with the block, or was.
+    bool add(const storage::Block& block, const storage::BlockScore& score);
   };
+  void begin_anew(storage::Time since, storage::Time found);
+
   std::map<int, Errors> regimes_;
+  Errors all_;   // of whichever regime
+  Sums so_far_;  // since the last change
   std::optional<Change> last_;
 };
 

@@ -23,13 +23,13 @@ using storage::BlockScore;
 using storage::Time;
 using Code = ReasonCode;
 
-/// Takes into `comparison` the blocks from `since` on that it has not seen.
+/// Takes into `comparison` the blocks from `since` on, before `until`, that it has not seen.
 void extend(Comparison& comparison, const League& league, const Member& one, const Member& other,
-            Time since) {
-  const std::size_t seen = std::exchange(comparison.seen, league.blocks.size());
-  for_each_score(league, one, since, seen,
+            Time since, Time until = INT64_MAX) {
+  for_each_score(league, one, since, std::exchange(comparison.seen, league.blocks.size()),
                  [&](std::size_t i, const Block& block, const BlockScore& of_one) {
-                   if (const BlockScore* of_other = find(other, block.range.begin))
+                   const BlockScore* of_other = find(other, block.range.begin);
+                   if (of_other && block.range.begin < until)
                      comparison.add(i, block, of_one, *of_other);
                  });
 }
@@ -59,37 +59,33 @@ void Judge::take_in(const League& league) {
   std::size_t counted = seen;
   const auto& change = change_.last();
   if (const Time since = change ? change->since : league.champion->window.begin; since != since_) {
-    before_.clear();
     since_ = since;
-    comparisons_.clear();
-    own_ = {};
-    with_simulator_ = {};
+    compared_ = {};
     counted = 0;
   }
   for_each_score(league, *league.champion, since_, counted,
                  [&](std::size_t i, const Block& block, const BlockScore& score) {
-                   own_.add(block, score.square);
-                   with_simulator_.add(i, block, score, block.baseline_square);
+                   compared_.own.add(block, score.square);
+                   compared_.with_simulator.add(i, block, score, block.baseline_square);
                  });
   const auto is_member = [&](std::int64_t version) {
     return version == champion_ ||
            std::ranges::count(league.challengers, version, &Member::version);
   };
-  std::erase_if(comparisons_, [&](const auto& one) {
+  std::erase_if(compared_.pairs, [&](const auto& one) {
     return !is_member(one.first.first) || !is_member(one.first.second);
   });
 }
 
 const Comparison& Judge::comparison(const League& league, const Member& one, const Member& other) {
-  Comparison& found = comparisons_[{one.version, other.version}];
+  Comparison& found = compared_.pairs[{one.version, other.version}];
   extend(found, league, one, other, since_);
   return found;
 }
 
 /// Whichever is later: the change in the champion's record, or that in an earlier one's.
 Time Judge::changed(const League& league) const {
-  const auto& change = change_.last();
-  return std::max(league.changed, change ? change->since : INT64_MIN);
+  return std::max(league.changed, change_.last() ? change_.last()->since : INT64_MIN);
 }
 
 /// Dependence of the scores of the two members with the longest records, or of those from before
@@ -113,15 +109,10 @@ double Judge::dependence_before(const League& league) {
   if (!change) return 0;
   double largest = 0;
   for (const Member& member : league.challengers) {
-    const auto [known, is_new] = before_.try_emplace(member.version, 0);
+    const auto [known, is_new] = compared_.dependence_before.try_emplace(member.version, 0);
     if (is_new) {
       Comparison compared;
-      for_each_score(league, member, change->before, 0,
-                     [&](std::size_t i, const Block& block, const BlockScore& of_member) {
-                       if (block.range.begin >= change->since) return;
-                       if (const auto* of_champion = find(*league.champion, block.range.begin))
-                         compared.add(i, block, of_member, *of_champion);
-                     });
+      extend(compared, league, member, *league.champion, change->before, change->since);
       if (compared.blocks.size() >= reference_blocks)
         known->second = dependence(series(compared.scores.values(), 0));
     }
@@ -213,7 +204,7 @@ std::optional<Reason> Judge::failure(const League& league) {
       return std::nullopt;
     return because<Code::champion_failed>(champion, error, losses.scores.size(), rival, theirs);
   };
-  const Sums& own = own_;
+  const Sums& own = compared_.own;
   if (!(own.fit_percent() > 0)) {
     Comparison with_mean;
     for_each_score(league, *league.champion, since_, 0,
@@ -227,7 +218,7 @@ std::optional<Reason> Judge::failure(const League& league) {
                    });
     if (auto reason = fails_against("a constant at the mean", with_mean)) return reason;
   }
-  return fails_against("the simulator's own model", with_simulator_);
+  return fails_against("the simulator's own model", compared_.with_simulator);
 }
 
 }  // namespace reident

@@ -99,8 +99,13 @@ class Judge {
   std::vector<ComparedBlock> compared_blocks(const League& league, const Member& challenger);
 
  private:
-  /// Of two versions, one against the other.
-  using Pair = std::pair<std::int64_t, std::int64_t>;
+  /// What is known of the blocks since `since_`.
+  struct Compared {
+    Sums own;  // of the champion's record
+    Comparison with_simulator;
+    std::map<std::pair<std::int64_t, std::int64_t>, Comparison> pairs;  // by version, two members
+    std::map<std::int64_t, double> dependence_before;  // by version, of blocks before `since_`
+  };
 
   void take_in(const League& league);
   const Comparison& comparison(const League& league, const Member& one, const Member& other);
@@ -112,12 +117,9 @@ class Judge {
   std::optional<std::int64_t> champion_;  // that the rest is about
   identification::OperatingRegimes regimes_{blocks_of_cycle};
   ChangeFinder change_;
-  storage::Time since_ = 0;                // records count from here on
-  std::size_t seen_ = 0;                   // blocks that were looked at
-  std::map<std::int64_t, double> before_;  // dependence_before() by version
-  Sums own_;                               // of the champion's record
-  Comparison with_simulator_;
-  std::map<Pair, Comparison> comparisons_;
+  storage::Time since_ = 0;  // records count from here on
+  std::size_t seen_ = 0;     // blocks that were looked at
+  Compared compared_;
 };
 
 }  // namespace reident

@@ -24,6 +24,13 @@ TEST(OperatingRegimes, AreTheRangesOfWholeCycles) {
   EXPECT_EQ(regimes.numbers(), expected);
 }
 
+TEST(OperatingRegimes, AFragmentAtTheBeginningIsNone) {
+  // A pass in one block of four: the record begins behind it.
+  OperatingRegimes regimes(cycle);
+  for (int block = 1; block < 13; ++block) regimes.add({{0}, {block % 4 == 0 ? 1. : 0.1}});
+  EXPECT_EQ(regimes.numbers(), std::vector(12, 0));
+}
+
 TEST(OperatingRegimes, ABlockThatDoesNotCountIsOfNone) {
   OperatingRegimes regimes(cycle);
   regimes.add({{0}, {1}});

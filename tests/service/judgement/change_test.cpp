@@ -19,7 +19,7 @@ class Equipment {
   Equipment(std::uint64_t seed, double works) : noise_(seed), works_(works) {}
 
   /// The next block; returns whether a change is found with it.
-  bool next(ChangeFinder& finder, double share) {
+  bool next(ChangeFinder& finder, double share, int regime = 0) {
     constexpr double sigma = 0.05;
     const bool at_work = noise_.uniform() < works_;
     const double output = at_work ? std::exp(1.5 + noise_.normal()) : 0;
@@ -32,7 +32,7 @@ class Equipment {
     score.noise = {sigma * sigma};
     at_ += length;
     const auto before = finder.last();
-    finder.add(block, score, 0);
+    finder.add(block, score, regime);
     return finder.last() && (!before || before->found != finder.last()->found);
   }
 
@@ -69,6 +69,27 @@ INSTANTIATE_TEST_SUITE_P(Equipment, ErrorsThatTreble,
                                          Case{"at_work_in_half_of_its_blocks", 0.5, 24},
                                          Case{"at_work_in_a_fifth", 0.2, 75}),
                          [](const auto& each) { return std::string(each.param.name); });
+
+TEST(ChangeFinder, FindsAChangeWithAnotherRegimeWhereTheModelFailsThere) {
+  // Worn bearings move the range of a wheel's torque, so that it looks like another regime.
+  int found = 0, early = 0, harder = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    Equipment equipment(seed, 1);
+    ChangeFinder finder;
+    for (int block = 0; block < 100; ++block) equipment.next(finder, 0.02);
+    ChangeFinder other = finder;
+    Equipment same = equipment;
+    for (int block = 0; block < 60; ++block) harder += same.next(other, 0.06, 1);
+    int block = 0;
+    while (block < 8 && !equipment.next(finder, 10, 1)) ++block;
+    if (block == 8) continue;
+    ++found;
+    early += finder.last()->since < 92 * length;
+  }
+  EXPECT_GE(found, 90);
+  EXPECT_LE(early, 4);
+  EXPECT_LE(harder, 4);
+}
 
 TEST(ChangeFinder, LearnsNothingFromOutputsThatAreNoise) {
   Equipment equipment(1, 0);
