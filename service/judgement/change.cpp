@@ -36,7 +36,8 @@ bool fail(const Sums& errors, const Sums& so_far) {
   double sum = 0;
   for (std::size_t q = 0; q < errors.error.size(); ++q) {
     const double mean = so_far.y[q] / so_far.rows;
-    sum += std::log(errors.error[q] / errors.rows / (so_far.y_square[q] / so_far.rows - mean * mean));
+    sum +=
+        std::log(errors.error[q] / errors.rows / (so_far.y_square[q] / so_far.rows - mean * mean));
   }
   return sum > 0;
 }
@@ -46,11 +47,10 @@ bool fail(const Sums& errors, const Sums& so_far) {
 bool ChangeFinder::Errors::add(const Block& block, const BlockScore& score) {
   ++blocks;
   sums.add(block, score.square);
-  have_grown =
-      have_grown || growth.add({static_cast<identification::Index>(phase_of(block)),
-                                mean_log_root(score.square, score.noise),
-                                mean_log_root(block.output_square, score.noise),
-                                share_above(score.noise, block.output_square)});
+  have_grown = have_grown || growth.add({static_cast<identification::Index>(phase_of(block)),
+                                         mean_log_root(score.square, score.noise),
+                                         mean_log_root(block.output_square, score.noise),
+                                         share_above(score.noise, block.output_square)});
   if (!have_grown && growth.is_calm()) {
     calm_until = block.range.end;
     blocks = 0;
