@@ -53,13 +53,28 @@ std::string poles_of(const StateSpaceModel& model) {
   return text;
 }
 
-/// The outputs that the model makes of the inputs, in units, over the normalised rows.
+/// The outputs that the model makes of the inputs over the normalised rows, in their deviations and
+/// from any zero.
 Matrix of_inputs(PreparedRows& rows, const Identified& identified) {
   Matrix result = Matrix::Zero(rows.normalised().rows(), rows.outputs());
   result.topRows(rows.fitted().size()) =
       free_run(identified.model, rows.record(), rows.fitted(), identified.x0)(
           Eigen::all, rows.normalisation().outputs);
+  for (Index q = 0; q < rows.outputs(); ++q)
+    result.col(q) /=
+        rows.normalisation().y_scale(rows.normalisation().outputs[static_cast<std::size_t>(q)]);
   return result;
+}
+
+/// Logarithm of the determinant of the errors' covariance, as LoopModel has it.
+double log_variance(const Matrix& y, const Matrix& explained, RowRange rows) {
+  const Matrix errors = (y - explained).middleRows(rows.begin, rows.size());
+  const Matrix centred = errors.rowwise() - errors.colwise().mean();
+  return symmetric_eigen(centred.transpose() * centred / double(rows.size()))
+      .values.array()
+      .max(0)
+      .log()
+      .sum();
 }
 
 }  // namespace
@@ -70,8 +85,8 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
   const Index fitted = rows.fitted().size();
   const RowRange looked_at{std::max<Index>(0, fitted - most_rows), fitted};
   const Record& record = rows.normalised();
-  const std::vector<Feedback> feedback =
-      feedback_of(record, looked_at, past, of_inputs(rows, identified));
+  const Matrix explained = of_inputs(rows, identified);
+  const std::vector<Feedback> feedback = feedback_of(record, looked_at, past, explained);
   if (feedback.empty()) return std::nullopt;
   std::string who;
   for (const Feedback& one : feedback)
@@ -105,7 +120,8 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
   };
   const bool runs_away =
       double(looked_at.size()) * std::log(spectral_radius(loops.front().model)) > least_growth;
-  if (runs_away && certain([](const StateSpaceModel& loop) { return spectral_radius(loop) - 1; }))
+  if (runs_away &&
+      log_variance(record.y, explained, looked_at) > loops.front().log_variance && certain([](const StateSpaceModel& loop) { return spectral_radius(loop) - 1; }))
     return Verdict{VerdictCode::closed_loop,
                    "closed loop: " + who + "; without that the equipment is unstable (poles " +
                        poles_of(loops.front().model) +

@@ -1,6 +1,8 @@
 #include "identification/search/realisation.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
 #include <utility>
 
 #include "identification/fit/output_error_fit.hpp"
@@ -41,6 +43,15 @@ StateSpaceModel respond(PreparedRows& rows, const Recipe& recipe, const Projecti
       .model;
 }
 
+/// Where the refinement has driven a mode to the least rate: there it stands for what is slower.
+bool has_mode_at_the_limit(const Matrix& A, double least_rate) {
+  constexpr double near = 1.01;
+  const ComplexVector modes = eigenvalues(A);
+  return std::any_of(modes.begin(), modes.end(), [least_rate](const std::complex<double>& mode) {
+    return std::abs(std::log(mode)) < near * least_rate;
+  });
+}
+
 }  // namespace
 
 std::optional<Identified> realise(PreparedRows& rows, const Recipe& recipe,
@@ -68,6 +79,11 @@ std::optional<Identified> realise(PreparedRows& rows, const Recipe& recipe,
   else
     result.warnings.push_back(
         "the model has no Kalman gain: its Riccati equation has no checked solution");
+  if (has_mode_at_the_limit(model.A, recipe.least_rate))
+    result.warnings.push_back(
+        "a mode is as slow as these rows can show: it stands for a drift of the outputs, and what "
+        "an input does through it is uncertain; choose a longer window, or add the telemetry of "
+        "what drives the drift");
   if (recipe.operating_point == OperatingPoint::recent)
     model.y0 += recent_operating_point(
         rows.normalised().y.topRows(fitted) - free_run(model, rows.normalised(), {0, fitted}),

@@ -76,6 +76,18 @@ TEST(Trust, ABiasedSensorIsNotFollowed) {
   EXPECT_EQ(figures.wrong, 0) << story(outcome);
 }
 
+TEST(Trust, AConverterIsNotTakenForUnstable) {
+  // Its output tells the load more exactly than its inputs do, so that these seem to follow it.
+  LifeGroup group = group_of("BDR", 110);
+  group.scenarios = {{1, "none", {}}};
+  const auto attempts = run(group).front().equipment.front().attempts;
+  EXPECT_GE(attempts.size(), 15U);
+  for (const Attempted& attempt : attempts)
+    EXPECT_FALSE(attempt.outcome == "closed_loop" &&
+                 attempt.reason.find("unstable") != std::string::npos)
+        << attempt.reason;
+}
+
 TEST(Trust, AQuietSpacecraftGetsAModelAndTheSameOneEachTime) {
   LifeGroup group = group_of("BDR", 30);
   group.scenarios = {{1, "none", {}}, {2, "none", {}}};

@@ -228,6 +228,30 @@ TEST(Parsimony, ADriftIsTakenForASlowModeAsOftenAsChanceSays) {
   EXPECT_GE(modes, 99);
 }
 
+TEST(Parsimony, AModeThatStandsForADriftIsSaid) {
+  int said = 0, without_drift = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto warns = [&](double drift) {
+      test::Noise noise(seed);
+      const Matrix u = noise.normal(500, 1);
+      Matrix y = Vector::LinSpaced(500, 0, drift) + 0.05 * noise.normal(500, 1);
+      double x = 0;
+      for (Index t = 0; t < 500; ++t) {
+        y(t) += x;
+        x = 0.9 * x + 0.4 * u(t);
+      }
+      const auto found = identified(contiguous_record(1, u, y));
+      return std::ranges::any_of(found.warnings, [](const std::string& warning) {
+        return warning.find("as slow as these rows can show") != std::string::npos;
+      });
+    };
+    said += warns(5);
+    without_drift += warns(0);
+  }
+  EXPECT_GE(said, 1);
+  EXPECT_EQ(without_drift, 0);
+}
+
 TEST(Parsimony, ADriftGetsNoStatesAndASlowModeKeepsItsOwn) {
   constexpr int records = 4;
   int right = 0, kept = 0;
