@@ -120,8 +120,8 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
   };
   const bool runs_away =
       double(looked_at.size()) * std::log(spectral_radius(loops.front().model)) > least_growth;
-  if (runs_away &&
-      log_variance(record.y, explained, looked_at) > loops.front().log_variance && certain([](const StateSpaceModel& loop) { return spectral_radius(loop) - 1; }))
+  if (runs_away && log_variance(record.y, explained, looked_at) > loops.front().log_variance &&
+      certain([](const StateSpaceModel& loop) { return spectral_radius(loop) - 1; }))
     return Verdict{VerdictCode::closed_loop,
                    "closed loop: " + who + "; without that the equipment is unstable (poles " +
                        poles_of(loops.front().model) +

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "service/judgement/scores.hpp"
 
 namespace reident {
 
