@@ -8,6 +8,8 @@
 namespace reident::storage::sqlite {
 namespace {
 
+constexpr int most_bytes_of_value = 256 << 20;
+
 struct Diagnosis {
   Error::Kind kind;
   const char* what_and_remedy;
@@ -36,6 +38,7 @@ Diagnosis diagnose(int code) {
     case SQLITE_LOCKED:
       return {Kind::locked, "is locked by another program: end that program's transaction"};
     case SQLITE_CORRUPT:
+    case SQLITE_TOOBIG:
       return {Kind::corrupt,
               "is damaged: restore a backup, or save what can be read with "
               "'sqlite3 FILE .recover'"};
@@ -198,6 +201,8 @@ Connection::Connection(const std::string& name, const std::filesystem::path& pat
                                    flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
   handle_.reset(handle);
   if (code != SQLITE_OK) fail_on(handle, code, path.string());
+  // A damaged length must not take all memory. Nothing that is written comes near it.
+  sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, most_bytes_of_value);
   sqlite3_busy_timeout(handle, busy_timeout_ms);
   sqlite3_rollback_hook(
       handle, [](void* count) { ++*static_cast<std::uint64_t*>(count); }, rollbacks_.get());

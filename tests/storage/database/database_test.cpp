@@ -11,6 +11,7 @@
 
 #include "storage/database/schema.hpp"
 #include "storage/database/snapshot.hpp"
+#include "storage/database/sqlite.hpp"
 #include "tests/storage/fixture.hpp"
 
 namespace reident::storage::test::database_test {
@@ -119,6 +120,13 @@ TEST(Database, SaysThatAFileToReadDoesNotExist) {
   EXPECT_THAT(opening(folder / "a.db", Mode::read_only),
               AllOf(StartsWith("cannot_open: "), HasSubstr("does not exist")));
   EXPECT_FALSE(fs::exists(folder / "a.db")) << "reading makes no file";
+}
+
+TEST(Database, HoldsNoValueThatWouldTakeAllMemory) {
+  sqlite::Connection connection(":memory:", "a.db", SQLITE_OPEN_READWRITE);
+  EXPECT_THAT(error_of([&] { connection.execute("SELECT zeroblob(300000000)"); }),
+              StartsWith("corrupt: "));
+  EXPECT_EQ(error_of([&] { connection.execute("SELECT zeroblob(1000000)"); }), "no error");
 }
 
 TEST(Database, TakesAnEmptyFileForANewOne) {
