@@ -34,8 +34,8 @@ double variance_of_means(const Vector& scores, Index length) {
   return squares / double(count) * double(n) / double(n - length);
 }
 
-/// Sum of ln(1 + factor (score - mean)), none below that of 0: by products, which cost a tenth of as
-/// many logarithms.
+/// Sum of ln(1 + factor (score - mean)), none below that of 0: by products, which cost a tenth of
+/// as many logarithms.
 double sum_of_logs(const Vector& scores, double mean, double factor) {
   constexpr Index together = 16;  // each at least 1e-16 where it is not 0
   double sum = 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace reident {
 
 using storage::Block;

@@ -19,8 +19,9 @@ struct Change {
 };
 
 /// Finds growth of a run's errors in one of the operating regimes: another regime may be harder for
-/// a model, and is no change of the equipment, unless the model fails there beside a constant at the
-/// outputs' mean so far. A block whose outputs are as small as their sensors' noise says nothing.
+/// a model, and is no change of the equipment, unless the model fails there beside a constant at
+/// the outputs' mean so far. A block whose outputs are as small as their sensors' noise says
+/// nothing.
 class ChangeFinder {
  public:
   /// Takes in the next block that counts, which is of `regime`. Behind a change the errors are
