@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <functional>
+#include <limits>
 
 #include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/free_run.hpp"
@@ -66,15 +67,11 @@ Matrix of_inputs(PreparedRows& rows, const Identified& identified) {
   return result;
 }
 
-/// Logarithm of the determinant of the errors' covariance, as LoopModel has it.
-double log_variance(const Matrix& y, const Matrix& explained, RowRange rows) {
-  const Matrix errors = (y - explained).middleRows(rows.begin, rows.size());
-  const Matrix centred = errors.rowwise() - errors.colwise().mean();
-  return symmetric_eigen(centred.transpose() * centred / double(rows.size()))
-      .values.array()
-      .max(0)
-      .log()
-      .sum();
+/// LoopModel::log_variance of what is left of the outputs.
+double log_variance_of_rest(const Matrix& y, const Matrix& explained, RowRange rows) {
+  const Matrix rest = (y - explained).middleRows(rows.begin, rows.size());
+  const Matrix centred = rest.rowwise() - rest.colwise().mean();
+  return log_variance(centred.transpose()).value_or(-std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
@@ -120,7 +117,8 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
   };
   const bool runs_away =
       double(looked_at.size()) * std::log(spectral_radius(loops.front().model)) > least_growth;
-  if (runs_away && log_variance(record.y, explained, looked_at) > loops.front().log_variance &&
+  if (runs_away &&
+      log_variance_of_rest(record.y, explained, looked_at) > loops.front().log_variance &&
       certain([](const StateSpaceModel& loop) { return spectral_radius(loop) - 1; }))
     return Verdict{VerdictCode::closed_loop,
                    "closed loop: " + who + "; without that the equipment is unstable (poles " +

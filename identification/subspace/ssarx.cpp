@@ -56,13 +56,6 @@ Matrix without_since(const Regressors& rows, const Matrix& arx, Index m, Index p
   return result;
 }
 
-std::optional<double> log_determinant(const Matrix& errors) {
-  const Matrix covariance = errors * errors.transpose() / double(errors.cols());
-  const SymmetricEigen eigen = symmetric_eigen(covariance);
-  if (!eigen.converged || !(eigen.values(0) > 0)) return std::nullopt;
-  return eigen.values.array().log().sum();
-}
-
 /// The model whose states are the first n rows of `states`.
 std::optional<LoopModel> realised(const Regressors& rows, const Matrix& states, Index n, Index m,
                                   Index p, double period_s) {
@@ -86,13 +79,20 @@ std::optional<LoopModel> realised(const Regressors& rows, const Matrix& states, 
   result.model = {
       found.leftCols(n), found.middleCols(n, m), C,       Matrix::Zero(p, m), found.rightCols(p),
       Vector::Zero(m),   Vector::Zero(p),        period_s};
-  const auto variance = log_determinant(E);
+  const auto variance = log_variance(E);
   if (!variance || !is_well_formed(result.model)) return std::nullopt;
   result.log_variance = *variance;
   return result;
 }
 
 }  // namespace
+
+std::optional<double> log_variance(const Matrix& errors) {
+  const Matrix covariance = errors * errors.transpose() / double(errors.cols());
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  if (!eigen.converged || !(eigen.values(0) > 0)) return std::nullopt;
+  return eigen.values.array().log().sum();
+}
 
 std::optional<LoopModel> loop_model(const Record& record, RowRange rows, Index past,
                                     Index max_order) {

@@ -20,6 +20,10 @@ struct LoopModel {
   double log_variance = 0;  // of e: logarithm of the determinant of its covariance
 };
 
+/// Returns the logarithm of the determinant of the covariance of errors (p x rows) about zero;
+/// absent where it is singular.
+std::optional<double> log_variance(const Matrix& errors);
+
 /// Identifies the model on `rows` of a record of normalised channels, with the order from
 /// [1, max_order] that has the least BIC of its errors one row ahead. `past` rows, at least 2, are
 /// in the ARX model. Absent where the rows do not determine it.

@@ -43,14 +43,20 @@ bool fail(const Sums& errors, const Sums& so_far) {
 }  // namespace
 
 bool ChangeFinder::Errors::add(const Block& block, const BlockScore& score) {
+  if (growth.add({static_cast<identification::Index>(phase_of(block)),
+                  mean_log_root(score.square, score.noise),
+                  mean_log_root(block.output_square, score.noise),
+                  share_above(score.noise, block.output_square)}))
+    return true;
+  if (growth.is_calm()) calm_until = block.range.end;
+  return false;
+}
+
+bool ChangeFinder::AllErrors::add(const Block& block, const BlockScore& score) {
   ++blocks;
   sums.add(block, score.square);
-  have_grown = have_grown || growth.add({static_cast<identification::Index>(phase_of(block)),
-                                         mean_log_root(score.square, score.noise),
-                                         mean_log_root(block.output_square, score.noise),
-                                         share_above(score.noise, block.output_square)});
-  if (!have_grown && growth.is_calm()) {
-    calm_until = block.range.end;
+  have_grown = have_grown || errors.add(block, score);
+  if (!have_grown && errors.growth.is_calm()) {
     blocks = 0;
     sums = {};
   }
@@ -71,7 +77,7 @@ void ChangeFinder::add(const Block& block, const BlockScore& score, int regime) 
   const bool grow_in_regime = of_regime.add(block, score), grow = all_.add(block, score);
   if (grow_in_regime) return begin_anew(of_regime.calm_until, block.range.end);
   if (!grow || all_.blocks < blocks_of_cycle) return;
-  if (fail(all_.sums, so_far_)) return begin_anew(all_.calm_until, block.range.end);
+  if (fail(all_.sums, so_far_)) return begin_anew(all_.errors.calm_until, block.range.end);
   all_ = {};
 }
 

@@ -32,9 +32,15 @@ class ChangeFinder {
  private:
   struct Errors {
     identification::ErrorGrowth growth{blocks_of_cycle};
-    bool have_grown = false;
     storage::Time calm_until = INT64_MIN;
-    int blocks = 0;  // since then
+
+    /// Whether growth is found with the block.
+    bool add(const storage::Block& block, const storage::BlockScore& score);
+  };
+  struct AllErrors {
+    Errors errors;
+    bool have_grown = false;
+    int blocks = 0;  // since they were calm
     Sums sums;       // likewise
 
     /// Whether growth is found with the block, or was.
@@ -43,8 +49,8 @@ class ChangeFinder {
   void begin_anew(storage::Time since, storage::Time found);
 
   std::map<int, Errors> regimes_;
-  Errors all_;   // of whichever regime
-  Sums so_far_;  // since the last change
+  AllErrors all_;  // of whichever regime
+  Sums so_far_;    // since the last change
   std::optional<Change> last_;
 };
 
