@@ -8,7 +8,6 @@
 
 #include "service/config/config.hpp"
 #include "service/model/reasons.hpp"
-#include "service/windows/candidate.hpp"
 
 namespace reident {
 
@@ -22,10 +21,10 @@ struct Evidence {
   std::string still_output;  // one that keeps its value on the validation part; empty: none
 };
 
-/// Returns the evidence of the window's candidate; requires one.
-Evidence evidence_of(const PreparedWindow& prepared, const RefreshRequest& request);
-
 /// Returns what speaks against it; absent where it is admissible.
 std::optional<Reason> inadmissible(const Evidence& evidence, const EquipmentConfig& limits);
+/// Likewise of errors alone, of a window or of a record.
+std::optional<Reason> inadmissible(double mrse_percent, double fit_percent,
+                                   const EquipmentConfig& limits);
 
 }  // namespace reident

@@ -30,7 +30,9 @@ struct League {
   std::vector<Member> challengers;    // ascending by number
   std::vector<storage::TimeRange> admitted;  // windows of all that ever were challengers
   std::vector<std::string> unbound;          // parameters whose sensors no relation binds
-  std::vector<std::string> derived_sensors;  // that BlockScore::bias_effects are of, in their order
+  std::vector<std::string> outputs;
+  std::vector<std::string> sensors;  // of the inputs: BlockScore::bias_effects are of them
+  std::size_t derived_sensors = 0;   // so many of these, the first ones, are of derived inputs
 };
 
 /// What the records say of a challenger. The conditions are looked at in the order R4, R1, R2, R3,
@@ -45,9 +47,8 @@ struct Finding {
   double mean_score = 0;           // 1: it errs nothing beside the champion; -1: the reverse
   double lower_score = 0;          // lower end of the confidence sequence
   double uncovered_share = 0;      // of the blocks since `changed`, in regimes that it has not met
-  double mean_without_offset = 0;  // without what a sensor's offset explains
+  double mean_without_offset = 0;  // without what an offset explains, of the likeliest sensor
   double wealth_without_offset = 0;  // log of the wealth, likewise
-  double explained_by_offset = 0;    // of what it errs less, by a sensor of derived inputs at most
   double mrse_percent = 0;           // on the compared blocks
   double fit_percent = 0;            // the worst output's
   double champion_mrse_percent = 0;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "service/judgement/coverage.hpp"
+#include "service/judgement/gate.hpp"
 #include "service/judgement/offset.hpp"
 
 namespace reident {
@@ -30,55 +31,40 @@ double margin_of(const EquipmentConfig& limits) {
   return (1 - rest * rest) / (1 + rest * rest);
 }
 
-/// A member against the champion without what an offset explains of its error in each last cycle: a
-/// constant, or with `effect` above 0 that of a sensor.
-struct WithoutOffset {
+/// The scores of a member against the champion without what an offset explains of its error in each
+/// last cycle.
+ScoreSeries without(const OffsetFit& offset, const Standard& standard, const Member& member,
+                    const Comparison& compared) {
+  const League& league = standard.league;
   Scores scores;
-  double explained = 0;  // share of what the member errs less; the mean over the outputs
-};
-
-WithoutOffset without_offset(const League& league, const Member& member, const Comparison& compared,
-                             std::size_t effect, const SensorPast& past) {
-  WithoutOffset found;
-  std::vector<double> gained, explained;  // by output
   for (const std::size_t i : compared.blocks) {
-    OffsetFit fit(effect, past);
+    OffsetFit fit = offset;
     for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
       if (const BlockScore* score = find(*league.champion, league.blocks[k].range.begin);
           score && counts(league.blocks[k]))
         fit.add(phase_of(league.blocks[k]), *score);
     const Time begin = league.blocks[i].range.begin;
-    const BlockScore& own = *find(member, begin);
-    const BlockScore& champion = *find(*league.champion, begin);
-    BlockScore rest = champion;
-    rest.square = fit.rest(champion);
-    found.scores.add(squares_of(own, rest));
-    gained.resize(rest.square.size(), 0);
-    explained.resize(rest.square.size(), 0);
-    for (std::size_t q = 0; q < gained.size(); ++q) {
-      gained[q] += champion.square[q] - own.square[q];
-      explained[q] += champion.square[q] - rest.square[q];
-    }
+    BlockScore rest = *find(*league.champion, begin);
+    rest.square = fit.rest(rest);
+    scores.add(squares_of(*find(member, begin), rest));
   }
-  for (std::size_t q = 0; q < gained.size(); ++q)
-    if (gained[q] > 0) found.explained += explained[q] / gained[q] / double(gained.size());
-  return found;
+  return series(scores.values(), standard.assumed);
 }
 
-/// The past of the sensor `effect` is the champion's record before `since`; where that is short,
-/// its first cycles. Blocks from before schema 8 say nothing of it.
-SensorPast past_of(const League& league, std::size_t effect, Time since) {
+/// The past of the inputs' sensor at `place` is the champion's record before `since`; where that is
+/// short, its first cycles. Blocks that do not have its effect say nothing of it.
+SensorPast past_of(const League& league, std::size_t place, Time since) {
   std::vector<std::size_t> phases;
   std::vector<const BlockScore*> scores;
   for_each_score(league, *league.champion, INT64_MIN, 0,
                  [&](std::size_t, const Block& block, const BlockScore& score) {
-                   if (!has_effect(score, effect) ||
+                   if (!has_effect(score, place) ||
                        (block.range.begin >= since && scores.size() >= reference_blocks))
                      return;
                    phases.push_back(phase_of(block));
                    scores.push_back(&score);
                  });
-  return {effect, phases, scores};
+  return {place, phases, scores};
 }
 
 bool worse_in_a_regime(const Comparison& compared, const std::vector<int>& regimes, double assumed,
@@ -91,15 +77,6 @@ bool worse_in_a_regime(const Comparison& compared, const std::vector<int>& regim
     const ScoreSeries loss = series(of_regime.second, assumed);
     return lower_mean(loss, dependence(loss), threshold) > margin_of(limits);
   });
-}
-
-/// R4, on the record.
-std::optional<Reason> inadmissible(const Finding& finding, const EquipmentConfig& limits) {
-  if (!std::isfinite(finding.mrse_percent)) return because<Code::not_finite>();
-  if (finding.mrse_percent > limits.max_mrse_percent)
-    return because<Code::error_above_limit>(finding.mrse_percent, limits.max_mrse_percent);
-  if (!(finding.fit_percent > 0)) return because<Code::not_better_than_mean>(finding.fit_percent);
-  return std::nullopt;
 }
 
 /// R2. Uncovered blocks count as if they were lost entirely.
@@ -120,35 +97,37 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
   return std::nullopt;
 }
 
-/// R3. What is left without an offset has to be enough, whichever sensor's it is. The effect of a
-/// sensor in a derived input is known to the first order alone: so it must not explain more than
-/// half of what the member errs less, either.
+/// R3. What is left without an offset has to be enough, whichever sensor's it is. What one does in
+/// derived inputs is known to the first order alone.
 std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
                                   const Comparison& compared, Finding& finding) {
   const League& league = standard.league;
   if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty()) return std::nullopt;
-  bool may_be = false;
-  for (std::size_t effect = 0; effect <= league.derived_sensors.size(); ++effect) {
-    if (effect > 0 && !std::ranges::count(league.unbound, league.derived_sensors[effect - 1]))
-      continue;
-    const WithoutOffset without =
-        without_offset(league, member, compared, effect,
-                       effect > 0 ? past_of(league, effect, standard.since) : SensorPast());
-    const ScoreSeries scores = series(without.scores.values(), standard.assumed);
+  std::string suspects;
+  finding.wealth_without_offset = finding.log_wealth;
+  finding.mean_without_offset = finding.mean_score;
+  const auto suspect = [&](const std::string& sensor, const OffsetFit& offset) {
+    const ScoreSeries scores = without(offset, standard, member, compared);
     const double wealth = log_wealth(scores, dependence(scores), 0);
     const double mean = scores.scores.mean();
-    may_be = may_be || !(wealth > finding.log_threshold && mean > margin_of(standard.limits)) ||
-             (effect > 0 && without.explained > most);
-    if (effect > 0)
-      finding.explained_by_offset = std::max(finding.explained_by_offset, without.explained);
-    if (effect > 0 && wealth >= finding.wealth_without_offset) continue;
-    finding.mean_without_offset = mean;
+    if (!(wealth > finding.log_threshold && mean > margin_of(standard.limits)))
+      suspects += (suspects.empty() ? "" : ", ") + sensor;
+    if (wealth > finding.wealth_without_offset) return;
     finding.wealth_without_offset = wealth;
-  }
-  if (!may_be) return std::nullopt;
-  std::string sensors;
-  for (const std::string& name : league.unbound) sensors += (sensors.empty() ? "" : ", ") + name;
-  return because<Code::bias_unverified>(league.champion->version, sensors);
+    finding.mean_without_offset = mean;
+  };
+  const auto is_unbound = [&](const std::string& sensor) {
+    return std::ranges::count(league.unbound, sensor) > 0;
+  };
+  for (std::size_t q = 0; q < league.outputs.size(); ++q)
+    if (is_unbound(league.outputs[q])) suspect(league.outputs[q], OffsetFit(q));
+  for (std::size_t place = 0; place < league.sensors.size(); ++place)
+    if (is_unbound(league.sensors[place])) {
+      const SensorPast past = past_of(league, place, standard.since);
+      suspect(league.sensors[place], OffsetFit(past, place < league.derived_sensors ? most : 1));
+    }
+  if (suspects.empty()) return std::nullopt;
+  return because<Code::bias_unverified>(league.champion->version, suspects);
 }
 
 /// R5.
@@ -207,7 +186,8 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
   finding.obstacle = [&]() -> std::optional<Reason> {
     if (finding.blocks < blocks_of_cycle)
       return because<Code::too_few_blocks>(finding.blocks, std::int64_t{blocks_of_cycle});
-    if (auto reason = inadmissible(finding, limits)) return reason;
+    if (auto reason = inadmissible(finding.mrse_percent, finding.fit_percent, limits))
+      return reason;
     const bool is_known = scores.scores.size() > 0;
     const double error = is_known ? simulator.one.mrse_percent() : finding.mrse_percent;
     const double rival =
@@ -248,7 +228,8 @@ Finding judge_against_champion(const Standard& standard, const Member& member,
   const Index recent = std::min<Index>(scores.scores.size(), 2 * blocks_of_cycle);
   finding.recent_score = scores.scores.tail(recent).mean();
   finding.obstacle = [&]() -> std::optional<Reason> {
-    if (auto reason = inadmissible(finding, limits)) return reason;
+    if (auto reason = inadmissible(finding.mrse_percent, finding.fit_percent, limits))
+      return reason;
     if (!(finding.log_wealth > finding.log_threshold)) return not_better();
     if (!(finding.mean_score > margin_of(limits)))
       return because<Code::within_margin>(champion, limits.margin_percent, finding.mrse_percent,

@@ -15,24 +15,24 @@ std::size_t stride(const BlockScore& score) {
 }
 
 /// The sensor's first number; null where the record has none.
-const double* effect_in(const BlockScore& score, std::size_t effect) {
-  const std::size_t place = (effect - 1) * stride(score);
-  return place + stride(score) <= score.bias_effects.size() ? &score.bias_effects[place] : nullptr;
+const double* effect_in(const BlockScore& score, std::size_t place) {
+  const std::size_t first = place * stride(score);
+  return first + stride(score) <= score.bias_effects.size() ? &score.bias_effects[first] : nullptr;
 }
 
 }  // namespace
 
-bool has_effect(const BlockScore& score, std::size_t effect) {
-  return effect_in(score, effect) != nullptr;
+bool has_effect(const BlockScore& score, std::size_t place) {
+  return effect_in(score, place) != nullptr;
 }
 
-SensorPast::SensorPast(std::size_t effect, const std::vector<std::size_t>& phases,
+SensorPast::SensorPast(std::size_t place, const std::vector<std::size_t>& phases,
                        const std::vector<const BlockScore*>& scores)
-    : effect_(effect) {
+    : place_(place) {
   if (scores.size() < reference_blocks) return;
   std::array<double, blocks_of_cycle> counts{};
   for (std::size_t i = 0; i < scores.size(); ++i) {
-    means_[phases[i]] += *effect_in(*scores[i], effect);
+    means_[phases[i]] += *effect_in(*scores[i], place);
     ++counts[phases[i]];
   }
   for (std::size_t phase = 0; phase < counts.size(); ++phase) {
@@ -50,19 +50,19 @@ SensorPast::SensorPast(std::size_t effect, const std::vector<std::size_t>& phase
 }
 
 double SensorPast::departure(std::size_t phase, const BlockScore& score) const {
-  return *effect_in(score, effect_) - means_[phase];
+  return *effect_in(score, place_) - means_[phase];
 }
 
 void OffsetFit::add(std::size_t phase, const BlockScore& score) {
   sums_.resize(score.mean.size());
-  const double* effect = effect_ > 0 ? effect_in(score, effect_) : nullptr;
-  if (effect_ > 0 && !effect) return;
+  const double* effect = past_ ? effect_in(score, past_->place()) : nullptr;
+  if (past_ && !effect) return;
   const auto rows = static_cast<double>(score.rows);
   rows_ += rows;
-  for (std::size_t q = 0; q < sums_.size(); ++q) sums_[q].error += rows * score.mean[q];
-  if (!effect) return;
-  departure_ += rows * past_->departure(phase, score);
+  if (past_) departure_ += rows * past_->departure(phase, score);
   for (std::size_t q = 0; q < sums_.size(); ++q) {
+    sums_[q].error += rows * score.mean[q];
+    if (!effect) continue;
     sums_[q].effect_square += rows * effect[1 + 2 * q];
     sums_[q].product += rows * effect[2 + 2 * q];
   }
@@ -70,17 +70,21 @@ void OffsetFit::add(std::size_t phase, const BlockScore& score) {
 
 std::vector<double> OffsetFit::rest(const BlockScore& score) const {
   std::vector<double> squares = score.square;
-  const double* effect = effect_ > 0 ? effect_in(score, effect_) : nullptr;
+  if (!past_) {
+    const double offset = sums_[output_].error / rows_;
+    squares[output_] += offset * (offset - 2 * score.mean[output_]);
+    return squares;
+  }
+  const double* effect = effect_in(score, past_->place());
+  if (!effect) return squares;
+  const double reach = deviations_of_sensor * past_->spread(), moved = departure_ / rows_;
   for (std::size_t q = 0; q < squares.size(); ++q) {
-    if (effect_ == 0) {
-      const double offset = sums_[q].error / rows_;
-      squares[q] += offset * (offset - 2 * score.mean[q]);
-    } else if (effect && sums_[q].effect_square > 0) {
-      const double reach = deviations_of_sensor * past_->spread(), moved = departure_ / rows_;
-      const double offset =
-          std::clamp(-sums_[q].product / sums_[q].effect_square, moved - reach, moved + reach);
-      squares[q] += offset * (offset * effect[1 + 2 * q] + 2 * effect[2 + 2 * q]);
-    }
+    if (!(sums_[q].effect_square > 0)) continue;
+    const double offset =
+        std::clamp(-sums_[q].product / sums_[q].effect_square, moved - reach, moved + reach);
+    const double explained = -offset * (offset * effect[1 + 2 * q] + 2 * effect[2 + 2 * q]);
+    const double unknown = std::max(0.0, explained) * (1 - known_) * (1 - known_);
+    squares[q] = std::max(0.0, squares[q] - explained - unknown);
   }
   return squares;
 }

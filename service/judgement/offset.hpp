@@ -1,9 +1,7 @@
 // What an offset of one sensor explains of a run's errors.
 //
-// An offset of an output's sensor is a constant in that output's error; so is one of an input's
-// sensor, through the model's static gain. Where a derived input is computed from the sensor, its
-// effect varies with the other values, as BlockScore::bias_effects says; and such a sensor shows in
-// its own values how large the offset may be.
+// An offset of an output's sensor is a constant in that output's error. One of an input's sensor
+// has the effect that BlockScore::bias_effects says, and its own values show how large it may be.
 #pragma once
 
 #include <array>
@@ -15,36 +13,38 @@
 
 namespace reident {
 
-/// Whether the score says what a bias of the sensor `effect`, from 1, does.
-bool has_effect(const storage::BlockScore& score, std::size_t effect);
+/// Whether the score says what a bias of the inputs' sensor at `place` does.
+bool has_effect(const storage::BlockScore& score, std::size_t place);
 
-/// The means of such a sensor's values in the cycles of which nobody doubts it.
+/// The means of an inputs' sensor in the cycles of which nobody doubts it.
 class SensorPast {
  public:
-  /// Nothing is known.
-  SensorPast() = default;
-  /// Measures the sensor `effect`, from 1, in these blocks of a record, which have its effect;
-  /// fewer than reference_blocks say nothing.
-  SensorPast(std::size_t effect, const std::vector<std::size_t>& phases,
+  /// Measures the sensor at `place` in these blocks of a record, which have its effect; fewer than
+  /// reference_blocks say nothing.
+  SensorPast(std::size_t place, const std::vector<std::size_t>& phases,
              const std::vector<const storage::BlockScore*>& scores);
 
+  std::size_t place() const { return place_; }
   /// How far its mean on the block is from that of its phase. Requires the effect.
   double departure(std::size_t phase, const storage::BlockScore& score) const;
   /// Deviation of the departures of whole cycles; infinite where nothing is known.
   double spread() const { return spread_; }
 
  private:
-  std::size_t effect_ = 1;
+  std::size_t place_;
   std::array<double, blocks_of_cycle> means_{};
   double spread_ = std::numeric_limits<double>::infinity();
 };
 
-/// Fit of the errors of a run on the blocks of a cycle by an offset: by a constant for each output,
-/// or by the effect of a sensor's offset that its past allows, within three of its spreads.
+/// Fit of the errors of a run on the blocks of a cycle by an offset of one sensor.
 class OffsetFit {
  public:
-  /// `past` must outlive it.
-  OffsetFit(std::size_t effect, const SensorPast& past) : effect_(effect), past_(&past) {}
+  /// Of an output's sensor: a constant in that output.
+  explicit OffsetFit(std::size_t output) : output_(output) {}
+  /// Of an inputs' sensor: what its past allows, within three of its spreads. `known` of its effect
+  /// is known, from 0 to 1: what is unknown may make so much of what is left. `past` must outlive
+  /// the fit.
+  OffsetFit(const SensorPast& past, double known) : past_(&past), known_(known) {}
 
   /// Takes in a block; one without the sensor's effect says nothing.
   void add(std::size_t phase, const storage::BlockScore& score);
@@ -56,8 +56,9 @@ class OffsetFit {
     double error = 0, effect_square = 0, product = 0;
   };
 
-  std::size_t effect_ = 0;
-  const SensorPast* past_ = nullptr;
+  std::size_t output_ = 0;
+  const SensorPast* past_ = nullptr;  // null where the sensor is the output's
+  double known_ = 1;
   std::vector<Sums> sums_;  // by output
   double rows_ = 0;
   double departure_ = 0;  // times rows

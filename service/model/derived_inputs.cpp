@@ -76,10 +76,12 @@ std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& de
   return mistakes;
 }
 
-std::vector<std::string> sensors_of(const std::vector<DerivedInput>& derived) {
-  std::vector<std::string> inputs;
-  for (const DerivedInput& one : derived) inputs.push_back(one.name);
-  return InputExpressions(inputs, derived).parameters();
+std::vector<std::string> sensors_of(const std::vector<std::string>& inputs,
+                                    const std::vector<DerivedInput>& derived) {
+  std::vector<std::string> derived_first;
+  for (const DerivedInput& one : derived) derived_first.push_back(one.name);
+  derived_first.insert(derived_first.end(), inputs.begin(), inputs.end());
+  return InputExpressions(derived_first, derived).parameters();
 }
 
 InputExpressions::InputExpressions(const std::vector<std::string>& inputs,

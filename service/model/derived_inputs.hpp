@@ -35,9 +35,10 @@ std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& de
                                              const std::vector<std::string>& inputs,
                                              const std::vector<std::string>& outputs);
 
-/// Returns the parameters that these inputs are computed from, each once, in the order of first
-/// use.
-std::vector<std::string> sensors_of(const std::vector<DerivedInput>& derived);
+/// Returns the parameters that the inputs are computed from, each once: those of derived ones
+/// first, and each in the order of first use.
+std::vector<std::string> sensors_of(const std::vector<std::string>& inputs,
+                                    const std::vector<DerivedInput>& derived);
 
 /// Computes the m inputs of a model from the values of q parameters, tick by tick. Not const where
 /// it computes, since it keeps room for operands: one thread at a time.

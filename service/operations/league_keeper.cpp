@@ -33,7 +33,6 @@ ordered_json to_json(const Finding& finding) {
           {"uncovered_share", finding.uncovered_share},
           {"mean_without_offset", finding.mean_without_offset},
           {"log_wealth_without_offset", finding.wealth_without_offset},
-          {"explained_by_offset", finding.explained_by_offset},
           {"mrse_percent", finding.mrse_percent},
           {"fit_percent", finding.fit_percent},
           {"champion_mrse_percent", finding.champion_mrse_percent},
@@ -86,7 +85,9 @@ LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipm
       reader_(spacecraft_, equipment),
       judge_(equipment) {
   league_.unbound = unbound_parameters(equipment);
-  league_.derived_sensors = sensors_of(reader_.request().derived);
+  league_.outputs = reader_.request().outputs;
+  league_.sensors = sensors_of(reader_.request().inputs, reader_.request().derived);
+  league_.derived_sensors = sensors_of({}, reader_.request().derived).size();
 }
 
 void LeagueKeeper::forget(storage::TimeRange range) {
@@ -141,9 +142,14 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
       passed_over = made->id;  // the operator knew these versions, and chose another one
     }
   }
+  waiting_.clear();
   for (const std::int64_t number : registry.waiting(
            spacecraft_, equipment_.name, std::string(name(Outcome::challenger)), passed_over))
-    if (auto member = member_of(number)) league_.challengers.push_back(*std::move(member));
+    if (auto member = member_of(number)) {
+      league_.challengers.push_back(*std::move(member));
+      waiting_[number] =
+          waits_for_operator(registry.decisions(spacecraft_, equipment_.name, number).back());
+    }
   league_.admitted =
       registry.windows(spacecraft_, equipment_.name, std::string(name(Outcome::challenger)));
   standing_ = standing;
@@ -223,11 +229,6 @@ bool LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
       *standing_, {std::move(version), decision_of(kind, reasons, std::move(evidence)), until});
 }
 
-bool LeagueKeeper::asked_an_operator(const storage::Registry& registry,
-                                     std::int64_t version) const {
-  return waits_for_operator(registry.decisions(spacecraft_, equipment_.name, version).back());
-}
-
 void LeagueKeeper::let_wait(const storage::Registry& registry, const LeagueWriter& writer,
                             const Finding& finding, const Reason& reason, Time now) {
   const auto decisions = registry.decisions(spacecraft_, equipment_.name, finding.version);
@@ -249,7 +250,7 @@ Reason LeagueKeeper::why_better(const Finding& finding) const {
 void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter& writer, Time now) {
   const std::vector<Finding> findings = judge_.findings(league_);
   const auto is_waiting = [&](const Finding& finding) {
-    return registry.version(spacecraft_, equipment_.name, finding.version)->status == "waiting";
+    return waiting_.contains(finding.version);
   };
   const auto hold = registry.hold(spacecraft_, equipment_.name);
   if (const auto found = successor(findings)) {
@@ -274,7 +275,7 @@ void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
     if (!finding.obstacle) continue;
     // It waits for an operator, or does so no more: its record does not speak for it now.
     const bool asks = finding.obstacle->code == ReasonCode::bias_unverified;
-    if (asks || asked_an_operator(registry, finding.version))
+    if (asks || waiting_.at(finding.version))
       let_wait(registry, writer, finding, *finding.obstacle, now);
   }
   if (std::ssize(waiting) > equipment_.members) {

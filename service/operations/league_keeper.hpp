@@ -73,8 +73,6 @@ class LeagueKeeper {
   void decide(const storage::Registry& registry, const LeagueWriter& writer, storage::Time now);
   bool decide(const storage::Registry& registry, const LeagueWriter& writer, const Finding& finding,
               storage::DecisionKind kind, const std::vector<Reason>& reasons, storage::Time now);
-  /// Whether the version waits for an operator, by the last decision about it.
-  bool asked_an_operator(const storage::Registry& registry, std::int64_t version) const;
   /// Records that a waiting version waits for this reason now, unless it does already.
   void let_wait(const storage::Registry& registry, const LeagueWriter& writer,
                 const Finding& finding, const Reason& reason, storage::Time now);
@@ -91,6 +89,7 @@ class LeagueKeeper {
   League league_;
   Judge judge_;
   std::map<std::int64_t, EquipmentModel> models_;  // of the members
+  std::map<std::int64_t, bool> waiting_;           // of these, and whether for an operator
   std::optional<storage::Time> reached_;           // end of the last block
   std::optional<std::int64_t> failed_;             // champion that failed at the last look; 0: none
 };

@@ -92,6 +92,30 @@ void prefer_static_gain(const RefreshRequest& request, PreparedWindow& prepared)
   if (error < dynamic) prepared.candidate = std::move(other);
 }
 
+/// The name of an output that keeps one value on the validation part; empty: none does.
+std::string still_output(const PreparedWindow& prepared) {
+  const RowRange rows = prepared.candidate->parts.validate;
+  for (Index q = 0; q < prepared.data.record.y.cols(); ++q) {
+    const auto y = prepared.data.record.y.col(q).segment(rows.begin, rows.size());
+    if (y.maxCoeff() == y.minCoeff())
+      return prepared.data.outputs[static_cast<std::size_t>(q)].name;
+  }
+  return {};
+}
+
+Evidence evidence_of(const PreparedWindow& prepared, const RefreshRequest& request) {
+  const Candidate& candidate = *prepared.candidate;
+  const EquipmentModel& model = candidate.model;
+  const Duration window =
+      candidate.adapted_from ? request.equipment.window : request.window.end - request.window.begin;
+  return {is_well_formed(model.dynamics),
+          spectral_radius(model.dynamics),
+          slowest_time_constant_s(model.dynamics) * 1e9 / static_cast<double>(window),
+          model.validation.mrse(),
+          model.validation.fit(),
+          still_output(prepared)};
+}
+
 }  // namespace
 
 RefreshResult judge(const storage::Registry& registry, const RefreshRequest& request,

@@ -35,12 +35,7 @@ Place place_of(std::string_view obstacle) {
 }
 
 std::string offset(const Finding& finding) {
-  std::string found =
-      fmt::format("{:.2f}, {:.3f}", finding.wealth_without_offset, finding.mean_without_offset);
-  if (finding.explained_by_offset > 0)
-    found += fmt::format("; it may explain {:.0f} % (at most {:.0f})",
-                         100 * finding.explained_by_offset, 100 * most);
-  return found;
+  return fmt::format("{:.2f}, {:.3f}", finding.wealth_without_offset, finding.mean_without_offset);
 }
 
 }  // namespace

@@ -56,7 +56,10 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
   if (!rival) return std::nullopt;
   StoredRecord record;
   record.limits = limits_of(evidence_of(story.attempt), record.league.unbound);
-  record.league.derived_sensors = sensors_of(derived_inputs(story.model.inputs));
+  record.league.outputs = signal_names(story.model.outputs);
+  record.league.sensors =
+      sensors_of(signal_names(story.model.inputs), derived_inputs(story.model.inputs));
+  record.league.derived_sensors = sensors_of({}, derived_inputs(story.model.inputs)).size();
   std::vector<storage::VersionSummary> waiting = history.summaries(equipment);
   std::erase_if(waiting, [](const auto& one) { return one.status != "waiting"; });
   storage::HistoryFilter versions;

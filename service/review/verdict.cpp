@@ -26,7 +26,6 @@ Finding finding_in(const nlohmann::ordered_json& evidence) {
   read("uncovered_share", finding.uncovered_share);
   read("mean_without_offset", finding.mean_without_offset);
   read("log_wealth_without_offset", finding.wealth_without_offset);
-  read("explained_by_offset", finding.explained_by_offset);
   read("mrse_percent", finding.mrse_percent);
   read("champion_mrse_percent", finding.champion_mrse_percent);
   read("fit_percent", finding.fit_percent);

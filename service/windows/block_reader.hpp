@@ -36,8 +36,7 @@ struct BlockSamples {
   storage::Block block;
   identification::Record record;
   identification::Index first_row = 0;  // of the block
-  /// WindowData::bias_effects of the sensors that derived inputs are computed from (sensors_of()),
-  /// at the record's rows. In other inputs biases act like constants in the outputs.
+  /// WindowData::bias_effects of the inputs' sensors (sensors_of()), at the record's rows.
   std::vector<identification::Record> bias_effects;
 };
 
@@ -66,7 +65,7 @@ class BlockReader {
 
   Duration length_;
   WindowCache telemetry_;
-  std::vector<std::string> derived_sensors_;
+  std::vector<std::string> sensors_;  // of the inputs
 };
 
 }  // namespace reident

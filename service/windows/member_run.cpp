@@ -75,15 +75,18 @@ class Run {
 };
 
 /// What the change of the inputs does to the run's outputs, a row a row. Before the first row, and
-/// in holes, the change is what it is on the average.
+/// in holes, the change is what it is on the average: a constant one needs no run.
 Matrix response(identification::StateSpaceModel model, identification::Record record,
                 const Matrix& change) {
   model.u0.setZero();
   model.y0.setZero();
   record.u = change;
   const Index n = model.order();
-  const Vector driven = model.B * change.colwise().mean().transpose();
-  const Vector steady = identification::solve_full_lu(Matrix::Identity(n, n) - model.A, driven);
+  const Vector usual = change.colwise().mean().transpose();
+  const Vector steady =
+      identification::solve_full_lu(Matrix::Identity(n, n) - model.A, Vector(model.B * usual));
+  if (change.isApprox(usual.transpose().replicate(change.rows(), 1)))
+    return (model.C * steady + model.D * usual).transpose().replicate(change.rows(), 1);
   Matrix outputs(record.rows(), model.outputs());
   for (const Segment& segment : record.segments)
     outputs.middleRows(segment.begin, segment.size()) =

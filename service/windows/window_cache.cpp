@@ -20,23 +20,22 @@ using identification::Vector;
 namespace {
 
 /// WindowData::bias_effects of the sensor, for biases of a tenth of its values up and down. Where
-/// one of them gives no input that is finite, the other counts.
-Record bias_effect(const WindowRequest& request, const Record& all, const std::string& sensor,
-                   TickRange ticks) {
-  std::vector<std::string> inputs = request.inputs;
-  inputs.push_back(sensor);
-  InputExpressions expressions(inputs, request.derived);
+/// one of them gives no input that is finite, the other counts. What is not analog has no bias.
+Record bias_effect(const WindowRequest& request, const std::vector<Channel>& channels,
+                   const Record& all, const std::string& sensor, TickRange ticks) {
+  InputExpressions expressions(request.inputs, request.derived);
   const auto& names = expressions.parameters();
   const auto place = std::ranges::find(names, sensor) - names.begin();
+  const bool is_analog = channels[static_cast<std::size_t>(place)].is_analog;
   const double values = std::sqrt(all.u.col(place).squaredNorm() /
                                   static_cast<double>(std::max<Index>(1, all.rows())));
   const double bias = values > 0 ? values / 10 : 1;
   const Record samples = rows_at(all, ticks);
   Record effect = expressions.evaluate(samples);
-  const Index m = effect.u.cols() - 1;
-  effect.y = effect.u.col(m);
-  effect.u = Matrix::Zero(effect.rows(), m);
-  Vector raw(samples.u.cols()), above(m + 1), here(m + 1), below(m + 1);
+  const Index m = effect.u.cols();
+  effect.u.setZero();
+  effect.y.resize(effect.rows(), 1);
+  Vector raw(samples.u.cols()), above(m), here(m), below(m);
   const auto inputs_at = [&](Index row, double offset, Vector& found) {
     raw = samples.u.row(row).transpose();
     raw(place) += offset;
@@ -46,10 +45,11 @@ Record bias_effect(const WindowRequest& request, const Record& all, const std::s
   Index kept = 0;
   for (Index row = 0; row < samples.rows(); ++row) {
     if (!inputs_at(row, 0, here)) continue;  // it is not in the record
-    double width = 2 * bias;
-    if (!inputs_at(row, bias, above)) above = here, width -= bias;
-    if (!inputs_at(row, -bias, below)) below = here, width -= bias;
-    if (width > 0) effect.u.row(kept) = (above - below).head(m).transpose() / width;
+    effect.y(kept, 0) = samples.u(row, place);
+    double width = is_analog ? 2 * bias : 0;
+    if (is_analog && !inputs_at(row, bias, above)) above = here, width -= bias;
+    if (is_analog && !inputs_at(row, -bias, below)) below = here, width -= bias;
+    if (width > 0) effect.u.row(kept) = (above - below).transpose() / width;
     ++kept;
   }
   return effect;
@@ -104,7 +104,8 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
     window = {wanted->ticks.begin * request_.period, wanted->ticks.end * request_.period};
     for (const std::string& sensor : wanted->sensors)
       data.bias_effects.push_back(
-          without(bias_effect(request_, samples, sensor, wanted->ticks), data.plausibility.holes));
+          without(bias_effect(request_, data.input_channels, samples, sensor, wanted->ticks),
+                  data.plausibility.holes));
     samples = rows_at(samples, wanted->ticks);
   }
   Record read = expressions.evaluate(std::move(samples));

@@ -22,7 +22,7 @@
 
 namespace reident {
 
-/// A part of a window whose whole is checked alone, and the sensors of derived inputs of which
+/// A part of a window whose whole is checked alone, and the sensors of inputs of which
 /// WindowData::bias_effects is wanted.
 struct WantedPart {
   identification::TickRange ticks;

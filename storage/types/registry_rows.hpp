@@ -169,7 +169,7 @@ struct BlockScore {
   RunState state;
   /// What a bias of a sensor does to the run, over the bias. For one sensor behind the other: the
   /// mean of its values, and for each output the means of the effect's square and of its product
-  /// with the error. Empty where biases act like constants in the outputs.
+  /// with the error. The last sensors may be missing.
   std::vector<double> bias_effects;
 };
 

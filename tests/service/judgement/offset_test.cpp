@@ -33,7 +33,7 @@ SensorPast past(double mean, std::size_t cycles) {
   }
   std::vector<const BlockScore*> scores;
   for (const BlockScore& block : blocks) scores.push_back(&block);
-  return {1, phases, scores};
+  return {0, phases, scores};
 }
 
 TEST(Offset, TheSpreadOfASensorIsThatOfItsCycles) {
@@ -43,34 +43,35 @@ TEST(Offset, TheSpreadOfASensorIsThatOfItsCycles) {
 }
 
 TEST(Offset, AConstantExplainsTheMean) {
-  const SensorPast nothing;
-  OffsetFit fit(0, nothing);
+  OffsetFit fit(std::size_t{0});
   fit.add(0, score(2, 5, {}));
   fit.add(1, score(4, 17, {}));
   EXPECT_THAT(fit.rest(score(2, 5, {})), ElementsAre(DoubleNear(2, 1e-9)));
 }
 
 TEST(Offset, ASensorsEffectExplainsWhatItsPastAllows) {
-  // The error is -2 times the effect: an offset of 2 makes it.
-  for (const auto& [moved, rest] : {std::pair(2.0, 0.0), std::pair(0.0, 0.25)}) {
+  // The error is -10 times the effect: an offset of 10 makes it, and one of 1.5 leaves 8.5 times
+  // and less, since the effect is known to a half.
+  const double left = 8.5 * 8.5, less = (100 - left) / 4;
+  for (const auto& [moved, rest] : {std::pair(10.0, 0.0), std::pair(0.0, left - less)}) {
     const SensorPast known = past(5, 100);
-    OffsetFit fit(1, known);
-    const BlockScore block = score(0, 4, {5.5 + moved, 1, -2});
+    OffsetFit fit(known, 0.5);
+    const BlockScore block = score(0, 100, {5.5 + moved, 1, -10});
     fit.add(0, block);
-    EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(rest, 0.03))) << moved;
+    EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(rest, 0.6))) << moved;
   }
 }
 
 TEST(Offset, ABlockWithoutTheEffectSaysNothing) {
   const SensorPast known = past(5, 100);
   const BlockScore block = score(0, 4, {7.5, 1, -2});
-  OffsetFit fit(1, known);
+  OffsetFit fit(known, 1);
   fit.add(0, block);
   fit.add(1, score(0, 4, {}));
   EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(0, 0.03)));
-  EXPECT_FALSE(has_effect(score(0, 4, {}), 1));
-  EXPECT_TRUE(has_effect(block, 1));
-  EXPECT_FALSE(has_effect(block, 2));
+  EXPECT_FALSE(has_effect(score(0, 4, {}), 0));
+  EXPECT_TRUE(has_effect(block, 0));
+  EXPECT_FALSE(has_effect(block, 1));
 }
 
 }  // namespace

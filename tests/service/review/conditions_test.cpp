@@ -18,8 +18,6 @@ TEST(Conditions, AQuestionThatWasNotAskedShowsNoFigure) {
   finding.wealth_without_offset = 7.5;
   finding.mean_without_offset = 0.25;
   EXPECT_EQ(bias("").found, "7.50, 0.250");
-  finding.explained_by_offset = 0.625;
-  EXPECT_EQ(bias("bias_unverified").found, "7.50, 0.250; it may explain 62 % (at most 50)");
   EXPECT_EQ(bias("not_better").holds, std::nullopt);
 }
 

@@ -118,6 +118,25 @@ TEST_F(WindowCaches, SayWhatABiasOfASensorDoesToDerivedInputs) {
       << "of v: u";
 }
 
+TEST_F(WindowCaches, ABiasOfAnInputItselfIsThatOfItsSensor) {
+  archive.append(telemetry(day, 1000));
+  const storage::TimeRange window{day, day + 1000 * second};
+  const WindowRequest& request = kept.request();
+  ASSERT_TRUE(request.derived.empty());
+  const auto result =
+      kept.load(archive, window, WantedPart{ticks_of(window, request.period), request.inputs});
+  const WindowData& data = std::get<WindowData>(result);
+  ASSERT_EQ(data.bias_effects.size(), request.inputs.size());
+  for (std::size_t j = 0; j < request.inputs.size(); ++j) {
+    const auto column = static_cast<identification::Index>(j);
+    EXPECT_EQ(data.bias_effects[j].y, data.record.u.col(column));
+    identification::Matrix unit =
+        identification::Matrix::Zero(data.record.rows(), data.record.u.cols());
+    unit.col(column).setOnes();
+    EXPECT_TRUE(data.bias_effects[j].u.isApprox(unit, 1e-9));
+  }
+}
+
 /// Below 0 there is no root: the slope upwards counts.
 TEST_F(WindowCaches, SayWhatABiasDoesAtTheEndOfWhatAnInputIsDefinedFor) {
   EquipmentConfig equipment = plant();
