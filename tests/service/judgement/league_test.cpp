@@ -241,6 +241,44 @@ TEST(League, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
   EXPECT_EQ(records.obstacle(), std::nullopt);
 }
 
+TEST(League, VersionIsNoBiasWhereTwoOutputsErrTogether) {
+  Records records(200);
+  records.champion([](int block) {
+           return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
+         })
+      .challenger(varying(0.01), 100)
+      .unbound();
+  const auto twice = [](std::vector<double>& values) { values.push_back(values[0]); };
+  for (Block& block : records.league().blocks) {
+    twice(block.output_mean);
+    twice(block.output_square);
+  }
+  for (Member* member : {&*records.league().champion, &records.league().challengers[0]})
+    for (BlockScore& score : member->scores)
+      for (auto* values : {&score.mean, &score.square, &score.noise}) twice(*values);
+  records.league().outputs = {"y", "z"};
+  records.league().unbound = {"y", "z"};
+  EXPECT_EQ(records.obstacle(), std::nullopt);
+  // The other output errs as little as before.
+  for (BlockScore& score : records.league().champion->scores)
+    score.mean[1] = 0, score.square[1] = 0.01;
+  EXPECT_EQ(records.obstacle(), Code::bias_unverified);
+}
+
+TEST(League, OffsetOfAnOutputThatARelationBindsIsNoBias) {
+  Records records(200);
+  records.champion([](int block) {
+           return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
+         })
+      .challenger(varying(0.01), 100)
+      .unbound();
+  records.league().unbound = {"v"};
+  records.league().sensors = {"v"};
+  for (BlockScore& score : records.league().champion->scores)
+    score.bias_effects = {5 + 0.1 * std::sin(double(score.begin)), 0.25, -0.5 * score.mean[0]};
+  EXPECT_EQ(records.obstacle(), std::nullopt) << "v reads as always";
+}
+
 /// Errors of 0.5 in the rms from block 100 on, of which `explained` are the effect of an offset by
 /// 1 of a sensor, whose mean moves by `moved`.
 Records sensor_of_an_input(double explained, double moved) {
