@@ -1,105 +1,14 @@
 #include "service/judgement/league.hpp"
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include <gmock/gmock.h>
 
-#include "service/windows/block_reader.hpp"
+#include "tests/service/judgement/league_records.hpp"
 
-namespace reident::test::league_test {
+namespace reident::test::league {
 namespace {
-
-using storage::Block;
-using storage::BlockScore;
-using storage::Time;
-using Code = ReasonCode;
-
-constexpr Time length = 15 * 60 * 1'000'000'000LL;
-constexpr Time cycle = length * blocks_of_cycle;
-
-/// What an output errs on a block, by the block's number: mean and mean square.
-struct Error {
-  double mean = 0, square = 0;
-};
-using Errors = std::function<Error(int block)>;
-
-Errors white(double square) {
-  return [square](int) { return Error{0, square}; };
-}
-/// Larger and smaller by a fifth in turn, as errors vary.
-Errors varying(double square) {
-  return [square](int block) { return Error{0, square * (block % 3 == 0 ? 1.2 : 0.8)}; };
-}
-
-/// Records of blocks from 0 on. The output's mean is 10 and its variance 1; the input's range is
-/// -1 to 1.
-class Records {
- public:
-  explicit Records(int blocks) {
-    limits_.cycle = cycle;
-    for (int i = 0; i < blocks; ++i)
-      league_.blocks.push_back(
-          {{i * length, (i + 1) * length}, 100, 1, {10}, {101}, {-1}, {1}, {}});
-  }
-  Records& champion(const Errors& errors, int from = 0) {
-    league_.champion = member(1, {from * length - 5 * cycle, from * length}, errors, from);
-    return *this;
-  }
-  /// A version whose window ends at block `from`, and its record from there on.
-  Records& challenger(const Errors& errors, int from, Time window = 2 * cycle) {
-    const auto number = static_cast<std::int64_t>(league_.admitted.size()) + 2;
-    league_.challengers.push_back(
-        member(number, {from * length - window, from * length}, errors, from));
-    league_.admitted.push_back(league_.challengers.back().window);
-    return *this;
-  }
-  /// The run of the champion or a challenger on these blocks, which lie before its window.
-  void ran_before(Member& of, const Errors& errors, int from, int to) {
-    of.earlier = member(of.version, of.window, errors, from).scores;
-    of.earlier.resize(static_cast<std::size_t>(to - from));
-  }
-  /// The input goes five times as far in these blocks.
-  void swings(std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i)
-      league_.blocks[i].input_low = {-5}, league_.blocks[i].input_high = {5};
-  }
-  Records& unbound() {
-    league_.unbound = {"y"};
-    league_.outputs = {"y"};
-    return *this;
-  }
-  League& league() { return league_; }
-  EquipmentConfig& limits() { return limits_; }
-  std::vector<Finding> findings() const { return Judge(limits_).findings(league_); }
-  /// The code of what is against the first challenger; nothing where it may become champion.
-  std::optional<Code> obstacle() const {
-    const auto found = findings().at(0).obstacle;
-    return found ? std::optional(found->code) : std::nullopt;
-  }
-
- private:
-  Member member(std::int64_t number, storage::TimeRange window, const Errors& errors,
-                int from) const {
-    Member member{number, window, {}};
-    for (std::size_t i = static_cast<std::size_t>(from); i < league_.blocks.size(); ++i) {
-      const Error error = errors(static_cast<int>(i));
-      member.scores.push_back({number,
-                               league_.blocks[i].range.begin,
-                               100,
-                               {error.mean},
-                               {error.square + error.mean * error.mean},
-                               {1e-6},
-                               {},
-                               {}});
-    }
-    return member;
-  }
-
-  League league_;
-  EquipmentConfig limits_;
-};
 
 TEST(League, FirstVersionNeedsAWholeCycleOfTelemetryThatItWasNotFittedTo) {
   EXPECT_EQ(Records(blocks_of_cycle).challenger(white(0.01), 1).obstacle(), Code::too_few_blocks);
@@ -224,109 +133,6 @@ TEST(League, RegimesOfTheChampionBeforeCountUntilTheEquipmentChanges) {
     records.league().changed = changed;
     EXPECT_EQ(records.obstacle(), obstacle);
   }
-}
-
-TEST(League, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
-  Records records(200);
-  records.champion([](int block) {
-           return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
-         })
-      .challenger(varying(0.01), 100)
-      .unbound();
-  EXPECT_EQ(records.obstacle(), Code::bias_unverified);
-  records.limits().bias = BiasPolicy::approve;
-  EXPECT_EQ(records.obstacle(), std::nullopt);
-  records.limits().bias = BiasPolicy::wait;
-  records.league().unbound.clear();
-  EXPECT_EQ(records.obstacle(), std::nullopt);
-}
-
-TEST(League, VersionIsNoBiasWhereTwoOutputsErrTogether) {
-  Records records(200);
-  records.champion([](int block) {
-           return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
-         })
-      .challenger(varying(0.01), 100)
-      .unbound();
-  const auto twice = [](std::vector<double>& values) { values.push_back(values[0]); };
-  for (Block& block : records.league().blocks) {
-    twice(block.output_mean);
-    twice(block.output_square);
-  }
-  for (Member* member : {&*records.league().champion, &records.league().challengers[0]})
-    for (BlockScore& score : member->scores)
-      for (auto* values : {&score.mean, &score.square, &score.noise}) twice(*values);
-  records.league().outputs = {"y", "z"};
-  records.league().unbound = {"y", "z"};
-  EXPECT_EQ(records.obstacle(), std::nullopt);
-  // The other output errs as little as before.
-  for (BlockScore& score : records.league().champion->scores)
-    score.mean[1] = 0, score.square[1] = 0.01;
-  EXPECT_EQ(records.obstacle(), Code::bias_unverified);
-}
-
-TEST(League, OffsetOfAnOutputThatARelationBindsIsNoBias) {
-  Records records(200);
-  records.champion([](int block) {
-           return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
-         })
-      .challenger(varying(0.01), 100)
-      .unbound();
-  records.league().unbound = {"v"};
-  records.league().sensors = {"v"};
-  for (BlockScore& score : records.league().champion->scores)
-    score.bias_effects = {5 + 0.1 * std::sin(double(score.begin)), 0.25, -0.5 * score.mean[0]};
-  EXPECT_EQ(records.obstacle(), std::nullopt) << "v reads as always";
-}
-
-/// Errors of 0.5 in the rms from block 100 on, of which `explained` are the effect of an offset by
-/// 1 of a sensor, whose mean moves by `moved`.
-Records sensor_of_an_input(double explained, double moved) {
-  Records records(200);
-  records.champion([](int block) {
-           return Error{0, block < 100 ? 0.01 : 0.26};
-         })
-      .challenger(varying(0.01), 100)
-      .unbound();
-  records.league().unbound = {"v"};
-  records.league().sensors = {"v"};
-  int block = 0;
-  for (BlockScore& score : records.league().champion->scores) {
-    const double mean = 5 + 0.1 * std::sin(block);
-    score.bias_effects = {mean + (block < 100 ? 0 : moved), 0.25, block < 100 ? 0 : -explained};
-    ++block;
-  }
-  return records;
-}
-
-TEST(League, VersionThatIsBetterByASensorsEffectAloneWaits) {
-  EXPECT_EQ(sensor_of_an_input(0.25, 1).obstacle(), Code::bias_unverified);
-  EXPECT_EQ(sensor_of_an_input(0.05, 1).obstacle(), std::nullopt) << "it explains the least part";
-}
-
-TEST(League, VersionIsNoBiasOfASensorThatReadsAsBefore) {
-  EXPECT_EQ(sensor_of_an_input(0.25, 0).obstacle(), std::nullopt);
-}
-
-TEST(League, VersionIsNoBiasOfASensorThatARelationBinds) {
-  Records records = sensor_of_an_input(0.25, 1);
-  records.league().sensors = {"bound", "v"};
-  for (BlockScore& score : records.league().champion->scores)
-    score.bias_effects.insert(score.bias_effects.end(), {30, 0, 0});
-  EXPECT_EQ(records.obstacle(), std::nullopt) << "the first sensor is bound, and its effect is it";
-  records.league().sensors = {"v", "bound"};
-  EXPECT_EQ(records.obstacle(), Code::bias_unverified);
-}
-
-TEST(League, VersionThatIsBetterWithoutTheConstantTooIsNoBias) {
-  EXPECT_EQ(Records(200)
-                .champion([](int block) {
-                  return block < 100 ? Error{0, 0.01} : Error{0.3, 0.1};
-                })
-                .challenger(varying(0.01), 100)
-                .unbound()
-                .obstacle(),
-            std::nullopt);
 }
 
 TEST(League, VersionsAreTheLeastIntervalApart) {
@@ -531,4 +337,4 @@ TEST(League, APhaseOfTheCycleThatTheReferenceLacksIsNoChange) {
 }
 
 }  // namespace
-}  // namespace reident::test::league_test
+}  // namespace reident::test::league
