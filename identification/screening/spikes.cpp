@@ -10,7 +10,10 @@ namespace reident::identification {
 namespace {
 
 constexpr double neighbours_agree = 0.3;
-constexpr double most_spikes = 0.02;  // of the plateaus; more of them are how the equipment is
+constexpr double most_spikes = 0.02;      // of the plateaus; more of them are how the equipment is
+constexpr double most_irregular = 0.1;    // likewise where they have no usual height
+constexpr double least_one_way = 0.1;     // of irregular ones
+constexpr double irregular_spread = 0.5;  // of the heights' middle half, over the median
 constexpr double explained_share = 0.5;
 constexpr std::size_t least_comparable = 3;
 constexpr double confirmed_deviations = 6;
@@ -60,6 +63,20 @@ bool are_one_absurd_value(const Channel& channel, const std::vector<Spike>& spik
     any = true;
   }
   return any && high > low && std::max(low - value, value - high) > high - low;
+}
+
+/// Whether these stand for anything: they go both ways, and their heights differ. Pulses of
+/// equipment are alike.
+bool are_irregular(const std::vector<Spike>& spikes) {
+  std::vector<double> heights;
+  std::size_t upwards = 0;
+  for (const Spike& spike : spikes) {
+    heights.push_back(std::abs(spike.height));
+    upwards += spike.height > 0 ? 1U : 0U;
+  }
+  const double usual = quantile(heights, 0.5), least = least_one_way * double(spikes.size());
+  return quantile(heights, 0.75) - quantile(heights, 0.25) > irregular_spread * usual &&
+         double(upwards) >= least && double(spikes.size() - upwards) >= least;
 }
 
 /// What a channel does at a spike of another: how much it moves, and whether it comes back.
@@ -152,7 +169,8 @@ std::vector<Plateau> spikes_of(const std::vector<Channel>& channels, std::size_t
   const double longest = 2 * median_size(plateaus);
   std::erase_if(spikes, [&](const Spike& one) { return double(one.plateau.size()) > longest; });
   if (spikes.empty()) return {};
-  if (double(spikes.size()) > most_spikes * double(plateaus.size()) &&
+  const double share = double(spikes.size()) / double(plateaus.size());
+  if (share > (are_irregular(spikes) ? most_irregular : most_spikes) &&
       !are_one_absurd_value(channel, spikes))
     return {};
   std::vector<Spike> alone, beside;  // where no other channel jumps, and where one jumps otherwise

@@ -1,5 +1,7 @@
 #include "identification/screening/sensor_screening.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -277,6 +279,50 @@ TEST(Screening, LeavesPulsesThatAnotherSensorAnswers) {
   Telemetry unanswered;
   for (Index t = 200; t < 30'000; t += 700) unanswered.channel(Telemetry::load)(t) += 9;
   EXPECT_EQ(ticks_of(unanswered.faults(), SensorFaultKind::spike, Telemetry::load).size(), 43U);
+}
+
+TEST(Screening, FindsValuesThatAreAnythingInSomeOfAHundredRows) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> uniform;
+  for (const double share : {0.01, 0.03, 0.06}) {
+    Telemetry telemetry;
+    const auto spoil = [&](Index channel, double low, double high) {
+      std::vector<bool> spoilt(30'000);
+      for (Index t = 0; t < 30'000; ++t)
+        if (uniform(random) < share) {
+          telemetry.channel(channel)(t) = low + (high - low) * uniform(random);
+          spoilt[static_cast<std::size_t>(t)] = true;
+        }
+      return spoilt;
+    };
+    const auto load = spoil(Telemetry::load, 0, 20), battery = spoil(Telemetry::battery, 40, 60);
+    const auto faults = telemetry.faults();
+    for (const auto& [channel, spoilt] :
+         {std::pair(Telemetry::load, load), std::pair(Telemetry::battery, battery)}) {
+      std::array<double, 2> found{};  // honest and spoilt rows
+      for (const TickRange& ticks : ticks_of(faults, SensorFaultKind::spike, channel))
+        for (std::int64_t t = ticks.begin; t < ticks.end; ++t)
+          ++found[spoilt[static_cast<std::size_t>(t)] ? 1 : 0];
+      const auto all = double(std::ranges::count(spoilt, true));
+      EXPECT_GT(found[1], 0.6 * all) << share;
+      EXPECT_LT(found[0], 0.02 * all) << share;
+    }
+  }
+}
+
+TEST(Screening, LeavesPulsesOfAnyHeightThatAnotherSensorAnswers) {
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> uniform;
+  for (const double share : {0.01, 0.03, 0.06}) {
+    Telemetry telemetry;
+    for (Index t = 0; t < 30'000; ++t)
+      if (uniform(random) < share) {
+        const double height = 2 + 10 * uniform(random);
+        telemetry.channel(Telemetry::load)(t) += height;
+        telemetry.channel(Telemetry::battery)(t) -= 0.05 * height;
+      }
+    EXPECT_TRUE(telemetry.faults().empty()) << share;
+  }
 }
 
 TEST(Screening, FindsSeveralFrozenStretchesOfANoisySensor) {
