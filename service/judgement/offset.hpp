@@ -39,11 +39,11 @@ class SensorPast {
 /// Fit of the errors of a run on the blocks of a cycle by an offset of one sensor.
 class OffsetFit {
  public:
-  /// Of an output's sensor: a constant in that output.
+  /// An output's sensor adds a constant to that output.
   explicit OffsetFit(std::size_t output) : output_(output) {}
-  /// Of an inputs' sensor: what its past allows, within three of its spreads. `known` of its effect
-  /// is known, from 0 to 1: what is unknown may make so much of what is left. `past` must outlive
-  /// the fit.
+  /// An inputs' sensor may be off as far as its past allows, within three of its spreads. The part
+  /// `known` of its effect, from 0 to 1, is known; the other part may explain some of what is left.
+  /// `past` must outlive the fit.
   OffsetFit(const SensorPast& past, double known) : past_(&past), known_(known) {}
 
   /// Takes in a block; one without the sensor's effect says nothing.

@@ -24,8 +24,8 @@ Member member_of_scores(std::int64_t version, storage::TimeRange window,
 
 /// Bound of a block's score.
 inline constexpr double largest_score = 1;
-/// Of a block that counts most ticks are believed; most of a sensor's effect in derived inputs is
-/// known.
+/// What counts as most: of the ticks of a block, which have to be believed, and of a sensor's
+/// effect in derived inputs, which is known.
 inline constexpr double most = 0.5;
 /// What a sensor does by itself lies within so many deviations: its noise, and where its cycles go.
 inline constexpr double deviations_of_sensor = 3;

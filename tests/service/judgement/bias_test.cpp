@@ -9,13 +9,19 @@
 namespace reident::test::league {
 namespace {
 
-TEST(Bias, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
+/// From block 100 on the champion errs by a constant more.
+Records better_by_a_constant() {
   Records records(200);
   records.champion([](int block) {
            return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
          })
       .challenger(varying(0.01), 100)
       .unbound();
+  return records;
+}
+
+TEST(Bias, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
+  Records records = better_by_a_constant();
   EXPECT_EQ(records.obstacle(), Code::bias_unverified);
   records.limits().bias = BiasPolicy::approve;
   EXPECT_EQ(records.obstacle(), std::nullopt);
@@ -25,12 +31,7 @@ TEST(Bias, VersionThatIsBetterByAConstantAloneWaitsWhereASensorMayBeBiased) {
 }
 
 TEST(Bias, VersionIsNoBiasWhereTwoOutputsErrTogether) {
-  Records records(200);
-  records.champion([](int block) {
-           return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
-         })
-      .challenger(varying(0.01), 100)
-      .unbound();
+  Records records = better_by_a_constant();
   const auto twice = [](std::vector<double>& values) { values.push_back(values[0]); };
   for (Block& block : records.league().blocks) {
     twice(block.output_mean);
@@ -49,12 +50,7 @@ TEST(Bias, VersionIsNoBiasWhereTwoOutputsErrTogether) {
 }
 
 TEST(Bias, OffsetOfAnOutputThatARelationBindsIsNoBias) {
-  Records records(200);
-  records.champion([](int block) {
-           return block < 100 ? Error{0, 0.01} : Error{0.3, 0.01};
-         })
-      .challenger(varying(0.01), 100)
-      .unbound();
+  Records records = better_by_a_constant();
   records.league().unbound = {"v"};
   records.league().sensors = {"v"};
   for (BlockScore& score : records.league().champion->scores)
