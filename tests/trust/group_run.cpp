@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/model/model_json.hpp"
+#include "service/model/reasons.hpp"
 #include "tests/trust/flight.hpp"
 
 namespace reident::trust {
@@ -164,6 +165,19 @@ std::vector<Tenure> versions_of(const Made& made, const std::string& spacecraft,
   return versions;
 }
 
+/// Whether within `range` the gate asked an operator about a version, since a sensor's bias may
+/// look like what it has learnt.
+bool asks(const Made& made, const std::string& spacecraft, const std::string& equipment,
+          storage::TimeRange range) {
+  const auto decisions = made.registry.decisions(spacecraft, equipment);
+  return std::any_of(decisions.begin(), decisions.end(), [&](const storage::Decision& decision) {
+    if (last_code(decision) != name(ReasonCode::bias_unverified)) return false;
+    const auto version = made.registry.version(spacecraft, equipment, decision.version);
+    const storage::Time asked = made.published(decision, *version);
+    return range.begin <= asked && asked < range.end;
+  });
+}
+
 /// Scores the scenarios of a group; what an oracle identified for one serves the others.
 class Grader {
  public:
@@ -206,6 +220,10 @@ class Grader {
         regret(truth, tenures, versions_of(made, spacecraft_.name, equipment.name)),
         champion_curve(truth, tenures),
         truth.output_extremes({group_.start, group_.start + group_.duration}, orbit_ns() / 10)};
+    for (std::size_t i = 0; i < changes_.size(); ++i)
+      outcome.changes[i].is_asked =
+          asks(made, spacecraft_.name, equipment.name,
+               {changes_[i].begin, changes_[i].end + recovery_orbits * orbit_ns()});
     for (const Attempted& attempt : made.attempts) {
       if (attempt.equipment != equipment.name) continue;
       outcome.attempts.push_back(attempt);

@@ -116,6 +116,7 @@ void Figures::add(const ScenarioOutcome& outcome) {
       if (!change.mattered) continue;
       ++changes;
       recovered += !change.missed();
+      asked += change.missed() && change.is_asked;
       orbits_to_recover.push_back(change.orbits);
     }
     if (!outcome.events.empty()) continue;
@@ -144,6 +145,10 @@ double Figures::regret_quantile(double share) const {
 
 double Figures::recovered_fraction() const {
   return changes > 0 ? static_cast<double>(recovered) / changes : 1;
+}
+
+double Figures::recovered_or_asked_fraction() const {
+  return changes > 0 ? static_cast<double>(recovered + asked) / changes : 1;
 }
 
 double Figures::publications_per_month() const {
@@ -181,6 +186,7 @@ nlohmann::ordered_json to_json(const Outcomes& outcomes, bool intervals) {
       {"versions", figures.versions},
       {"changes", figures.changes},
       {"recovered_fraction", figures.recovered_fraction()},
+      {"recovered_or_asked_fraction", figures.recovered_or_asked_fraction()},
       {"recovery_median_orbits", figures.recovery_quantile(0.5)},
       {"regret", figures.regret()},
       {"regret_p90", figures.regret_quantile(0.9)},
@@ -280,7 +286,9 @@ std::string story(const ScenarioOutcome& outcome) {
           "oracle{}\n",
           days_after(start, change.begin), change.kind,
           change.mattered ? "mattered" : "did not matter", change.orbits, change.worst_ratio,
-          change.missed() ? " MISSED" : "");
+          !change.missed()  ? ""
+          : change.is_asked ? " MISSED, an operator was asked"
+                            : " MISSED");
   }
   return text;
 }

@@ -59,6 +59,9 @@ struct ChangeScore {
   std::int64_t orbits = 0;  // of honest telemetry, the longest range with a champion that was
   double worst_ratio = 0;   // of the champion's error to the oracle's
   ErrorCurve oracle;
+  /// A version waits for an operator, since a sensor's bias may look like the change, within
+  /// recovery_orbits after it has grown.
+  bool is_asked = false;
   bool missed() const { return mattered && orbits > recovery_orbits; }
 };
 
