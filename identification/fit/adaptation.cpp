@@ -24,6 +24,15 @@ Vector deviations(const Eigen::Ref<const Matrix>& samples) {
   return (found.array() > rounding * largest.array()).select(found, 0.0);
 }
 
+/// One over the deviations of the outputs; of one that does not move, over the size of what the
+/// model leaves of it.
+Vector inverse_sizes(const Eigen::Ref<const Matrix>& y, const Matrix& left) {
+  const Vector of_y = deviations(y);
+  const Vector of_left = (left.colwise().squaredNorm() / double(left.rows())).cwiseSqrt();
+  const Vector size = (of_y.array() > 0).select(of_y, of_left);
+  return (size.array() > 0).select(size.cwiseInverse(), 1.0);
+}
+
 std::vector<Index> places_above_zero(const Vector& values) {
   std::vector<Index> places;
   for (Index i = 0; i < values.size(); ++i)
@@ -95,8 +104,7 @@ StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowR
                         KnownFrom from) {
   const auto u = record.u.middleRows(rows.begin, rows.size());
   const auto y = record.y.middleRows(rows.begin, rows.size());
-  const Vector of_u = deviations(u), of_y = deviations(y);
-  const Vector per_y = (of_y.array() > 0).select(of_y.cwiseInverse(), 1.0);
+  const Vector of_u = deviations(u);
   const std::vector<Index> inputs =
       places_above_zero(from == KnownFrom::these_rows ? without_unused(of_u, known) : of_u);
   const Vector mean = u.colwise().mean();
@@ -114,7 +122,9 @@ StateSpaceModel adapted(const StateSpaceModel& known, const Record& record, RowR
     model.B(Eigen::all, inputs) -= (known.B(Eigen::all, inputs) * noise).eval();
     model.D(Eigen::all, inputs) -= (known.D(Eigen::all, inputs) * noise).eval();
   }
-  rest.y = (y - free_run(model, record, rows)) * per_y.asDiagonal();
+  rest.y = y - free_run(model, record, rows);
+  const Vector per_y = inverse_sizes(y, rest.y);
+  rest.y = (rest.y * per_y.asDiagonal()).eval();
   rest.u = (rest.u * components.moving).eval();
   const Matrix to_components = components.moving.transpose() * per_u;
   const Matrix C = per_y.asDiagonal() * known.C;

@@ -64,12 +64,31 @@ Matrix power_of(Matrix A, std::int64_t exponent) {
   return power;
 }
 
+/// The mean square of each output (p) in values of all outputs, row by row below each other.
+Vector mean_squares(const Vector& values, Index p) {
+  return Eigen::Map<const Matrix>(values.data(), p, values.size() / p).rowwise().squaredNorm() *
+         (double(p) / double(values.size()));
+}
+
+/// Weighs each output by one over its error: first by one over what the state has to explain, then
+/// by one over what that estimate leaves, where a state cannot take most of the rows.
 Vector state_of_part(const StateSpaceModel& model, const Record& record, const Segment& part) {
-  Vector behind = Vector::Zero(model.order());
+  const Index p = model.outputs();
+  Vector x = Vector::Zero(model.order());
+  Vector behind = x;
   const Matrix observability = observability_of(model, part.size());
-  const Vector free_response = remainder_of(model, record, part, part.size(), behind);
-  if (!observability.allFinite() || !free_response.allFinite()) return Vector::Zero(model.order());
-  return least_squares(observability, free_response);
+  const Vector remainder = remainder_of(model, record, part, part.size(), behind);
+  if (!observability.allFinite() || !remainder.allFinite()) return x;
+  if (p == 1) return least_squares(observability, remainder);
+  Vector left = remainder;
+  for (const Index least_rows : {Index{1}, initial_rows(model)}) {
+    if (part.size() < least_rows) break;
+    const Vector weights =
+        weights_of(mean_squares(left, p), record, part).replicate(part.size(), 1);
+    x = least_squares(weights.asDiagonal() * observability, weights.cwiseProduct(remainder));
+    left = remainder - observability * x;
+  }
+  return x;
 }
 
 /// Mean square errors of the model over parts, each from the state that suits it best. Where this

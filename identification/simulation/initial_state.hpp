@@ -14,7 +14,8 @@ namespace reident::identification {
 Index initial_rows(const StateSpaceModel& model);
 
 /// Returns the least-squares state (n) at the first row of `segments`, of least norm where the
-/// outputs do not determine it. The segments are of the record and ascend; `rows`, such as
+/// outputs do not determine it. Each output is weighed by its error, so that units make no
+/// difference. The segments are of the record and ascend; `rows`, such as
 /// `state_rows`, are the rows to estimate from. Holes that a run bridges are gone through with
 /// their uncertainty; rows behind a longer one, or further than 2 `rows` ticks away, are not used.
 /// Zero without rows, and where an unstable model overflows within them.

@@ -1,7 +1,9 @@
 #include "service/client/state_match.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "identification/simulation/initial_state.hpp"
 
 namespace reident {
 namespace {
@@ -9,6 +11,7 @@ namespace {
 using identification::Index;
 
 constexpr double ridge = 1e-8;
+constexpr double least_error = 1e-10;  // of an output's size, as in weights_of()
 
 }  // namespace
 
@@ -16,12 +19,15 @@ StateMatch::StateMatch(const identification::StateSpaceModel& model, const StepK
                        Index capacity)
     : model_(model),
       kernel_(kernel),
-      system_(capacity * model.outputs() + model.order(), model.order() + 1),
+      least_rows_of_errors_(identification::initial_rows(model)),
+      system_(capacity * model.outputs(), model.order() + 1),
+      weighted_(system_.rows() + model.order(), model.order() + 1),
       inputs_(model.inputs(), capacity),
       visible_(model.order(), model.outputs()),
       next_(model.order()),
       forced_(model.order()),
       x_(model.order()),
+      size_(model.outputs()),
       last_output_(model.outputs()),
       out_(kernel.out_room()) {
   clear();
@@ -31,6 +37,7 @@ void StateMatch::clear() {
   rows_ = 0;
   visible_ = model_.C.transpose();
   forced_.setZero();
+  size_.setZero();
 }
 
 void StateMatch::add(const Vector& du, const Eigen::Ref<const Vector>& dy) {
@@ -41,6 +48,7 @@ void StateMatch::add(const Vector& du, const Eigen::Ref<const Vector>& dy) {
     const Index row = rows_ * p + q;
     system_.row(row).head(n) = visible_.col(q).transpose();
     system_(row, n) = dy(q) - out_[static_cast<std::size_t>(n + q)];
+    size_(q) = std::max(size_(q), std::abs(dy(q) + model_.y0(q)));
     next_.noalias() = model_.A.transpose() * visible_.col(q);
     visible_.col(q) = next_;
   }
@@ -49,31 +57,48 @@ void StateMatch::add(const Vector& du, const Eigen::Ref<const Vector>& dy) {
 }
 
 const StateMatch::Vector& StateMatch::solve() {
-  const Index n = model_.order(), rows = rows_ * model_.outputs();
-  for (Index i = 0; i < n; ++i) {
-    const double size = system_.col(i).head(rows).norm();
-    system_.row(rows + i).setZero();
-    system_(rows + i, i) = ridge * (size > 0 ? size : 1);
-  }
-  triangularise(rows + n);
-  back_substitute();
+  x_.setZero();
+  estimate();
+  if (model_.outputs() > 1 && rows_ >= least_rows_of_errors_) estimate();
   if (!x_.allFinite()) x_.setZero();
   run_on();
   return x_;
+}
+
+void StateMatch::estimate() {
+  const Index n = model_.order(), p = model_.outputs(), rows = rows_ * p;
+  for (Index q = 0; q < p; ++q) {
+    double squares = 0;
+    for (Index row = q; row < rows; row += p) {
+      const double left = system_(row, n) - system_.row(row).head(n).transpose().dot(x_);
+      squares += left * left;
+    }
+    const double error =
+        std::max(std::sqrt(squares / static_cast<double>(rows_)), least_error * size_(q));
+    const double weight = p == 1 ? 1 : error > 0 ? 1 / error : 0;
+    for (Index row = q; row < rows; row += p) weighted_.row(row) = weight * system_.row(row);
+  }
+  for (Index i = 0; i < n; ++i) {
+    const double size = weighted_.col(i).head(rows).norm();
+    weighted_.row(rows + i).setZero();
+    weighted_(rows + i, i) = ridge * (size > 0 ? size : 1);
+  }
+  triangularise(rows + n);
+  back_substitute();
 }
 
 /// Reflects each column onto its diagonal; the last one goes along.
 void StateMatch::triangularise(Index rows) {
   const Index n = model_.order();
   for (Index j = 0; j < n; ++j) {
-    auto v = system_.col(j).segment(j, rows - j);
+    auto v = weighted_.col(j).segment(j, rows - j);
     const double size = v.norm();
     if (!(size > 0)) continue;
     const double diagonal = v(0) > 0 ? -size : size;
     v(0) -= diagonal;
     const double scale = 2 / v.squaredNorm();
     for (Index c = j + 1; c <= n; ++c) {
-      auto column = system_.col(c).segment(j, rows - j);
+      auto column = weighted_.col(c).segment(j, rows - j);
       column -= (scale * v.dot(column)) * v;
     }
     v(0) = diagonal;  // what lies below it is not looked at again
@@ -82,9 +107,9 @@ void StateMatch::triangularise(Index rows) {
 
 void StateMatch::back_substitute() {
   for (Index i = model_.order(); i-- > 0;) {
-    double rest = system_(i, model_.order());
-    for (Index j = i + 1; j < model_.order(); ++j) rest -= system_(i, j) * x_(j);
-    x_(i) = rest / system_(i, i);
+    double rest = weighted_(i, model_.order());
+    for (Index j = i + 1; j < model_.order(); ++j) rest -= weighted_(i, j) * x_(j);
+    x_(i) = rest / weighted_(i, i);
   }
 }
 

@@ -10,8 +10,9 @@ namespace reident {
 
 /// Least squares of y[k] - (response from the zero state) = C A^k x0 over the rows that were added,
 /// by Householder reflections (Golub and Van Loan, Matrix Computations, 5.2.2) of
-/// [C A^k | y - response; ridge | 0]. The ridge is 1e-8 of each column, so that a state that the
-/// rows do not show stays small. After it was made nothing allocates. One thread at a time.
+/// [C A^k | y - response; ridge | 0]. Each output is weighed as in estimate_initial_state(). The
+/// ridge is 1e-8 of each column, so that a state that the rows do not show stays small. After it
+/// was made nothing allocates. One thread at a time.
 class StateMatch {
  public:
   using Vector = identification::Vector;
@@ -29,12 +30,14 @@ class StateMatch {
   Index rows() const { return rows_; }
 
   /// The state at the tick after the last row, and what the model's outputs (less y0) are at the
-  /// last one. The zero state where the rows give none. Uses the rows up: clear() comes next.
+  /// last one. The zero state where the rows give none.
   const Vector& solve();
   const Vector& last_output() const { return last_output_; }
 
  private:
-  /// Brings the first `rows` rows of the system to triangular form.
+  /// Takes for x_ the state that fits best where outputs are weighed by what the one before leaves.
+  void estimate();
+  /// Brings the first `rows` rows of the weighted system to triangular form.
   void triangularise(Index rows);
   /// Solves the triangular system for x_.
   void back_substitute();
@@ -43,13 +46,16 @@ class StateMatch {
 
   const identification::StateSpaceModel& model_;
   const StepKernel& kernel_;
-  identification::Matrix system_;   // capacity p + n rows, n + 1 columns
-  identification::Matrix inputs_;   // m x capacity
-  identification::Matrix visible_;  // n x p: (C A^k)'
-  Vector next_;                     // n
-  Vector forced_;                   // n: the state from zero
-  Vector x_;                        // n
-  Vector last_output_;              // p
+  Index least_rows_of_errors_;       // fewer leave a state's errors, and not an output's
+  identification::Matrix system_;    // capacity p rows, n + 1 columns
+  identification::Matrix weighted_;  // n further rows, of the ridge
+  identification::Matrix inputs_;    // m x capacity
+  identification::Matrix visible_;   // n x p: (C A^k)'
+  Vector next_;                      // n
+  Vector forced_;                    // n: the state from zero
+  Vector x_;                         // n
+  Vector size_;                      // p: of the outputs
+  Vector last_output_;               // p
   std::vector<double> out_;
   Index rows_ = 0;
 };
