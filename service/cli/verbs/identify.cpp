@@ -81,10 +81,12 @@ double resolution_of(Vector values) {
 }
 
 /// A model may explain the rows that it was chosen on and not the ones behind them. Rows in which
-/// an output does not move by more than a digit, or than it errs where it was identified, say
-/// nothing of that.
+/// an output does not move by more than a digit, or than the model errs where it was identified,
+/// say nothing of that: of such rows noise is all that there is to explain, and no model's fit is
+/// far above 0.
 void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome) {
   constexpr double as_before = 1.2;  // times the error on the identification rows
+  constexpr double much_less = 0.5;  // of the fit on the identification rows
   const auto rows_of = [&](Index q, RowRange range) {
     return data.record.y.col(q).segment(range.begin, range.size());
   };
@@ -97,6 +99,9 @@ void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome)
     const auto rows = rows_of(q, data.validate);
     const double error = error_of(q, data.validate, outcome.diagnostics.free_run.mrse_percent(q));
     const double before = error_of(q, data.identify, outcome.identify.mrse_percent(q));
+    const double fit = outcome.diagnostics.free_run.fit_percent(q);
+    const double fit_before = outcome.identify.fit_percent(q);
+    const double movement = std::sqrt((rows.array() - rows.mean()).square().mean());
     const double resolution = resolution_of(data.record.y.col(q));
     const double rounding = 1e-9 * std::abs(rows(0));
     if (rows.maxCoeff() - rows.minCoeff() <= resolution + rounding)
@@ -104,13 +109,14 @@ void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome)
           "the validation rows of {} are constant: they say nothing about the fit. The error there "
           "is {:.3g}, and {} is resolved to {:.3g}; choose rows in which it moves with --validate",
           output, error, output, resolution));
-    else if (outcome.diagnostics.free_run.fit_percent(q) < 0 && error <= as_before * before)
+    else if (fit_before > 0 && fit < much_less * fit_before &&
+             std::max(error, movement) <= as_before * before)
       outcome.warnings.push_back(fmt::format(
           "on the validation rows {} moves by no more than the model errs everywhere: they say "
           "nothing about the fit. The error there is {:.3g}, and on the identification rows "
           "{:.3g}; choose rows in which it moves with --validate",
           output, error, before));
-    else if (outcome.diagnostics.free_run.fit_percent(q) < 0)
+    else if (fit < 0)
       outcome.warnings.push_back(fmt::format(
           "on the validation rows the model is worse than the mean of {}: do not use it as it is",
           output));

@@ -24,19 +24,19 @@ using Eigen::VectorXd;
 using nlohmann::json;
 
 /// Inputs and outputs of a second-order system with two inputs, two outputs, an operating point and
-/// some noise.
+/// some noise. In the last rows the inputs rest.
 struct Plant {
   MatrixXd u, y;
 };
 
-Plant plant(Eigen::Index rows) {
+Plant plant(Eigen::Index rows, Eigen::Index last_rows = 0) {
   std::mt19937 random(20170717);
   std::normal_distribution<double> normal;
   const Eigen::Matrix2d A{{0.9, 0.2}, {-0.1, 0.8}}, B{{1, 0.3}, {0, 0.5}}, C{{1, 0}, {0.4, 1}};
   Plant result{MatrixXd(rows, 2), MatrixXd(rows, 2)};
   Eigen::Vector2d x(3, -1), u(0, 0);
   for (Eigen::Index row = 0; row < rows; ++row) {
-    for (double& value : u) value = 0.7 * value + normal(random);
+    for (double& value : u) value = row < rows - last_rows ? 0.7 * value + normal(random) : 0;
     const Eigen::Vector2d noise(0.05 * normal(random), 0.05 * normal(random));
     result.u.row(row) = u.transpose().array() + 5;
     result.y.row(row) = (C * x + noise).transpose().array() + 28;
@@ -328,6 +328,9 @@ TEST_F(Identify, SaysThatValidationRowsInWhichNothingMovesSayNothing) {
     EXPECT_THAT(ran.out, HasSubstr("say nothing about the fit")) << noise;
     EXPECT_THAT(ran.out, Not(HasSubstr("do not use it"))) << noise;
   }
+  write("plant.csv", csv_of(plant(900, 300)));
+  const Strings resting = {"--no-screening", "--identify", "0:550", "--validate", "625:900"};
+  EXPECT_THAT(reident(command(resting)).out, HasSubstr("say nothing about the fit"));
 }
 
 TEST_F(Identify, ReportsInWordsWithoutJson) {
