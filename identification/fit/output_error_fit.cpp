@@ -87,23 +87,32 @@ Fitted fit(const StateSpaceModel& dynamics, bool direct, const Target& target, A
   return fit(sums, dynamics, direct, target, accuracy);
 }
 
-/// Rows that count as one in the errors of the output whose errors last longest.
-double correlated_rows_of_errors(const Fitted& fitted, const Record& record,
-                                 const std::vector<Segment>& segments) {
-  std::vector<RowRange> ranges;
-  Index rows = 0;
-  for (const Segment& segment : segments) {
-    ranges.push_back({rows, rows + segment.size()});
-    rows += segment.size();
-  }
-  Matrix errors(rows, record.y.cols());
+/// The outputs over the segments, which follow each other.
+Matrix outputs_of(const Fitted& fitted, const Record& record,
+                  const std::vector<Segment>& segments) {
+  const Index first = segments.front().begin;
+  Matrix outputs(segments.back().end - first, record.y.cols());
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const RowRange of_segment{segments[i].begin, segments[i].end};
-    errors.middleRows(ranges[i].begin, ranges[i].size()) =
-        record.y.middleRows(of_segment.begin, of_segment.size()) -
-        free_run(fitted.model, record, of_segment, fitted.x0[i]);
+    const auto [begin, end, tick] = segments[i];
+    outputs.middleRows(begin - first, end - begin) =
+        free_run(fitted.model, record, {begin, end}, fitted.x0[i]);
   }
-  return most_correlated_rows(errors, ranges);
+  return outputs;
+}
+
+std::vector<RowRange> ranges_of(const Record& record, RowRange rows) {
+  std::vector<RowRange> ranges;
+  for (const Segment& segment : segments_from(record, rows))
+    ranges.push_back({segment.begin, segment.end});
+  return ranges;
+}
+
+/// Rows that count as one in the errors of the output whose errors last longest.
+double correlated_rows_of_errors(const Fitted& fitted, const Record& record, RowRange rows,
+                                 const std::vector<Segment>& segments) {
+  return most_correlated_rows(
+      record.y.middleRows(rows.begin, rows.size()) - outputs_of(fitted, record, segments),
+      ranges_of(record, rows));
 }
 
 Response response_of(const Fitted& fitted, Index rows) {
@@ -184,9 +193,47 @@ Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowR
                      columns.n * static_cast<Index>(segments.size());
   if (told < 1) return response_of({dynamics, {}, 0}, rows.size());
   const double variance = full.sum_of_squares / static_cast<double>(told) *
-                          correlated_rows_of_errors(full, record, segments);
+                          correlated_rows_of_errors(full, record, rows, segments);
   const auto shrunk = sums.solve_shrunk(squared_deviations * variance, least_pivot(Accuracy::fast));
   return response_of(shrunk ? from(*shrunk, columns, dynamics) : full, rows.size());
+}
+
+std::vector<Matrix> gain_errors_by_row(const Matrix& A, const Matrix& C, bool direct,
+                                       const Record& record, RowRange rows) {
+  constexpr double well_conditioned = 1e-14;
+  const std::vector<Segment> segments = segments_within(record, rows);
+  const StateSpaceModel dynamics = with_dynamics(A, C, record);
+  const Columns columns = columns_of(dynamics, direct);
+  const Index n = columns.n, m = columns.m, p = columns.p, unknowns = columns.target() - n;
+  const auto at_rest =  // C (I - A)^-1, by columns
+      n == 0 ? Matrix(0, p)
+             : solve_full_lu((Matrix::Identity(n, n) - A).transpose(), C.transpose(),
+                             well_conditioned);
+  const double told = double(rows.size() * p - unknowns) - double(n) * double(segments.size());
+  if (!at_rest || told < 1) return {};
+
+  const Target target{record, segments, unknown};
+  const auto sums = accumulate<NormalEquations>(columns, dynamics, target, {});
+  const Fitted full = fit(sums, dynamics, direct, target, Accuracy::fast);
+  const Matrix errors =
+      (record.y.middleRows(rows.begin, rows.size()) - outputs_of(full, record, segments)) *
+      std::sqrt(double(rows.size() * p) / told);
+  Matrix gains = Matrix::Zero(unknowns, m * p);
+  for (Index q = 0; q < p; ++q)
+    for (Index j = 0; j < m; ++j) {
+      auto gain = gains.col(q * m + j);
+      gain.segment(columns.input_gain() - n + j * n, n) = at_rest->col(q);
+      if (direct) gain(columns.output(q) - n + j) = 1;
+    }
+  const auto influences = sums.influences(gains);
+  if (!influences) return {};
+  std::vector<Matrix> result(static_cast<std::size_t>(p), Matrix(rows.size(), m));
+  for (Index i = 0; i < m * p; ++i) {
+    const Fitted weights = from((*influences)[static_cast<std::size_t>(i)], columns, dynamics);
+    result[static_cast<std::size_t>(i / m)].col(i % m) =
+        outputs_of(weights, record, segments).cwiseProduct(errors).rowwise().sum();
+  }
+  return result;
 }
 
 Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
@@ -199,9 +246,7 @@ Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Re
 
 std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows) {
   constexpr double rounding = 1e-6;  // of an output's deviation
-  std::vector<RowRange> ranges;
-  for (const Segment& segment : segments_from(record, rows))
-    ranges.push_back({segment.begin, segment.end});
+  const std::vector<RowRange> ranges = ranges_of(record, rows);
   const Matrix errors =
       record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
   std::vector<ErrorColour> colours;

@@ -32,6 +32,13 @@ Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Recor
 /// where they do not (METHOD.md, section 18). Zero where there are no more rows than unknowns.
 Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows);
 
+/// Returns what each row's errors have moved the static gain of each input by (rows x m), for each
+/// output, where B, D, y0 and the initial states are fitted like fit_response(): what its estimate
+/// weighs these errors with, times the errors. A gain's estimate errs by the sum over the rows.
+/// Empty where I - A is singular or the rows leave no errors to judge.
+std::vector<Matrix> gain_errors_by_row(const Matrix& A, const Matrix& C, bool direct,
+                                       const Record& record, RowRange rows);
+
 /// Fits like fit_response(), with A and C moved by at most `steps` Levenberg-Marquardt steps that
 /// lower the output error. The result is stable, and no step takes a mode below the least rate,
 /// |ln| [1/row] of an eigenvalue.

@@ -188,6 +188,27 @@ std::optional<RegressionSolution> NormalEquations::solve_shrunk(double half_at,
   return solution_of(scale.asDiagonal() * (columns * coefficients));
 }
 
+std::optional<std::vector<RegressionSolution>> NormalEquations::influences(
+    const Matrix& combinations) const {
+  constexpr double rounding = 1e-14;  // of the sums
+  const auto found = components();
+  if (!found) return std::nullopt;
+  const auto weigh = found->scale.asDiagonal();
+  const Vector inverse = found->squares.cwiseMax(rounding).cwiseInverse();
+  const Matrix solved =
+      weigh * (found->columns *
+               (inverse.asDiagonal() * (found->columns.transpose() * (weigh * combinations))));
+  std::vector<RegressionSolution> result;
+  for (Index i = 0; i < solved.cols(); ++i) {
+    RegressionSolution& one = result.emplace_back();
+    one.theta = Vector::Zero(columns_.target());
+    one.theta.tail(solved.rows()) = solved.col(i);
+    for (const Elimination& e : segments_)
+      one.x0.push_back(-(e.inverse * (e.coupling.leftCols(solved.rows()) * solved.col(i))));
+  }
+  return result;
+}
+
 /// With the sum of squares of the undamped equations.
 RegressionSolution NormalEquations::solution_of(const Vector& found) const {
   const Index unknowns = found.size();

@@ -84,6 +84,12 @@ class NormalEquations {
   /// Components smaller than `least_size` are left out. Absent where they are not found.
   std::optional<RegressionSolution> solve_shrunk(double half_at, double least_size) const;
 
+  /// Returns, for each column of `combinations` of the unknowns after x0, the B, D, y0 and x0 of
+  /// the response that the estimate of the combination weighs the errors of the rows with.
+  /// Combinations that the rows do not determine get a weight that is large and finite. Absent
+  /// where principal components are not found.
+  std::optional<std::vector<RegressionSolution>> influences(const Matrix& combinations) const;
+
  private:
   /// What eliminated the initial state of a closed segment.
   struct Elimination {

@@ -37,11 +37,23 @@ std::string channel_name(std::string_view kind, std::ptrdiff_t channel,
   return std::string(kind) + " " + std::to_string(channel + 1);
 }
 
-std::string four_digits(double value) {
+namespace {
+
+std::string digits(double value, int count) {
   char buffer[32];
   const auto end =
-      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 4).ptr;
+      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, count).ptr;
   return {buffer, end};
+}
+
+}  // namespace
+
+std::string four_digits(double value) {
+  return digits(value, 4);
+}
+
+std::string two_digits(double value) {
+  return digits(value, 2);
 }
 
 }  // namespace reident::identification

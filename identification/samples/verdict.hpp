@@ -49,5 +49,7 @@ std::string channel_name(std::string_view kind, std::ptrdiff_t channel,
 
 /// Returns a number to four digits, as sentences hold it: "0.125" or "1e+20".
 std::string four_digits(double value);
+/// Returns a number to two digits, as what another one is uncertain by.
+std::string two_digits(double value);
 
 }  // namespace reident::identification

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "identification/search/closed_loop.hpp"
+#include "identification/search/inseparable_inputs.hpp"
 #include "identification/search/prepared_rows.hpp"
 #include "identification/search/realisation.hpp"
 #include "identification/search/recipe_choice.hpp"
@@ -58,6 +59,9 @@ IdentifyResult run(PreparedRows rows) {
   if (found && found->held_out_error)
     if (auto verdict = closed_loop_verdict(rows, *found, found->warnings))
       return *std::move(verdict);
+  if (found)
+    for (std::string& sentence : inseparable_inputs(rows, *found))
+      found->warnings.push_back(std::move(sentence));
   return result;
 }
 
