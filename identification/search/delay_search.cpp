@@ -2,14 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "identification/fit/output_error_fit.hpp"
 #include "identification/numerics/decompositions.hpp"
 #include "identification/search/delays.hpp"
+#include "identification/search/folds.hpp"
 #include "identification/search/model_search.hpp"
 #include "identification/search/parsimony.hpp"
+#include "identification/simulation/free_run.hpp"
+#include "identification/statistics/correlation.hpp"
 #include "identification/statistics/quantiles.hpp"
 
 namespace reident::identification {
@@ -59,23 +65,24 @@ Delays delays_of_one_state(const Record& record, const Segment& segment, int mos
   Matrix responses = Matrix::Zero(rows, m);
   Delays delays(static_cast<std::size_t>(m), 0);
   const auto take_best = [&](Index input) {
-    double most_explained = 0;
+    double least_left = std::numeric_limits<double>::infinity();
     for (double time_constant = 1; 2 * time_constant < double(rows); time_constant *= 2) {
       const double pole = 1 - 1 / time_constant;
       Matrix beside(rows, 1 + m);
       beside << Vector::Ones(rows), responses;
       beside.col(1 + input) = decay(rows, pole);
       const Matrix basis = orthonormal_basis(beside);
-      const Matrix left = y - basis * (basis.transpose() * y);
+      const Matrix others_left = y - basis * (basis.transpose() * y);
       const Vector response = one_state_response(u.col(input), pole);
       for (int delay = 0; delay <= most; ++delay) {
         const auto delayed_response = response.segment(most - delay, rows);
         const double square = delayed_response.squaredNorm();
         const double own = square - (basis.transpose() * delayed_response).squaredNorm();
         if (!(own > 1e-6 * square)) continue;
-        const double explained = (left.transpose() * delayed_response).squaredNorm() / own;
-        if (!(explained > most_explained)) continue;
-        most_explained = explained;
+        const double left = others_left.squaredNorm() -
+                            (others_left.transpose() * delayed_response).squaredNorm() / own;
+        if (!(left < least_left)) continue;
+        least_left = left;
         responses.col(input) = delayed_response;
         delays[static_cast<std::size_t>(input)] = delay;
       }
@@ -97,18 +104,29 @@ struct Rows {
   }
 };
 
-/// A fit to the rows with these delays; D is zero but in a static gain.
+/// A fit to the rows with these delays; D is zero but in a static gain, and where a model without
+/// delays has it.
 struct DelayedFit {
   Delays delays;
   Response fit;
   bool direct = false;
-  double parameters = 0;
+
+  Index used() const {
+    return std::count_if(delays.begin(), delays.end(), [](int delay) { return delay > 0; });
+  }
+  Index states() const { return fit.model.order() + used(); }
+  /// Those of the model, where a delay counts as a state.
+  Index parameters() const {
+    const StateSpaceModel& model = fit.model;
+    return parameters_of(states(), model.inputs(), model.outputs(), direct, 1);
+  }
 };
 
 /// Looks for the delays with which models of one order err least on the rows they are fitted to.
 class Descent {
  public:
   Descent(const Rows& rows, int order, const Delays& start) : rows_(rows), order_(order) {
+    improves(Delays(start.size(), 0));
     improves(start);
     // Where an input has a rhythm, a shift by half of it looks like a delay, too.
     for (std::size_t i = 0; i < start.size(); ++i) improves(with(i, 0));
@@ -119,7 +137,9 @@ class Descent {
           }
   }
 
+  /// Return the fit with these delays, and the one without any.
   const DelayedFit& best() const { return best_; }
+  const DelayedFit& undelayed() const { return undelayed_; }
 
  private:
   Delays with(std::size_t input, int delay) const {
@@ -144,34 +164,44 @@ class Descent {
     if (!is_first && order_ > 0)
       if (Response other = fit(best_.fit.model.A, best_.fit.model.C); other.error < found.error)
         found = std::move(other);
-    if (!is_first && !(found.error < best_.fit.error)) return false;
-    const auto used = std::count_if(delays.begin(), delays.end(), [](int d) { return d > 0; });
-    best_ = {delays, std::move(found), order_ == 0,
-             double(parameters_of(order_, record.u.cols(), p, order_ == 0, 1) + used)};
+    DelayedFit delayed_fit{delays, std::move(found), order_ == 0};
+    const auto is_better_than = [&](const DelayedFit& other) {
+      return is_first || delayed_fit.fit.error < other.fit.error;
+    };
+    if (delayed_fit.used() == 0 && is_better_than(undelayed_)) undelayed_ = delayed_fit;
+    if (!is_better_than(best_)) return false;
+    best_ = std::move(delayed_fit);
     return true;
   }
 
   const Rows& rows_;
   int order_;
-  DelayedFit best_;
+  DelayedFit best_, undelayed_;
 };
 
-/// The model without delays, fitted again.
-DelayedFit fitted_again(const Identified& without, const Rows& rows) {
-  const StateSpaceModel& model = without.model;
-  const Delays none(static_cast<std::size_t>(model.inputs()), 0);
-  const Record plain = delayed(rows.record, rows.range, none, rows.most);
-  Vector deviations = (plain.y.rowwise() - plain.y.colwise().mean()).colwise().norm();
+/// A model fitted again to the rows, its modes and delays as they are.
+DelayedFit fitted_again(const Identified& identified, const Rows& rows) {
+  Delays delays = identified.input_delays;
+  const StateSpaceModel model = without_delay_states(identified.model, delays);
+  delays.resize(static_cast<std::size_t>(model.inputs()), 0);
+  const Record in_units = delayed(rows.record, rows.range, delays, rows.most);
+  Vector deviations = (in_units.y.rowwise() - in_units.y.colwise().mean()).colwise().norm();
   deviations = (deviations.array() > 0).select(deviations, 1);
   const Matrix C = deviations.cwiseInverse().asDiagonal() * model.C;
-  const Record record = standardised(plain);
-  const bool direct = without.recipe.direct;
-  return {none, fit_response(model.A, C, direct, record, record.all(), Accuracy::fast), direct,
-          double(parameters_of(model.order(), model.inputs(), model.outputs(), direct, 1))};
+  const Record record = standardised(in_units);
+  const bool direct = identified.recipe.direct;
+  return {delays, fit_response(model.A, C, direct, record, record.all(), Accuracy::fast), direct};
 }
 
-/// What the fits leave of the outputs: N p log S, S the sum of squares over N rows and p outputs of
-/// the errors, which are made white as those of the closest fit are.
+/// The fit with D.
+DelayedFit with_direct(const DelayedFit& fit, const Rows& rows) {
+  const Record record = rows.with(fit.delays);
+  const auto& [A, C] = std::tie(fit.fit.model.A, fit.fit.model.C);
+  return {fit.delays, refine_response(A, C, true, record, record.all(), steps), true};
+}
+
+/// What the fits leave of the outputs: log S, S the sum of squares of the errors, which are made
+/// white as those of the closest fit are.
 std::vector<double> log_squares(const std::vector<DelayedFit>& fits, const Rows& rows) {
   constexpr double rounding = 1e-6;
   const DelayedFit& closest = *std::min_element(
@@ -185,9 +215,33 @@ std::vector<double> log_squares(const std::vector<DelayedFit>& fits, const Rows&
     const int most = one.fit.model.order() == 0 ? 0 : last_steps;
     const double error =
         refine_whitened(one.fit, one.direct, record, record.all(), most, colours).error;
-    result.push_back(2 * double(record.y.size()) * std::log(error + rounding));
+    result.push_back(2 * std::log(std::isfinite(error) ? error + rounding : 1 / rounding));
   }
   return result;
+}
+
+/// The fit with the fewest parameters that the likelihood ratio does not refute against one with
+/// more, and the best of as many.
+const DelayedFit& simplest(const std::vector<DelayedFit>& fits, const Rows& rows) {
+  const double values = double(rows.with(fits.front().delays).y.size());
+  std::vector<double> left = log_squares(fits, rows);
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    left[i] += odds_against * double(fits[i].used()) / values;
+  std::vector<std::size_t> places(fits.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  std::sort(places.begin(), places.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(fits[a].parameters(), left[a]) < std::tuple(fits[b].parameters(), left[b]);
+  });
+  const auto is_refuted = [&](std::size_t simple, std::size_t rich) {
+    const Index extra = fits[rich].parameters() - fits[simple].parameters();
+    const double freedom = values - double(fits[rich].parameters());
+    return extra > 0 &&
+           freedom * (left[simple] - left[rich]) > chi_squared_quantile(0.9999, double(extra));
+  };
+  return fits[*std::find_if(places.begin(), places.end(), [&](std::size_t simple) {
+    return std::none_of(places.begin(), places.end(),
+                        [&](std::size_t rich) { return is_refuted(simple, rich); });
+  })];
 }
 
 /// Rows of the first look that the budget, in multiply-adds, lasts for.
@@ -211,20 +265,42 @@ Index rows_for(const std::vector<int>& orders, Index m, Index p, double budget) 
 }
 
 /// Orders of descents, ascending: those that the budget lasts for.
-std::vector<int> affordable_orders(const Identified* without, Index m, Index p,
-                                   const IdentifyOptions& options, double budget) {
+std::vector<int> affordable_orders(Index m, Index p, const IdentifyOptions& options,
+                                   double budget) {
   if (options.order) return {*options.order};
   std::vector<int> orders;
-  for (const int order : {0, 1, 2, 4}) {
+  for (const int order : {0, 1, 2, 3, 4}) {
     if (order == 0 && !options.direct_feedthrough.value_or(true)) continue;
     if (order > options.max_order) break;
-    if (without && order > std::max(1, without->recipe.order - 1)) break;
     orders.push_back(order);
     if (rows_for(orders, m, p, budget) >= least_rows) continue;
     orders.pop_back();
     break;
   }
   return orders;
+}
+
+/// The errors on each fold of the rows, the modes and delays as they are.
+std::vector<HeldOutError> held_out(const DelayedFit& fit, OperatingPoint point,
+                                   const std::vector<Fold>& folds, const Rows& rows) {
+  const Record record = rows.with(fit.delays);
+  std::vector<HeldOutError> result;
+  for (const Fold& fold : folds) {
+    const Response of_fold = fit_response(fit.fit.model.A, fit.fit.model.C, fit.direct, record,
+                                          fold.fit, Accuracy::fast);
+    const HeldOutErrors errors = held_out_errors(of_fold, record, fold);
+    result.push_back(point == OperatingPoint::recent ? errors.recent : errors.whole);
+  }
+  return result;
+}
+
+/// The rows that count as one in the errors of a fit.
+double rows_as_one(const DelayedFit& fit, const Rows& rows) {
+  const Record record = rows.with(fit.delays);
+  std::vector<RowRange> ranges;
+  for (const Segment& segment : record.segments) ranges.push_back({segment.begin, segment.end});
+  const Matrix y_hat = free_run(fit.fit.model, record, record.all(), fit.fit.x0);
+  return most_correlated_rows(record.y - y_hat, ranges);
 }
 
 }  // namespace
@@ -246,29 +322,48 @@ std::vector<int> delays_shown(const Record& record, RowRange rows, int most,
   const Delays start = delays_of_one_state(record, longest, most);
   if (start == none) return none;
 
-  const std::vector<int> orders = affordable_orders(without, m, p, options, budget);
+  const std::vector<int> orders = affordable_orders(m, p, options, budget);
   if (orders.empty()) return none;
   const Index count = std::clamp(rows_for(orders, m, p, budget), least_rows, most_fitted);
   const RowRange around{std::max(rows.begin, longest.end - count - most), longest.end};
   const Rows fitted{record, around, most};
   std::vector<DelayedFit> fits;
-  for (const int order : orders) fits.push_back(Descent(fitted, order, start).best());
-  if (without) fits.push_back(fitted_again(*without, fitted));
-  const std::vector<double> left = log_squares(fits, fitted);
-  const std::size_t with_delays = fits.size() - (without ? 1 : 0);
-  for (std::size_t i = 0; i < with_delays; ++i) {
-    // Akaike's criterion against the model without delays; the test of parsimony against more
-    // states with delays.
-    bool is_taken = !without || left[i] + 2 * fits[i].parameters + odds_against <
-                                    left.back() + 2 * fits.back().parameters;
-    for (std::size_t k = i + 1; k < with_delays; ++k)
-      is_taken =
-          is_taken &&
-          left[i] - left[k] <
-              chi_squared_quantile(0.9999, std::max(1.0, fits[k].parameters - fits[i].parameters));
-    if (is_taken) return fits[i].delays;
+  for (const int order : orders) {
+    const Descent descent(fitted, order, start);
+    fits.push_back(descent.undelayed());
+    if (descent.best().used() == 0) continue;
+    fits.push_back(descent.best());
+    if (order > 0 && options.direct_feedthrough.value_or(true))
+      fits.push_back(with_direct(descent.best(), fitted));
   }
-  return none;
+  if (without) fits.push_back(fitted_again(*without, fitted));
+  return simplest(fits, fitted).delays;
+}
+
+bool held_out_rows_agree(const Identified& with, const Identified& without, const Record& record,
+                         RowRange rows, const IdentifyOptions& options) {
+  constexpr double fits_of_a_row = 8;
+  Recipe larger;
+  larger.order = std::max(with.recipe.order, without.recipe.order);
+  const Index affordable = affordable_rows(larger, record.u.cols(), record.y.cols(),
+                                           share_of_budget * options.search_budget / fits_of_a_row);
+  rows.end -= options.tune_rows;
+  rows.begin = std::max(rows.begin, rows.end - affordable);
+  const int longest = *std::max_element(with.input_delays.begin(), with.input_delays.end());
+  const Rows shared{record, rows, longest};
+  const Index count = delayed(record, rows, with.input_delays, longest).rows();
+  if (count < 3) return false;
+  const DelayedFit delayed = fitted_again(with, shared), plain = fitted_again(without, shared);
+  const bool is_simpler = delayed.states() <= plain.states();
+  const DelayedFit &simple = is_simpler ? delayed : plain, &rich = is_simpler ? plain : delayed;
+  const std::vector<Fold> folds = folds_of(count, options.tune_share);
+  const OperatingPoint point = without.recipe.operating_point;
+  const double together = rows_as_one(rich, shared);
+  const bool rich_errs_less = errs_more(
+      held_out(simple, point, folds, shared), held_out(rich, point, folds, shared),
+      std::max<Index>(1, rich.parameters() - simple.parameters()),
+      double(folds.front().fit.size()) / together, double(folds.front().tune.size()) / together);
+  return is_simpler != rich_errs_less;
 }
 
 }  // namespace reident::identification

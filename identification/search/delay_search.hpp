@@ -10,10 +10,16 @@
 namespace reident::identification {
 
 /// Returns delays in rows, one for each input and each at most `most` and a third of the longest
-/// segment, with which few states explain the outputs as well as those of the model `without`
-/// delays do; all zero where the rows do not say so. Without a model: with which few states explain
-/// the outputs best. Spends a sixth of the search budget for each of its two steps.
+/// segment: those of the simplest model that nothing refutes, of the model `without` delays, where
+/// there is one, and of models of few states with delays and without. All are zero where it has
+/// none. Spends a sixth of the search budget for each of its two steps.
 std::vector<int> delays_shown(const Record& record, RowRange rows, int most,
                               const Identified* without, const IdentifyOptions& options);
+
+/// Whether a model with delays stands beside one without, on the rows held out that both have: that
+/// of fewer states, a delay counted as one, unless it errs more (errs_more(), parsimony.hpp).
+/// Spends no more than another sixth of the budget.
+bool held_out_rows_agree(const Identified& with, const Identified& without, const Record& record,
+                         RowRange rows, const IdentifyOptions& options);
 
 }  // namespace reident::identification

@@ -62,17 +62,14 @@ IdentifyResult identify_delayed(const Record& record, RowRange rows, const std::
   return result;
 }
 
-/// Identifies a model without delays, and one with those that the rows show where it is as simple
-/// and errs no more on rows held out.
+/// Identifies a model without delays, and one with those that the rows show where rows held out
+/// agree.
 IdentifyResult identify_with_shown_delays(const Record& record, RowRange rows,
                                           const IdentifyOptions& options, LagSums* kept) {
-  constexpr double equal_errors = 1.01;
   constexpr Index usually_most = 60;
   IdentifyResult result = run_pipeline(record, rows, options, kept);
   auto* without = std::get_if<Identified>(&result);
-  if (without ? !options.order && without->recipe.order == 0
-              : std::get<Verdict>(result).code != VerdictCode::no_better_than_mean)
-    return result;
+  if (!without && std::get<Verdict>(result).code != VerdictCode::no_better_than_mean) return result;
   const int most =
       options.max_input_delay.value_or(static_cast<int>(std::min(usually_most, rows.size() / 8)));
   const std::vector<int> delays = delays_shown(record, rows, most, without, options);
@@ -83,9 +80,7 @@ IdentifyResult identify_with_shown_delays(const Record& record, RowRange rows,
   if (!found) return result;
   if (without) {
     found->search_work += without->search_work;
-    const bool errs_more = without->held_out_error && found->held_out_error &&
-                           *found->held_out_error > equal_errors * *without->held_out_error;
-    if (errs_more || found->recipe.order > without->recipe.order) return result;
+    if (!held_out_rows_agree(*found, *without, record, rows, options)) return result;
   }
   return with;
 }

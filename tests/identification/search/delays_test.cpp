@@ -86,6 +86,50 @@ TEST(Delays, ADelayIsNotTakenForPoles) {
   EXPECT_GE(right, 9);
 }
 
+/// What a system of one output makes of an input after a delay, with white noise of this share.
+Record after_delay(StateSpaceModel plant, const Vector& u, int delay, double noise_share,
+                   test::Noise& noise) {
+  plant.D.setZero();
+  const StateSpaceModel all = with_delay_states(plant, {delay});
+  const Vector clean = test::simulated(all, u, Vector::Zero(all.order()));
+  const double deviation = std::sqrt((clean.array() - clean.mean()).square().mean());
+  return contiguous_record(1, u, clean + noise_share * deviation * noise.normal(u.size(), 1));
+}
+
+StateSpaceModel of_poles(const Vector& poles, const Vector& gains) {
+  const Index n = poles.size();
+  const Vector rates = 1 - poles.array();
+  return {poles.asDiagonal(), rates,           gains.transpose(), Matrix::Zero(1, 1),
+          Matrix(n, 1),       Vector::Zero(1), Vector::Zero(1),   1};
+}
+
+TEST(Delays, OneThatNoPolesImitateIsFound) {
+  int right = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    test::Noise noise(seed);
+    Vector u = noise.normal(1500, 1);
+    for (Index t = 1; t < u.size(); ++t) u(t) += 0.5 * u(t - 1);
+    const StateSpaceModel plant = of_poles(Eigen::Vector2d(0.97, 0.8), Eigen::Vector2d(2, -0.5));
+    const Identified found = identified(after_delay(plant, u, 50, 0.05, noise));
+    right += found.recipe.order == 2 && found.input_delays == std::vector<int>{50};
+  }
+  EXPECT_EQ(right, 12);
+}
+
+TEST(Delays, ADutyCycleShowsOne) {
+  int simple = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    test::Noise noise(seed);
+    Vector u(900);
+    for (Index t = 0; t < u.size(); ++t) u(t) = t % 100 < 12;
+    const StateSpaceModel plant = of_poles(Vector::Constant(1, 0.97), Vector::Constant(1, 30));
+    const Identified found = identified(after_delay(plant, u, 9, 0.01, noise));
+    EXPECT_THAT(found.input_delays, ElementsAre(9)) << seed;
+    simple += found.recipe.order == 1;
+  }
+  EXPECT_GE(simple, 7);
+}
+
 TEST(Delays, EachInputHasItsOwn) {
   int right = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
