@@ -24,7 +24,8 @@ constexpr double certain_spreads = 2;
 /// Where the output explains more than this of an input, the sign of its gain needs a proof, and
 /// where it explains all, there is none.
 constexpr double dominant_share = 0.5, whole_share = 0.98;
-constexpr double least_growth = 10;  // logarithm, over the rows: an integrator drifts by less
+constexpr double equal_responses = 0.1;  // relative difference
+constexpr double least_growth = 10;      // logarithm, over the rows: an integrator drifts by less
 
 /// The gain from an input to an output at rest; 0 where it has no meaning.
 double gain_of(const StateSpaceModel& model, Index output, Index input) {
@@ -125,7 +126,8 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
                        poles_of(loops.front().model) +
                        "), so that a simulation on its inputs alone runs away; take what drives "
                        "the loop, such as its reference, as the input"};
-  std::string compared;
+  std::string compared, sensors;
+  bool agree = true;
   for (const Feedback& one : feedback) {
     const Index input = channels.inputs[static_cast<std::size_t>(one.input)];
     const Index output = channels.outputs[static_cast<std::size_t>(one.output)];
@@ -150,15 +152,20 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
                          "in which something else drives the loop, and take that as the input"};
     const double unit = channels.y_scale(output) / channels.u_scale(input);
     const Index after = looked_at.size() / 10;
-    compared +=
-        "; in this model " + channel_name("output", output, rows.options().output_names) +
-        " moves by " + four_digits(step_response(identified.model, output, input, after)) +
-        " in the " + std::to_string(after) + " rows after a step of " + rows.input_name(input) +
-        ", and by " +
-        four_digits(unit * step_response(loops.front().model, one.output, one.input, after)) +
-        " by a method for closed loops";
+    const double own = step_response(identified.model, output, input, after);
+    const double of_loop = unit * step_response(loops.front().model, one.output, one.input, after);
+    agree = agree && std::abs(own - of_loop) <= equal_responses * std::abs(own);
+    sensors += (sensors.empty() ? "the sensor of " : " or that of ") + rows.input_name(input);
+    compared += "; in this model " + channel_name("output", output, rows.options().output_names) +
+                " moves by " + four_digits(own) + " in the " + std::to_string(after) +
+                " rows after a step of " + rows.input_name(input) + ", and by " +
+                four_digits(of_loop) + " by a method for closed loops";
   }
-  warnings.push_back("closed loop: " + who + compared);
+  // A worse sensor of an input and a controller look alike. Where it matters, it is a controller.
+  warnings.push_back(agree ? who + ", in a closed loop or since " + sensors +
+                                 " is worse than it seems; the model is about the same either way" +
+                                 compared
+                           : "closed loop: " + who + compared);
   return std::nullopt;
 }
 

@@ -1,5 +1,6 @@
 // Records of closed loops: what the inputs do by themselves is found, and no model is given that
 // is the controller's.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -16,8 +17,10 @@
 namespace reident::identification::closed_loop_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// x[t+1] = a x[t] + b u[t] + w[t], y = x + v, u[t] = gain (r[t] - y[t-1]) with a reference r that
 /// steps now and then.
@@ -210,8 +213,36 @@ TEST(ClosedLoop, AStablePlantWithTheRightGainKeepsItsModelWithAWarning) {
   const IdentifyResult result = identify(record, record.all(), {});
   const auto* found = std::get_if<Identified>(&result);
   ASSERT_NE(found, nullptr) << std::get<Verdict>(result).reason;
-  EXPECT_THAT(found->warnings, Contains(HasSubstr("closed loop: input 1 follows output 1")));
+  EXPECT_THAT(found->warnings,
+              Contains(AllOf(HasSubstr("input 1 follows output 1"), HasSubstr("a closed loop"))));
   EXPECT_NEAR(found->spectral_radius, 0.8, 0.03);
+}
+
+TEST(ClosedLoop, AWorseSensorOfAnInputIsNotFlatlyCalledOne) {
+  const StateSpaceModel plant{Matrix::Constant(1, 1, 0.9),
+                              Matrix::Constant(1, 1, 0.1),
+                              Matrix::Ones(1, 1),
+                              Matrix::Zero(1, 1),
+                              {},
+                              Vector::Zero(1),
+                              Vector::Zero(1),
+                              1};
+  int suspected = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    test::Noise noise(seed);
+    Matrix u = noise.normal(1000, 1);
+    for (Index t = 1; t < u.rows(); ++t) u(t) = 0.95 * u(t - 1) + 0.3 * u(t);
+    const Matrix y = test::simulated(plant, u, Vector::Zero(1)) + 0.01 * noise.normal(1000, 1);
+    const Record record = contiguous_record(1, u + 0.25 * noise.normal(1000, 1), y);
+    const IdentifyResult result = identify(record, record.all(), {});
+    const auto* found = std::get_if<Identified>(&result);
+    ASSERT_NE(found, nullptr) << std::get<Verdict>(result).reason;
+    EXPECT_THAT(found->warnings, Not(Contains(HasSubstr("closed loop: ")))) << seed;
+    suspected += std::ranges::any_of(found->warnings, [](const std::string& warning) {
+      return warning.find("the sensor of input 1") != std::string::npos;
+    });
+  }
+  EXPECT_GE(suspected, 1);
 }
 
 }  // namespace
