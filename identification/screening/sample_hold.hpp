@@ -5,8 +5,9 @@
 
 namespace reident::identification {
 
-/// Returns after how many rows the channels change, all in the same rows; 1 where they do not. A
-/// record of held samples has so many times fewer rows than it seems.
+/// Returns after how many rows each channel changes, the same number for all; 1 where they do not.
+/// Some may change a few rows behind others. A record of held samples has so many times fewer rows
+/// than it seems.
 Index rows_per_sample(const Record& record);
 
 }  // namespace reident::identification

@@ -21,6 +21,14 @@ TEST(SampleHold, IsTheNumberOfRowsThatEachValueStandsFor) {
     for (const Index first : {0, 1}) EXPECT_EQ(rows_per_sample(held(rows, first)), rows);
 }
 
+TEST(SampleHold, IsThatOfChannelsThatChangeBehindEachOther) {
+  Record later = held(3, 0);
+  later.u = held(3, 1).u;
+  EXPECT_EQ(rows_per_sample(later), 3);
+  later.y.setConstant(1);
+  EXPECT_EQ(rows_per_sample(later), 3);
+}
+
 TEST(SampleHold, IsOneOfSamplesThatChangeByThemselves) {
   EXPECT_EQ(rows_per_sample(held(1, 0)), 1);
   Record mixed = held(4, 0);
