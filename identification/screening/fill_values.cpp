@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "identification/screening/order_statistics.hpp"
+#include "identification/screening/witnesses.hpp"
 
 namespace reident::identification {
 namespace {
@@ -49,13 +50,14 @@ bool stands_for_none(double value, Index count, double low, double high) {
 }
 
 /// Whether another channel jumps at most of these plateaus: they may be what the equipment does.
-bool another_jumps(const std::vector<Channel>& channels, std::size_t self,
-                   const std::vector<Plateau>& plateaus) {
+bool another_jumps(const Witnesses& witnesses, const std::vector<Plateau>& plateaus) {
+  const std::vector<Channel>& channels = witnesses.channels;
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    if (c == self) continue;
+    if (c == witnesses.self) continue;
     const Vector& values = channels[c].values;
     const auto jumps = std::count_if(plateaus.begin(), plateaus.end(), [&](const Plateau& at) {
-      return movement(values, std::max<Index>(at.begin - 1, 0),
+      return witnesses.saw(c, at) &&
+             movement(values, std::max<Index>(at.begin - 1, 0),
                       std::min<Index>(at.end + 1, values.size())) > channels[c].least_jump;
     });
     if (double(jumps) > jumps_together * double(plateaus.size())) return true;
@@ -65,8 +67,9 @@ bool another_jumps(const std::vector<Channel>& channels, std::size_t self,
 
 /// Whether another channel turns at plateaus: what it does from before one to behind it, less what
 /// it did over as many rows before, is not what it does elsewhere.
-bool another_turns(const std::vector<Channel>& channels, std::size_t self,
-                   const std::vector<Plateau>& plateaus) {
+bool another_turns(const Witnesses& witnesses, const std::vector<Plateau>& plateaus) {
+  const std::vector<Channel>& channels = witnesses.channels;
+  const std::size_t self = witnesses.self;
   const auto rows = static_cast<Index>(median_size(plateaus)) + 1;
   const Index all = channels[self].values.size();
   std::vector<bool> is_away(static_cast<std::size_t>(all));
@@ -82,7 +85,7 @@ bool another_turns(const std::vector<Channel>& channels, std::size_t self,
     Index count = 0, elsewhere = 0;
     for (const Plateau& one : plateaus) {
       const Index row = one.begin - 1, later = one.size() + 1;
-      if (row < later || row + later >= all) continue;
+      if (row < later || row + later >= all || !witnesses.saw(c, one)) continue;
       sum += turn_at(row, later);
       ++count;
     }
@@ -114,14 +117,14 @@ std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::
     for (const Plateau& plateau : channel.plateaus())
       (plateau.value == value ? fills : others).push_back(plateau);
     const double share = double(fills.size()) / double(fills.size() + others.size());
-    if (std::ssize(fills) < least_scattered || share > most_scattered ||
-        another_jumps(channels, self, fills))
-      continue;
+    if (std::ssize(fills) < least_scattered || share > most_scattered) continue;
+    const Witnesses witnesses = witnesses_of(channels, self, fills);
+    if (another_jumps(witnesses, fills)) continue;
     const double length = median_size(fills);
     const auto rows = double(is_low ? ends.at_low : ends.at_high);
     if (length > 2 * median_size(others) &&
         (length > longest_scattered || rows > most_scattered_rows * double(channel.values.size()) ||
-         another_turns(channels, self, fills)))
+         another_turns(witnesses, fills)))
       continue;
     return fills;
   }

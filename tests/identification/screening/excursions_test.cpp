@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "identification/samples/tick_ranges.hpp"
+#include "identification/screening/sensor_screening.hpp"
+
+namespace reident::identification::excursions_test {
+namespace {
+
+using Rows = std::vector<Index>;
+
+/// A load that steps, a temperature, and a bus voltage that follows both slowly.
+struct Bus {
+  Index rows;
+  std::mt19937 random;
+  std::normal_distribution<double> noise;
+  Vector load, temperature, voltage;
+
+  explicit Bus(unsigned seed, Index rows_ = 1'200)
+      : rows(rows_), random(seed), load(rows), temperature(rows), voltage(rows) {
+    double level = 5, warm = 0;
+    for (Index t = 0; t < rows; ++t) {
+      if (random() % 12 == 0) level = 1 + 8 * uniform();
+      warm = 0.9 * warm + 0.13 * noise(random);
+      load(t) = level;
+      temperature(t) = 2 + warm;
+    }
+  }
+
+  double uniform() { return std::uniform_real_distribution<double>()(random); }
+
+  /// Rows that are not next to each other, ascending; at choice where the load does not step.
+  Rows some_rows(std::size_t count, bool at_any_load = true) {
+    Rows all;
+    while (all.size() < count) {
+      const Index row = 20 + static_cast<Index>(random() % static_cast<unsigned>(rows - 40));
+      const auto is_near = [row](Index other) { return std::abs(other - row) < 3; };
+      if (std::none_of(all.begin(), all.end(), is_near) &&
+          (at_any_load || std::abs(load(row + 1) - load(row - 1)) < 0.1))
+        all.push_back(row);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  /// The voltage answers the load by now; then the sensors add their noise.
+  void answer(double pole, double voltage_noise = 0.01) {
+    double state = -0.3 * load(0) + 0.5 * temperature(0);
+    for (Index t = 0; t < rows; ++t) {
+      voltage(t) = 28 + state + voltage_noise * noise(random);
+      state = pole * state + (1 - pole) * (-0.3 * load(t) + 0.5 * temperature(t));
+      load(t) += 0.01 * noise(random);
+    }
+  }
+
+  Rows left_out() const {
+    Matrix u(rows, 2);
+    u << load, temperature;
+    return left_out_of(u, voltage, {true, true, true});
+  }
+
+  static Rows left_out_of(const Matrix& u, const Matrix& y, const std::vector<bool>& analog) {
+    std::vector<TickRange> ticks;
+    for (const SensorFault& fault : sensor_faults(contiguous_record(1, u, y), analog))
+      if (fault.kind != SensorFaultKind::noise) ticks.push_back(fault.ticks);
+    Rows found;
+    for (const TickRange& range : united(std::move(ticks)))
+      for (std::int64_t t = range.begin; t < range.end; ++t) found.push_back(t);
+    return found;
+  }
+};
+
+std::size_t common(const Rows& some, const Rows& others) {
+  Rows both;
+  std::set_intersection(some.begin(), some.end(), others.begin(), others.end(),
+                        std::back_inserter(both));
+  return both.size();
+}
+
+TEST(Screening, FindsPacketsThatWereLostInAllChannels) {
+  for (const std::size_t count : {1U, 3U, 12U, 48U}) {
+    std::size_t honest = 0;
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+      Bus bus(seed);
+      bus.answer(0.92);
+      const Rows lost = bus.some_rows(count);
+      Matrix u(bus.rows, 3);
+      u << bus.load, bus.temperature, Vector::Ones(bus.rows);  // with a status
+      for (const Index row : lost) u.row(row).setZero(), bus.voltage(row) = 0;
+      const Rows found = Bus::left_out_of(u, bus.voltage, {true, true, false, true});
+      EXPECT_EQ(common(found, lost), count) << seed;
+      honest += found.size() - common(found, lost);
+    }
+    EXPECT_LE(honest, 12U) << count;
+  }
+}
+
+TEST(Screening, FindsOneStretchOfLostPackets) {
+  for (const Index rows : {2, 7, 20}) {
+    Bus bus(3);
+    bus.answer(0.92);
+    bus.load.segment(700, rows).setZero();
+    bus.temperature.segment(700, rows).setZero();
+    bus.voltage.segment(700, rows).setZero();
+    const Rows found = bus.left_out();
+    for (Index row = 700; row < 700 + rows; ++row)
+      EXPECT_EQ(std::count(found.begin(), found.end(), row), 1) << row;
+  }
+}
+
+TEST(Screening, AHeaterThatIsOffWithItsCommandWasNotLost) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise;
+  Matrix u(2'000, 2), y(2'000, 1);
+  for (Index t = 0; t < 2'000; ++t) {
+    u(t, 0) = t % 97 == 0 ? 0 : 1;
+    u(t, 1) = u(t, 0) > 0 ? 1.5 + 0.02 * noise(random) : 0;
+    y(t, 0) = 20 + noise(random);
+  }
+  EXPECT_TRUE(Bus::left_out_of(u, y, {false, true, true}).empty());
+}
+
+TEST(Screening, TheWayBackBetweenTwoSpikesIsNoSpike) {
+  Bus bus(7);
+  bus.answer(0.9);
+  bus.voltage(500) += 5;
+  bus.voltage(502) += 5;
+  EXPECT_EQ(bus.left_out(), (Rows{500, 502}));
+}
+
+}  // namespace
+}  // namespace reident::identification::excursions_test
