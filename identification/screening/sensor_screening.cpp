@@ -40,18 +40,6 @@ std::vector<SensorFault> fills_of(const Record& record) {
   return faults;
 }
 
-std::vector<SensorFault> scattered_fills_of(const std::vector<Channel>& channels,
-                                            const Record& record) {
-  std::vector<SensorFault> faults;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    if (!channels[c].is_analog) continue;
-    for (const Plateau& fill : scattered_fills(channels, c))
-      faults.push_back({SensorFaultKind::fill, static_cast<Index>(c),
-                        ticks_of(record, fill.segment, fill.begin, fill.end)});
-  }
-  return faults;
-}
-
 Record without_faults(const Record& record, const std::vector<SensorFault>& faults) {
   std::vector<TickRange> ticks;
   for (const SensorFault& fault : faults) ticks.push_back(fault.ticks);
@@ -77,31 +65,39 @@ std::string_view name(SensorFaultKind kind) {
 std::vector<SensorFault> sensor_faults(const Record& whole, const std::vector<bool>& analog) {
   assert(static_cast<Index>(analog.size()) == whole.u.cols() + whole.y.cols());
   std::vector<SensorFault> faults = fills_of(whole);
-  // What stands for no sample would hide what is unusual in the others.
-  Record rest;
+  Record rest;  // without these faults, where there are some
+  const auto record = [&]() -> const Record& { return faults.empty() ? whole : rest; };
   if (!faults.empty()) rest = without_faults(whole, faults);
-  const Record& filled = faults.empty() ? whole : rest;
-  if (filled.rows() == 0) return faults;
-  std::vector<Channel> channels = channels_of(filled, analog);
-  if (const auto scattered = scattered_fills_of(channels, filled); !scattered.empty()) {
-    faults.insert(faults.end(), scattered.begin(), scattered.end());
+  if (record().rows() == 0) return faults;
+  std::vector<Channel> channels = channels_of(record(), analog);
+  const auto find = [&](SensorFaultKind kind, const auto& rows_of) {
+    std::vector<SensorFault> found;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      if (!channels[c].is_analog) continue;
+      for (const auto& rows : rows_of(c))
+        found.push_back(
+            {kind, static_cast<Index>(c), ticks_of(record(), rows.segment, rows.begin, rows.end)});
+    }
+    return found;
+  };
+  const auto add = [&](const std::vector<SensorFault>& found) {
+    faults.insert(faults.end(), found.begin(), found.end());
+  };
+  // What is no sample would hide what is unusual in the others.
+  const auto take_out = [&](const std::vector<SensorFault>& found) {
+    if (found.empty()) return;
+    add(found);
     rest = without_faults(whole, faults);
     channels = rest.rows() > 0 ? channels_of(rest, analog) : std::vector<Channel>();
-  }
-  const Record& record = faults.empty() ? whole : rest;
-  const auto bursts = noise_bursts(channels, record);
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    if (!channels[c].is_analog) continue;
-    const auto add = [&](SensorFaultKind kind, std::size_t segment, Index begin, Index end) {
-      faults.push_back({kind, static_cast<Index>(c), ticks_of(record, segment, begin, end)});
-    };
-    for (const Plateau& plateau : stuck_plateaus(channels, c))
-      add(SensorFaultKind::stuck, plateau.segment, plateau.begin, plateau.end);
-    for (const Plateau& spike : spikes_of(channels, c))
-      add(SensorFaultKind::spike, spike.segment, spike.begin, spike.end);
-    for (const NoisyRows& rows : bursts[c])
-      add(SensorFaultKind::noise, rows.segment, rows.begin, rows.end);
-  }
+  };
+  take_out(
+      find(SensorFaultKind::fill, [&](std::size_t c) { return scattered_fills(channels, c); }));
+  const auto bursts = noise_bursts(channels, record());
+  const auto noise = find(SensorFaultKind::noise, [&](std::size_t c) { return bursts[c]; });
+  take_out(
+      find(SensorFaultKind::stuck, [&](std::size_t c) { return stuck_plateaus(channels, c); }));
+  add(find(SensorFaultKind::spike, [&](std::size_t c) { return spikes_of(channels, c); }));
+  add(noise);
   std::stable_sort(faults.begin(), faults.end(), [](const SensorFault& a, const SensorFault& b) {
     return a.channel < b.channel;
   });

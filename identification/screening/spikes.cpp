@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
+#include "identification/screening/answers.hpp"
 #include "identification/screening/order_statistics.hpp"
-#include "identification/screening/witnesses.hpp"
 
 namespace reident::identification {
 namespace {
@@ -100,8 +101,8 @@ std::vector<Plateau> spikes_of(const std::vector<Channel>& channels, std::size_t
   if (share > (are_irregular(spikes) ? most_irregular : most_spikes) &&
       !are_one_absurd_value(channel, spikes))
     return {};
-  std::vector<Excursion> alone;   // where no other channel jumps
-  std::vector<Excursion> beside;  // where one jumps otherwise
+  std::vector<Excursion> unexplained;
+  std::vector<Index> beside;  // where those of them begin at which another channel jumps otherwise
   for (const Excursion& spike : spikes) {
     bool jumps = false, explained = false;
     for (std::size_t c = 0; c < channels.size() && !explained; ++c) {
@@ -112,18 +113,25 @@ std::vector<Plateau> spikes_of(const std::vector<Channel>& channels, std::size_t
       jumps = true;
       explained = jump.comes_back || step_explains(channel, other, spike, jump.size);
     }
-    if (!explained) (jumps ? beside : alone).push_back(spike);
+    if (explained) continue;
+    unexplained.push_back(spike);
+    if (jumps) beside.push_back(spike.plateau.begin);
   }
-  double answered = 0;  // height of a spike that may be what the equipment does
-  if (!alone.empty() && another_stands_out(witnesses, alone))
-    for (const Excursion& spike : std::exchange(alone, {}))
-      answered = std::max(answered, 2 * std::abs(spike.height));
+  unexplained = unanswered(witnesses, std::move(unexplained));
+  const auto is_alone = [&](const Excursion& spike) {
+    return !std::binary_search(beside.begin(), beside.end(), spike.plateau.begin);
+  };
+  std::vector<Excursion> alone;
+  std::copy_if(unexplained.begin(), unexplained.end(), std::back_inserter(alone), is_alone);
+  if (!alone.empty() && another_stands_out(witnesses, alone)) {
+    double tallest = 0;  // of what the equipment does
+    for (const Excursion& spike : alone) tallest = std::max(tallest, std::abs(spike.height));
+    std::erase_if(unexplained, [&](const Excursion& spike) {
+      return is_alone(spike) || std::abs(spike.height) <= 2 * tallest;
+    });
+  }
   found.clear();
-  for (const Excursion& spike : alone) found.push_back(spike.plateau);
-  for (const Excursion& spike : beside)
-    if (std::abs(spike.height) > answered) found.push_back(spike.plateau);
-  std::sort(found.begin(), found.end(),
-            [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });
+  for (const Excursion& spike : unexplained) found.push_back(spike.plateau);
   return found;
 }
 
