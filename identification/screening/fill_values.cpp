@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "identification/screening/answers.hpp"
 #include "identification/screening/order_statistics.hpp"
-#include "identification/screening/witnesses.hpp"
 
 namespace reident::identification {
 namespace {
@@ -18,6 +19,9 @@ constexpr double far = 10, absurd = 1e4;
 // and the share of them at which another channel may jump by chance.
 constexpr Index least_scattered = 3;
 constexpr double most_scattered = 0.25, jumps_together = 0.5;
+// A value of excursions: how many have it, and how much more often it is repeated than others are.
+constexpr Index least_repeated = 5;
+constexpr double more_often = 5, exact_share = 0.9;
 // Plateaus of more than twice the usual length: their rows, their share of all rows, and the
 // deviations by which another channel turns at them, as at what the equipment does.
 constexpr double longest_scattered = 30, most_scattered_rows = 0.1, turned_deviations = 4;
@@ -101,34 +105,121 @@ bool another_turns(const Witnesses& witnesses, const std::vector<Plateau>& plate
   return false;
 }
 
-}  // namespace
-
-std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self) {
-  const Channel& channel = channels[self];
+/// The ends of a channel that are further outside of the other values than these are apart.
+std::vector<double> far_ends(const Channel& channel) {
+  std::vector<double> found;
   const Ends ends = ends_of(span_of(channel.values), -infinity, infinity);
   for (const bool is_low : {true, false}) {
-    if ((is_low ? ends.at_low : ends.at_high) < least_scattered) continue;
     const double value = is_low ? ends.low : ends.high;
     const double low = is_low ? ends.next_to_low : ends.low;
     const double high = is_low ? ends.high : ends.next_to_high;
-    const double gap = std::max(low - value, value - high);
-    if (!(high > low) || gap <= high - low) continue;
-    std::vector<Plateau> fills, others;
-    for (const Plateau& plateau : channel.plateaus())
-      (plateau.value == value ? fills : others).push_back(plateau);
-    const double share = double(fills.size()) / double(fills.size() + others.size());
-    if (std::ssize(fills) < least_scattered || share > most_scattered) continue;
-    const Witnesses witnesses = witnesses_of(channels, self, fills);
-    if (another_jumps(witnesses, fills)) continue;
-    const double length = median_size(fills);
-    const auto rows = double(is_low ? ends.at_low : ends.at_high);
-    if (length > 2 * median_size(others) &&
-        (length > longest_scattered || rows > most_scattered_rows * double(channel.values.size()) ||
-         another_turns(witnesses, fills)))
-      continue;
-    return fills;
+    if ((is_low ? ends.at_low : ends.at_high) >= least_scattered && high > low &&
+        std::max(low - value, value - high) > high - low)
+      found.push_back(value);
   }
-  return {};
+  return found;
+}
+
+/// How many of the values have each value; ascending.
+std::vector<std::pair<double, Index>> counts_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  std::vector<std::pair<double, Index>> counts;
+  for (const double value : values) {
+    if (counts.empty() || counts.back().first != value) counts.emplace_back(value, 0);
+    ++counts.back().second;
+  }
+  return counts;
+}
+
+/// The values that a channel has as excursions again and again, while its other values are hardly
+/// repeated.
+std::vector<double> repeated_excursions(const Channel& channel) {
+  std::vector<double> values;
+  for (const Excursion& one : excursions_of(channel)) values.push_back(one.plateau.value);
+  const auto excursions = counts_of(std::move(values));
+  auto candidates = excursions;
+  std::erase_if(candidates, [&](const auto& one) {
+    if (one.second < least_repeated) return true;
+    Index nearby = 0;  // a measured value has others around it
+    for (const auto& [value, count] : excursions)
+      nearby += std::abs(value - one.first) < channel.least_jump ? count : 0;
+    return double(one.second) < exact_share * double(nearby);
+  });
+  if (candidates.empty()) return {};
+  const std::vector<Plateau> plateaus = channel.plateaus();
+  values.clear();
+  for (const Plateau& one : plateaus) values.push_back(one.value);
+  std::vector<double> repeats;
+  for (const auto& [value, count] : counts_of(std::move(values)))
+    repeats.insert(repeats.end(), static_cast<std::size_t>(count), double(count));
+  const double usual = quantile(repeats, 0.5);
+  std::vector<double> found;
+  for (const auto& [value, returning] : candidates) {
+    Index count = 0, jumping = 0, longest = 0;
+    for (std::size_t i = 0; i < plateaus.size(); ++i) {
+      const Plateau& one = plateaus[i];
+      if (one.value != value) continue;
+      const auto jumps_to = [&](std::size_t other) {
+        return other < plateaus.size() && plateaus[other].segment == one.segment &&
+               std::abs(plateaus[other].value - value) > channel.least_jump;
+      };
+      ++count;
+      jumping += jumps_to(i - 1) || jumps_to(i + 1) ? 1 : 0;
+      longest = std::max(longest, one.size());
+    }
+    if (double(count) >= more_often * usual && 2 * returning >= jumping &&
+        double(longest) <= longest_scattered)
+      found.push_back(value);
+  }
+  return found;
+}
+
+/// Whether plateaus of one value are few and short among the others of a channel, and no other
+/// channel confirms them.
+bool stand_for_none(const std::vector<Channel>& channels, std::size_t self,
+                    const std::vector<Plateau>& fills, const std::vector<Plateau>& others) {
+  const double share = double(fills.size()) / double(fills.size() + others.size());
+  if (std::ssize(fills) < least_scattered || share > most_scattered) return false;
+  const Witnesses witnesses = witnesses_of(channels, self, fills);
+  const Vector& values = channels[self].values;
+  Index rows = 0;
+  std::vector<Excursion> excursions;
+  for (const Plateau& fill : fills) {
+    rows += fill.size();
+    if (fill.begin > (*channels[self].segments)[fill.segment].begin)
+      excursions.push_back({fill, fill.value - values(fill.begin - 1)});
+  }
+  const double length = median_size(fills);
+  const bool is_long = length > 2 * median_size(others);
+  if (is_long &&
+      (length > longest_scattered || double(rows) > most_scattered_rows * double(values.size()) ||
+       another_turns(witnesses, fills)))
+    return false;
+  if (another_jumps(witnesses, fills)) return false;
+  const auto count = excursions.size();
+  return 2 * unanswered(witnesses, std::move(excursions)).size() >= count;
+}
+
+}  // namespace
+
+std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self) {
+  std::vector<double> candidates = far_ends(channels[self]);
+  for (const double value : repeated_excursions(channels[self]))
+    if (std::find(candidates.begin(), candidates.end(), value) == candidates.end())
+      candidates.push_back(value);
+  if (candidates.empty()) return {};
+  const std::vector<Plateau> plateaus = channels[self].plateaus();
+  std::vector<Plateau> found;
+  for (const double value : candidates) {
+    std::vector<Plateau> fills, others;
+    for (const Plateau& plateau : plateaus)
+      (plateau.value == value ? fills : others).push_back(plateau);
+    if (stand_for_none(channels, self, fills, others))
+      found.insert(found.end(), fills.begin(), fills.end());
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });
+  return found;
 }
 
 std::vector<double> fill_values(const Vector& values) {

@@ -14,11 +14,10 @@ namespace reident::identification {
 /// others have another sign.
 std::vector<double> fill_values(const Vector& values);
 
-/// Returns the rows of one channel that hold a value which stands for none by where it stands: the
-/// least or the greatest one, exactly repeated in at least three stretches that are at most a
-/// quarter of all, further outside of the others than these are apart, while no other channel
-/// jumps there as a rule. Longer stretches than usual are few rows, and no other channel turns
-/// there.
+/// Returns the rows of one channel that hold a value which stands for none by how it stands there,
+/// by time. It is the least or the greatest one, further outside of the others than these are
+/// apart, or one that excursions have again and again to the digit. It is scattered over the rows
+/// in few and short stretches, which no other channel confirms (METHOD.md, section 17).
 std::vector<Plateau> scattered_fills(const std::vector<Channel>& channels, std::size_t self);
 
 }  // namespace reident::identification

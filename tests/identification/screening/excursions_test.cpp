@@ -124,6 +124,61 @@ TEST(Screening, AHeaterThatIsOffWithItsCommandWasNotLost) {
   EXPECT_TRUE(Bus::left_out_of(u, y, {false, true, true}).empty());
 }
 
+TEST(Screening, FindsAValueThatIsRepeatedForSingleRowsWhereverItLies) {
+  for (const double value : {0.0, 1.0, 5.0})  // outside of the load's 1 to 9 and inside
+    for (const double share : {0.03, 0.08})
+      for (unsigned seed = 1; seed <= 5; ++seed) {
+        Bus bus(seed, 2'000);
+        bus.answer(0.9);
+        const Rows filled = bus.some_rows(static_cast<std::size_t>(share * 2'000));
+        for (const Index row : filled) bus.load(row) = value;
+        const Rows found = bus.left_out();
+        EXPECT_EQ(common(found, filled), filled.size()) << value << ' ' << share << ' ' << seed;
+        EXPECT_LE(found.size(), filled.size() + 4) << value << ' ' << share << ' ' << seed;
+      }
+}
+
+TEST(Screening, LeavesARepeatedValueThatTheOutputAnswers) {
+  for (const double pole : {0.5, 0.9, 0.97})
+    for (const std::size_t count : {10U, 50U, 150U}) {
+      Bus bus(static_cast<unsigned>(count), 2'000);
+      const Rows off = bus.some_rows(count);
+      for (const Index row : off) bus.load(row) = 0;
+      bus.answer(pole);
+      for (const Index row : off) bus.load(row) = 0;
+      EXPECT_LE(bus.left_out().size(), 2U) << pole << ' ' << count;
+    }
+}
+
+TEST(Screening, LeavesAPanelThatIsDarkForLongAndForMoments) {
+  Bus bus(5, 3'000);
+  for (Index t = 0; t < bus.rows; ++t)
+    bus.load(t) =
+        t % 95 < 60 ? 6 + 0.5 * std::sin(double(t % 95) / 20) + 0.02 * bus.noise(bus.random) : 0;
+  bus.answer(0.97);
+  for (Index t = 0; t < bus.rows; ++t)
+    if (t % 95 >= 60 || t % 380 == 30) bus.load(t) = 0;
+  for (const Index row : bus.left_out()) EXPECT_EQ(row % 380, 30);
+}
+
+TEST(Screening, LeavesPulsesOfManyHeightsOfWhichSomeRepeat) {
+  // A discharge in pulses: on in every other row, to a digit that the noise repeats.
+  std::mt19937 random(6);
+  std::normal_distribution<double> noise;
+  Matrix u(3'000, 1), y(3'000, 1);
+  for (Index t = 0; t < 3'000; ++t) {
+    const bool is_pulsed = t / 300 % 2 == 1;
+    u(t, 0) = std::round((is_pulsed && t % 2 == 0 ? -4.02
+                          : is_pulsed             ? 0
+                                                  : 1.51) *
+                             1e3 +
+                         noise(random)) /
+              1e3;
+    y(t, 0) = 3.5 + noise(random);
+  }
+  EXPECT_TRUE(Bus::left_out_of(u, y, {true, true}).empty());
+}
+
 TEST(Screening, LeavesFewPulsesThatASlowOutputAnswers) {
   for (const double pole : {0.7, 0.95}) {
     std::size_t left_out = 0, all = 0;
