@@ -1,5 +1,5 @@
-// Plateaus that stand out from the rows around them, as spikes, pulses and lost samples do. Private
-// to this folder. Nothing here throws.
+// Plateaus that stand out from the rows around them, as spikes, pulses and lost samples do.
+// Private to this folder. Nothing here throws.
 #pragma once
 
 #include <vector>
