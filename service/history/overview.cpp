@@ -44,15 +44,12 @@ std::optional<double> percent_in(const std::string& json, const char* key) {
 void read_errors(const Registry& registry, OverviewRow& row) {
   const std::vector<storage::Block> blocks = registry.newest_blocks(row.name, blocks_looked_at);
   if (blocks.empty()) return;
-  const Member champion{row.champion,
-                        {},
-                        registry.scores(row.name.spacecraft, row.name.equipment, row.champion,
-                                        blocks.front().range.begin)};
+  const std::vector<storage::BlockScore> scores = registry.scores(
+      row.name.spacecraft, row.name.equipment, row.champion, blocks.front().range.begin);
   Sums own, simulator;
   std::size_t taken = 0;
   for (auto block = blocks.rbegin(); block != blocks.rend() && taken < blocks_of_now; ++block) {
-    const storage::BlockScore* score =
-        counts(*block) ? find(champion, block->range.begin) : nullptr;
+    const storage::BlockScore* score = counts(*block) ? find(scores, block->range.begin) : nullptr;
     if (!score) continue;
     ++taken;
     own.add(*block, score->square);

@@ -31,25 +31,19 @@ double share_above(const std::vector<double>& noise, const std::vector<double>& 
 /// Whether the errors, as the mean over the outputs, exceed those of a constant at the mean of the
 /// outputs so far.
 bool fail(const Sums& errors, const Sums& so_far) {
-  double sum = 0;
-  for (std::size_t q = 0; q < errors.error.size(); ++q) {
-    const double mean = so_far.y[q] / so_far.rows;
-    sum +=
-        std::log(errors.error[q] / errors.rows / (so_far.y_square[q] / so_far.rows - mean * mean));
-  }
-  return sum > 0;
+  const auto variance = so_far.y_square / so_far.rows - (so_far.y / so_far.rows).square();
+  return (errors.error / errors.rows / variance).log().sum() > 0;
 }
 
 }  // namespace
 
 bool ChangeFinder::Errors::add(const Block& block, const BlockScore& score) {
-  if (growth.add({static_cast<identification::Index>(phase_of(block)),
-                  mean_log_root(score.square, score.noise),
-                  mean_log_root(block.output_square, score.noise),
-                  share_above(score.noise, block.output_square)}))
-    return true;
-  if (growth.is_calm()) calm_until = block.range.end;
-  return false;
+  const bool grows = growth.add({static_cast<identification::Index>(phase_of(block)),
+                                 mean_log_root(score.square, score.noise),
+                                 mean_log_root(block.output_square, score.noise),
+                                 share_above(score.noise, block.output_square)});
+  if (!grows && growth.is_calm()) calm_until = block.range.end;
+  return grows;
 }
 
 bool ChangeFinder::AllErrors::add(const Block& block, const BlockScore& score) {
@@ -64,10 +58,9 @@ bool ChangeFinder::AllErrors::add(const Block& block, const BlockScore& score) {
 }
 
 void ChangeFinder::begin_anew(storage::Time since, storage::Time found) {
-  last_ = Change{since, found, last_ ? last_->since : INT64_MIN};
-  regimes_.clear();
-  all_ = {};
-  so_far_ = {};
+  const Change change{since, found, last_ ? last_->since : INT64_MIN};
+  *this = {};
+  last_ = change;
 }
 
 void ChangeFinder::add(const Block& block, const BlockScore& score, int regime) {

@@ -5,18 +5,7 @@
 namespace reident {
 
 using storage::Block;
-using storage::BlockScore;
 using storage::Time;
-
-namespace {
-
-/// The member's score of the block, of its record or from before its window; null without one.
-const BlockScore* find_any(const Member& member, Time begin) {
-  if (const BlockScore* score = find(member.scores, begin)) return score;
-  return find(member.earlier, begin);
-}
-
-}  // namespace
 
 std::map<int, ServedRegime> served_regimes(const League& league, const std::vector<int>& regimes,
                                            const Member& member, Time since) {
@@ -26,7 +15,8 @@ std::map<int, ServedRegime> served_regimes(const League& league, const std::vect
     ServedRegime& regime = served[regimes[i]];
     const storage::TimeRange& range = league.blocks[i].range;
     if (range.begin >= since) regime.blocks.push_back(i);
-    regime.is_met = regime.is_met || find(member.earlier, range.begin) ||
+    const bool ran_before = range.begin < member.window.begin && find(member.scores, range.begin);
+    regime.is_met = regime.is_met || ran_before ||
                     range.end - blocks_of_cycle * (range.end - range.begin) >= member.window.begin;
   }
   return served;
@@ -66,13 +56,13 @@ ServedErrors served_errors(const League& league, const std::map<int, ServedRegim
     std::vector<std::size_t> both;
     for (const std::size_t i : regime.blocks)
       if (const Time begin = league.blocks[i].range.begin;
-          find_any(member, begin) && find_any(*league.champion, begin))
+          find(member.scores, begin) && find(league.champion->scores, begin))
         both.push_back(i);
     const double weight = static_cast<double>(regime.blocks.size()) / double(both.size());
     for (const std::size_t i : both) {
       const Block& block = league.blocks[i];
-      own.add(block, find_any(member, block.range.begin)->square, weight);
-      champion.add(block, find_any(*league.champion, block.range.begin)->square, weight);
+      own.add(block, find(member.scores, block.range.begin)->square, weight);
+      champion.add(block, find(league.champion->scores, block.range.begin)->square, weight);
     }
   }
   return {own.mrse_percent(), champion.mrse_percent()};

@@ -9,8 +9,7 @@
 namespace reident {
 
 struct ServedRegime {
-  std::vector<std::size_t>
-      blocks;  // since the last change of the equipment, as places in the league
+  std::vector<std::size_t> blocks;  // places in the league, since the equipment's last change
   /// A whole cycle of it lies in the member's window or behind, or the member ran on blocks of it
   /// from before.
   bool is_met = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -14,6 +13,7 @@ namespace reident {
 namespace {
 
 using identification::dependence;
+using identification::Index;
 using identification::InputRanges;
 using identification::log_wealth;
 using identification::lower_mean;
@@ -46,10 +46,9 @@ void Judge::take_in(const League& league) {
   bool are_other_regimes = false;
   while (regimes_.numbers().size() < league.blocks.size()) {
     const Block& block = league.blocks[regimes_.numbers().size()];
-    const bool is_one = counts(block);
-    are_other_regimes =
-        regimes_.add(is_one ? InputRanges{block.input_low, block.input_high} : InputRanges()) ||
-        are_other_regimes;
+    if (regimes_.add(counts(block) ? InputRanges{block.input_low, block.input_high}
+                                   : InputRanges()))
+      are_other_regimes = true;
   }
   if (are_other_regimes) change_ = {};
   for_each_score(league, *league.champion, INT64_MIN, are_other_regimes ? 0 : seen,
@@ -91,12 +90,11 @@ Time Judge::changed(const League& league) const {
 /// Dependence of the scores of the two members with the longest records, or of those from before
 /// the last change: what is assumed of versions whose records are short. 0 where there are no two.
 double Judge::usual_dependence(const League& league) {
-  std::vector<const Member*> members;
+  std::vector<const Member*> members{&*league.champion};
   for (const Member& member : league.challengers) members.push_back(&member);
-  members.push_back(&*league.champion);
   if (members.size() < 2) return 0;
-  std::ranges::partial_sort(members, members.begin() + 2, std::greater<>(),
-                            [](const Member* member) { return member->scores.size(); });
+  std::ranges::partial_sort(members, members.begin() + 2, {},
+                            [](const Member* member) { return member->window.end; });
   return std::max(
       dependence(series(comparison(league, *members[0], *members[1]).scores.values(), 0)),
       dependence_before(league));
@@ -206,14 +204,13 @@ std::optional<Reason> Judge::failure(const League& league) {
   };
   const Sums& own = compared_.own;
   if (!(own.fit_percent() > 0)) {
+    const Eigen::ArrayXd mean = own.y / own.rows;
     Comparison with_mean;
     for_each_score(league, *league.champion, since_, 0,
                    [&](std::size_t i, const Block& block, const BlockScore& score) {
                      std::vector<double> square = block.output_square;
-                     for (std::size_t q = 0; q < square.size(); ++q) {
-                       const double mean = own.y[q] / own.rows;
-                       square[q] += mean * (mean - 2 * block.output_mean[q]);
-                     }
+                     for (std::size_t q = 0; q < square.size(); ++q)
+                       square[q] += mean[Index(q)] * (mean[Index(q)] - 2 * block.output_mean[q]);
                      with_mean.add(i, block, score, square);
                    });
     if (auto reason = fails_against("a constant at the mean", with_mean)) return reason;

@@ -6,17 +6,17 @@
 
 namespace reident {
 
+using Eigen::ArrayXd;
 using storage::Block;
 using storage::BlockScore;
 
-Member member_of_scores(std::int64_t version, storage::TimeRange window,
-                        std::vector<BlockScore> scores) {
-  const auto record = std::ranges::lower_bound(scores, window.begin, {}, &BlockScore::begin);
-  Member member{version, window, {record, scores.end()}, {}};
-  scores.erase(record, scores.end());
-  member.earlier = std::move(scores);
-  return member;
+namespace {
+
+Eigen::Map<const ArrayXd> array(const std::vector<double>& values) {
+  return {values.data(), std::ssize(values)};
 }
+
+}  // namespace
 
 std::size_t phase_of(const Block& block) {
   const storage::Time length = std::max<storage::Time>(1, block.range.end - block.range.begin);
@@ -65,31 +65,21 @@ double Scores::score(std::size_t q) const {
 }
 
 void Sums::add(const Block& block, const std::vector<double>& square, double weight) {
-  error.resize(square.size(), 0);
-  y.resize(square.size(), 0);
-  y_square.resize(square.size(), 0);
+  if (error.size() == 0) error = y = y_square = ArrayXd::Zero(std::ssize(square));
   weight *= static_cast<double>(block.rows);
-  for (std::size_t q = 0; q < square.size(); ++q) {
-    error[q] += weight * square[q];
-    y[q] += weight * block.output_mean[q];
-    y_square[q] += weight * block.output_square[q];
-  }
+  error += weight * array(square);
+  y += weight * array(block.output_mean);
+  y_square += weight * array(block.output_square);
   rows += weight;
 }
 
 double Sums::mrse_percent() const {
-  double sum = 0;
-  for (std::size_t q = 0; q < error.size(); ++q) sum += std::sqrt(error[q] / y_square[q]);
-  return error.empty() ? 0 : 100 * sum / static_cast<double>(error.size());
+  return error.size() == 0 ? 0 : 100 * (error / y_square).sqrt().mean();
 }
 
 double Sums::fit_percent() const {
-  double worst = 0;
-  for (std::size_t q = 0; q < error.size(); ++q)
-    if (const double of_output = std::sqrt(error[q] / (y_square[q] - y[q] * y[q] / rows));
-        !(of_output <= worst))
-      worst = of_output;
-  return 100 * (1 - worst);
+  const ArrayXd share = (error / (y_square - y.square() / rows)).sqrt();
+  return share.size() == 0 ? 100 : 100 * (1 - share.maxCoeff<Eigen::PropagateNaN>());
 }
 
 void Comparison::add(std::size_t place, const Block& block, const BlockScore& of_one,

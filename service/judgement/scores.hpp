@@ -14,13 +14,10 @@ namespace reident {
 struct Member {
   std::int64_t version = 0;
   storage::TimeRange window;
-  std::vector<storage::BlockScore> scores;     // from its validation part on, ascending
-  std::vector<storage::BlockScore> earlier{};  // on blocks before its window, ascending
+  /// Ascending: its record, from its validation part on, and before it what it erred on blocks
+  /// before its window, if it ran there.
+  std::vector<storage::BlockScore> scores;
 };
-
-/// With the scores, ascending, that the registry has.
-Member member_of_scores(std::int64_t version, storage::TimeRange window,
-                        std::vector<storage::BlockScore> scores);
 
 /// Bound of a block's score.
 inline constexpr double largest_score = 1;
@@ -44,8 +41,9 @@ bool counts(const storage::Block& block);
 /// The score of the block that begins there; null without one, or without rows.
 const storage::BlockScore* find(const std::vector<storage::BlockScore>& scores,
                                 storage::Time begin);
+/// Of its record.
 inline const storage::BlockScore* find(const Member& member, storage::Time begin) {
-  return find(member.scores, begin);
+  return begin < member.window.begin ? nullptr : find(member.scores, begin);
 }
 
 /// Mean squared errors of two runs on a block, by output. What is below the noise of the sensors
@@ -74,10 +72,11 @@ class Scores {
 
 /// Sums from which a run's errors over some blocks follow.
 struct Sums {
-  std::vector<double> error, y, y_square;
+  Eigen::ArrayXd error, y, y_square;  // by output
   double rows = 0;
 
   void add(const storage::Block& block, const std::vector<double>& square, double weight = 1);
+  /// 0 without a block.
   double mrse_percent() const;
   /// The worst output's.
   double fit_percent() const;

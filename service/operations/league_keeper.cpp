@@ -124,9 +124,8 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
     std::vector<storage::BlockScore> scores =
         registry.scores(spacecraft_, equipment_.name, number, INT64_MIN);
     require_fitting(number, scores, model.dynamics);
-    Member member = member_of_scores(number, version->window, std::move(scores));
     models_.emplace(number, std::move(model));
-    return member;
+    return Member{number, version->window, std::move(scores)};
   };
   std::int64_t passed_over = 0;
   if (const auto made = registry.champion_decision(spacecraft_, equipment_.name)) {
@@ -174,8 +173,8 @@ void LeagueKeeper::catch_up(const storage::Archive& archive, Member& member, Tim
   const EquipmentModel& model = models_.at(member.version);
   storage::RunState state;
   Time begin;
-  if (member.scores.empty()) {
-    if (member.earlier.empty()) run_earlier(archive, member, scores);
+  if (member.scores.empty()) run_earlier(archive, member, scores);
+  if (member.scores.empty() || member.scores.back().begin < member.window.begin) {
     begin = std::max(-floor_divide(-model.validated_on.begin, length) * length,
                      league_.blocks.empty() ? INT64_MIN : league_.blocks.front().range.begin);
     // The run begins a block earlier, on telemetry that the version was fitted to.
@@ -207,12 +206,12 @@ void LeagueKeeper::run_earlier(const storage::Archive& archive, Member& member,
     return earlier_samples_.emplace(begin, reader_.read(archive, begin)).first->second;
   };
   for (const Time begin : judge_.earlier_blocks(league_, member)) {
-    const bool goes_on = !member.earlier.empty() && member.earlier.back().begin + length == begin;
+    const bool goes_on = !member.scores.empty() && member.scores.back().begin + length == begin;
     const storage::RunState state =
-        goes_on ? member.earlier.back().state
+        goes_on ? member.scores.back().state
                 : score_block(model, member.version, samples_at(begin - length), {}).state;
-    member.earlier.push_back(score_block(model, member.version, samples_at(begin), state));
-    scores.push_back(member.earlier.back());
+    member.scores.push_back(score_block(model, member.version, samples_at(begin), state));
+    scores.push_back(member.scores.back());
   }
 }
 

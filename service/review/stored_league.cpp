@@ -33,7 +33,7 @@ EquipmentConfig limits_of(const ordered_json& evidence, std::vector<std::string>
 
 Member member_of(const history::HistoryReader& history, const EquipmentName& equipment,
                  std::int64_t version, storage::TimeRange window) {
-  return member_of_scores(version, window, history.scores(equipment, version));
+  return {version, window, history.scores(equipment, version)};
 }
 
 }  // namespace

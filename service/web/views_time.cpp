@@ -162,17 +162,15 @@ Json excluded_in(const std::vector<storage::Attempt>& attempts, TimeRange range)
 Json record_in(const Stored& stored, const EquipmentName& name, const Reign& reign,
                const std::vector<storage::Block>& blocks, const storage::TimeBins& bins) {
   const Time begin = bins.range().begin;
-  const Member member{reign.version,
-                      {},
-                      stored.registry.scores(name.spacecraft, name.equipment, reign.version,
-                                             std::max(reign.range.begin, begin))};
+  const std::vector<storage::BlockScore> scores = stored.registry.scores(
+      name.spacecraft, name.equipment, reign.version, std::max(reign.range.begin, begin));
   using Scored = std::pair<const storage::Block*, const storage::BlockScore*>;
   std::vector<Scored> scored;
   const Time end = std::min(reign.range.end, bins.range().end);
   for (const storage::Block& block : blocks) {
     if (!counts(block) || block.range.begin < reign.range.begin || block.range.begin >= end)
       continue;
-    if (const auto* score = find(member, block.range.begin)) scored.emplace_back(&block, score);
+    if (const auto* score = find(scores, block.range.begin)) scored.emplace_back(&block, score);
   }
   Json from = Json::array(), to = Json::array(), error = Json::array(), simulator = Json::array();
   const auto bin_of = [&](std::size_t i) {

@@ -57,8 +57,8 @@ class Records {
   }
   /// The run of the champion or a challenger on these blocks, which lie before its window.
   void ran_before(Member& of, const Errors& errors, int from, int to) {
-    of.earlier = member(of.version, of.window, errors, from).scores;
-    of.earlier.resize(static_cast<std::size_t>(to - from));
+    const auto scores = member(of.version, of.window, errors, from).scores;
+    of.scores.insert(of.scores.begin(), scores.begin(), scores.begin() + (to - from));
   }
   /// The input goes five times as far in these blocks.
   void swings(std::size_t from, std::size_t to) {
