@@ -119,10 +119,12 @@ struct Catalogue {
       {telemetry_damaged, "telemetry_damaged", O::telemetry_damaged, "{damage}"},
       {low_coverage, "low_coverage", O::low_coverage,
        "Only {coverage_percent:.1f} % of the window has every parameter valid; "
-       "{min_coverage_percent:g} % are needed."},
+       "{min_coverage_percent:g} % are needed. {parameter} alone has a value in "
+       "{parameter_coverage_percent:.1f} %."},
       {low_coverage_with_derived, "low_coverage_with_derived", O::low_coverage,
        "Only {coverage_percent:.1f} % of the window has every parameter valid and every derived "
-       "input finite; {min_coverage_percent:g} % are needed."},
+       "input finite; {min_coverage_percent:g} % are needed. {parameter} alone has a value in "
+       "{parameter_coverage_percent:.1f} %."},
       {implausible, "implausible", O::implausible,
        "Telemetry is not believed: {worst}. {coverage_percent:.1f} % of the window is left, "
        "{min_coverage_percent:g} % are needed."},

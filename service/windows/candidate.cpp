@@ -109,12 +109,14 @@ void identify_window(const RefreshRequest& request, WindowCache& kept,
     return refuse(prepared, because<ReasonCode::implausible>(
                                 worst_of(data.plausibility, request.equipment.sample_period),
                                 coverage_percent, needed_percent));
-  if (data.coverage < request.equipment.min_coverage || parts.validate.size() == 0)
-    return refuse(
-        prepared,
-        request.equipment.derived.empty()
-            ? because<ReasonCode::low_coverage>(coverage_percent, needed_percent)
-            : because<ReasonCode::low_coverage_with_derived>(coverage_percent, needed_percent));
+  if (prepared.least_covered) {
+    const auto& [parameter, coverage] = *prepared.least_covered;
+    return refuse(prepared, request.equipment.derived.empty()
+                                ? because<ReasonCode::low_coverage>(
+                                      coverage_percent, needed_percent, parameter, 100 * coverage)
+                                : because<ReasonCode::low_coverage_with_derived>(
+                                      coverage_percent, needed_percent, parameter, 100 * coverage));
+  }
   identification::IdentifyOptions options = options_of(request.equipment);
   options.tune_rows = parts.tune.size();
   // The gate would turn away what is slower: over the window it looks like an integrator.
@@ -288,10 +290,14 @@ PreparedWindow loaded_window(const storage::Archive& archive, const RefreshReque
   prepared.timer.begin("load");
   try {
     auto outcome = kept.load(archive, request.window);
-    if (const auto* unknown = std::get_if<UnknownParameter>(&outcome))
+    if (const auto* unknown = std::get_if<UnknownParameter>(&outcome)) {
       refuse(prepared, because<ReasonCode::unknown_parameter>(unknown->name));
-    else
-      prepared.data = std::get<WindowData>(std::move(outcome));
+      return prepared;
+    }
+    const WindowData& data = prepared.data = std::get<WindowData>(std::move(outcome));
+    if (data.coverage < request.equipment.min_coverage ||
+        parts_of(data.record.rows(), request.equipment).validate.size() == 0)
+      prepared.least_covered = least_covered(archive, kept.request(), data, request.window);
   } catch (const storage::Error& error) {
     if (error.kind() != storage::Error::Kind::corrupt) throw;
     refuse_damaged(prepared, error);

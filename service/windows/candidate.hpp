@@ -57,6 +57,7 @@ struct PreparedWindow {
   WindowRequest loaded;         // what `data` was read as
   Checks checks;                // that were made on it
   WindowData data;
+  std::optional<ParameterCoverage> least_covered;  // where too few ticks have a row
   std::optional<Candidate> candidate;
   nlohmann::ordered_json evidence = nlohmann::ordered_json::object();
   nlohmann::ordered_json search;  // how the model that was identified was found

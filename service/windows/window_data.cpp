@@ -135,6 +135,20 @@ identification::Record load_samples(const storage::SampleReader& archive,
       {.period_ns = request.period, .sample_hold_ns = request.sample_hold});
 }
 
+ParameterCoverage least_covered(const storage::SampleReader& archive, const WindowRequest& request,
+                                const WindowData& described, storage::TimeRange window) {
+  ParameterCoverage least{{}, std::numeric_limits<double>::infinity()};
+  for (const auto* channels : {&described.input_channels, &described.output_channels})
+    for (const Channel& channel : *channels) {
+      WindowData alone;
+      alone.output_channels = {channel};
+      const double coverage =
+          coverage_of(load_samples(archive, request, alone, window), window, request.period);
+      if (coverage < least.coverage) least = {channel.name, coverage};
+    }
+  return least;
+}
+
 std::variant<WindowData, UnknownParameter> load_window(const storage::SampleReader& archive,
                                                        const WindowRequest& request,
                                                        storage::TimeRange window) {

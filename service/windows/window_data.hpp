@@ -99,6 +99,17 @@ identification::Record load_samples(const storage::SampleReader& archive,
 double coverage_of(const identification::Record& record, storage::TimeRange window,
                    Duration period);
 
+/// A parameter and the share of a window's ticks at which it has a value, 0 to 1.
+struct ParameterCoverage {
+  std::string parameter;
+  double coverage = 0;
+};
+
+/// Returns the parameter of the request that has a value at the fewest ticks of the window.
+/// `described` is of the same request.
+ParameterCoverage least_covered(const storage::SampleReader& archive, const WindowRequest& request,
+                                const WindowData& described, storage::TimeRange window);
+
 /// Returns the window's rows, nothing excluded. Samples of a usable quality count; all others are
 /// holes, and so are ticks at which a derived input has no finite value.
 std::variant<WindowData, UnknownParameter> load_window(const storage::SampleReader& archive,

@@ -26,11 +26,12 @@ const Example without_candidate[] = {
      "or wait for its descriptor."},
     {because<Code::telemetry_damaged>("601 samples of V_BUS are damaged"),
      "601 samples of V_BUS are damaged"},
-    {because<Code::low_coverage>(41.66, 90.0),
-     "Only 41.7 % of the window has every parameter valid; 90 % are needed."},
-    {because<Code::low_coverage_with_derived>(41.66, 92.5),
+    {because<Code::low_coverage>(41.66, 90.0, "S_SAFE", 43.21),
+     "Only 41.7 % of the window has every parameter valid; 90 % are needed. S_SAFE alone has a "
+     "value in 43.2 %."},
+    {because<Code::low_coverage_with_derived>(41.66, 92.5, "S_SAFE", 43.21),
      "Only 41.7 % of the window has every parameter valid and every derived input finite; 92.5 % "
-     "are needed."},
+     "are needed. S_SAFE alone has a value in 43.2 %."},
     {because<Code::implausible>("V_BUS is stuck", 41.66, 90.0),
      "Telemetry is not believed: V_BUS is stuck. 41.7 % of the window is left, 90 % are needed."},
     {because<Code::no_model>("No output moves."), "No output moves."},

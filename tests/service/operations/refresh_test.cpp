@@ -212,6 +212,19 @@ TEST_F(Refresh, RefusesAWindowFullOfHoles) {
   EXPECT_EQ(run(day + 60 * minute).attempt.outcome, "low_coverage") << "no sample at all";
 }
 
+TEST_F(Refresh, NamesTheParameterThatIsMissingMost) {
+  const auto y = archive.parameter("SAT", "y")->id;
+  int values = 0;
+  auto frames = telemetry(day, 600);
+  for (auto& frame : frames)
+    std::erase_if(frame.samples,
+                  [&](const auto& sample) { return sample.parameter == y && ++values % 8 != 0; });
+  archive.append(frames);
+  const auto reason = reasons_in(run(day + 10 * minute).attempt.evidence_json)[0];
+  EXPECT_EQ(reason["parameter"], "y");
+  EXPECT_NEAR(reason["parameter_coverage_percent"], 37.5, 1) << "a value is held for three periods";
+}
+
 TEST_F(Refresh, PassesTheVerdictOfTheIdentificationOn) {
   auto frames = telemetry(day, 601);
   for (auto& frame : frames) frame.samples[2].value = 7;
